@@ -49,5 +49,5 @@ def drawn(motion: Motion, kinds: Sequence[str], request: PlotRequest | None = No
     """Return the figure of some kinds, with its artists, on light paper."""
     with styled(LIGHT):
         figure = Figure(layout="constrained")
-        draw_page(figure, Page(motion, kinds, request or PlotRequest(), LIGHT))
+        draw_page(figure, Page(motion, kinds, request or PlotRequest()))
     return figure

@@ -9,12 +9,11 @@ methods in prints without colour.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..output.destination import write_bytes
 from ..output.report import Report
-from ..plot.files import About, figure_bytes
+from ..plot.files import About, report_bytes
 from ..plot.style import LIGHT, head, styled
 from .closed_forms import CLOSED_FORMS
 from .measure import all_methods
@@ -165,7 +164,7 @@ def _save(
     figure.legend(handles=[*lines, *others], loc="outside right upper", fontsize="small")
     text = "; ".join(f"{name}: {line}" for name, line in findings.conditions.items())
     about = About(f"lagtop: {title}", text)
-    write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about))
+    write_bytes(path, lambda: report_bytes(figure, path, about))
 
 
 class MethodLook(NamedTuple):

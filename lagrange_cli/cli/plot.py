@@ -147,8 +147,9 @@ def plot_command(
         progress=with_progress,
         stds=angle_stds(found, motion),
         uncertain=_first_order(found, motion),
+        look=chosen_look(dark),
     )
-    page = Page(motion, chosen, request, chosen_look(dark), inches)
+    page = Page(motion, chosen, request, inches)
     page_dpi, film_dpi = (float(dpi or usual) for usual in (PAGE_DPI, FILM_DPI))
     if output is not None:
         page.check_dpi(page_dpi, written)

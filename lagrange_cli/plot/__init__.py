@@ -6,7 +6,7 @@ matplotlib, or a sequence with as many axes as the kind has; by default a new fi
 functions raise LagtopError for a time out of range, if there is nothing to draw, and without
 matplotlib.
 
-matplotlib and NumPy are imported when a function is called, because every command loads this file.
+matplotlib and NumPy are imported when a function is called, as help does without them.
 """
 
 from __future__ import annotations
@@ -14,13 +14,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict, Unpack
 
+from .files import require_matplotlib
+from .kinds import KINDS, MAP_KEY, PlotRequest
+from .style import chosen_look, points
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..motion.solve import Motion
-    from .map import InputRange
 
-    Places: TypeAlias = Axes | Sequence[Axes] | None
+    AxesOfUser: TypeAlias = Axes | Sequence[Axes] | None
 
 
 class OverTime(TypedDict, total=False):
@@ -31,38 +34,38 @@ class OverTime(TypedDict, total=False):
     dark: bool
 
 
-def draw_sphere(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
+def draw_sphere(motion: Motion, ax: AxesOfUser = None, **shown: Unpack[OverTime]) -> list[Axes]:
     """Draw the path of the figure axis on the unit sphere, and return the axes."""
-    return _drawn("sphere", motion, ax, **shown)
+    return draw(motion, "sphere", ax, **shown)
 
 
-def draw_angles(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
+def draw_angles(motion: Motion, ax: AxesOfUser = None, **shown: Unpack[OverTime]) -> list[Axes]:
     """Draw tilt, spin and precession over time on three axes, and return the axes."""
-    return _drawn("angles", motion, ax, **shown)
+    return draw(motion, "angles", ax, **shown)
 
 
-def draw_remainders(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
+def draw_remainders(motion: Motion, ax: AxesOfUser = None, **shown: Unpack[OverTime]) -> list[Axes]:
     """Draw the periodic parts of spin and precession on two axes, and return the axes."""
-    return _drawn("remainders", motion, ax, **shown)
+    return draw(motion, "remainders", ax, **shown)
 
 
-def draw_cubic(motion: Motion, ax: Places = None, *, dark: bool = False) -> list[Axes]:
+def draw_cubic(motion: Motion, ax: AxesOfUser = None, *, dark: bool = False) -> list[Axes]:
     """Draw f(u) with its roots and the band of the motion, and return the axes."""
-    return _drawn("cubic", motion, ax, dark=dark)
+    return draw(motion, "cubic", ax, dark=dark)
 
 
 def draw_phase(
-    motion: Motion, ax: Places = None, *, radians: bool = False, dark: bool = False
+    motion: Motion, ax: AxesOfUser = None, *, radians: bool = False, dark: bool = False
 ) -> list[Axes]:
     """Draw tilt rate against tilt, and the separatrix, and return the axes."""
-    return _drawn("phase", motion, ax, radians=radians, dark=dark)
+    return draw(motion, "phase", ax, radians=radians, dark=dark)
 
 
 def draw_map(
     motion: Motion,
-    ax: Places = None,
+    ax: AxesOfUser = None,
     *,
-    key: str = "mean_precession_rate",
+    key: str = MAP_KEY,
     x: str | None = None,
     y: str | None = None,
     dark: bool = False,
@@ -71,80 +74,58 @@ def draw_map(
 
     `x` and `y` are ranges such as `r0=5:120:80`.
     """
-    over = [parse_input_range(name, text) if text else None for name, text in (("x", x), ("y", y))]
-    return _drawn("map", motion, ax, key=key, x=over[0], y=over[1], dark=dark)
+    return draw(motion, "map", ax, key=key, x=x, y=y, dark=dark)
 
 
-def parse_input_range(name: str, text: str) -> InputRange:
-    """Parse a range without a unit, such as `r0=10:100:40` or `r0=log:1:100:40`.
-
-    `name` is the argument to name in errors.  Raises LagtopError as `parse_axis` and `input_range`.
-    """
-    from .map import input_range, parse_axis
-
-    known, value = parse_axis(name, text)
-    if value.unit:
-        from ..errors import LagtopError
-
-        raise LagtopError(f"{name} must have no unit, as the motion has none, got {text!r}", name)
-    return input_range(name, known, value.number)
-
-
-def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any) -> list[Axes]:
+def draw(
+    motion: Motion, kind: str = "sphere", ax: AxesOfUser = None, *, dark: bool = False, **shown: Any
+) -> list[Axes]:
     """Draw the kind of picture with this name, and return the axes.
 
     The options are those of the function of the kind, such as `draw_sphere`.  Raises LagtopError
-    for an unknown kind.
+    for an unknown kind, and TypeError for an option that the kind does not have.
 
     >>> len(draw(solve(Top()), "angles", t_max=1.0))
     3
     """
-    from ..errors import check_type
+    from ..errors import LagtopError, check_type
     from ..inputs.names import check_names
     from ..motion.solve import Motion
-    from .kinds import KINDS
 
     check_type("motion", motion, Motion)
     check_type("kind", kind, str)
     check_names("kind", [kind], KINDS)
-    drawn: list[Axes] = globals()[f"draw_{kind}"](motion, ax, **options)
-    return drawn
-
-
-def _drawn(
-    name: str,
-    motion: Motion,
-    ax: Places,
-    *,
-    t_max: float | None = None,
-    dark: bool = False,
-    **wanted: Any,
-) -> list[Axes]:
-    """Draw a kind of picture on the given axes, or on new ones, and return the axes."""
-    from .files import require_matplotlib
-
+    picture = KINDS[kind]
+    if unknown := [name for name in shown if name not in picture.options]:
+        raise TypeError(f"draw_{kind}() got an unexpected keyword argument {unknown[0]!r}")
     require_matplotlib()
     from matplotlib.axes import Axes
 
-    from ..errors import LagtopError
     from .curves import checked_span
-    from .kinds import KINDS, PlotRequest
-    from .style import chosen_look, points
 
-    kind, request = KINDS[name], PlotRequest(t_max=checked_span(motion, t_max), **wanted)
+    if "key" in picture.options:
+        from .map import parse_input_range
+
+        ranges = {name: shown.get(name) for name in ("x", "y")}
+        shown |= {name: parse_input_range(name, text) for name, text in ranges.items() if text}
+    if "t_max" in shown:
+        shown["t_max"] = checked_span(motion, shown["t_max"])
     if ax is None:
         from matplotlib import pyplot
 
-        places = pyplot.subplots(kind.axes, sharex=True, squeeze=False, layout="constrained")[1]
-        axes = list(places.flat)
+        grid = pyplot.subplots(picture.axes, sharex=True, squeeze=False, layout="constrained")[1]
+        axes: list[Axes] = list(grid.flat)
     else:
         axes = [ax] if isinstance(ax, Axes) else list(ax)
-    if len(axes) != kind.axes:
-        raise LagtopError(f"ax must be {kind.axes} axes, got {len(axes)}", "ax")
-    drawing = kind.drawing(motion, request)
-    used = len(drawing.heights)
-    drawing.draw(axes[:used], chosen_look(dark))
-    axes[0].set_title(drawing.title, pad=points(18))  # above names at the top of the axes
-    for empty in axes[used:]:
-        empty.set_axis_off()
+    if len(axes) != picture.axes:
+        raise LagtopError(f"ax must be {picture.axes} axes, got {len(axes)}", "ax")
+
+    def places(heights: Sequence[float]) -> list[Axes]:
+        """Return the axes in use; the others are left empty."""
+        for empty in axes[len(heights) :]:
+            empty.set_axis_off()
+        return axes[: len(heights)]
+
+    title = picture.draw(motion, PlotRequest(look=chosen_look(dark), **shown), places)
+    axes[0].set_title(title, pad=points(18))  # above names at the top of the axes
     return axes

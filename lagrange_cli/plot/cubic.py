@@ -1,11 +1,12 @@
-"""The picture `cubic`: f(u), its roots, and the band in which the motion takes place.
+"""The pictures `cubic`, f(u) with its roots and the band of the motion, and `phase`.
 
-Equation numbers are Chrapan's.
+`phase` shows the nutation in the plane of tilt and tilt rate.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +15,9 @@ from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from .kinds import Drawing, PlotRequest
-from .style import Look, number_from_left_to_right, number_text, points
+from .curves import PHASES, motion_in_words, sampled_columns, span
+from .kinds import Places, PlotRequest
+from .style import Look, mark_start, number_from_left_to_right, number_text, points
 
 NEAR = 1.5
 """Greatest distance of the third root above the band, in widths of the band, to be shown."""
@@ -25,6 +27,10 @@ TOUCHING = 0.09
 """Share of the window within which the names of two roots would touch."""
 POLES = {1: "upright", -1: "hanging"}
 """State of the top at each end of the range of a cosine."""
+SEPARATRIX = (
+    "separatrix: the path of a top that starts upright with this spin\n"
+    "(other starts may cross it, as their momentum about the vertical differs)"
+)
 
 
 class Cubic(NamedTuple):
@@ -44,14 +50,14 @@ class Cubic(NamedTuple):
 
     def heights(self) -> tuple[float, float]:
         """Return the range of f(u) to show: the hump over the band, and about the same depth."""
-        hump = float(self.f[self._within(self.u1)].max(initial=0.0))
+        hump = float(self.f[self.between(self.u1)].max(initial=0.0))
         most = float(np.abs(self.f).max())
         if hump <= 1e-3 * most:  # none that could be seen
             return -1.1 * most, 0.35 * most
-        depth = -float(self.f[self._within(self.u3_in_view or self.u1)].min(initial=0.0))
+        depth = -float(self.f[self.between(self.u3_in_view or self.u1)].min(initial=0.0))
         return -min(max(1.3 * depth, 0.6 * hump), 1.4 * hump), 1.3 * hump
 
-    def _within(self, last: float) -> NDArray[np.bool_]:
+    def between(self, last: float) -> NDArray[np.bool_]:
         """Return a mask of the samples between the lowest root and `last`."""
         inside: NDArray[np.bool_] = (self.u >= self.u2) & (self.u <= last)
         return inside
@@ -75,32 +81,22 @@ def cubic_curve(motion: Motion) -> Cubic:
     return Cubic(u, f, u1, u2, u3)
 
 
-def cubic_drawing(motion: Motion, request: PlotRequest) -> Drawing:
-    """Compute the cubic."""
-    cubic = cubic_curve(motion)
-
-    def draw(axes: Sequence[Axes], look: Look) -> None:
-        """Draw f(u), its roots, and the band in which the motion takes place."""
-        axes[0].set_ylabel(request.label("f(u) (1/time²)"))
-        _draw_curve(axes[0], cubic, look)
-        _draw_poles(axes[0], cubic, look)
-        _draw_roots(axes[0], cubic, look)
-        number_from_left_to_right(axes[0])
-
-    return Drawing("The cubic f(u) = u̇² (4,9), the motion shaded", draw)
-
-
-def _draw_curve(axes: Axes, cubic: Cubic, look: Look) -> None:
-    """Draw f(u) and the band."""
+def cubic_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
+    """Draw f(u), its roots, and the band in which the motion takes place."""
+    cubic, look = cubic_curve(motion), request.look
+    (axes,) = places((1.0,))
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())
+    axes.set_ylabel(request.label("f(u) (1/time²)"))
     axes.axhline(0.0, color=look.quiet, lw=points(0.9))
     if cubic.u2 < cubic.u1:
         axes.axvspan(cubic.u2, cubic.u1, color=look.faint, zorder=0)
-    inside = (cubic.u >= cubic.u2) & (cubic.u <= cubic.u1)
-    axes.fill_between(
-        cubic.u, 0.0, cubic.f, where=inside, color=look.lines[0], alpha=0.3, linewidth=0
-    )
-    axes.plot(cubic.u, cubic.f, color=look.lines[0])
+    blue, inside = look.lines[0], cubic.between(cubic.u1)
+    axes.fill_between(cubic.u, 0.0, cubic.f, inside, color=blue, alpha=0.3, linewidth=0)
+    axes.plot(cubic.u, cubic.f, color=blue)
+    _draw_poles(axes, cubic, look)
+    _draw_roots(axes, cubic, look)
+    number_from_left_to_right(axes)
+    return "The cubic f(u) = u̇² (4,9), the motion shaded"
 
 
 def _draw_poles(axes: Axes, cubic: Cubic, look: Look) -> None:
@@ -156,3 +152,63 @@ def _named(
             yield "u₁, u₃" if roots["u₃"] > root else "u₁ = u₃", root, free[name]
         elif name != "u₃" or not together:
             yield name, root, free.get(name, (False, True))
+
+
+class PhasePortrait(NamedTuple):
+    """Tilt and tilt rate over a nutation, and on the separatrix of the same body and spin."""
+
+    theta: Array
+    rate: Array
+    start: tuple[float, float]
+    separatrix: tuple[Array, Array] | None
+    """Upper half, from the upright position down; None above the sleeping threshold."""
+    why: str
+    """The meaning of the separatrix, or the reason why there is none, in words."""
+
+
+def phase_portrait(motion: Motion) -> PhasePortrait:
+    """Return the orbit and the separatrix in the plane of tilt and tilt rate."""
+    _, theta, rate = sampled_columns(motion, span(motion, 1), ["theta", "thetadot"]).values()
+    start = float(theta[0]), float(motion.top.thetadot0)
+    a, b = float(motion.a), float(motion.b)
+    if not b * b < 2 * a:
+        reason = "without torque" if a == 0 else f"as C²r₀² = {b * b / (2 * a):.3g} · 4Amgs"
+        why = f"no separatrix: the upright top is stable with this spin, {reason}"
+        return PhasePortrait(theta, rate, start, None, why)
+    return PhasePortrait(theta, rate, start, separatrix_orbit(a, b), SEPARATRIX)
+
+
+def separatrix_orbit(a: float, b: float) -> tuple[Array, Array]:
+    """Return tilt and rate on the orbit that leaves the upright position and returns to it.
+
+    The orbit exists for b^2 < 2a.  With alpha = a and beta = b, (4,9) becomes
+
+        theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2).
+    """
+    lowest = math.acos(b * b / a - 1)
+    theta = lowest * np.sin(np.linspace(0.0, math.pi / 2, 4 * PHASES + 1))
+    half = theta / 2
+    square = 2 * a * np.sin(half) ** 2 - (b * np.tan(half)) ** 2
+    rate = np.sqrt(np.maximum(square, 0.0))
+    if b:
+        rate[-1] = 0.0
+    return theta, rate
+
+
+def phase_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
+    """Draw the orbit in the plane of tilt and tilt rate, its start and the separatrix."""
+    portrait, factor, look = phase_portrait(motion), request.per_radian, request.look
+    (axes,) = places((1.0,))
+    axes.set(
+        xlabel=f"tilt ϑ ({request.angle_unit})", ylabel=request.label("tilt rate ϑ̇ (rad/time)")
+    )
+    axes.axhline(0.0, color=look.quiet, lw=points(0.9))
+    axes.plot(portrait.theta * factor, portrait.rate, color=look.lines[0], label="this motion")
+    mark_start(axes, portrait.start[0] * factor, portrait.start[1], look)
+    theta, rate = portrait.separatrix or (np.empty(0), np.empty(0))
+    both = np.append(theta, theta[::-1]) * factor, np.append(rate, -rate[::-1])
+    dashes = {"lw": points(1.4), "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
+    axes.plot(*both, color=look.ink, label=portrait.why, **dashes)
+    axes.margins(0.06)
+    number_from_left_to_right(axes)
+    return f"Nutation in the phase plane: {motion_in_words(motion)}"

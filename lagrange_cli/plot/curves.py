@@ -33,11 +33,6 @@ MOST_PERIODS = 1000
 """Most nutation periods in one picture; more would be a blot and not a curve."""
 
 
-def axis_at(motion: Motion, t: Array) -> Array:
-    """Return the unit vectors of the figure axis in space at the times t, in shape (n, 3)."""
-    return np.stack([*motion.table(t, ["axis"]).values()], axis=1)
-
-
 def tilt_period(motion: Motion) -> float | None:
     """Return the period of the tilt, or None for a tilt that is constant or never returns.
 
@@ -53,14 +48,14 @@ def motion_in_words(motion: Motion) -> str:
     Upright and hanging tops are called stable or unstable.
     """
     regime = motion.regime
-    if regime in (Regime.SLEEPING, Regime.HANGING):
-        stable = regime is Regime.HANGING or motion.exact.facts.stable
-        return f"{regime.value}, {'stable' if stable else 'unstable'}"
-    if regime is Regime.SEPARATRIX:
-        return "separatrix, rises to upright for ever"
-    if regime is Regime.REGULAR:
-        return f"{motion.path} path" if motion.path else regime.value
-    return regime.value
+    stability = "stable" if motion.exact.facts.stable else "unstable"
+    words = {
+        Regime.SLEEPING: f"sleeping, {stability}",
+        Regime.HANGING: "hanging, stable",
+        Regime.SEPARATRIX: "separatrix, rises to upright for ever",
+        Regime.REGULAR: f"{motion.path} path",
+    }
+    return words.get(regime, regime.value)
 
 
 def span(motion: Motion, periods: float) -> float:
@@ -112,16 +107,6 @@ def checked_span(motion: Motion, t_max: Number | None) -> float | None:
         most = f"{MOST_PERIODS} nutation periods = {MOST_PERIODS * nutation:.6g}"
         raise LagtopError(f"t_max must be at most {most}, got {float(t_max):g}", "t_max")
     return float(t_max)
-
-
-def highest_times(motion: Motion, t_max: float) -> Array:
-    """Return the times in [0, t_max] at which the axis is highest: its cusps, if it has any."""
-    T, before = tilt_period(motion), motion.phase
-    if not T or before is None:
-        return np.empty(0)
-    whole = np.arange(math.ceil(before - 1e-9), math.floor(t_max / T + before + 1e-9) + 1)
-    times: Array = np.clip((whole - before) * T, 0.0, t_max)
-    return times
 
 
 def sampled_columns(motion: Motion, t_max: float, names: Sequence[str]) -> dict[str, Array]:

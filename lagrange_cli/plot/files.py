@@ -33,24 +33,15 @@ class About(NamedTuple):
 
     def fields(self, fmt: str) -> dict[str, str | None]:
         """Return the metadata for a file type, without date and version."""
+        texts = self.title, self.text, self.command
         if fmt == "svg":
             whole = f"{self.text}\n{self.command}".strip()
             return {"Title": self.title, "Description": whole, "Creator": "lagtop", "Date": None}
         if fmt == "pdf":
-            return {
-                "Title": self.title,
-                "Subject": self.text,
-                "Keywords": self.command,
-                "Creator": "lagtop",
-                "Producer": None,
-                "CreationDate": None,
-            }
-        return {
-            "Title": self.title,
-            "Description": self.text,
-            "Comment": self.command,
-            "Software": "lagtop",
-        }
+            named = dict(zip(("Title", "Subject", "Keywords"), texts, strict=True))
+            return {**named, "Creator": "lagtop", "Producer": None, "CreationDate": None}
+        named = dict(zip(("Title", "Description", "Comment"), texts, strict=True))
+        return {**named, "Software": "lagtop"}
 
 
 def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
@@ -68,13 +59,16 @@ def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
     with matplotlib.rc_context(_FONTS):  # type: ignore[arg-type]  # the stub lists every key
         canvas = get_registered_canvas_class(fmt)(figure)
         getattr(canvas, f"print_{fmt}")(buffer, metadata=about.fields(fmt), **how)
-    return _described(buffer.getvalue(), about) if fmt == "svg" else buffer.getvalue()
+    if fmt != "svg":
+        return buffer.getvalue()
+    end = b"</title>"  # a description for screen readers follows
+    described = end + f"\n <desc>{escape(about.text)}</desc>".encode()
+    return buffer.getvalue().replace(end, described, 1)
 
 
-def _described(svg: bytes, about: About) -> bytes:
-    """Return the SVG with a description for screen readers after its title."""
-    end = b"</title>"
-    return svg.replace(end, end + f"\n <desc>{escape(about.text)}</desc>".encode(), 1)
+def report_bytes(figure: Figure, path: str, about: About) -> bytes:
+    """Return the figure of a report in the format given by its file name."""
+    return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
 
 
 def check_plot(path: str | None, output: str) -> None:

@@ -22,9 +22,8 @@ from PIL import Image
 from ..errors import LagtopError, UnavailableError
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
-from .camera import camera_at, cone_at, on_one_side, side_camera
 from .curves import MOST_PERIODS, span, tilt_period, turn_span
-from .globe import draw_globe
+from .globe import camera_at, cone_at, draw_globe, on_one_side, side_camera
 from .page import Page, check_pixels
 from .sphere import axis_path
 from .style import points, scale, styled
@@ -120,17 +119,12 @@ def film_pace(
         bounds = f"[{least:g}, {most:g}] seconds"
         raise LagtopError(f"duration must be in {bounds}, got {duration:g}", "duration")
     if t_max is None:
-        t_max = film_span(motion) if speed is None else _checked_speed(motion, speed, duration)
+        t_max = film_span(motion) if speed is None else speed * duration
+    longest = MOST_PERIODS * (tilt_period(motion) or math.inf)
+    if speed is not None and t_max > longest:
+        fastest = f"{longest / duration:.6g} ({MOST_PERIODS} nutation periods)"
+        raise LagtopError(f"speed must be at most {fastest}, got {speed:g}", "speed")
     return Pace(round(FRAMES_PER_SECOND * duration), t_max)
-
-
-def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
-    """Return the time that a film shows; raise LagtopError if its path would be a blot."""
-    nutation = tilt_period(motion)
-    if nutation and speed * duration > MOST_PERIODS * nutation:
-        most = f"{MOST_PERIODS * nutation / duration:.6g} ({MOST_PERIODS} nutation periods)"
-        raise LagtopError(f"speed must be at most {most}, got {speed:g}", "speed")
-    return speed * duration
 
 
 def check_film(page: Page, name: str, dpi: float) -> None:
@@ -158,7 +152,7 @@ def film_bytes(page: Page, name: str, dpi: float, pace: Pace, progress: Progress
     check_film(page, name, dpi)
     suffix = Path(name).suffix.lower()
     writer = WRITERS[suffix](fps=FRAMES_PER_SECOND)
-    with styled(page.look), tempfile.TemporaryDirectory() as folder:
+    with styled(page.request.look), tempfile.TemporaryDirectory() as folder:
         film = Film(page, pace)
         path = Path(folder) / f"film{suffix}"
         with writer.saving(film.figure, str(path), dpi):
@@ -223,7 +217,8 @@ class Film:
     """The figure of a film and its moving parts."""
 
     def __init__(self, page: Page, pace: Pace) -> None:
-        motion, look, request = page.motion, page.look, page.request
+        motion, request = page.motion, page.request
+        look = request.look
         self.figure = Frames(figsize=page.size or USUAL_SIZE)
         self.path = axis_path(motion, pace.t_max)
         self.times = np.linspace(0.0, pace.t_max, pace.frames)
@@ -231,8 +226,7 @@ class Film:
         self.attitude = np.stack([*columns.values()], axis=1)
         self.camera = camera_at(*request.camera) if request.camera else side_camera(self.path.axis)
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        limits = self.path.least, self.path.greatest
-        draw_globe(self.axes, self.camera, limits, request, look)
+        draw_globe(self.axes, self.camera, (self.path.least, self.path.greatest), request)
         low, high = self.axes.get_ylim()
         self.axes.set_ylim(low - FOOT, high)
         self.body = PolyCollection([], zorder=BODY, linewidths=0.3, edgecolors="face")
@@ -242,18 +236,17 @@ class Film:
         (self.rim,) = self.axes.plot([], [], color=look.ink, lw=points(0.9), zorder=RIM)
         (self.far,) = self.axes.plot([], [], color=past, lw=1.2, alpha=0.45, zorder=FAR)
         (self.near,) = self.axes.plot([], [], color=past, lw=2.2, zorder=NEAR)
-        self.trace = [
-            (line, on_one_side(self.camera, self.path.axis, side))
-            for line, side in ((self.near, True), (self.far, False))
-        ]
+        self.trace = {
+            line: on_one_side(self.camera, self.path.axis, line is self.near)
+            for line in (self.near, self.far)
+        }
         (self.axle,) = self.axes.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
         self.clock = self.axes.text(0.03, 0.95, "", transform=self.axes.transAxes)
-        place: dict[str, Any] = {"transform": self.axes.transAxes, "zorder": 0}
         turned = np.abs(np.diff(motion.angles(self.times).phi)).max(initial=0.0)
         self.unit = f" {request.unit('time')}" if request.system else ""
         foot = f"1 second shows {pace.speed:.3g}{self.unit or ' of time t'}"
         foot += "; the spin is too fast for these frames" * bool(turned > ALIASED)
-        self.axes.text(0.03, 0.02, foot, size="small", **place)
+        self.axes.text(0.03, 0.02, foot, size="small", transform=self.axes.transAxes, zorder=0)
         self.moving = self.body, self.axle, self.far, self.rim, self.near, self.clock
         others = {*self.axes.lines, *self.axes.texts}.difference(self.moving)
         self.figure.front = [x for x in others if x.get_zorder() > BACKGROUND]
@@ -266,7 +259,7 @@ class Film:
         self.axle.set_data(*top.axle)
         self.axle.set_zorder(BEFORE if top.lid_in_sight else BEHIND)
         passed = np.searchsorted(self.path.t, self.times[i], side="right")
-        for line, points_of_side in self.trace:
-            line.set_data(*points_of_side[:, :passed])
+        for line, places in self.trace.items():
+            line.set_data(*places[:, :passed])
         self.clock.set_text(f"t = {self.times[i]:.4g}{self.unit}")
         self.figure.moving = sorted(self.moving, key=Artist.get_zorder)

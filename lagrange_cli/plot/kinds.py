@@ -1,7 +1,7 @@
 """The kinds of picture: a table from which the command, its help and the page are generated.
 
-Each kind has a function `NAME_drawing(motion, request)` in a file of this subpackage.  It computes
-the picture and returns a drawing for the axes of a page or of a user.
+Each kind has a function `NAME_picture(motion, request, places)` in a file of this subpackage.  It
+computes the picture, draws it on the axes of a page or of a user, and returns its title.
 """
 
 from __future__ import annotations
@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from ..arithmetic.numbers import per_radian
 from ..output.progress import Progress, silent
+from .style import DARK, LIGHT, Look
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
     from .map import InputRange
-    from .style import Look
 
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows by default."""
@@ -55,6 +55,8 @@ class PlotRequest(NamedTuple):
     """Uncertainties of the angles, drawn as bands."""
     uncertain: FirstOrder | None = None
     """Uncertainties of the numbers beside several pictures."""
+    look: Look = LIGHT
+    """The colours."""
 
     def unit(self, unit: str) -> str:
         """Return a unit such as `rad/time` in the names of the units of the inputs."""
@@ -99,18 +101,12 @@ class PlotRequest(NamedTuple):
             and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
             "--colour-limits": self.limits and ":".join(map(repr, self.limits)),
         }
-        flags = ["--rad"] * self.radians
+        flags = ["--rad"] * self.radians + ["--dark"] * (self.look is DARK)
         return [f"{name} {text}" for name, text in given.items() if text] + flags
 
 
-class Drawing(NamedTuple):
-    """A computed picture of a motion that has not been drawn yet."""
-
-    title: str
-    draw: Callable[[Sequence[Axes], Look], None]
-    """Draws everything but the title on a list of axes, one below the other."""
-    heights: tuple[float, ...] = (1.0,)
-    """Relative heights of the axes of a page."""
+Places: TypeAlias = "Callable[[Sequence[float]], Sequence[Axes]]"
+"""Returns axes, one below the other, for relative heights; axes of a user may be fewer."""
 
 
 class PictureKind(NamedTuple):
@@ -123,28 +119,39 @@ class PictureKind(NamedTuple):
     """Width and height (inches) of a page that holds only this picture."""
     on_sheet: bool = False
     """Whether the picture is on the sheet, which the command draws by default."""
+    options: tuple[str, ...] = ()
+    """Options of a drawing on a user's own axes, besides `dark`."""
     axes: int = 1
     """Number of axes that a user passes; several share the time axis."""
     file: str = ""
-    """File that computes the picture; by default the file with the name of the kind."""
+    """File that draws the picture; by default the file with the name of the kind."""
 
-    def drawing(self, motion: Motion, request: PlotRequest) -> Drawing:
-        """Compute the picture; its file, and with it matplotlib, is loaded here.
+    def draw(self, motion: Motion, request: PlotRequest, places: Places) -> str:
+        """Draw the picture and return its title; its file, and matplotlib, are loaded here.
 
         Raises LagtopError for an invalid request, and NothingToDrawError.
         """
         file = import_module(f".{self.file or self.name}", __package__)
-        drawing: Drawing = getattr(file, f"{self.name}_drawing")(motion, request)
-        return drawing
+        title: str = getattr(file, f"{self.name}_picture")(motion, request, places)
+        return title
 
 
+_OVER_TIME = ("t_max", "radians")
 _ROWS = [
-    PictureKind("sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True),
-    PictureKind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, 3),
-    PictureKind("remainders", "periodic parts of spin and precession", (7, 5), True, 2, "angles"),
+    PictureKind(
+        "sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True, _OVER_TIME
+    ),
+    PictureKind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, _OVER_TIME, 3),
+    PictureKind(
+        *("remainders", "periodic parts of spin and precession", (7, 5), True, _OVER_TIME),
+        *(2, "angles"),
+    ),
     PictureKind("cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
-    PictureKind("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0)),
-    PictureKind("map", "a key of the record over two inputs", (6.8, 5.0)),
+    PictureKind(
+        *("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False, ("radians",)),
+        file="cubic",
+    ),
+    PictureKind("map", "a key of the record over two inputs", (6.8, 5.0), False, ("key", "x", "y")),
 ]
 
 KINDS = {kind.name: kind for kind in _ROWS}

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +14,6 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from ..arithmetic.points import LogPoints, Points
 from ..arithmetic.types import Array, Mask
-from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.input_keys import DECLARED, NINE, TILT
 from ..inputs.names import check_names
@@ -27,7 +25,7 @@ from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
 from ..sweeps.records import BLOCK_ROWS, sweep
-from .kinds import Drawing, PlotRequest
+from .kinds import Places, PlotRequest
 from .style import Look, mark_start, points, scale
 
 MOST_CELLS = 1_000_000
@@ -91,6 +89,17 @@ def input_range(name: str, known: str, points: Points) -> InputRange:
     return InputRange(known, values, isinstance(points, LogPoints) and bool(values[0] > 0))
 
 
+def parse_input_range(name: str, text: str) -> InputRange:
+    """Parse a range without a unit, such as `r0=10:100:40` or `r0=log:1:100:40`.
+
+    `name` is the argument to name in errors.  Raises LagtopError as `parse_axis` and `input_range`.
+    """
+    known, value = parse_axis(name, text)
+    if value.unit:
+        raise LagtopError(f"{name} must have no unit, as the motion has none, got {text!r}", name)
+    return input_range(name, known, value.number)
+
+
 class KeyMap(NamedTuple):
     """A key of the record at each pair of values of two inputs."""
 
@@ -101,6 +110,11 @@ class KeyMap(NamedTuple):
     """values[i, j] belongs to y[i] and x[j]; NaN if the motion has none."""
     sleeping: Array
     """C |r0| / sqrt(4Amgs), 1 at the sleeping threshold; infinite without torque."""
+
+    @property
+    def known(self) -> Array:
+        """The values that are defined, in one row."""
+        return self.values[np.isfinite(self.values)]
 
 
 def default_ranges(top: Top, *, radians: bool = False) -> tuple[InputRange, InputRange]:
@@ -156,39 +170,33 @@ def key_map(
         return KeyMap(key, x, y, values, np.where(a > 0, abs(b) / np.sqrt(2 * a), np.inf))
 
 
-def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
-    """Compute the key over two inputs."""
-    usual = default_ranges(motion.top, radians=request.radians)
+def map_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
+    """Draw the cells, contours, the sleeping threshold and the marker of the scene."""
+    radians = request.radians
+    usual = default_ranges(motion.top, radians=radians)
     x, y = request.x or usual[0], request.y or usual[1]
-    chart = key_map(motion, request.key, x, y, request.progress, radians=request.radians)
+    chart = key_map(motion, request.key, x, y, request.progress, radians=radians)
     key = number_key(degree_name(chart.key))
     assert key is not None
     unit = request.unit_of(key)
-
-    def draw(axes: Sequence[Axes], look: Look) -> None:
-        """Draw cells, contours, the sleeping threshold and the marker of the scene."""
-        ax = axes[0]
-        ax.set(xlabel=_label(x.name, request), ylabel=_label(y.name, request))
-        ax.set(xscale="log" if x.logarithmic else "linear")
-        ax.set(yscale="log" if y.logarithmic else "linear")
-        bar = _draw_cells(ax, chart, request.limits, look)
-        bar.set_label(f"{chart.key} ({unit})" if unit else chart.key)
-        _draw_contours(ax, chart, bar, look)
-        _draw_threshold(ax, chart, look)
-        _mark_own(ax, motion, chart, request.radians, look)
-
-    return Drawing(_title(key, unit), draw)
-
-
-def _title(key: Key, unit: str) -> str:
-    """Return the quantity, its symbol, its equation and its unit."""
+    (axes,) = places((1.0,))
+    axes.set(xlabel=_label(x.name, request), ylabel=_label(y.name, request))
+    axes.set(xscale="log" if x.logarithmic else "linear")
+    axes.set(yscale="log" if y.logarithmic else "linear")
+    bar = _draw_cells(axes, chart, request)
+    bar.set_label(f"{chart.key} ({unit})" if unit else chart.key)
+    _draw_contours(axes, chart, bar, request.look)
+    _draw_threshold(axes, chart, request.look)
+    inputs = motion.top.inputs(radians=radians)
+    own = {name.partition("_")[0]: float(value) for name, value in inputs.items()}
+    if all(axis.values[0] <= own[axis.name] <= axis.values[-1] for axis in (x, y)):
+        mark_start(axes, own[x.name], own[y.name], request.look, "this scene")
     named = f"{key.symbol}: {key.meaning} {key.equation}".rstrip()
     return f"{named}, in {unit}" if unit else named
 
 
-def colour_limits(values: Array) -> tuple[float, float]:
+def colour_limits(known: Array) -> tuple[float, float]:
     """Return the ends of the colour scale: all values but the outermost, which may be peaks."""
-    known = values[np.isfinite(values)]
     if not known.size:
         return 0.0, 1.0
     low, high = (float(x) for x in np.percentile(known, [OUTERMOST, 100 - OUTERMOST]))
@@ -197,14 +205,13 @@ def colour_limits(values: Array) -> tuple[float, float]:
     return (low, high) if low < high else (low - 0.5 * (abs(low) or 1), low + 0.5 * (abs(low) or 1))
 
 
-def _draw_cells(
-    axes: Axes, chart: KeyMap, limits: tuple[float, float] | None, look: Look
-) -> Colorbar:
+def _draw_cells(axes: Axes, chart: KeyMap, request: PlotRequest) -> Colorbar:
     """Draw the values as coloured cells, with a colour bar."""
+    known, look = chart.known, request.look
     axes.set_facecolor(look.faint)  # if the key is undefined
-    if not np.isfinite(chart.values).all():
+    if known.size < chart.values.size:
         axes.fill([], [], color=look.faint, label="undefined here")
-    low, high = limits or colour_limits(chart.values)
+    low, high = request.limits or colour_limits(known)
     logarithmic = low > 0 and high > 30 * low
     mesh = axes.pcolormesh(
         _edges(chart.x),
@@ -214,7 +221,6 @@ def _draw_cells(
         norm=LogNorm(low, high) if logarithmic else Normalize(low, high),
         rasterized=True,
     )
-    known = chart.values[np.isfinite(chart.values)]
     below, above = bool((known < low).any()), bool((known > high).any())
     ends = {(False, False): "neither", (True, False): "min", (False, True): "max"}
     bar = axes.figure.colorbar(mesh, ax=axes, aspect=28, extend=ends.get((below, above), "both"))
@@ -228,7 +234,7 @@ def _draw_cells(
 
 def _draw_contours(axes: Axes, chart: KeyMap, bar: Colorbar, look: Look) -> None:
     """Draw contours at the numbers of the colour bar, light on dark and dark on light."""
-    known = chart.values[np.isfinite(chart.values)]
+    known = chart.known
     if not known.size:
         return
     ends = bar.norm.vmin or 0.0, bar.norm.vmax or 0.0
@@ -264,8 +270,11 @@ def _draw_threshold(axes: Axes, chart: KeyMap, look: Look) -> None:
     """Draw the line at which an upright top becomes stable, if it crosses the map."""
     if not chart.sleeping.min() < 1.0 < chart.sleeping.max():
         return
-    how: dict[str, Any] = {"colors": look.ink, "linewidths": points(1.6)}
-    line = axes.contour(chart.x.values, chart.y.values, chart.sleeping, [1.0], **how)
+    line = axes.contour(
+        *(chart.x.values, chart.y.values, chart.sleeping, [1.0]),
+        colors=look.ink,
+        linewidths=points(1.6),
+    )
     line.set_path_effects([withStroke(linewidth=points(3.2), foreground=look.paper)])
     label = "sleeping threshold, C²r₀² = 4Amgs: faster, an upright top is stable"
     axes.plot([], [], color=look.ink, lw=points(1.6), label=label)
@@ -286,14 +295,3 @@ def _edges(axis: InputRange) -> Array:
     ends = [values[0] - (middle[0] - values[0])], [values[-1] + (values[-1] - middle[-1])]
     edges: Array = np.concatenate([ends[0], middle, ends[1]])
     return np.exp(edges) if axis.logarithmic else edges
-
-
-def _mark_own(axes: Axes, motion: Motion, chart: KeyMap, radians: bool, look: Look) -> None:
-    """Mark the scene itself if it is on the map."""
-    inputs = {
-        name.partition("_")[0]: value for name, value in motion.top.inputs(radians=radians).items()
-    }
-    own = [float(inputs[axis.name]) for axis in (chart.x, chart.y)]
-    pairs = zip(own, (chart.x, chart.y), strict=True)
-    if all(axis.values[0] <= value <= axis.values[-1] for value, axis in pairs):
-        mark_start(axes, own[0], own[1], look, "this scene")

@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase, SubFigure
 
 from ..errors import LagtopError, NothingToDrawError
@@ -18,7 +19,7 @@ from ..output.report import uncertain_text
 from .curves import motion_in_words
 from .files import About, figure_bytes
 from .kinds import KINDS, PlotRequest
-from .style import DARK, POINTS, Look, head, number_text, styled
+from .style import POINTS, head, number_text, styled
 
 NUMBERS_WIDTH, PANEL = 3.7, (5.8, 5.0)
 """Width of the column of numbers; width and height of one of several panels (inches)."""
@@ -46,8 +47,7 @@ class Page(NamedTuple):
 
     motion: Motion
     kinds: Sequence[str]
-    request: PlotRequest
-    look: Look
+    request: PlotRequest = PlotRequest()
     size: tuple[float, float] | None = None
     """Width and height in inches; by default chosen for the kinds."""
 
@@ -74,26 +74,23 @@ class Page(NamedTuple):
         return math.ceil(len(self.kinds) / columns), columns
 
     def about(self) -> About:
-        """Return a description of the page in words, and the command that draws it."""
+        """Return a description of the page in words, and the command that draws it again.
+
+        The command does without the name of a scene file.
+        """
         motion, request = self.motion, self.request
         inputs = motion.top.inputs(radians=request.radians)
         listed = ", ".join(f"{name} = {value!r}" for name, value in inputs.items())
         text = f"Lagrange top, {motion_in_words(motion)} ({motion.regime.value}): {listed}"
-        return About(f"Lagrange top: {', '.join(self.kinds)}", text, self.command())
-
-    def command(self) -> str:
-        """Return the command that draws the page again, without the name of a scene file."""
-        motion, request = self.motion, self.request
-        inputs = motion.top.inputs(radians=request.radians)
         scene = [
             f"--{name.partition('_')[0]} {value!r}"
             for name, value in inputs.items()
             if value or not name.endswith("dot0")
         ]
         size = [f"--size {self.size[0]:g}x{self.size[1]:g}"] if self.size else []
-        dark = ["--dark"] if self.look is DARK else []
-        words = [*self.kinds, *scene, *request.options(), *dark, *size]
-        return f"lagtop plot {' '.join(words)} -o picture.svg"
+        words = " ".join([*self.kinds, *scene, *request.options(), *size])
+        title = f"Lagrange top: {', '.join(self.kinds)}"
+        return About(title, text, f"lagtop plot {words} -o picture.svg")
 
     def check_dpi(self, dpi: float, fmt: str) -> None:
         """Raise LagtopError unless the pixels per inch suit the page.
@@ -135,30 +132,32 @@ def draw_page(figure: Figure, page: Page) -> None:
         try:
             _draw(kind, panel, page)
         except NothingToDrawError as reason:
-            panel.text(0.5, 0.5, str(reason), ha="center", color=page.look.quiet, wrap=True)
+            panel.text(0.5, 0.5, str(reason), ha="center", color=page.request.look.quiet, wrap=True)
 
 
 def _draw(name: str, panel: SubFigure, page: Page) -> None:
     """Draw a kind of picture on axes of a panel, with the title above and the legend below."""
     kind = KINDS[name]
-    drawing = kind.drawing(page.motion, page.request)
-    rows, together = len(drawing.heights), kind.axes > 1
-    places = panel.subplots(rows, sharex=together, squeeze=False, height_ratios=drawing.heights)
-    axes = list(places.flat)
-    head(panel, drawing.title)
-    drawing.draw(axes, page.look)
+    together = kind.axes > 1
+
+    def places(heights: Sequence[float]) -> list[Axes]:
+        grid = panel.subplots(len(heights), sharex=together, squeeze=False, height_ratios=heights)
+        return list(grid.flat)
+
+    head(panel, kind.draw(page.motion, page.request, places))
     if together:
-        panel.align_ylabels(axes)
-    if axes[0].get_legend() is None and axes[0].get_legend_handles_labels()[0]:
+        panel.align_ylabels()
+    axes = panel.axes[0]
+    if axes.get_legend() is None and axes.get_legend_handles_labels()[0]:
         panel.legend(loc="outside lower left", fontsize="small")
 
 
 def _write_numbers(panel: SubFigure, page: Page) -> None:
     """Write the record, one line per key with symbol and unit, and the remark."""
-    radians = page.request.radians
-    record = page.motion.record(radians=radians)
-    stds = stds_of(record, page.request.uncertain) if page.request.uncertain else {}
-    remark = textwrap.wrap(page.request.in_words(record.pop("remark") or ""), REMARK_WIDTH)
+    request = page.request
+    record = page.motion.record(radians=request.radians)
+    stds = stds_of(record, request.uncertain) if request.uncertain else {}
+    remark = textwrap.wrap(request.in_words(record.pop("remark") or ""), REMARK_WIDTH)
     shown = {key: value for key, value in record.items() if value is not None}
     step = min(0.0242, 0.95 / (len(shown) + len(remark) + 1.5))
     size = min(8.5 * page.lettering(), step * 72 * page.inches()[1] * 0.8)
@@ -167,13 +166,13 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
     for name, value in shown.items():
         height -= step
         key = KEYS.get(degree_name(name))
-        symbol, unit = (key.symbol, page.request.unit_of(key)) if key else ("", "")
+        symbol, unit = (key.symbol, request.unit_of(key)) if key else ("", "")
         std = stds.get(f"{name}_std")
         text = value if isinstance(value, str) else number_text(float(value))
         text = uncertain_text(float(value), std).replace("-", "−") if std else text
         text = f"{text} {unit}".rstrip()
         quiet = name if name != symbol else ""
-        for x, word, colour in ((0.04, symbol, page.look.ink), (0.2, quiet, page.look.quiet)):
+        for x, word, colour in ((0.04, symbol, request.look.ink), (0.2, quiet, request.look.quiet)):
             panel.text(x, height, word, va="top", size=size, color=colour)
         panel.text(0.98, height, text, va="top", ha="right", size=size)
     for line in remark:
@@ -188,7 +187,7 @@ def page_bytes(page: Page, fmt: str, dpi: float) -> bytes:
     is nothing to draw.
     """
     page.check_dpi(dpi, fmt)
-    with styled(page.look, page.lettering()):
+    with styled(page.request.look, page.lettering()):
         figure = Figure(figsize=page.inches(), layout="constrained")
         draw_page(figure, page)
         _settle_layout(figure)
@@ -251,7 +250,7 @@ def show_page(page: Page) -> None:
     """
     from matplotlib import pyplot
 
-    with styled(page.look, page.lettering()):
+    with styled(page.request.look, page.lettering()):
         try:
             figure = pyplot.figure(figsize=page.inches(), layout="constrained")
         except ImportError as error:  # from the toolkit that MPLBACKEND names

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import check_type
-from .files import About, figure_bytes, require_matplotlib
+from .files import About, report_bytes, require_matplotlib
 from .style import LIGHT, scale, styled, symbol_and_colour
 
 if TYPE_CHECKING:
@@ -32,7 +31,7 @@ def _report(
     with styled(LIGHT, 0.9):
         figure = Figure(figsize=size, layout="constrained")
         draw(figure)
-        return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
+        return report_bytes(figure, path, about)
 
 
 def _names(curves: Sequence[ErrorCurve] | Sequence[FittedCurve]) -> str:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,18 +12,9 @@ from matplotlib.collections import LineCollection
 
 from ..arithmetic.types import Array, Mask
 from ..motion.solve import Motion
-from .camera import Camera, best_camera, camera_at, runs
-from .curves import (
-    axis_at,
-    highest_times,
-    motion_in_words,
-    sampled_columns,
-    span,
-    sphere_span,
-    tilt_period,
-)
-from .globe import draw_globe
-from .kinds import Drawing, PlotRequest
+from .curves import motion_in_words, sampled_columns, span, sphere_span, tilt_period
+from .globe import Camera, best_camera, camera_at, draw_globe, runs
+from .kinds import Places, PlotRequest
 from .style import Look, mark_start, points, scale
 
 NARROW = math.radians(6.0)
@@ -53,10 +43,6 @@ class AxisPath(NamedTuple):
     """Least tilt (radians), a circle that the path touches."""
     greatest: float
     """Greatest tilt (radians), a circle that the path touches."""
-    path: str | None
-    """`cusped`, `looping`, `wavy`, or None if the tilt does not swing."""
-    highest: Array
-    """The axis at its highest points, shape (m, 3); the cusps of a cusped path."""
 
     @property
     def moves(self) -> bool:
@@ -70,37 +56,30 @@ def axis_path(motion: Motion, t_max: float) -> AxisPath:
     least, greatest = motion.theta_min_deg, motion.theta_max_deg
     assert least is not None
     assert greatest is not None
-    highest = axis_at(motion, highest_times(motion, t_max))
-    path = np.stack(axis, axis=1)
-    return AxisPath(t, path, math.radians(least), math.radians(greatest), motion.path, highest)
+    return AxisPath(t, np.stack(axis, axis=1), math.radians(least), math.radians(greatest))
 
 
-def sphere_drawing(motion: Motion, request: PlotRequest) -> Drawing:
-    """Compute the path; on a page, a narrow path has a second axes with a magnified piece."""
+def sphere_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
+    """Draw the globe with the path on it, and the colour bar.
+
+    On a page, a narrow path has a second axes with a magnified piece.
+    """
     path = axis_path(motion, request.t_max or sphere_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW
-
-    def draw(axes: Sequence[Axes], look: Look) -> None:
-        """Draw the globe with the path on it, and the colour bar."""
-        camera = camera_at(*request.camera) if request.camera else best_camera(path.axis)
-        draw_globe(axes[0], camera, (path.least, path.greatest), request, look)
-        lines = _draw_path(axes[0], camera, path, motion, look)
-        axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize="small")
-        for below in axes[1:]:
-            _draw_magnified(below, motion, path, request, look)
-        if path.moves:
-            shape: dict[str, Any] = {
-                "shrink": 0.7,
-                "pad": 0.02,
-                "aspect": 28,
-                "panchor": (0.5, 0.5),
-            }
-            bar = axes[0].figure.colorbar(lines, ax=list(axes), **shape)
-            bar.outline.set_visible(False)
-            bar.set_label(request.time_label)
-
-    title = f"Figure axis on the unit sphere: {motion_in_words(motion)}"
-    return Drawing(title, draw, (3.4, 1.0) if narrow else (1.0,))
+    axes = places((3.4, 1.0) if narrow else (1.0,))
+    camera = camera_at(*request.camera) if request.camera else best_camera(path.axis)
+    draw_globe(axes[0], camera, (path.least, path.greatest), request)
+    lines = _draw_path(axes[0], camera, path, motion, request.look)
+    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize="small")
+    for below in axes[1:]:
+        _draw_magnified(below, motion, path, request)
+    if path.moves:
+        bar = axes[0].figure.colorbar(
+            lines, ax=list(axes), shrink=0.7, pad=0.02, aspect=28, panchor=(0.5, 0.5)
+        )
+        bar.outline.set_visible(False)
+        bar.set_label(request.time_label)
+    return f"Figure axis on the unit sphere: {motion_in_words(motion)}"
 
 
 def _draw_path(
@@ -112,11 +91,11 @@ def _draw_path(
     """
     x, y = camera.project(path.axis)
     near = camera.faces(path.axis)
-    for side, alpha, width in ((False, 0.35, 1.2), (True, 1.0, 2.2)):
+    T = tilt_period(motion)
+    fineness = max(0.35, math.sqrt(min(1.0, USUAL_PERIODS * T / path.t[-1]))) if T else 1.0
+    for side, alpha, width, layer in ((False, 0.35, 1.2, 1), (True, 1.0, 2.2, 3)):
         lines = _coloured(path.t, np.stack([x, y], axis=1), near, look, side=side)
-        lines.set(
-            alpha=alpha, linewidths=points(width * _fineness(motion, path)), zorder=3 if side else 1
-        )
+        lines.set(alpha=alpha, linewidths=points(width * fineness), zorder=layer)
         axes.add_collection(lines)
     mark_start(axes, x[0], y[0], look, "start" if path.moves else "the axis stays here")
     _draw_direction(axes, camera, path, motion, look)
@@ -124,35 +103,20 @@ def _draw_path(
     return lines
 
 
-def _fineness(motion: Motion, path: AxisPath) -> float:
-    """Return the relative line width of a path; long paths are finer to stay legible."""
-    T = tilt_period(motion)
-    return max(0.35, math.sqrt(min(1.0, USUAL_PERIODS * T / path.t[-1]))) if T else 1.0
-
-
 def _coloured(t: Array, places: Array, near: Mask, look: Look, *, side: bool) -> LineCollection:
-    """Return the parts of a curve on one side of the globe, coloured by time."""
-    pieces, times = _pieces(t, places, near, side)
-    lines = LineCollection(pieces, cmap=scale(look), capstyle="round")
-    lines.set_array(times)
-    lines.set_clim(t[0], t[-1])
-    return lines
-
-
-def _pieces(t: Array, places: Array, near: Mask, side: bool) -> tuple[list[Array], Array]:
-    """Return the parts of the curve on one side, cut into pieces of one colour, and their times."""
+    """Return the parts of a curve on one side of the globe, in pieces coloured by time."""
     step = max((t[-1] - t[0]) / PIECES, 1e-300)
     pieces, times = [], []
     for part, on_near in runs(near):
-        if on_near is not side:
-            continue
-        cuts = np.flatnonzero(np.diff(np.floor((t[part] - t[0]) / step))) + 1
-        bounds = [0, *cuts.tolist(), t[part].size - 1]
-        for first, last in pairwise(bounds):
-            if last > first:
+        colour_changes = np.flatnonzero(np.diff(np.floor((t[part] - t[0]) / step))) + 1
+        for first, last in pairwise([0, *colour_changes.tolist(), t[part].size - 1]):
+            if last > first and on_near is side:
                 pieces.append(places[part][first : last + 1])
                 times.append((t[part][first] + t[part][last]) / 2)
-    return pieces, np.array(times)
+    lines = LineCollection(pieces, cmap=scale(look), capstyle="round")
+    lines.set_array(np.array(times))
+    lines.set_clim(t[0], t[-1])
+    return lines
 
 
 def _draw_direction(axes: Axes, camera: Camera, path: AxisPath, motion: Motion, look: Look) -> None:
@@ -186,22 +150,20 @@ def _arrowhead(axes: Axes, first: object, last: object, colour: object) -> None:
     axes.annotate("", last, first, arrowprops=how, zorder=5)  # type: ignore[arg-type]
 
 
-def _draw_magnified(
-    axes: Axes, motion: Motion, path: AxisPath, request: PlotRequest, look: Look
-) -> None:
+def _draw_magnified(axes: Axes, motion: Motion, path: AxisPath, request: PlotRequest) -> None:
     """Draw some nutations unrolled, coloured as on the globe.
 
     A degree of precession has the same length as on the sphere.
     """
     until = min(span(motion, PERIODS_MAGNIFIED), float(path.t[-1]))
     t, psi, theta = sampled_columns(motion, until, ["psi", "theta"]).values()
-    x, y = psi * request.per_radian, theta * request.per_radian
+    places = np.stack([psi, theta], axis=1) * request.per_radian
     axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
-    lines = _coloured(t, np.stack([x, y], axis=1), np.ones(x.size, bool), look, side=True)
+    lines = _coloured(t, places, np.ones(t.size, bool), request.look, side=True)
     lines.set(clim=(path.t[0], path.t[-1]), linewidths=points(2.0))
     axes.add_collection(lines)
     axes.autoscale_view()
-    mark_start(axes, x[0], y[0], look)
+    mark_start(axes, places[0, 0], places[0, 1], request.look)
     whole = t[-1] == path.t[-1]
     axes.set_title("the same path, magnified" if whole else "its beginning, magnified")
     unit = request.angle_unit

@@ -65,46 +65,46 @@ def styled(look: Look, size: float = 1.0) -> Iterator[None]:
         yield
 
 
+_COLOURED = {
+    "paper": ("axes.facecolor", "figure.facecolor", "savefig.facecolor"),
+    "ink": ("axes.labelcolor", "text.color", "xtick.labelcolor", "ytick.labelcolor"),
+    "quiet": ("axes.edgecolor", "hatch.color", "xtick.color", "ytick.color"),
+}
+"""Settings of matplotlib, by the colour of a look that they have."""
+_SCALED = {
+    "axes.labelpad": 4.0,
+    "axes.titlepad": 6.0,
+    "axes.titlesize": 12.0,
+    "figure.constrained_layout.h_pad": 0.042,
+    "figure.constrained_layout.w_pad": 0.042,
+    "figure.titlesize": 12.0,
+    "font.size": POINTS,
+    "lines.linewidth": 1.8,
+    **dict.fromkeys(("xtick.major.pad", "xtick.major.size"), 3.5),
+    **dict.fromkeys(("ytick.major.pad", "ytick.major.size"), 3.5),
+}
+"""Settings that grow with the letters, by their value on a page of the usual size."""
+_FIXED = {
+    "axes.axisbelow": True,
+    "axes.formatter.limits": (-4, 5),
+    "axes.formatter.useoffset": False,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "font.family": "sans-serif",
+    "font.sans-serif": FONTS,
+    "legend.frameon": False,
+    "lines.solid_capstyle": "round",
+    "lines.solid_joinstyle": "round",
+    "mathtext.fontset": "dejavusans",
+    "path.simplify": False,  # it would blunt the cusps
+}
+
+
 def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
     """Return the style sheet as matplotlib settings; `size` scales letters, lines and gaps."""
-    return {
-        "axes.axisbelow": True,
-        "axes.edgecolor": look.quiet,
-        "axes.facecolor": look.paper,
-        "axes.formatter.limits": (-4, 5),
-        "axes.formatter.useoffset": False,
-        "axes.labelcolor": look.ink,
-        "axes.spines.right": False,
-        "axes.spines.top": False,
-        "axes.labelpad": 4.0 * size,
-        "axes.titlelocation": "left",
-        "axes.titlepad": 6.0 * size,
-        "axes.titlesize": 12.0 * size,
-        "figure.constrained_layout.h_pad": 0.042 * size,
-        "figure.constrained_layout.w_pad": 0.042 * size,
-        "figure.facecolor": look.paper,
-        "figure.titlesize": 12.0 * size,
-        "font.family": "sans-serif",
-        "font.sans-serif": FONTS,
-        "font.size": POINTS * size,
-        "hatch.color": look.quiet,
-        "legend.frameon": False,
-        "lines.linewidth": 1.8 * size,
-        "lines.solid_capstyle": "round",
-        "lines.solid_joinstyle": "round",
-        "mathtext.fontset": "dejavusans",
-        "path.simplify": False,  # it would blunt the cusps
-        "savefig.facecolor": look.paper,
-        "text.color": look.ink,
-        "xtick.color": look.quiet,
-        "xtick.major.pad": 3.5 * size,
-        "xtick.major.size": 3.5 * size,
-        "xtick.labelcolor": look.ink,
-        "ytick.color": look.quiet,
-        "ytick.major.pad": 3.5 * size,
-        "ytick.major.size": 3.5 * size,
-        "ytick.labelcolor": look.ink,
-    }
+    colours = {key: getattr(look, name) for name, keys in _COLOURED.items() for key in keys}
+    return _FIXED | colours | {key: value * size for key, value in _SCALED.items()}
 
 
 def points(length: float) -> float:
@@ -162,11 +162,5 @@ def scale(look: Look) -> Colormap:
 
 def mark_start(axes: Axes, x: float, y: float, look: Look, label: str = "start") -> None:
     """Draw a ring with a label at one point."""
-    ring: dict[str, Any] = {
-        "ms": points(7),
-        "mfc": look.paper,
-        "mec": look.ink,
-        "mew": points(1.6),
-        "zorder": 6,
-    }
-    axes.plot(x, y, "o", ls="none", label=label, **ring)
+    ring: dict[str, Any] = {"mfc": look.paper, "mec": look.ink, "mew": points(1.6), "zorder": 6}
+    axes.plot(x, y, "o", ls="none", ms=points(7), label=label, **ring)

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inputs.units import SYSTEMS
-from lagrange_cli.plot import camera, film
+from lagrange_cli.plot import film, globe
 from lagrange_cli.plot.curves import turn_span
 from lagrange_cli.plot.kinds import PlotRequest
 from lagrange_cli.plot.page import Page
@@ -30,7 +30,7 @@ def test_the_view_is_a_rotation_and_the_start_is_in_sight() -> None:
     for path in SAMPLES:
         scene = sample_motion(path)
         axis = axis_path(scene, turn_span(scene)).axis
-        seen = camera.best_camera(axis)
+        seen = globe.best_camera(axis)
         assert np.stack(seen) @ np.stack(seen).T == pytest.approx(np.eye(3), abs=1e-15)
         assert np.cross(seen.right, seen.up) == pytest.approx(seen.toward, abs=1e-15)
         assert seen.up[2] > 0
@@ -44,21 +44,21 @@ def attitude(theta: float, phi: float, psi: float) -> Array:
 
 
 def test_the_top_of_the_film_stands_on_its_axis() -> None:
-    seen = camera.camera_at(0.3, 0.4)
-    top = camera.cone_at(attitude(0.5, 1.0, 2.0), seen)
+    seen = globe.camera_at(0.3, 0.4)
+    top = globe.cone_at(attitude(0.5, 1.0, 2.0), seen)
     axis = np.array([math.sin(0.5) * math.sin(2), -math.sin(0.5) * math.cos(2), math.cos(0.5)])
-    assert np.stack(top.axle, axis=1)[1] == pytest.approx(np.stack(seen.project(axis)))
+    assert top.axle[:, 1] == pytest.approx(np.stack(seen.project(axis)))
     assert top.lid_in_sight
-    assert (top.inks[-camera.WEDGES :] == 2).sum() == camera.WEDGES / 2
-    assert (top.corners[-camera.WEDGES :, 0] == np.stack(top.axle, axis=1)[0]).all()
-    away = camera.cone_at(attitude(math.pi - 0.5, 1.0, 2.0), camera.camera_at(0.3, 1.4))
+    assert (top.inks[-globe.WEDGES :] == 2).sum() == globe.WEDGES / 2
+    assert (top.corners[-globe.WEDGES :, 0] == top.axle[:, 0]).all()
+    away = globe.cone_at(attitude(math.pi - 0.5, 1.0, 2.0), globe.camera_at(0.3, 1.4))
     assert not away.lid_in_sight
 
 
 def _lid(phi: float) -> list[tuple[float, ...]]:
     """Return the corners of the light wedges of the lid at an angle of spin."""
-    top = camera.cone_at(attitude(0.5, phi, 2.0), camera.camera_at(0.3, 0.4))
-    light = top.corners[-camera.WEDGES :][top.inks[-camera.WEDGES :] == 0]
+    top = globe.cone_at(attitude(0.5, phi, 2.0), globe.camera_at(0.3, 0.4))
+    light = top.corners[-globe.WEDGES :][top.inks[-globe.WEDGES :] == 0]
     return sorted(tuple(np.round(corners, 12).ravel().tolist()) for corners in light)
 
 
@@ -67,11 +67,11 @@ def test_the_spin_is_seen_on_the_lid() -> None:
     assert _lid(1.0) != _lid(1.0 + math.pi / 3)
     assert set(_lid(1.0)).isdisjoint(_lid(1.0 + math.pi / 3))
     assert np.array(_lid(1.0)) == pytest.approx(np.array(_lid(1.0 + 2 * math.pi / 3)), abs=1e-11)
-    assert len(_lid(1.0)) == camera.WEDGES / 2
+    assert len(_lid(1.0)) == globe.WEDGES / 2
 
 
 def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
-    page = Page(solve(Top()), ["sphere"], PlotRequest(t_max=1.0), LIGHT)
+    page = Page(solve(Top()), ["sphere"], PlotRequest(t_max=1.0))
     with styled(LIGHT):
         moving = film.Film(page, film.Pace(144, 1.0))
         for i in (0, 71, 143):
@@ -87,7 +87,7 @@ def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
             assert (drawn[0] | drawn[1]).sum() == passed.sum()
             assert moving.clock.get_text() == f"t = {moving.times[i]:.4g}"
     assert moving.times[-1] == 1.0
-    united = Page(solve(Top()), ["sphere"], PlotRequest(system=SYSTEMS["si"]), LIGHT)
+    united = Page(solve(Top()), ["sphere"], PlotRequest(system=SYSTEMS["si"]))
     shown = film.Film(united, film.Pace(50, 1.0))
     shown.show(3)
     assert shown.clock.get_text().endswith(" s")
@@ -96,7 +96,7 @@ def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
 
 def test_a_frame_over_the_background_is_the_whole_picture() -> None:
     """Front parts are drawn by themselves and laid over it, which rounds colours once more."""
-    page = Page(solve(Top()), ["sphere"], PlotRequest(t_max=1.3), LIGHT)
+    page = Page(solve(Top()), ["sphere"], PlotRequest(t_max=1.3))
     with styled(LIGHT):
         moving = film.Film(page, film.Pace(144, 1.3))
         ends = []
@@ -116,7 +116,7 @@ def test_a_gif_shows_every_frame_in_63_colours() -> None:
     """Pixels that do not change are transparent: a wrong one would stay in all frames after it."""
     from PIL import Image
 
-    page, pace = Page(solve(Top()), ["sphere"], PlotRequest(), LIGHT), film.Pace(12, 0.5)
+    page, pace = Page(solve(Top()), ["sphere"]), film.Pace(12, 0.5)
     data = film.film_bytes(page, "x.gif", 40, pace)
     with styled(LIGHT), Image.open(io.BytesIO(data)) as shown:
         drawn = film.Film(page, pace)
@@ -156,7 +156,7 @@ def test_a_film(lagtop: Lagtop, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(2.0, 2.0), (2.0, 50.0), (50.0, 2.0)])
 def test_the_smallest_films(size: tuple[float, float]) -> None:
-    page = Page(solve(Top()), ["sphere"], PlotRequest(), LIGHT, size)
+    page = Page(solve(Top()), ["sphere"], PlotRequest(), size)
     assert film.film_bytes(page, "x.gif", 20, film.Pace(2, 1.0)).startswith(b"GIF8")
 
 
@@ -195,13 +195,13 @@ def test_the_film_sees_the_cone_from_the_side(inputs: dict[str, float]) -> None:
     """The axis is long on the page in the mean, and the start is not straight at the eye."""
     motion = solve(Top(**inputs))
     axis = axis_path(motion, film.film_span(motion)).axis
-    length = np.hypot(*camera.side_camera(axis).project(axis))
+    length = np.hypot(*globe.side_camera(axis).project(axis))
     assert length.mean() > 0.75
 
 
 def test_a_film_says_what_a_second_shows_and_when_the_spin_is_too_fast() -> None:
     for r0, fast in ((50.0, False), (400.0, True)):
-        page = Page(solve(Top(r0=r0)), ["sphere"], PlotRequest(), LIGHT)
+        page = Page(solve(Top(r0=r0)), ["sphere"])
         with styled(LIGHT):
             shown = film.Film(page, film.Pace(50, 1.0))
         (foot,) = [text.get_text() for text in shown.axes.texts if "second" in text.get_text()]

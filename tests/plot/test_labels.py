@@ -14,9 +14,8 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.plot.camera import camera_at
 from lagrange_cli.plot.cubic import cubic_curve
-from lagrange_cli.plot.globe import draw_globe
+from lagrange_cli.plot.globe import camera_at, draw_globe
 from lagrange_cli.plot.kinds import KINDS, PlotRequest
 from lagrange_cli.plot.style import LIGHT, styled
 
@@ -71,7 +70,7 @@ def test_the_roots_and_the_poles_of_the_cubic_are_written_where_there_is_room() 
     with styled(LIGHT):
         axes = Figure(figsize=(6.8, 5.0)).add_subplot()
         for motion in random_motions(SCENES):
-            KINDS["cubic"].drawing(motion, PlotRequest()).draw([bare(axes)], LIGHT)
+            KINDS["cubic"].draw(motion, PlotRequest(), lambda _: [bare(axes)])
             axes.title.set_visible(False)
             assert touching(written(axes)) == [], motion.top
             cubic = cubic_curve(motion)
@@ -91,7 +90,7 @@ def test_the_names_on_the_globe() -> None:
         axes = Figure(figsize=(6.4, 6.0)).add_subplot()
         for _ in range(SCENES):
             camera = camera_at(draw.uniform(-math.pi, math.pi), math.asin(draw.uniform(-1, 1)))
-            draw_globe(bare(axes), camera, limits, PlotRequest(), LIGHT)
+            draw_globe(bare(axes), camera, limits, PlotRequest())
             names = written(axes)
             assert sorted("".join(x.get_text() for x in names).replace(", ", "")) == ["x", "y", "z"]
             assert touching(names) == []

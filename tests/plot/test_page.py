@@ -25,9 +25,9 @@ from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.inputs.value import Stds
 from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
 from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
-from lagrange_cli.plot import parse_input_range
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest
+from lagrange_cli.plot.map import parse_input_range
 from lagrange_cli.plot.page import (
     LEAST_LETTERS,
     MOST_PIXELS,
@@ -63,7 +63,7 @@ def test_every_kind_has_ink(path: Path, look: Look) -> None:
     """
     radians = look is DARK
     y = parse_input_range("y", "theta0=0.2:1.5:3") if radians else Y
-    page = Page(sample_motion(path), list(KINDS), PlotRequest(x=X, y=y, radians=radians), look)
+    page = Page(sample_motion(path), list(KINDS), PlotRequest(x=X, y=y, radians=radians, look=look))
     pixels = png(page, 40)
     width, height = page.inches()
     assert pixels.shape == (round(height * 40), round(width * 40), 3)
@@ -80,7 +80,7 @@ def test_every_regime(name: str) -> None:
     """A smoke test: no kind of motion gives a warning on any picture."""
     scene = regime_motion(name)
     assert name == scene.regime.value or name not in {regime.value for regime in Regime}
-    page = Page(scene, ["sphere", "angles", "remainders", "cubic", "phase"], PlotRequest(), LIGHT)
+    page = Page(scene, ["sphere", "angles", "remainders", "cubic", "phase"])
     assert png(page, 40).min() < 64
 
 
@@ -115,7 +115,7 @@ def test_no_title_is_cut_off(
     motion = solve(Top())
     stds = AngleStds(motion.exact, Stds({"theta0_deg": 1.0}), ["theta0_deg"])
     request = PlotRequest(x=X, y=Y, stds=stds, key="precession_rate_start")
-    page_bytes(Page(motion, kinds, request, LIGHT, size), "png", 150)
+    page_bytes(Page(motion, kinds, request, size), "png", 150)
     (figure,) = figures
     panels = figure.subfigs if len(kinds) == 1 else figure.subfigs[1].subfigs
     for panel in panels:
@@ -146,7 +146,7 @@ def test_each_page_is_drawable_or_refused(
     kinds: Sequence[str], size: tuple[float, float] | None, dpi: float
 ) -> None:
     """What passes has letters of a pixel and not too many pixels; a refusal names what passes."""
-    page = Page(solve(Top()), kinds, PlotRequest(), LIGHT, size)
+    page = Page(solve(Top()), kinds, PlotRequest(), size)
     width, height = page.inches()
     try:
         page.check_dpi(dpi, "png")
@@ -170,7 +170,7 @@ def test_pictures_at_the_corners_of_the_range_of_sizes(kinds: Sequence[str]) -> 
     scene = solve(Top(r0=101.0, theta0_deg=0.5))
     corners = [(2.0, 2.0), (2.0, 50.0), (50.0, 2.0)]
     for size in corners[: 3 if len(kinds) == len(KINDS) else 1]:  # its panels have least room
-        page = Page(scene, kinds, PlotRequest(x=X, y=Y), LIGHT, size)
+        page = Page(scene, kinds, PlotRequest(x=X, y=Y), size)
         least = max(20.0, 72 * LEAST_LETTERS / (POINTS * page.lettering()))
         shape = png(page, least * (1 + 1e-12)).shape[:2]
         assert shape == pytest.approx((size[1] * least, size[0] * least), abs=1)
@@ -191,7 +191,7 @@ def test_pictures_at_the_corners_of_the_range_of_sizes(kinds: Sequence[str]) -> 
     "kinds", [["cubic"], pytest.param(["sphere", "cubic"], marks=pytest.mark.slow)], ids=",".join
 )
 def test_files_are_the_same_every_time(kinds: list[str], fmt: str, start: bytes) -> None:
-    page = Page(solve(Top()), kinds, PlotRequest(), LIGHT)
+    page = Page(solve(Top()), kinds)
     first, second = (page_bytes(page, fmt, 50) for _ in range(2))
     assert first == second
     assert first.startswith(start)
@@ -200,7 +200,7 @@ def test_files_are_the_same_every_time(kinds: list[str], fmt: str, start: bytes)
 
 @pytest.mark.slow
 def test_letters_shrink_with_the_page_and_fit_it() -> None:
-    page = Page(solve(Top()), ["sphere", "phase"], PlotRequest(), LIGHT, (7.65, 2.5))
+    page = Page(solve(Top()), ["sphere", "phase"], PlotRequest(), (7.65, 2.5))
     assert page.lettering() == pytest.approx(0.5)
     with styled(LIGHT, page.lettering()):
         figure = Figure(figsize=page.inches(), layout="constrained")
@@ -217,8 +217,7 @@ def test_letters_shrink_with_the_page_and_fit_it() -> None:
 def test_axis_numbers_share_a_power_of_ten() -> None:
     """Numbers without a factor are plain texts, which cost a third of those through mathtext."""
     factor, plain = (
-        page_bytes(Page(solve(Top(r0=r0)), ["cubic"], PlotRequest(), LIGHT), "svg", 100).decode()
-        for r0 in (1e4, 50)
+        page_bytes(Page(solve(Top(r0=r0)), ["cubic"]), "svg", 100).decode() for r0 in (1e4, 50)
     )
     assert r"<!-- $\times\mathdefault{10^{−4}}\mathdefault{}$ -->" in factor
     assert "mathdefault" not in plain
@@ -238,7 +237,7 @@ def test_the_numbers_of_the_sheet() -> None:
 
 def file_of(fmt: str, motion: Motion | None = None) -> bytes:
     """Return the picture of a cubic."""
-    page = Page(motion or solve(Top(r0=30)), ["cubic"], PlotRequest(), LIGHT)
+    page = Page(motion or solve(Top(r0=30)), ["cubic"])
     return page_bytes(page, fmt, 50)
 
 
@@ -283,10 +282,11 @@ def test_the_command_in_a_file_draws_the_same_file(lagtop: Lagtop) -> None:
         y=parse_input_range("y", "theta0=0.25:1.5:3"),
         camera=(0.5, -0.25),
         limits=(0.5, 2.5),
+        look=DARK,
     )
     motion = solve(Top(theta0_rad=0.625, psidot0=-0.5))
-    page = Page(motion, ["sphere", "map"], request, DARK, (7.0, 5.0))
-    words = shlex.split(page.command())
+    page = Page(motion, ["sphere", "map"], request, (7.0, 5.0))
+    words = shlex.split(page.about().command)
     assert words[:2] == ["lagtop", "plot"]
     result = lagtop(*words[1:-2], "--format", "svg", "-o", "-")
     assert result.exit_code == 0

@@ -19,13 +19,11 @@ from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError
-from lagrange_cli.plot import parse_input_range
-from lagrange_cli.plot.camera import best_camera
-from lagrange_cli.plot.cubic import cubic_curve
+from lagrange_cli.plot.cubic import cubic_curve, phase_portrait, separatrix_orbit
 from lagrange_cli.plot.curves import sampled_columns, span, sphere_span, tilt_period, turn_span
+from lagrange_cli.plot.globe import best_camera
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest, help_lines
-from lagrange_cli.plot.map import colour_limits, jumps, key_map
-from lagrange_cli.plot.phase import phase_portrait, separatrix_orbit
+from lagrange_cli.plot.map import colour_limits, jumps, key_map, parse_input_range
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import number_text
 
@@ -34,16 +32,16 @@ TILTS = parse_input_range("y", "theta0=10:90:2")
 # The registry.
 
 
-def test_every_kind_has_a_function_that_computes_a_drawing() -> None:
+def test_every_kind_has_a_function_that_draws_it() -> None:
     text = "".join(path.read_text() for path in (ROOT / "lagrange_cli" / "plot").glob("*.py"))
-    assert set(re.findall(r"^def (\w+)_drawing\(", text, re.MULTILINE)) == set(KINDS)
+    assert set(re.findall(r"^def (\w+)_picture\(", text, re.MULTILINE)) == set(KINDS)
     for name, kind in KINDS.items():
         assert kind.name == name
         assert kind.help
         request = PlotRequest(x=parse_input_range("x", "r0=20:80:2"), y=TILTS)
-        drawing = kind.drawing(solve(Top()), request)
-        assert drawing.title
-        assert len(drawing.heights) == kind.axes
+        (panel,) = drawn(solve(Top()), [name], request).subfigs
+        assert panel.get_suptitle()
+        assert len(panel.axes) - (name in ("sphere", "map")) == kind.axes  # a bar of colours
 
 
 def test_the_sheet_is_what_the_rows_say() -> None:
@@ -120,7 +118,7 @@ def test_remainders_need_a_period(name: str) -> None:
     with pytest.raises(
         NothingToDrawError, match=r"^no remainders: the tilt (is constant|never returns) \("
     ):
-        KINDS["remainders"].drawing(scene, PlotRequest(t_max=1.0))
+        drawn(scene, ["remainders"], PlotRequest(t_max=1.0))
 
 
 # The cubic.
@@ -298,7 +296,8 @@ def test_maps_that_cannot_be() -> None:
 )
 def test_the_title_of_a_map_names_quantity_and_unit(key: str, title: str) -> None:
     request = PlotRequest(x=parse_input_range("x", "r0=20:80:2"), y=TILTS, key=key)
-    assert KINDS["map"].drawing(solve(Top()), request).title == title.replace("(§8)", "§8")
+    (panel,) = drawn(solve(Top()), ["map"], request).subfigs
+    assert panel.get_suptitle() == title.replace("(§8)", "§8")
 
 
 # The sphere.

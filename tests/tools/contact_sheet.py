@@ -56,7 +56,7 @@ def pictures(scenes: Sequence[Path], kinds: Sequence[str], dpi: float) -> Iterat
                     caption = f"{scene.stem}, {kind}, {name}, {paper}"
                     try:
                         png = page_bytes(
-                            Page(motion, chosen, PlotRequest(), look, size), "png", dpi
+                            Page(motion, chosen, PlotRequest(look=look), size), "png", dpi
                         )
                     except NothingToDrawError as reason:
                         yield f"<p>{escape(caption)}: {escape(str(reason))}</p>"
