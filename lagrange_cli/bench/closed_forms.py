@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,11 +19,12 @@ from ..elliptic.many_digits import ManyDigits
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..motion.solve import solve
-from .method import AngleFunction, Method, NotApplicableError, SampledAngles
+from .method import AngleFunction, Method, NotApplicableError, Run
 
 
 def _ours(top: Top, _: str) -> AngleFunction:
-    return solve(top).sampler().angles
+    sampler = solve(top).sampler()
+    return lambda t: Run(sampler.angles(t))
 
 
 def _ours_in_digits(top: Top, digits: int) -> AngleFunction:
@@ -31,14 +32,13 @@ def _ours_in_digits(top: Top, digits: int) -> AngleFunction:
 
     from ..motion.over_time.proved_table import ProvedTable
 
-    def sample(t: Array) -> SampledAngles:
+    def sample(t: Array) -> Run:
         table = ProvedTable(solve(top), ANGLES, digits, radians=True)
         rows = [table.row(Fraction(time)) for time in t.tolist()]
         with mpmath.workdps(digits + 10):
-            return [
-                [mpmath.mpf(number.value) for number in column]
-                for column in zip(*rows, strict=True)
-            ]
+            return Run(
+                [[mpmath.mpf(x.value) for x in column] for column in zip(*rows, strict=True)]
+            )
 
     return sample
 
@@ -81,87 +81,70 @@ def _legendre(top: Top, _: str) -> AngleFunction:
         start = math.copysign(start, top.thetadot0)
     first = halves(np.array(start))
 
-    def sample(t: Array) -> SampledAngles:
+    def sample(t: Array) -> Run:
         w = start + speed * t
         plus, minus = (now - then for now, then in zip(halves(w), first, strict=True))
         sn, _, dn, _ = special.ellipj(w - np.rint(w / (2 * K)) * 2 * K, m)
         u = u1 - (u1 - u2) * (1 - m) * (sn / dn) ** 2  # (4,20)
-        return np.arccos(u), (r0 - b) * t + plus - minus, plus + minus
+        return Run([np.arccos(u), (r0 - b) * t + plus - minus, plus + minus])
 
     return sample
 
 
-class _Paper(NamedTuple):
-    """Constants of sections 4 to 7 in doubles."""
+class _Paper:
+    """Constants of sections 4 to 7 in doubles, and the tilt."""
 
-    u1: float
-    u3: float
-    k_prime: float
-    T: float
-    q: float
-    y: float
-    sigma: int
-    mean_spin: float
-    mean_precession: float
+    def __init__(self, top: Top) -> None:
+        if not top.is_released:
+            raise NotApplicableError("the paper's formulas are for a top released from rest")
+        ar = ManyDigits(17)  # for the tables of elliptic integrals; everything else is in doubles
+        a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
+        r0, b = float(top.r0), float(top.C) * float(top.r0) / float(top.A)
+        self.u1, self.sigma = top.tilt(DOUBLES).cos, 1 if r0 > 0 else -1
+        root = math.sqrt(b**4 - 4 * a * b * b * self.u1 + 4 * a * a)
+        u2, self.u3 = (b * b - root) / (2 * a), (b * b + root) / (2 * a)  # (4,11)
+        gap = self.u3 - u2
+        m, mc = (self.u1 - u2) / gap, (self.u3 - self.u1) / gap  # (4,19), (4,21)
+        K, E = float(ar.ellipk(m)), float(ar.ellipe(m))
+        self.k_prime, self.q = math.sqrt(mc), math.exp(-math.pi * float(ar.ellipk(mc)) / K)
+        self.T = 4 * K / math.sqrt(a * gap)  # (5,1)
+        amplitude = math.asin(math.sqrt(gap / (self.u3 + 1)))  # (7,2)
+        alpha, E_amplitude = float(ar.ellipf(amplitude, mc)), float(ar.ellipe(amplitude, mc))
+        self.y = math.pi * alpha / (2 * K)
+        bracket = K * E_amplitude - (K - E) * alpha - math.pi / 4
+        self.mean_spin = r0 - b / 2 + self.sigma * math.pi / self.T  # (6,3)
+        self.mean_precession = a / (2 * b) * (2 - self.u3 + u2)
+        self.mean_precession += self.sigma * 4 / self.T * bracket  # (7,3)
 
+    def phase(self, t: Array) -> Array:
+        """Return pi t/T without whole turns."""
+        periods = t / self.T
+        return np.pi * (periods - np.rint(periods))
 
-def _paper(top: Top) -> _Paper:
-    if not top.is_released:
-        raise NotApplicableError("the paper's formulas are for a top released from rest")
-    ar = ManyDigits(17)  # for the tables of elliptic integrals; everything else is in doubles
-    a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
-    r0, b = float(top.r0), float(top.C) * float(top.r0) / float(top.A)
-    u1, sigma = top.tilt(DOUBLES).cos, 1 if r0 > 0 else -1
-    root = math.sqrt(b**4 - 4 * a * b * b * u1 + 4 * a * a)
-    u2, u3 = (b * b - root) / (2 * a), (b * b + root) / (2 * a)  # (4,11)
-    m, mc = (u1 - u2) / (u3 - u2), (u3 - u1) / (u3 - u2)  # (4,19), (4,21)
-    K, E = float(ar.ellipk(m)), float(ar.ellipe(m))
-    T = 4 * K / math.sqrt(a * (u3 - u2))  # (5,1)
-    amplitude = math.asin(math.sqrt((u3 - u2) / (u3 + 1)))  # (7,2)
-    alpha, E_amplitude = float(ar.ellipf(amplitude, mc)), float(ar.ellipe(amplitude, mc))
-    bracket = K * E_amplitude - (K - E) * alpha - math.pi / 4
-    return _Paper(
-        u1=u1,
-        u3=u3,
-        k_prime=math.sqrt(mc),
-        T=T,
-        q=math.exp(-math.pi * float(ar.ellipk(mc)) / K),
-        y=math.pi * alpha / (2 * K),
-        sigma=sigma,
-        mean_spin=r0 - b / 2 + sigma * math.pi / T,  # (6,3)
-        mean_precession=a / (2 * b) * (2 - u3 + u2) + sigma * 4 / T * bracket,  # (7,3)
-    )
-
-
-def _phase(p: _Paper, t: Array) -> Array:
-    """Return pi t/T without whole turns."""
-    periods = t / p.T
-    return np.pi * (periods - np.rint(periods))
-
-
-def _tilt(p: _Paper, x: Array, terms: int) -> Array:
-    """Return (4,20), with dn^2 = k' (theta3/theta4)^2 from `terms` terms of the theta functions."""
-    theta3, theta4 = np.ones_like(x), np.ones_like(x)
-    for h in range(1, terms + 1):
-        wave = 2 * p.q ** (h * h) * np.cos(2 * h * x)
-        theta3 += wave
-        theta4 += -wave if h % 2 else wave
-    return np.arccos(p.u3 - (p.u3 - p.u1) * (theta4 / theta3) ** 2 / p.k_prime)
+    def tilt(self, x: Array, terms: int) -> Array:
+        """Return (4,20), with dn^2 = k' (theta3/theta4)^2 from `terms` terms of both series."""
+        theta3, theta4 = np.ones_like(x), np.ones_like(x)
+        for h in range(1, terms + 1):
+            wave = 2 * self.q ** (h * h) * np.cos(2 * h * x)
+            theta3 += wave
+            theta4 += -wave if h % 2 else wave
+        u: Array = self.u3 - (self.u3 - self.u1) * (theta4 / theta3) ** 2 / self.k_prime
+        return np.arccos(u)
 
 
 def _mean_rates(top: Top, _: str) -> AngleFunction:
     """Return (6,3) and (7,3) without the periodic remainders."""
-    p = _paper(top)
-    return lambda t: (_tilt(p, _phase(p, t), 3), p.mean_spin * t, p.mean_precession * t)
+    p = _Paper(top)
+    return lambda t: Run([p.tilt(p.phase(t), 3), p.mean_spin * t, p.mean_precession * t])
 
 
 def _theta_series(top: Top, terms: int) -> AngleFunction:
     """Return (6,1) and (7,1) in the form for all times, with sums over h cut after `terms`."""
-    p = _paper(top)
+    p = _Paper(top)
     z = math.exp(-2 * p.y)
 
-    def sample(t: Array) -> SampledAngles:
-        x = _phase(p, t)
+    def sample(t: Array) -> Run:
+        x = p.phase(t)
         sin, cos = np.sin(2 * x), np.cos(2 * x)
         front = np.arctan2(z * sin, 1 - z * cos)
         spin, precession = np.zeros_like(x), np.zeros_like(x)
@@ -171,11 +154,8 @@ def _theta_series(top: Top, terms: int) -> AngleFunction:
             wave = np.arctan(twice * sin * math.sinh(2 * p.y) / below)
             spin += wave
             precession += sign * wave
-        return (
-            _tilt(p, x, terms),
-            p.mean_spin * t + p.sigma * (front - spin),
-            p.mean_precession * t - p.sigma * (front + precession),
-        )
+        spin = p.mean_spin * t + p.sigma * (front - spin)
+        return Run([p.tilt(x, terms), spin, p.mean_precession * t - p.sigma * (front + precession)])
 
     return sample
 

@@ -1,28 +1,27 @@
 """Physics engines, each in a separate process that is started, queried, and killed if it hangs.
 
-Another engine, or another scheme, is one entry in FAMILIES.
+Another engine, or another scheme, is one entry in SCHEMES.
 """
 
 from __future__ import annotations
 
 import math
-import multiprocessing
 import textwrap
 import weakref
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
-from multiprocessing.context import SpawnProcess
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from ..arithmetic.types import Array
+from ..inputs.rotations import angles_of
 from ..inputs.top import Top
 from ..motion.solve import solve
-from ..sweeps.jobs import interrupts_blocked, safe_path
+from ..sweeps.jobs import Child
 from .engine_simulation import Body, serve
-from .integrators import problem_of, quaternion_angles
-from .method import AngleFunction, FailedError, Method, NotApplicableError
+from .integrators import problem_of
+from .method import AngleFunction, FailedError, Method, NotApplicableError, Run
 
 SECONDS_TO_START = 60.0
 """Time limit for the import of an engine, in seconds."""
@@ -45,14 +44,9 @@ class EngineProcess:
     def __init__(self, model: str, body: Body, scheme: str, setting: Any) -> None:
         """Start the process and build the model.  Raises FailedError, as `attitudes` does."""
         folder = TemporaryDirectory(prefix="lagtop-")
-        context = multiprocessing.get_context("spawn")
-        self._pipe, other = context.Pipe()
-        order = (other, folder.name, model, (body, scheme, setting))
-        self._process = context.Process(target=serve, args=order, daemon=True)
-        weakref.finalize(self, _stop, self._process, folder)
-        with safe_path(), interrupts_blocked():
-            self._process.start()
-        other.close()
+        self._child = Child(serve, folder.name, model, (body, scheme, setting))
+        weakref.finalize(self, _stop, self._child, folder)
+        self._child.start()
         self._answer(SECONDS_TO_START)
 
     def attitudes(self, t: Array, seconds: float) -> Array:
@@ -61,30 +55,28 @@ class EngineProcess:
         Raises FailedError if the engine has an error, exceeds the time limit, or ends.
         """
         with suppress(BrokenPipeError):  # the answer is the reason
-            self._pipe.send(t)
+            self._child.pipe.send(t)
         found: Array = self._answer(seconds)
         return found
 
     def _answer(self, seconds: float) -> Any:
+        pipe, process = self._child.pipe, self._child.process
         try:
-            if not self._pipe.poll(seconds):
-                self._process.kill()
+            if not pipe.poll(seconds):
+                process.kill()
                 raise FailedError(f"took more than {seconds:g} s")
-            answer = self._pipe.recv()
+            answer = pipe.recv()
         except (EOFError, ConnectionError):
-            self._process.join()
-            code = self._process.exitcode
-            raise FailedError(f"its process ended with exit code {code}") from None
+            process.join()
+            raise FailedError(f"its process ended with exit code {process.exitcode}") from None
         if isinstance(answer, str):
             raise FailedError(textwrap.shorten(answer, LONGEST_ERROR))
         return answer
 
 
-def _stop(process: SpawnProcess, folder: TemporaryDirectory[str]) -> None:
+def _stop(child: Child, folder: TemporaryDirectory[str]) -> None:
     """End the process and free its resources."""
-    if process.pid is not None:
-        process.kill()
-        process.join()
+    child.end()
     folder.cleanup()
 
 
@@ -142,44 +134,42 @@ def _engine_angles(
     package: str, scheme: str, top: Top, setting: Any, limit: float
 ) -> AngleFunction:
     attitudes = engine_attitudes(package, scheme, top, setting, limit)
-    return lambda t: quaternion_angles(attitudes(t))
+    return lambda t: Run([*angles_of(attitudes(t)).values()])
 
 
 class Scheme(NamedTuple):
     """An integrator of an engine, and its settings."""
 
+    package: str
+    """The package of the engine; its model is the function with this name."""
     name: str
     settings: Sequence[Any] = STEPS
     """Steps per nutation period, or tolerances."""
 
 
-FAMILIES: dict[str, dict[str, Scheme]] = {
-    "mujoco": {"euler": Scheme("Euler", MANY_STEPS), "rk4": Scheme("RK4")},
-    "exudyn": {
-        "rk44": Scheme("RK44"),
-        "rk67": Scheme("RK67"),
-        "alpha": Scheme("GeneralizedAlpha"),
-    },
-    "pybullet": {"": Scheme("", MANY_STEPS)},
-    "drake": {
-        "rk3": Scheme("runge_kutta3", [1e-2, 1e-4, 1e-6, 1e-8]),
-        "rk5": Scheme("runge_kutta5", [1e-6, 1e-9, 1e-12, 1e-14]),
-        "discrete": Scheme("discrete", MANY_STEPS),
-    },
+SCHEMES = {
+    "mujoco-euler": Scheme("mujoco", "Euler", MANY_STEPS),
+    "mujoco-rk4": Scheme("mujoco", "RK4"),
+    "exudyn-rk44": Scheme("exudyn", "RK44"),
+    "exudyn-rk67": Scheme("exudyn", "RK67"),
+    "exudyn-alpha": Scheme("exudyn", "GeneralizedAlpha"),
+    "pybullet": Scheme("pybullet", "", MANY_STEPS),
+    "drake-rk3": Scheme("drake", "runge_kutta3", [1e-2, 1e-4, 1e-6, 1e-8]),
+    "drake-rk5": Scheme("drake", "runge_kutta5", [1e-6, 1e-9, 1e-12, 1e-14]),
+    "drake-discrete": Scheme("drake", "discrete", MANY_STEPS),
 }
-"""Schemes of each engine, by its package; the model is the function with this name."""
+"""Schemes of all engines, by the names of their methods."""
 
 
 def engines(limit: float) -> dict[str, Method]:
     """Return every scheme of every engine by name, with a time limit of a run in seconds."""
     return {
-        f"{package}-{short}".rstrip("-"): Method(
-            scheme.settings,
-            partial(_engine_angles, package, scheme.name, limit=limit),
+        name: Method(
+            settings,
+            partial(_engine_angles, package, scheme, limit=limit),
             IMPORTS.get(package, package),
             whole_turns=False,
             engine=package,
         )
-        for package, schemes in FAMILIES.items()
-        for short, scheme in schemes.items()
+        for name, (package, scheme, settings) in SCHEMES.items()
     }

@@ -11,6 +11,7 @@ import time
 import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import count
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,10 +25,9 @@ from .method import (
     AngleFunction,
     Drift,
     FailedError,
-    Integration,
     Method,
     NotApplicableError,
-    SampledAngles,
+    Run,
     Work,
 )
 
@@ -77,14 +77,15 @@ class Form(NamedTuple):
     start: Callable[[TopProblem], Sequence[float]]
     slope: Callable[[TopProblem, Any], Slope]
     """Right-hand side in an arithmetic with sin and cos: `math`, or heyoka's expressions."""
-    angles: Callable[[Array], SampledAngles]
+    angles: Callable[[Array], Sequence[Any]]
     """Angles from an array with a row for each variable."""
     whole_turns: bool
     drift: Callable[[TopProblem, Array], Drift] = lambda *_: (None, None)
 
-    def integration(self, p: TopProblem, run: Callable[[Array], tuple[Array, Work]]) -> Integration:
-        """Return a function that computes the angles from a run."""
-        return Integration(run, self.angles, partial(self.drift, p))
+    def run(self, p: TopProblem, rows: Array, *work: int) -> Run:
+        """Return the run that gave some rows, a row for each variable."""
+        drift = self.drift(p, rows) if np.isfinite(rows).all() else (None, None)
+        return Run(self.angles(rows), Work(*work), drift)
 
 
 def _euler_start(p: TopProblem) -> Sequence[float]:
@@ -141,73 +142,62 @@ def _quaternion_drift(p: TopProblem, rows: Array) -> Drift:
     return float(changes[0]), float(changes[1])
 
 
-def quaternion_angles(rows: Array) -> SampledAngles:
-    """Return the angles, modulo whole turns, of quaternions w, x, y, z, a row for each."""
-    return [*angles_of(rows).values()]
-
-
 FORMS = {
     "euler": Form(_euler_start, _euler_slope, lambda rows: (rows[0], rows[2], rows[3]), True),
     "quaternion": Form(
         _quaternion_start,
         _quaternion_slope,
-        lambda rows: quaternion_angles(rows[2:].T),
+        lambda rows: [*angles_of(rows[2:].T).values()],
         False,
         _quaternion_drift,
     ),
 }
 
 
-class Limit:
-    """Limits of a run: seconds, and evaluations of the right-hand side, which are counted."""
-
-    def __init__(self, seconds: float, evaluations: float) -> None:
-        self.seconds, self.most = seconds, evaluations
-        self.end, self.count = time.perf_counter() + seconds, 0
-
-    def watched(self, slope: Slope) -> Slope:
-        """Return the slope as a function that raises FailedError if a run exceeds its limits."""
-
-        def counted(now: float, state: Any) -> Sequence[Any]:
-            self.count += 1
-            if self.count > self.most:
-                raise FailedError(f"took more than {self.most:.0e} evaluations")
-            if time.perf_counter() > self.end:
-                raise FailedError(f"took more than {self.seconds:g} s")
-            return slope(now, state)
-
-        return counted
+Limits = tuple[float, float]
+"""Limits of a run: seconds, and evaluations of the right-hand side."""
 
 
-def scipy_method(
-    name: str, form: Form, top: Top, rtol: float, *, limits: tuple[float, float]
-) -> AngleFunction:
+def watched(slope: Slope, limits: Limits) -> Callable[[float, Array], Sequence[float]]:
+    """Return a slope for arrays that raises FailedError if a run exceeds its limits."""
+    seconds, most = limits
+    end, counts = time.perf_counter() + seconds, count(1)
+
+    def counted(now: float, state: Array) -> Sequence[float]:
+        if next(counts) > most:
+            raise FailedError(f"took more than {most:.0e} evaluations")
+        if time.perf_counter() > end:
+            raise FailedError(f"took more than {seconds:g} s")
+        return slope(now, state.tolist())
+
+    return counted
+
+
+def scipy_method(name: str, form: Form, top: Top, rtol: float, *, limits: Limits) -> AngleFunction:
     """Return a method of scipy's solve_ivp, with its own interpolation between the steps."""
     from scipy.integrate import solve_ivp
 
     problem = problem_of(top)
     start, slope = form.start(problem), form.slope(problem, math)
 
-    def run(t: Array) -> tuple[Array, Work]:
-        watched = Limit(*limits).watched(lambda now, state: slope(now, [*state]))
+    def run(t: Array) -> Run:
+        f = watched(slope, limits)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the outcome shows failures
             try:
                 flow = solve_ivp(
-                    watched, (0.0, t[-1]), start, name, dense_output=True, rtol=rtol, atol=rtol
+                    f, (0.0, t[-1]), start, name, dense_output=True, rtol=rtol, atol=rtol
                 )
             except ArithmeticError as error:
                 raise FailedError(f"stopped: {error}") from None
         if not flow.success:
             raise FailedError(f"stopped: {flow.message}")
-        return flow.sol(t), Work(int(flow.nfev), flow.t.size - 1, int(flow.njev))
+        return form.run(problem, flow.sol(t), int(flow.nfev), flow.t.size - 1, int(flow.njev))
 
-    return form.integration(problem, run)
+    return run
 
 
-def rk4_method(
-    form: Form, top: Top, per_period: int, *, limits: tuple[float, float]
-) -> AngleFunction:
+def rk4_method(form: Form, top: Top, per_period: int, *, limits: Limits) -> AngleFunction:
     """Return the classical Runge-Kutta method with a number of equal steps per nutation period.
 
     The gap between two times is divided into a whole number of steps, so that each time is hit.
@@ -215,32 +205,29 @@ def rk4_method(
     problem, period = problem_of(top), float(solve(top).T_nutation or 1)
     start, slope = np.array(form.start(problem)), form.slope(problem, math)
 
-    def run(t: Array) -> tuple[Array, Work]:
-        limit = Limit(*limits)
-        watched = limit.watched(slope)
+    def run(t: Array) -> Run:
+        limited = watched(slope, limits)
 
         def f(state: Array) -> Array:
-            return np.array(watched(0.0, state.tolist()))
+            return np.array(limited(0.0, state))
 
-        state, now, rows = start, 0.0, []
+        state, now, rows, steps = start, 0.0, [], 0
         for end in t.tolist():
-            count = math.ceil(abs(end - now) / period * per_period * (1 - 1e-9))
-            h = (end - now) / max(count, 1)
-            for _ in range(count):
+            some = math.ceil(abs(end - now) / period * per_period * (1 - 1e-9))
+            h = (end - now) / max(some, 1)
+            for _ in range(some):
                 k1 = f(state)
                 k2 = f(state + h / 2 * k1)
                 k3 = f(state + h / 2 * k2)
                 state = state + h / 6 * (k1 + 2 * (k2 + k3) + f(state + h * k3))
-            now = end
+            now, steps = end, steps + some
             rows.append(state)
-        return np.array(rows).T, Work(limit.count, limit.count // 4, 0)
+        return form.run(problem, np.array(rows).T, 4 * steps, steps, 0)
 
-    return form.integration(problem, run)
+    return run
 
 
-def heyoka_method(
-    form: Form, top: Top, tol: float, *, limits: tuple[float, float]
-) -> AngleFunction:
+def heyoka_method(form: Form, top: Top, tol: float, *, limits: Limits) -> AngleFunction:
     """Return Taylor's method, compiled for this top; the set-up includes the compilation."""
     import heyoka
 
@@ -255,7 +242,7 @@ def heyoka_method(
     seconds, evaluations = limits
     most = int(min(seconds * STEPS_PER_SECOND, evaluations / integrator.order))
 
-    def run(t: Array) -> tuple[Array, Work]:
+    def run(t: Array) -> Run:
         integrator.time, integrator.state[:] = 0.0, start
         grid = np.concatenate(([0.0], t[t != 0]))
         outcome, _, _, steps, _, rows = integrator.propagate_grid(grid, max_steps=most)
@@ -263,10 +250,9 @@ def heyoka_method(
             raise FailedError(f"took more than {most} steps")
         if outcome != heyoka.taylor_outcome.time_limit:
             raise FailedError(f"stopped: {outcome}")
-        work = Work(int(steps) * integrator.order, int(steps), 0)
-        return rows.T[:, -t.size :], work
+        return form.run(problem, rows.T[:, -t.size :], steps * integrator.order, steps, 0)
 
-    return form.integration(problem, run)
+    return run
 
 
 _SCIPY = "scipy.integrate"

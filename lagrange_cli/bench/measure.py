@@ -8,7 +8,6 @@ import statistics
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
@@ -24,18 +23,9 @@ from ..motion.regime import Regime
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
 from .closed_forms import CLOSED_FORMS
-from .engines import FAMILIES, engines
+from .engines import SCHEMES, engines
 from .integrators import integrators
-from .method import (
-    FAILURES,
-    AngleFunction,
-    Method,
-    MethodRow,
-    SampledAngles,
-    Work,
-    failure_remark,
-    is_out,
-)
+from .method import FAILURES, AngleFunction, Method, MethodRow, Run, failure_remark, is_out
 from .reference import EPS, ExactAngles, Reference, angle_differences, angle_units
 
 JUDGED = 201
@@ -79,10 +69,9 @@ def all_methods(limit: float) -> dict[str, Method]:
 
 def groups() -> dict[str, list[str]]:
     """Return the names of groups of methods: all engines, and each engine."""
-    names: dict[str, list[str]] = {family: [] for family in ("engines", *FAMILIES)}
-    for name, method in engines(1.0).items():
-        names["engines"].append(name)
-        names[method.engine].append(name)
+    names: dict[str, list[str]] = {"engines": list(SCHEMES)}
+    for name, scheme in SCHEMES.items():
+        names.setdefault(scheme.package, []).append(name)
     return names
 
 
@@ -165,14 +154,9 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
     row = MethodRow(work.scene, name, setting, work.periods)
     times = work.times[work.judged] if method.costly else work.times
     try:
-        method.check_package()
         with np.errstate(all="ignore"):  # values that are not finite are reported below
-            if method.package and not method.engine:
-                import_module(method.package)  # before the clock starts
-            begun = time.perf_counter()
-            sample = method.prepare(work.motion.top, setting)
-            setup = time.perf_counter() - begun
-            angles, seconds = _run(sample, times)
+            sample, setup = method.start(work.motion.top, setting)
+            run, seconds = _timed(sample, times)
     except FAILURES as reason:
         failed = row._replace(remark=failure_remark(reason))
         return failed._replace(setting="") if is_out(failed.remark) else failed
@@ -182,22 +166,22 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
         ns_median=statistics.median(seconds) / times.size * 1e9,
         runs=len(seconds),
         remark=method.mark(),
-        **getattr(sample, "work", Work())._asdict(),
+        **run.work._asdict(),
     )
     kept = range(times.size) if method.costly else work.judged.tolist()
-    return _judged(timed, work, [[angle[i] for angle in angles] for i in kept], method)
+    return _judged(timed, work, [[angle[i] for angle in run.angles] for i in kept], method)
 
 
-def _run(sample: AngleFunction, times: Array) -> tuple[SampledAngles, list[float]]:
-    """Return the angles, and the seconds of warm runs; a run that takes long is not repeated."""
+def _timed(sample: AngleFunction, times: Array) -> tuple[Run, list[float]]:
+    """Return the last run, and the seconds of warm runs; one that takes long is not repeated."""
     seconds: list[float] = []
     while True:
         begun = time.perf_counter()
-        angles = sample(times)
+        run = sample(times)
         seconds.append(time.perf_counter() - begun)
         first, *warm = seconds
         if first > SECONDS_OF_RUNS or len(warm) == RUNS or sum(warm) >= SECONDS_OF_RUNS:
-            return angles, warm or seconds
+            return run, warm or seconds
 
 
 def _judged(

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 
 OURS = "lagtop"
 NOT_APPLICABLE = "not applicable"
-
-SampledAngles = Sequence[Any]
-"""Tilt, spin and precession (radians), each an array or a list with the length of the times."""
-
-AngleFunction = Callable[[Array], SampledAngles]
-"""A function that computes the angles at times with increasing distance from 0."""
-
 
 Drift = tuple[float | None, float | None]
 """Changes of energy and vertical momentum in a run, over the sum of their terms."""
@@ -35,26 +28,17 @@ class Work(NamedTuple):
     jacobians: int | None = None
 
 
-class Integration:
-    """A function that computes angles step by step, and counts its work."""
+class Run(NamedTuple):
+    """The result of a method at some times, and its cost."""
 
-    def __init__(
-        self,
-        run: Callable[[Array], tuple[Array, Work]],
-        angles: Callable[[Array], SampledAngles],
-        drift: Callable[[Array], Drift],
-    ) -> None:
-        """Take a function that integrates (a row for each variable), and functions of its rows."""
-        self._run, self._angles, self._drift = run, angles, drift
-        self.work = Work()
-        """The work of the last run."""
-        self.drift: Drift = (None, None)
+    angles: Sequence[Any]
+    """Tilt, spin and precession (radians), each an array or a list with the length of the times."""
+    work: Work = Work()
+    drift: Drift = (None, None)
 
-    def __call__(self, t: Array) -> SampledAngles:
-        """Return the angles at times with increasing distance from 0."""
-        rows, self.work = self._run(t)
-        self.drift = self._drift(rows) if np.isfinite(rows).all() else (None, None)
-        return self._angles(rows)
+
+AngleFunction = Callable[[Array], Run]
+"""A function that computes the angles at times with increasing distance from 0."""
 
 
 class NotApplicableError(Exception):
@@ -87,10 +71,17 @@ class Method(NamedTuple):
     engine: str = ""
     """The distribution of an engine that runs in a separate process; it is not imported here."""
 
-    def check_package(self) -> None:
-        """Raise NotApplicableError if the package is missing."""
+    def start(self, top: Top, setting: Any) -> tuple[AngleFunction, float]:
+        """Return the sampling function of a top, and the seconds of its set-up.
+
+        Raises NotApplicableError if the package is missing, and the errors of `prepare`.
+        """
         if missing := self.missing_package():
             raise NotApplicableError(f"needs {missing}: pip install {missing}")
+        if self.package and not self.engine:
+            import_module(self.package)  # before the clock starts
+        begun = time.perf_counter()
+        return self.prepare(top, setting), time.perf_counter() - begun
 
     def missing_package(self) -> str:
         """Return the name of the package to install if it is missing, or an empty text."""

@@ -20,7 +20,7 @@ from ..motion.sensitivity.angle_sensitivities import angle_sensitivities
 from .closed_forms import CLOSED_FORMS
 from .compare_methods import LOST, growth_of
 from .integrators import integrators
-from .method import FAILURES, Drift, FailedError, Work, failure_remark, is_out
+from .method import FAILURES, Drift, FailedError, Run, failure_remark, is_out
 from .reference import ExactAngles, Reference
 
 SPANS, LONG_SPAN = (5.0, 100.0), 1e4
@@ -129,24 +129,20 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
     every = np.concatenate(grids)
     bounds = [*zip(every.tolist(), _conditions(top, every * period), strict=True)]
     for name in PEERS:
-        method = known[name]
-        points: list[tuple[float, float]] = []
-        sample: Any = None
-        remark = None
+        method, points, run, remark = known[name], list[tuple[float, float]](), Run([]), None
         try:
-            method.check_package()
             with np.errstate(all="ignore"):
-                sample = method.prepare(top, method.settings[-1])  # the tightest setting
+                sample, _ = method.start(top, method.settings[-1])  # the tightest setting
                 for grid, true in zip(grids, exact, strict=True):
-                    found = zip(*sample(grid * period), strict=True)
+                    run = sample(grid * period)
+                    found = zip(*run.angles, strict=True)
                     errors = [turn(x, y) for x, y in zip(found, true, strict=True)]
                     if math.inf in errors:
                         raise FailedError("returned values that are not finite")
                     points += zip(grid.tolist(), errors, strict=True)
         except FAILURES as reason:
             remark = failure_remark(reason)
-        work, drift = getattr(sample, "work", Work()), getattr(sample, "drift", (None, None))
-        yield PeerRun(name, points, bounds, work.evaluations, drift, remark)
+        yield PeerRun(name, points, bounds, run.work.evaluations, run.drift, remark)
 
 
 def turn(angles: Sequence[Any], exact: ExactAngles) -> float:

@@ -62,37 +62,29 @@ def error_in_units(computed: float, exact: Many, rate: Many, tau: Many) -> float
 
 def angle_differences(
     angles: Sequence[Any], exact: ExactAngles, *, whole_turns: bool = True
-) -> tuple[float, float, float]:
+) -> list[float]:
     """Return |computed - exact| of tilt, spin and precession, in radians.
 
     The difference of NaN is infinite.  Without `whole_turns`, spin and precession count modulo 2
     pi.
     """
     with mpmath.workdps(80):  # more digits than the numbers have
-        theta, phi, psi = (
-            mpmath.mpf(x) - true if mpmath.isfinite(x) else mpmath.inf
-            for x, true in zip(angles, exact[:3], strict=True)
-        )
+        away = [mpmath.mpf(x) - true for x, true in zip(angles, exact[:3], strict=True)]
         if not whole_turns:
-            phi, psi = (_less_turns(x) for x in (phi, psi))
-        return float(abs(theta)), float(abs(phi)), float(abs(psi))
-
-
-def _less_turns(angle: Many) -> Many:
-    turn = 2 * mpmath.pi
-    return angle - turn * mpmath.nint(angle / turn) if mpmath.isfinite(angle) else angle
+            turn = 2 * mpmath.pi
+            away[1:] = [x - turn * mpmath.nint(x / turn) for x in away[1:]]
+        return [float(abs(x)) if mpmath.isfinite(x) else math.inf for x in away]
 
 
 def angle_units(
     angles: Sequence[Any], exact: ExactAngles, *, whole_turns: bool = True
-) -> tuple[float, float, float]:
+) -> list[float]:
     """Return the errors of tilt, spin and precession in units (see `angle_differences`)."""
     differences = angle_differences(angles, exact, whole_turns=whole_turns)
-    theta, phi, psi = (
+    return [
         difference / unit(true, rate, exact.tau)
         for difference, true, rate in zip(differences, exact[:3], exact[3:6], strict=True)
-    )
-    return theta, phi, psi
+    ]
 
 
 def quaternion_units(parts: Sequence[float], exact: ExactAngles) -> float:
@@ -137,7 +129,9 @@ class Reference:
             self.K = mpmath.ellipk(self.m)
             self.T = 2 * self.K / self.speed
             self.w0 = self._argument(mpmath.sign(mpmath.mpf(top.thetadot0)))
-            self.wholes = [self._whole(*gaps) for gaps in self.gaps]
+            self.wholes = [
+                self._legendre(at_u1 / at_u2, 1, 0, self.mc) for at_u1, at_u2 in self.gaps
+            ]
             self.start = self._halves(mpmath.mpf(0))
 
     def _roots(self, top: Top) -> None:
@@ -190,25 +184,22 @@ class Reference:
 
     def _halves(self, t: Many) -> tuple[Many, Many]:
         """Return (psi + phi)/2 and (psi - phi)/2, up to their values at t = 0."""
-        now, drift = self._jacobi(t), self.drift * t
+        (turns, sn, cn, dn), drift = self._jacobi(t), self.drift * t
         plus, minus = (
-            momentum / 2 * self._third(*gaps, now, whole)
-            for momentum, gaps, whole in zip(self.from_poles, self.gaps, self.wholes, strict=True)
+            momentum
+            / 2
+            * (2 * turns * whole + self._legendre(at_u1 / at_u2, sn, cn**2, dn**2))
+            / (at_u2 * self.speed)
+            for momentum, (at_u1, at_u2), whole in zip(
+                self.from_poles, self.gaps, self.wholes, strict=True
+            )
         )
         return drift + plus, -drift + minus
 
-    def _whole(self, at_u1: Many, at_u2: Many) -> Many:
-        """Return the complete integral of dw/(1 - n sn^2) with 1 - n = at_u1/at_u2."""
-        rest = at_u1 / at_u2
-        return self.K + (1 - rest) / 3 * mpmath.elliprj(0, self.mc, 1, rest)
-
-    def _third(self, at_u1: Many, at_u2: Many, now: tuple[Many, ...], whole: Many) -> Many:
-        """Return the incomplete integral of dt/(at_u2 + (at_u1 - at_u2) sn^2), Legendre's Pi."""
-        turns, sn, cn, dn = now
-        sn2, cn2, dn2, rest = sn**2, cn**2, dn**2, at_u1 / at_u2
-        part = mpmath.elliprf(cn2, dn2, 1)
-        part += (1 - rest) / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, cn2 + rest * sn2)
-        return (2 * turns * whole + sn * part) / (at_u2 * self.speed)
+    def _legendre(self, rest: Many, sn: Many, cn2: Many, dn2: Many) -> Many:
+        """Return Legendre's Pi, the integral of dw/(1 - n sn^2 w) from 0, with rest = 1 - n."""
+        part = (1 - rest) / 3 * sn**2 * mpmath.elliprj(cn2, dn2, 1, cn2 + rest * sn**2)
+        return sn * (mpmath.elliprf(cn2, dn2, 1) + part)
 
     def at(self, t: float) -> ExactAngles:
         """Return the exact angles and rates at a time."""
@@ -250,16 +241,11 @@ class Reference:
             spin, precession = (plus - minus) / self.T, (plus + minus) / self.T
             half, K_prime = self.at(self.T / 2), mpmath.ellipk(self.mc)
             return self._turning_points() | {
-                "a": self.a,
-                "b": self.b,
-                "u1": self.u1,
-                "u2": self.u2,
-                "u3": self.u3,
+                **{name: getattr(self, name) for name in ("a", "b", "u1", "u2", "u3", "K")},
                 "k": mpmath.sqrt(self.m),
                 "k_prime": mpmath.sqrt(self.mc),
                 "modular_angle_deg": mpmath.degrees(mpmath.asin(mpmath.sqrt(self.m))),
                 "nome": mpmath.exp(-mpmath.pi * K_prime / self.K),
-                "K": self.K,
                 "K_prime": K_prime,
                 "E": mpmath.ellipe(self.m),
                 "T_nutation": self.T,

@@ -18,13 +18,7 @@ from ..inputs.top import Top
 from ..output.progress import Progress
 from ..output.report import Field, Report, fields_of, short
 from ..sweeps.jobs import in_order
-from .battery import (
-    CONTRACT,
-    KEY_CONTRACT,
-    Case,
-    hard_scene,
-    judged_case,
-)
+from .battery import CONTRACT, KEY_CONTRACT, Case, hard_scene, judged_case, prove
 from .hard_scenes import words_of
 from .measure import common_conditions, settled_reference
 from .method import OURS
@@ -145,8 +139,6 @@ def judged(scene: tuple[str, int, int], *, certify: bool, is_long: bool) -> Judg
     """Return the results of a scene, given by stratum, seed and number; `certify` for proofs."""
     hard = hard_scene(*scene, TIMES)
     if certify:
-        from .proofs import prove
-
         return prove(hard), []
     top, spans = Top(**hard.inputs), (*SPANS, LONG_SPAN) if is_long else SPANS
     settled = settled_reference(top)

@@ -117,20 +117,18 @@ class _Team:
 
     def close(self) -> None:
         """End the other processes at once, without waiting for their results."""
-        for process in (worker.process for worker in self._workers.values()):
-            if process.pid is not None:
-                process.kill()
-                process.join()
+        for worker in self._workers.values():
+            worker.end()
 
 
-class _Worker:
-    """Another process, and its tasks: numbers, and files for items and results."""
+class Child:
+    """Another process, which runs `target(pipe, *arguments)`, and the pipe to it."""
 
-    def __init__(self, work: Callable[[Any], Any]) -> None:
-        self.tasks = deque([(-1, "")] * _HANDED_OUT)  # full until it has started
+    def __init__(self, target: Callable[..., None], *arguments: Any) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe, self._other = context.Pipe()
-        self.process = context.Process(target=_serve, args=(self._other, work), daemon=True)
+        whole = self._other, *arguments
+        self.process = context.Process(target=target, args=whole, daemon=True)
 
     def start(self) -> None:
         """Start the process.  Raises UnavailableError."""
@@ -140,6 +138,20 @@ class _Worker:
         except OSError as error:
             raise UnavailableError(f"cannot start a process: {error.strerror or error}") from None
         self._other.close()
+
+    def end(self) -> None:
+        """End the process at once, if it has started."""
+        if self.process.pid is not None:
+            self.process.kill()
+            self.process.join()
+
+
+class _Worker(Child):
+    """A process that shares work, and its tasks: numbers, and files for items and results."""
+
+    def __init__(self, work: Callable[[Any], Any]) -> None:
+        super().__init__(_serve, work)
+        self.tasks = deque([(-1, "")] * _HANDED_OUT)  # full until it has started
 
     def give(self, number: int, item: Any, path: str) -> None:
         """Hand out a task.  Raises UnavailableError if the process is lost."""

@@ -83,7 +83,7 @@ def test_series_of_the_paper_gain_with_every_term(r0: float) -> None:
 def test_the_tilt_of_mean_rates_is_exact() -> None:
     """Three terms of the series are enough, two leave 3e-11."""
     times = np.linspace(0, 1, 300)
-    tilt = CLOSED_FORMS["mean-rates"].prepare(Top(), "double")(times)[0]
+    tilt = CLOSED_FORMS["mean-rates"].prepare(Top(), "double")(times).angles[0]
     assert abs(np.asarray(tilt) - solve(Top()).angles(times).theta).max() < 1e-14
 
 
@@ -158,13 +158,12 @@ def test_the_exponent_of_growth() -> None:
 def test_work_is_counted(name: str) -> None:
     """Tolerances act in the units of the scene: the run of scipy is that of a plain call."""
     method = METHODS[name]
-    prepared: Any = method.prepare(LOOPING, method.settings[0])
     t = np.linspace(0, 1, 7)
-    angles = prepared(t)
+    angles, work, _ = method.prepare(LOOPING, method.settings[0])(t)
     if name == "RK4-euler":
         period = solve(LOOPING).T_nutation
         steps = 6 * math.ceil(1 / 6 / period * 50)
-        assert prepared.work == (4 * steps, steps, 0)
+        assert work == (4 * steps, steps, 0)
         return
     p, form = problem_of(LOOPING), FORMS[name.partition("-")[2]]
     rtol, way = method.settings[0], name.partition("-")[0]
@@ -172,8 +171,8 @@ def test_work_is_counted(name: str) -> None:
     flow = solve_ivp(slope, (0, 1), form.start(p), way, t_eval=t, rtol=rtol, atol=rtol)
     assert np.asarray(angles[0]) == pytest.approx(np.asarray(form.angles(flow.y)[0]), abs=1e-12)
     if way == "Radau":
-        assert prepared.work.evaluations == flow.nfev
-        assert prepared.work.jacobians == flow.njev > 0
+        assert work.evaluations == flow.nfev
+        assert work.jacobians == flow.njev > 0
 
 
 def test_ties_on_the_front() -> None:
@@ -218,7 +217,8 @@ def test_what_fails_is_told() -> None:
     if find_spec("heyoka"):
         remark = measure(work, "x", quick["Taylor-euler"], 1e-16).remark
         assert remark == "failed: took more than 10 steps"
-    nothing = methods.Method(["x"], lambda _, __: lambda t: [np.full_like(t, np.nan)] * 3)
+    unfit = methods.Run([np.full(100, np.nan)] * 3)
+    nothing = methods.Method(["x"], lambda _, __: lambda _: unfit)
     lost = measure(work, "x", nothing, "x")
     assert lost.remark == "failed: returned values that are not finite"
     assert lost.ns_min is not None

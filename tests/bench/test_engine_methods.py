@@ -17,13 +17,7 @@ from lagrange_cli import LagtopError, Top, compare, solve
 from lagrange_cli.bench import compare_methods
 from lagrange_cli.bench import engines as engines_module
 from lagrange_cli.bench import method as methods
-from lagrange_cli.bench.engines import (
-    FAMILIES,
-    IMPORTS,
-    engine_attitudes,
-    engines,
-    scaled_body,
-)
+from lagrange_cli.bench.engines import IMPORTS, SCHEMES, engine_attitudes, engines, scaled_body
 from lagrange_cli.bench.measure import chosen_methods, measure, task
 from lagrange_cli.bench.method import FailedError, NotApplicableError
 from lagrange_cli.judge.convergence import convergence
@@ -49,10 +43,10 @@ ERRORS = {"drake-rk3": 1e-6, "drake-rk5": 1e-7}
 
 def engine(name: str) -> tuple[str, str]:
     """Return package and scheme of a method; skip the test where the package is missing."""
-    package, _, short = name.partition("-")
+    package, scheme, _ = SCHEMES[name]
     if find_spec(IMPORTS.get(package, package)) is None:
         pytest.skip(f"{package} is not installed: pip install {package}")
-    return package, FAMILIES[package][short].name
+    return package, scheme
 
 
 def judged(name: str, top: Top, setting: Any) -> Judgement:
@@ -190,7 +184,7 @@ def test_groups_stand_for_their_methods(monkeypatch: pytest.MonkeyPatch) -> None
 def test_the_extra_installs_every_engine() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     wanted = project["optional-dependencies"]["engines"]
-    assert {text.partition(">")[0] for text in wanted} == set(FAMILIES)
+    assert {text.partition(">")[0] for text in wanted} == {x.package for x in SCHEMES.values()}
 
 
 def test_missing_engines_are_named(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.balls import balls
 from lagrange_cli.arithmetic.rounding import Settled
-from lagrange_cli.bench import battery, proofs
+from lagrange_cli.bench import battery
 from lagrange_cli.bench.battery import hard_scene
 from lagrange_cli.bench.reference import Reference, angle_units, quaternion_units
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
@@ -32,7 +32,7 @@ START = {"r0": 40.0, "psidot0": 3.0, "thetadot0": 2.0}
 def test_bounds_are_the_errors_that_the_reference_finds(stratum: str) -> None:
     """Both judges see the same scene at the same times, and share no formula."""
     scene = hard_scene(stratum, 11, 0, 2)
-    proved, found = proofs.prove(scene), battery.judged_case(scene)
+    proved, found = battery.prove(scene), battery.judged_case(scene)
     assert found.key_ulps * (1 - 1e-12) <= proved.key_ulps  # which is rounded up to six digits
     assert proved.key_ulps <= found.key_ulps * (1 + 1e-5) + 1e-9
     assert proved.key_ulps <= 0.5
@@ -46,23 +46,23 @@ def test_a_wrong_angle_is_seen(t: float) -> None:
     motion = solve(Top(**START))
     table = ProvedTable(motion, ("theta", "phi", "psi", "quaternion"), radians=True)
     values = [float(x.value) for x in table.row(Fraction(t))]
-    right = proofs.bounds_at(table, t, values)
+    right = battery.bounds_at(table, t, values)
     assert max(right) <= 0.5
     exact = Reference(Top(**START), 80).at(t)
     for i in range(7):
         wrong = [x + (1e-6 * max(1, abs(x)) if i == j else 0) for j, x in enumerate(values)]
-        bounds = proofs.bounds_at(table, t, wrong)
+        bounds = battery.bounds_at(table, t, wrong)
         errors = *angle_units(wrong[:3], exact), quaternion_units(wrong[3:], exact)
         assert [n for n in range(7) if bounds[n] != right[n]] == [i]
         assert bounds[i] == pytest.approx(errors[min(i, 3)], rel=1e-3)
     turned = [*values[:2], values[2] + 2 * math.pi, *values[3:]]
-    assert proofs.bounds_at(table, t, turned)[2] > 1e3
-    assert proofs.bounds_at(table, t, [math.nan] * 7) == [math.inf] * 7
+    assert battery.bounds_at(table, t, turned)[2] > 1e3
+    assert battery.bounds_at(table, t, [math.nan] * 7) == [math.inf] * 7
 
 
 def worst_bound(motion: Motion) -> tuple[float, str]:
     """Return the worst bound of a key, and the key."""
-    return max((proofs.key_bound(motion, key, getattr(motion, key)), key) for key in NUMBER_KEYS)
+    return max((battery.key_bound(motion, key, getattr(motion, key)), key) for key in NUMBER_KEYS)
 
 
 def test_a_key_one_double_off_is_seen() -> None:
@@ -79,11 +79,11 @@ def test_a_key_one_double_off_is_seen() -> None:
 def test_a_gap_is_that_on_the_side_of_the_exact_value() -> None:
     """Next to 1 gaps are 2^-52 above and 2^-53 below."""
     third, ar = Fraction(1, 3) / 2**52, balls(60)
-    assert proofs.ulps(1.0, ar.convert(1 + third)) == pytest.approx(1 / 3, rel=1e-5)
-    assert proofs.ulps(1.0, ar.convert(1 - third)) == pytest.approx(2 / 3, rel=1e-5)
+    assert battery.ulps(1.0, ar.convert(1 + third)) == pytest.approx(1 / 3, rel=1e-5)
+    assert battery.ulps(1.0, ar.convert(1 - third)) == pytest.approx(2 / 3, rel=1e-5)
     wide = ar.convert(1 + third).enlarged(ar.convert(third / 100).greatest)
     with pytest.raises(TooFewDigitsError):
-        proofs.ulps(1.0, wide)
+        battery.ulps(1.0, wide)
 
 
 def test_a_bound_next_to_a_half_is_sharp() -> None:
@@ -97,7 +97,7 @@ def test_a_bound_next_to_a_half_is_sharp() -> None:
         r0=-1.3645650635975366,
         theta0_deg=179.99999998137704,
     )
-    bound = proofs.key_bound(solve(top), "amplitude_deg", solve(top).amplitude_deg)
+    bound = battery.key_bound(solve(top), "amplitude_deg", solve(top).amplitude_deg)
     assert bound == pytest.approx(0.5, abs=battery.KEY_CONTRACT - 0.5)
 
 
