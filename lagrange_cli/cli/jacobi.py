@@ -258,7 +258,7 @@ def _arguments(
         units = [u.in_quarters]
     if not real and any(units):
         raise LagtopError("--u must not contain K if numbers are complex or --k is not in [0, 1]")
-    points, in_quarters = listed_multiples(tuple(reals)) if isinstance(u, list) else u
+    points, in_quarters = listed_multiples(reals) if isinstance(u, list) else u
     return ComplexPoints(points, ListedPoints(imag) if any(imag) else None), in_quarters
 
 

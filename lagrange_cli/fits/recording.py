@@ -130,7 +130,7 @@ def _by_column(trajectory: Trajectory, column: str) -> dict[str, dict[str, Array
         raise LagtopError(
             f"by must name a column of {trajectory.name} ({shown}), got {column!r}", "by"
         )
-    words = trajectory.add_words("by", column)
+    word_of = trajectory.add_words("by", column)
     parts: dict[float, list[Quantities]] = {}
     clocks: dict[float, Clock] = {}
     for block, places in trajectory.rows():
@@ -141,7 +141,7 @@ def _by_column(trajectory: Trajectory, column: str) -> dict[str, dict[str, Array
             clock = clocks.setdefault(label, Clock(trajectory, repeats=True))
             clock.advance(some["t"][:, 0], [places[row] for row in rows.tolist()])
             parts.setdefault(label, []).append(some)
-    return {words.word(label): _joined(blocks) for label, blocks in parts.items()}
+    return {word_of(label): _joined(blocks) for label, blocks in parts.items()}
 
 
 def _joined(blocks: Iterable[Quantities]) -> dict[str, Array]:

@@ -38,22 +38,24 @@ def reading(path: str) -> Iterator[BufferedIOBase]:
 
 
 @contextmanager
-def decoded(stream: BufferedIOBase, name: str) -> Iterator[BufferedReader]:
-    """Yield the bytes of a stream: gzip is decompressed, and marked UTF-16 becomes UTF-8.
+def opened(path: str, stream: BufferedIOBase | None = None) -> Iterator[BufferedReader]:
+    """Open a file like `reading`; gzip is decompressed, and marked UTF-16 becomes UTF-8.
 
-    The stream stays open.  Raises DataError for a broken file, here or while it is read.
+    An open `stream` is read in place of the path, and closed.  Raises DataError for a broken file,
+    here or while it is read.
     """
-    reader = BufferedReader(cast(Any, stream), _AT_ONCE)
-    found = reader
-    if found.peek(2)[:2] == _GZIP:
-        found = BufferedReader(_Chunks(_decompressed(found, name)), _AT_ONCE)
-    if found.peek(2)[:2] in _UTF16:
-        found = BufferedReader(_Chunks(_from_utf16(found, name)), _AT_ONCE)
-    try:
-        yield found
-    finally:
-        with suppress(ValueError):  # the stream may be closed
-            reader.detach()
+    name = shown_path(path)
+    with stream or reading(path) as file:
+        reader = found = BufferedReader(cast(Any, file), _AT_ONCE)
+        if found.peek(2)[:2] == _GZIP:
+            found = BufferedReader(_Chunks(_decompressed(found, name)), _AT_ONCE)
+        if found.peek(2)[:2] in _UTF16:
+            found = BufferedReader(_Chunks(_from_utf16(found, name)), _AT_ONCE)
+        try:
+            yield found
+        finally:
+            with suppress(ValueError):  # the stream may be closed
+                reader.detach()
 
 
 class _Chunks(RawIOBase):

@@ -15,6 +15,38 @@ from ..errors import LagtopError
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
+_LOG = "log:"
+"""Prefix of a range with equal ratios."""
+
+
+class Span(NamedTuple):
+    """The interval in which an unknown input is searched for, or the ends of a range."""
+
+    first: Fraction
+    last: Fraction
+    logarithmic: bool = False
+    """Whether the interval is divided into equal ratios instead of equal steps."""
+
+    def points(self, count: int) -> Points:
+        """Return `count` points of the interval, both ends included."""
+        if self.logarithmic:
+            return LogPoints(self.first, self.last, count)
+        return EvenPoints(self.first, (self.last - self.first) / max(count - 1, 1), count)
+
+    def scaled(self, factor: Fraction) -> Span:
+        """Return the interval multiplied by a factor > 0."""
+        return self._replace(first=self.first * factor, last=self.last * factor)
+
+    def refuse_zero(self, text: str) -> Span:
+        """Return the interval.  Raises LagtopError for equal ratios to, from or over 0."""
+        if self.logarithmic and not self.first * self.last > 0:
+            wanted = "must have two ends of one sign, not 0, in a log: range"
+            raise LagtopError(f"{wanted}, got {text!r}")
+        return self
+
+    def __str__(self) -> str:
+        return f"{float(self.first):g} to {float(self.last):g}"
+
 
 def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
     """Return the points of `start:stop:count` or, with equal ratios, of `log:start:stop:count`.
@@ -22,20 +54,16 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
     `parse` reads the two ends.  Raises LagtopError for anything else, for a count of 1 between
     different ends, and for a logarithmic range over 0.
     """
-    parts = text.removeprefix("log:").split(":")
+    parts = text.removeprefix(_LOG).split(":")
     if len(parts) != 3:
         raise LagtopError(f"must be a range [log:]start:stop:count, got {text!r}")
-    first, last, exact_count = parse(parts[0]), parse(parts[1]), parse_number(parts[2])
-    if exact_count.denominator != 1 or not 1 <= exact_count <= MOST_POINTS:
+    span = Span(parse(parts[0]), parse(parts[1]), text.startswith(_LOG))
+    count = parse_number(parts[2])
+    if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {text!r}")
-    count = int(exact_count)
-    if count == 1 and first != last:
+    if count == 1 and span.first != span.last:
         raise LagtopError(f"must have a count of 2 or more between different ends, got {text!r}")
-    if not text.startswith("log:"):
-        return EvenPoints(first, (last - first) / max(count - 1, 1), count)
-    if not first * last > 0:
-        raise LagtopError(f"must have two ends of one sign, not 0, in a log: range, got {text!r}")
-    return LogPoints(first, last, count)
+    return span.refuse_zero(text).points(int(count))
 
 
 def parse_values(text: str) -> Points:
@@ -53,43 +81,19 @@ def refuse_units_inside(text: str, example: str) -> None:
         raise LagtopError(f"{wanted}, got {quoted(text)}")
 
 
-class Span(NamedTuple):
-    """The interval in which an unknown input is searched for."""
-
-    first: Fraction
-    last: Fraction
-    logarithmic: bool = False
-    """Whether the interval is divided into equal ratios instead of equal steps."""
-
-    def points(self, count: int) -> Points:
-        """Return `count` points of the interval, both ends included."""
-        if self.logarithmic:
-            return LogPoints(self.first, self.last, count)
-        return EvenPoints(self.first, (self.last - self.first) / (count - 1), count)
-
-    def scaled(self, factor: Fraction) -> Span:
-        """Return the interval multiplied by a factor > 0."""
-        return self._replace(first=self.first * factor, last=self.last * factor)
-
-    def __str__(self) -> str:
-        return f"{float(self.first):g} to {float(self.last):g}"
-
-
 def parse_span(text: str) -> Span:
     """Parse an interval, `from:to` or `log:from:to`.
 
     Raises LagtopError for anything else, and unless the second end is the larger one.
     """
     refuse_units_inside(text, "60:80 rpm")
-    logarithmic, ends = text.startswith("log:"), text.removeprefix("log:").split(":")
+    ends = text.removeprefix(_LOG).split(":")
     if len(ends) != 2:
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
-    first, last = map(parse_number, ends)
-    if not first < last:
+    span = Span(parse_number(ends[0]), parse_number(ends[1]), text.startswith(_LOG))
+    if not span.first < span.last:
         raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
-    if logarithmic and not first * last > 0:
-        raise LagtopError(f"must have two ends of one sign, not 0, in a log: range, got {text!r}")
-    return Span(first, last, logarithmic)
+    return span.refuse_zero(text)
 
 
 def parse_number_or_span(text: str) -> Fraction | Span:
@@ -119,9 +123,8 @@ def parse_multiple(text: str) -> Multiple:
     before, has_unit, after = text.strip().partition("K")
     if not has_unit:
         return Multiple(parse_number(text), False)
-    sign = {"": 1, "+": 1, "-": -1}.get(before)
     try:
-        factor = parse_number(before) if sign is None else Fraction(sign)
+        factor = parse_number(f"{before}1" if before in {"", "+", "-"} else before)
         divisor = parse_number(after.removeprefix("/")) if after else Fraction(1)
         if after[:1] not in {"", "/"} or divisor <= 0:
             raise LagtopError(text)
@@ -135,29 +138,31 @@ def parse_multiple(text: str) -> Multiple:
 def parse_multiples(text: str) -> Multiples:
     """Parse a range whose ends are read by `parse_multiple`.
 
-    Raises LagtopError as `parse_range` does, and if only one end is in units of K (0 fits both
-    kinds).
+    Raises LagtopError as `parse_range` does, and if only one end is in units of K.
     """
-    units = set()
+    ends: list[Multiple] = []
 
     def parse(end: str) -> Fraction:
-        multiple = parse_multiple(end)
-        if multiple.factor:
-            units.add(multiple.in_quarters)
-        return multiple.factor
+        ends.append(parse_multiple(end))
+        return ends[-1].factor
 
     points = parse_range(text, parse)
-    if len(units) > 1:
-        raise LagtopError(f"must have both ends in units of K or none, got {text!r}")
-    return Multiples(points, True in units)
+    wanted = f"must have both ends in units of K or none, got {text!r}"
+    return Multiples(points, _in_quarters(ends, LagtopError(wanted)))
 
 
-def listed_multiples(single: tuple[Multiple, ...]) -> Multiples:
+def listed_multiples(single: Sequence[Multiple]) -> Multiples:
     """Return a list of multiples as one object.  Raises LagtopError for a mixture of both kinds."""
-    units = {multiple.in_quarters for multiple in single if multiple.factor}
-    if len(units) > 1:
-        raise LagtopError("u must be in units of K every time or never, got both", "u")
-    return Multiples(ListedPoints([multiple.factor for multiple in single]), True in units)
+    mixed = LagtopError("u must be in units of K every time or never, got both", "u")
+    return Multiples(ListedPoints([x.factor for x in single]), _in_quarters(single, mixed))
+
+
+def _in_quarters(multiples: Sequence[Multiple], mixed: LagtopError) -> bool:
+    """Return whether numbers are factors of K; 0 fits both kinds.  Raises `mixed` for both."""
+    kinds = {multiple.in_quarters for multiple in multiples if multiple.factor}
+    if len(kinds) > 1:
+        raise mixed
+    return True in kinds
 
 
 class InputArrays(NamedTuple):
@@ -187,46 +192,33 @@ class Block(Protocol):
 
 
 class Product(NamedTuple):
-    """All combinations of the values of several inputs; the last input varies fastest."""
+    """Combinations of the values of several inputs; the last input varies fastest."""
 
     axes: Mapping[str, Points]
     """The values of each input, by its name."""
+    first: int = 0
+    """The number of the first combination."""
+    stop: int | None = None
+    """The number after that of the last combination; None for all combinations."""
 
     @property
     def size(self) -> int:
         """The number of combinations."""
-        return prod(axis.count for axis in self.axes.values())
+        stop = prod(x.count for x in self.axes.values()) if self.stop is None else self.stop
+        return stop - self.first
 
-    def blocks(self, size: int) -> Iterator[Combinations]:
-        """Yield the combinations, `size` at a time."""
+    def blocks(self, size: int) -> Iterator[Product]:
+        """Yield all combinations, `size` at a time."""
         for first in range(0, self.size, size):
-            yield Combinations(self, first, min(first + size, self.size))
-
-    def check(self) -> None:
-        """Raise LagtopError if there are more than 1e9 combinations."""
-        if self.size > MOST_POINTS:
-            raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")
-
-
-class Combinations(NamedTuple):
-    """The combinations of a product from number `first` up to, but not including, `stop`."""
-
-    product: Product
-    first: int
-    stop: int
-
-    @property
-    def size(self) -> int:
-        """The number of combinations."""
-        return self.stop - self.first
+            yield Product(self.axes, first, min(first + size, self.size))
 
     def values(self) -> dict[str, Array]:
         """Return the values of each input in these combinations."""
         import numpy as np
 
-        left = np.arange(self.first, self.stop)
+        left = np.arange(self.first, self.first + self.size)
         values = {}
-        for name, axis in reversed(list(self.product.axes.items())):
+        for name, axis in reversed(list(self.axes.items())):
             values[name] = axis.at(left % axis.count)
             left //= axis.count
         return values
@@ -234,3 +226,8 @@ class Combinations(NamedTuple):
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
         """Return the inputs of the combinations; `shared` holds those that do not vary."""
         return InputArrays(self.size, {**shared, **self.values()})
+
+    def check(self) -> None:
+        """Raise LagtopError if there are more than 1e9 combinations."""
+        if self.size > MOST_POINTS:
+            raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")

@@ -104,8 +104,11 @@ class SceneFile:
             if r != (other := found.setdefault(InputPair((x, y)), Fraction(r))):
                 both = f"{float(other)} and {float(r)} for {x} and {y}"
                 raise LagtopError(f"must be symmetric, got {both}")
-        if not Stds(uncertain, found).are_possible():
-            raise LagtopError("must be positive semidefinite: some contradict others")
+        if found:
+            from .uncertain import are_possible
+
+            if not are_possible(Stds(uncertain, found).matrix()):
+                raise LagtopError("must be positive semidefinite: some contradict others")
         return found
 
     def _value(self, key: str, value: object) -> Value:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from io import BufferedIOBase
 from typing import Any, BinaryIO, NamedTuple
@@ -24,7 +24,11 @@ SWAP = bytes.maketrans(b",.", b".,")
 """Exchanges decimal points and commas."""
 DIGITS = r"(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"[+-]?(?:{DIGITS}|nan|inf)", re.IGNORECASE | re.ASCII)
-
+_THOUSANDS = re.compile(
+    r"[+-]?\d{1,3}(?:,\d{3}(?:,\d{3})*\.\d*|\.\d{3}(?:\.\d{3})*,\d*|(?:,\d{3}){2,}|(?:\.\d{3}){2,})",
+    re.ASCII,
+)
+_PERHAPS_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _QUOTED_OR_PLAIN = re.compile(r'(?:"((?:[^"]|"")*)"|([^\s"]\S*))(?=\s|$)')
 
 Numbered = tuple[int, bytes]
@@ -43,11 +47,8 @@ class NumberedLines:
             self._check_length(line, self.number)
             yield self.number, line.removeprefix(_BYTE_ORDER_MARK) if self.number == 1 else line
 
-    def blocks(self) -> Iterator[list[Numbered]]:
-        """Yield the next lines many at once, stripped and without blank ones.
-
-        Raises DataError for a long line.
-        """
+    def blocks(self) -> Iterator[Iterable[Numbered]]:
+        """Yield the next lines, many at once.  Raises DataError for a long line."""
         while chunk := self.stream.read(BYTES_AT_ONCE):
             if not chunk.endswith(b"\n"):
                 chunk += self.stream.readline(LONGEST_LINE)
@@ -55,8 +56,7 @@ class NumberedLines:
             lines = chunk.split(b"\n")
             longest = max(lines, key=len)
             self._check_length(longest, first + lines.index(longest))
-            stripped = (line.strip(b" \r") for line in lines)
-            yield [x for x in enumerate(stripped, first) if x[1]]
+            yield enumerate(lines, first)
 
     def _check_length(self, line: bytes, number: int) -> None:
         if len(line) >= LONGEST_LINE:
@@ -155,6 +155,17 @@ UNDECIDED = Dialect()
 def is_number(cell: str) -> bool:
     """Return whether a cell is a number, with either decimal mark, or nan or inf."""
     return _NUMBER.fullmatch(cell) is not None
+
+
+def decimal_mark(cell: str) -> str:
+    """Return the decimal mark of a number; `perhaps` for a comma that may separate thousands."""
+    if _THOUSANDS.fullmatch(cell):
+        return "thousands"
+    if not is_number(cell):
+        return ""
+    if _PERHAPS_THOUSANDS.fullmatch(cell):
+        return "perhaps"
+    return next((mark for mark in ",." if mark in cell), "")
 
 
 def _cells_between_blanks(text: str) -> list[str]:

@@ -9,9 +9,10 @@ that has thousands separators, is refused.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from io import BufferedIOBase
+from itertools import chain
 from typing import BinaryIO, NamedTuple
 
 from ..arithmetic.text import quoted
@@ -23,6 +24,7 @@ from .text_lines import (
     Numbered,
     NumberedLines,
     at_line,
+    decimal_mark,
     decoded_row,
     has_row,
     is_number,
@@ -34,36 +36,44 @@ _MOST_TITLES = 5
 """The headings are within these first rows, perhaps below a title such as Tracker's `mass A`."""
 _SEPARATORS = "\t;,"
 _NUMBERS = re.compile(rf"[+-]?{DIGITS}(?:\s+[+-]?{DIGITS})+", re.ASCII)
-_THOUSANDS = re.compile(
-    r"[+-]?\d{1,3}(?:,\d{3}(?:,\d{3})*\.\d*|\.\d{3}(?:\.\d{3})*,\d*|(?:,\d{3}){2,}|(?:\.\d{3}){2,})",
-    re.ASCII,
-)
-_PERHAPS_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
 _LABVIEW, _END_OF_HEADER = "LabVIEW Measurement", b"***End_of_Header***"
 
 
-class TableHead(NamedTuple):
-    """The beginning of a table: its headings, its first lines, and its dialect."""
+class TextTable(NamedTuple):
+    """A table whose beginning was read: its headings, its dialect and its rows."""
 
     lines: NumberedLines
     """The unread lines."""
-    kept: Sequence[Numbered]
-    """The lines already read below the headings, with blank lines and comments."""
-    comments: Sequence[str]
+    first: Sequence[Numbered]
+    """The rows already read, below the headings."""
+    comments: Sequence[str] = ()
     """The comments above the first row."""
-    headings: Sequence[str] | None
+    headings: Sequence[str] | None = None
     """The headings; None without headings, or if the rows are JSON objects."""
-    place: int
+    place: int = 1
     """The line number of the headings, or else of the first row."""
     dialect: Dialect = UNDECIDED
     around: bytes | None = None
     """The characters that may surround a JSON object; None for a table of cells."""
 
-    def rows(self) -> list[Numbered]:
-        """Return the first rows."""
-        return [x for x in self.kept if has_row(x[1].strip(self.around))]
+    def rows(self) -> Iterator[Numbered]:
+        """Yield the rows, once, as soon as they are read."""
+        yield from self.first
+        for line in self.lines:
+            yield from self.rows_in([line])
+
+    def blocks(self) -> Iterator[list[Numbered]]:
+        """Yield the rows, once, many at a time and without blanks around them."""
+        for lines in chain([self.first], self.lines.blocks()):
+            if rows := self.rows_in(lines, self.around or b" \r\n"):
+                yield rows
+
+    def rows_in(self, lines: Iterable[Numbered], around: bytes = b"") -> list[Numbered]:
+        """Return the lines that hold a row, without the characters `around` them."""
+        around = self.around or around
+        return [(i, row) for i, x in lines if has_row(row := x.strip(around))]
 
     def decided(self, columns: Iterable[int] | None = None) -> Dialect:
         """Return the dialect with the decimal mark found in some columns (default: all).
@@ -76,10 +86,10 @@ class TableHead(NamedTuple):
             return self.dialect._replace(decimal=".")
         wanted = None if columns is None else set(columns)
         seen: dict[str, tuple[int, str]] = {}
-        for number, line in self.rows():
+        for number, line in self.first:
             for i, cell in enumerate(_cells((number, line), self.dialect)):
                 if wanted is None or i in wanted:
-                    seen.setdefault(_mark_of(cell.strip()), (number, cell.strip()))
+                    seen.setdefault(decimal_mark(cell.strip()), (number, cell.strip()))
         commas = [seen[x] for x in (",", "perhaps") if x in seen]
         if "thousands" in seen:
             raise self._refused(seen["thousands"], "a number must have no thousands separators")
@@ -97,13 +107,13 @@ class TableHead(NamedTuple):
         )
 
 
-def read_head(
+def read_table(
     stream: BufferedIOBase | BinaryIO,
     name: str,
     asked: Dialect,
     known: Callable[[Sequence[str]], int],
     width: int | None = None,
-) -> TableHead:
+) -> TextTable:
     """Read the beginning of a table.
 
     `known` returns the number of known headings in a row, which distinguishes headings from titles.
@@ -114,29 +124,29 @@ def read_head(
     kept = _sample(lines)
     above = next((i for i, x in enumerate(kept) if has_row(x[1])), len(kept))
     comments = [_decoded(x, name).strip("# \t") for x in kept[:above] if x[1].strip()]
-    kept = kept[above:]
-    if not kept:
-        return TableHead(lines, kept, comments, None, 1, asked)
-    start = kept[0][1].lstrip()[:1]
-    if start in {b"{", b"["}:
-        around = b"[], \t\r\n" if start == b"[" else b" \t\r\n"
-        return TableHead(lines, kept, comments, None, kept[0][0], asked, around)
-    kept, asked = _without_preamble(kept, name, asked)
-    return _head_of_cells(TableHead(lines, kept, comments, None, 1, asked), known, width)
+    start = kept[above][1].lstrip()[:1] if kept[above:] else b""
+    around = {b"{": b" \t\r\n", b"[": b"[], \t\r\n"}.get(start)
+    table = TextTable(lines, (), comments, dialect=asked, around=around)
+    rows = table.rows_in(kept[above:])
+    if not rows or around is not None:
+        return table._replace(first=rows, place=rows[0][0] if rows else 1)
+    rows, asked = _without_preamble(rows, name, asked)
+    return _with_headings(table._replace(first=rows, dialect=asked), known, width)
 
 
-def _head_of_cells(
-    head: TableHead, known: Callable[[Sequence[str]], int], width: int | None
-) -> TableHead:
-    """Return the beginning of a table of cells whose first lines have been read."""
-    rows, asked, name = head.rows(), head.dialect, head.lines.name
-    texts = [_decoded(x, name) for x in rows[:_MOST_TITLES]]
-    for (number, _), text in zip(rows, texts, strict=False):
+def _with_headings(
+    table: TextTable, known: Callable[[Sequence[str]], int], width: int | None
+) -> TextTable:
+    """Return a table of cells whose first rows have been read, with its headings and delimiter."""
+    rows, asked, name = table.first, table.dialect, table.lines.name
+    texts, numbers = list[str](), list[bool]()
+    for number, row in rows[:_MOST_TITLES]:
         with at_line(name, number):
-            _has_number(text, asked)  # for its errors
-    at, delimiters = _find_headings(texts, asked, known)
+            texts.append(decoded_row(row))
+            numbers.append(_has_number(texts[-1], asked))
+    at, delimiters = _find_headings(texts, numbers, asked, known)
     below = rows if at is None else rows[at + 1 :]
-    headings, place = None, below[0][0] if below else head.lines.number + 1
+    headings, place = None, below[0][0] if below else table.lines.number + 1
     if at is not None and width is None:
         place = rows[at][0]
         delimiter = _fitting(delimiters, texts[at], below, f"{name}, line {place}")
@@ -147,9 +157,8 @@ def _head_of_cells(
         delimiter = delimiters[0]
     else:
         delimiter = asked.delimiter or _delimiter_of_rows(below, name, asked, width)
-    kept = [x for x in head.kept if x[0] >= place + (headings is not None)]
-    asked = asked._replace(delimiter=delimiter)
-    return head._replace(kept=kept, headings=headings, place=place, dialect=asked)
+    dialect = asked._replace(delimiter=delimiter)
+    return table._replace(first=below, headings=headings, place=place, dialect=dialect)
 
 
 def _sample(lines: NumberedLines) -> list[Numbered]:
@@ -180,25 +189,24 @@ def _without_preamble(
 
 
 def _find_headings(
-    titles: Sequence[str], asked: Dialect, known: Callable[[Sequence[str]], int]
+    titles: Sequence[str],
+    numbers: Sequence[bool],
+    asked: Dialect,
+    known: Callable[[Sequence[str]], int],
 ) -> tuple[int | None, list[str]]:
     """Return the index of the row with the headings, or None, and its possible delimiters.
 
-    Among the first rows without numbers it is the one with most known headings, or else the last.
+    Among the first rows without `numbers` it is the one with most known headings, or else the last.
     """
     found, most = None, 0
-    for i, text in enumerate(titles):
+    end = numbers.index(True) if True in numbers else len(titles)
+    for i, text in enumerate(titles[: max(end, 1)]):
         counts = {x: known(_headings(text, x)) for x in _delimiters_in(text, asked)}
-        has_number = _has_number(text, asked)
-        if max(counts.values()) > most and not (i and has_number):
+        if max(counts.values()) > most:
             found, most = (i, [x for x, count in counts.items() if count]), max(counts.values())
-        if has_number:
-            above = i - 1
-            break
-    else:
-        above = min(len(titles), 1) - 1
     if found is not None:
         return found
+    above = end - 1 if True in numbers else min(end, 1) - 1
     return (above, _delimiters_in(titles[above], asked)[:1]) if above >= 0 else (None, [])
 
 
@@ -282,17 +290,6 @@ def _cells(row: Numbered, dialect: Dialect) -> list[str]:
     with suppress(LagtopError):
         return dialect.cells(decoded_row(row[1]))
     return []
-
-
-def _mark_of(cell: str) -> str:
-    """Return the decimal mark of a number; `perhaps` for a comma that may separate thousands."""
-    if _THOUSANDS.fullmatch(cell):
-        return "thousands"
-    if not is_number(cell):
-        return ""
-    if _PERHAPS_THOUSANDS.fullmatch(cell):
-        return "perhaps"
-    return next((mark for mark in ",." if mark in cell), "")
 
 
 def _decoded(row: Numbered, name: str) -> str:

@@ -11,15 +11,11 @@ from typing import TYPE_CHECKING
 from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
 from ..arithmetic.text import NumberText, parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
-from .files import decoded, reading, shown_path
+from .files import opened, shown_path
 from .headings import in_known_unit
-from .text_lines import UNDECIDED, Dialect, at_line, decoded_row, has_row, json_object
-from .text_tables import TableHead, read_head
-from .trajectory_columns import (
-    known_quantities,
-    numeric_columns,
-    quantities_in,
-)
+from .text_lines import UNDECIDED, Dialect, at_line, decoded_row, json_object
+from .text_tables import TextTable, read_table
+from .trajectory_columns import known_quantities, numeric_columns, quantities_in
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -68,36 +64,34 @@ class TimesFile(Points):
 def _read(path: str, dialect: Dialect) -> Iterator[Fraction]:
     """Yield the times of a file, from its column `t` or its only column."""
     name = shown_path(path)
-    with reading(path) as file, decoded(file, name) as stream:
-        head = read_head(stream, name, dialect, known_quantities)
-        with at_line(name, head.place):
-            time_of = _reader(head)
-        for number, line in chain(head.kept, head.lines):
-            if has_row(line.strip(head.around)):
-                with at_line(name, number):
-                    time = time_of(line)
-                yield time
+    with opened(path) as stream:
+        table = read_table(stream, name, dialect, known_quantities)
+        with at_line(name, table.place):
+            time_of = _reader(table)
+        for number, row in table.rows():
+            with at_line(name, number):
+                time = time_of(row)
+            yield time
 
 
-def _reader(head: TableHead) -> Callable[[bytes], Fraction]:
+def _reader(table: TextTable) -> Callable[[bytes], Fraction]:
     """Return the function that reads the time in a row.  Raises LagtopError if there is none."""
-    rows = [line.strip(head.around) for _, line in head.rows()]
-    if not rows and head.headings is None:
+    if not table.first and table.headings is None:
         return lambda _: Fraction()
-    if head.around is not None:
-        key, factor = _time_among(list(json_object(rows[0])))
-        return lambda line: factor * _time_in_object(line.strip(head.around), key)
-    if head.headings is None:
-        width, place, factor = len(head.dialect.cells(decoded_row(rows[0]))), 0, Fraction(1)
-        if width > 1:
-            raise LagtopError(f"{width} columns must have headings, t among them, got none")
-    else:
-        name, factor = _time_among(head.headings)
-        width, place = len(head.headings), list(head.headings).index(name)
-    dialect = head.decided(numeric_columns(head.headings or ["t"]))
+    if table.around is not None:
+        key, factor = _time_among(list(json_object(table.first[0][1])))
+        return lambda row: factor * _time_in_object(row, key)
+    headings, place, factor = table.headings, 0, Fraction(1)
+    if headings is not None:
+        name, factor = _time_among(headings)
+        place = list(headings).index(name)
+    width = len(headings or table.dialect.cells(decoded_row(table.first[0][1])))
+    if width > 1 and headings is None:
+        raise LagtopError(f"{width} columns must have headings, t among them, got none")
+    dialect = table.decided(numeric_columns(headings or ["t"]))
 
-    def time_of(line: bytes) -> Fraction:
-        cells = dialect.cells(decoded_row(line))
+    def time_of(row: bytes) -> Fraction:
+        cells = dialect.cells(decoded_row(row))
         if len(cells) != width:
             raise LagtopError(f"a row must have {width} cells, got {len(cells)}")
         return factor * _parsed(cells[place].strip(), dialect)
@@ -115,9 +109,9 @@ def _time_among(names: Sequence[str]) -> tuple[str, Fraction]:
     return names[found["t"].columns[0]], factor or Fraction(1)
 
 
-def _time_in_object(line: bytes, key: str) -> Fraction:
-    json_object(line)  # for its errors
-    value = json.loads(line, parse_float=NumberText, parse_int=NumberText).get(key)
+def _time_in_object(row: bytes, key: str) -> Fraction:
+    json_object(row)  # for its errors
+    value = json.loads(row, parse_float=NumberText, parse_int=NumberText).get(key)
     return _parsed(value if isinstance(value, NumberText) else repr(value), Dialect())
 
 

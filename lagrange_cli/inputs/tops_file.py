@@ -16,13 +16,13 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
-from .files import decoded, reading, shown_path
+from .files import opened, shown_path
 from .given import Given, checked_double, gather
 from .headings import check_header, check_spelling, column_of, heading_units
 from .input_keys import TILT, from_example, one_of_each, overridden
 from .ranges import InputArrays
-from .text_lines import UNDECIDED, Dialect, Numbered, decoded_row, has_row, json_object, shown_json
-from .text_tables import TableHead, read_head
+from .text_lines import UNDECIDED, Dialect, Numbered, decoded_row, json_object, shown_json
+from .text_tables import TextTable, read_table
 from .top import INPUTS
 from .value import STEADY_WORDS, Value, steady_refused
 
@@ -47,23 +47,19 @@ class TopRow(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """Consecutive lines of a file of tops."""
+    """Consecutive rows of a file of tops, not parsed yet."""
 
     file: TopsFile
-    first: int
-    """The number of the first line in its file, from 1."""
-    texts: list[bytes]
+    texts: Sequence[Numbered]
 
     @property
     def size(self) -> int:
-        """The number of tops; blank lines and comments hold none."""
-        return sum(1 for text in self.texts if self.file.has_top(text))
+        """The number of tops."""
+        return len(self.texts)
 
     def rows(self) -> Iterator[TopRow]:
-        """Yield the tops of the lines."""
-        for number, text in enumerate(self.texts, self.first):
-            if self.file.has_top(text):
-                yield self.file.row(number, text)
+        """Yield the tops."""
+        return (self.file.row(*text) for text in self.texts)
 
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
         """Return the inputs of the tops; `shared` inputs are the defaults."""
@@ -98,8 +94,6 @@ class TopsFile(NamedTuple):
     factors: Mapping[str, Fraction] = {}
     """The conversion factor of each column whose heading has a unit."""
     dialect: Dialect = UNDECIDED
-    around: bytes | None = None
-    """The characters that may surround JSON objects; None for a table."""
 
     def among(
         self, inputs: Mapping[str, Any], scene: str | None, system: str | None
@@ -131,72 +125,62 @@ class TopsFile(NamedTuple):
         factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
         return self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
-    def has_top(self, line: bytes) -> bool:
-        """Return whether a line holds a top, not a blank, a comment or a bracket."""
-        return has_row(line.strip(self.around))
-
     def row(self, number: int, raw: bytes) -> TopRow:
-        """Return the top of a line, or its error message."""
-        carried: dict[str, Any] = {}
+        """Return the top of a row, or its error message."""
+        values: Mapping[str, Any] = {}
         inputs: dict[str, float] = {}
         error = None
         try:
             if self.columns is None:
-                self._read_json(raw.strip(self.around), carried, inputs)
+                values = json_object(raw)
             else:
-                self._read_csv(raw, carried, inputs)
+                cells = self.dialect.cells(decoded_row(raw))
+                values = dict(zip(self.columns, cells, strict=False))
+                if len(cells) != len(self.columns):
+                    raise LagtopError(
+                        f"a row must have {len(self.columns)} cells, got {len(cells)}"
+                    )
+            for name, value in values.items():
+                if name in INPUTS:
+                    inputs[name] = self._double(name, value)
+                elif (
+                    self.columns is None and name not in self.carried and name not in self.computed
+                ):
+                    raise LagtopError(f"the key {name!r} must be in one of the first rows too")
             one_of_each(inputs)
         except LagtopError as wrong:
             error = str(wrong)
-        return TopRow(number, [carried.get(name) for name in self.carried], inputs, error)
+        return TopRow(number, [values.get(name) for name in self.carried], inputs, error)
 
-    def _read_csv(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
-        assert self.columns is not None
-        cells = self.dialect.cells(decoded_row(raw))
-        texts = dict(zip(self.columns, cells, strict=False))
-        carried.update((name, texts[name]) for name in self.carried if name in texts)
-        if len(cells) != len(self.columns):
-            raise LagtopError(f"a row must have {len(self.columns)} cells, got {len(cells)}")
-        for name, text in texts.items():
-            if name in INPUTS:
-                inputs[name] = _double(name, text, self.dialect, self.factors.get(name))
-
-    def _read_json(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
-        values = json_object(raw)
-        carried.update((name, values[name]) for name in self.carried if name in values)
-        for name, value in values.items():
-            if name in INPUTS:
-                inputs[name] = _json_double(name, value)
-            elif name not in carried and name not in self.computed:
-                raise LagtopError(f"the key {name!r} must be in one of the first rows too")
+    def _double(self, name: str, value: Any) -> float:
+        """Return the input in a cell or in an entry of a JSON object.  Raises LagtopError."""
+        if self.columns is not None:
+            return _double_in_text(name, value, self.dialect, self.factors.get(name))
+        if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+            return float(value)
+        if value in STEADY_WORDS:
+            raise LagtopError(f"{name} {steady_refused(value)}")
+        raise LagtopError(f"{name} must be a finite number, got {shown_json(value)}")
 
 
-def _double(name: str, text: str, dialect: Dialect, factor: Fraction | None = None) -> float:
-    plain = dialect.with_point(text)
+def _double_in_text(name: str, text: str, dialect: Dialect, factor: Fraction | None) -> float:
+    plain, bare = dialect.with_point(text), text.strip()
     try:
         value = float(plain)
     except ValueError:
         value = math.nan
     if factor is None and value and math.isfinite(value) and text.isascii() and "_" not in text:
         return value
-    if not text.strip():
+    if not bare:
         raise LagtopError(f"{name} must be a number, got an empty cell")
     try:
         return checked_double(name, parse_number(plain) * (1 if factor is None else factor))
     except LagtopError as error:
-        wrong = str(error).replace(quoted(plain.strip()), quoted(text.strip()))
-        wrong = steady_refused(text.strip()) if text.strip() in STEADY_WORDS else wrong
-        if hint := dialect.remedy(text.strip()):
+        wrong = str(error).replace(quoted(plain.strip()), quoted(bare))
+        wrong = steady_refused(bare) if bare in STEADY_WORDS else wrong
+        if hint := dialect.remedy(bare):
             wrong = f"{wrong.partition(' (')[0]}{hint}"
         raise LagtopError(f"{name} {wrong}") from None
-
-
-def _json_double(name: str, value: Any) -> float:
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value):
-        return float(value)
-    if value in STEADY_WORDS:
-        raise LagtopError(f"{name} {steady_refused(value)}")
-    raise LagtopError(f"{name} must be a finite number, got {shown_json(value)}")
 
 
 def open_tops(
@@ -215,23 +199,23 @@ def open_tops(
     """
     name = shown_path(path)
     with ExitStack() as stack:
-        raw = stack.enter_context(stream or reading(path))
-        head = read_head(stack.enter_context(decoded(raw, name)), name, dialect, _known_inputs)
-        lines = chain(head.kept, head.lines)
-        if head.around is None:
-            file = _of_headings(head, computed)
+        opened_file = stack.enter_context(opened(path, stream))
+        table = read_table(opened_file, name, dialect, _known_inputs)
+        rows = table.rows()
+        if table.around is None:
+            file = _of_headings(table, computed)
         else:
-            first = list(_some(name, lines, size))
-            lines = chain(first, lines)
-            file = _of_objects(head, first, computed)
-        opened = stack.pop_all()
-        return file, _blocks(file, _while_open(opened, lines), size), opened.close
+            first = list(_some(name, rows, size))
+            rows = chain(first, rows)
+            file = _of_objects(name, first, computed)
+        kept = stack.pop_all()
+        return file, _blocks(file, _while_open(kept, rows), size), kept.close
 
 
-def _of_headings(head: TableHead, computed: Collection[str]) -> TopsFile:
+def _of_headings(table: TextTable, computed: Collection[str]) -> TopsFile:
     """Return the format of a table.  Raises DataError for bad headings."""
-    name, first = head.lines.name, head.kept[0][1] if head.kept else b""
-    headings = [column_of(x) for x in head.headings or [first.decode(errors="replace").strip()]]
+    name, first = table.lines.name, table.first[0][1] if table.first else b""
+    headings = [column_of(x) for x in table.headings or [first.decode(errors="replace").strip()]]
     columns = [column for column, _ in headings]
     known = {*INPUTS, *(x for x, unit in headings if unit)}
     carried = [x for x in columns if x not in known and x not in computed]
@@ -239,17 +223,28 @@ def _of_headings(head: TableHead, computed: Collection[str]) -> TopsFile:
     check_spelling(carried, named, name)
     check_header(columns, known, name)
     units = heading_units(headings, known, name)
-    dialect = head.decided(i for i, column in enumerate(columns) if column in known)
+    dialect = table.decided(i for i, column in enumerate(columns) if column in known)
     return TopsFile(name, columns, carried, frozenset(computed), named, units, dialect=dialect)
 
 
-def _of_objects(head: TableHead, first: Iterable[Numbered], computed: Collection[str]) -> TopsFile:
-    """Return the format of JSON objects, whose keys are taken from the first ones."""
-    objects = [raw.strip(head.around) for _, raw in first]
-    carried = [x for x in _names(objects) if x not in computed]
-    named = _named(objects)
-    check_spelling(carried, named, head.lines.name)
-    return TopsFile(head.lines.name, None, carried, frozenset(computed), named, around=head.around)
+def _of_objects(name: str, first: Iterable[Numbered], computed: Collection[str]) -> TopsFile:
+    """Return the format of JSON objects, whose keys are taken from the first ones.
+
+    Its inputs are those of the first object with an incomplete body, or else of the last object.
+    """
+    objects = [*_objects(first)]
+    incomplete = (x for x in objects if from_example(dict.fromkeys(x)))
+    named = {*next(incomplete, objects[-1] if objects else ())} & {*INPUTS}
+    keys = dict.fromkeys(chain.from_iterable(objects))
+    carried = [x for x in keys if x not in INPUTS and x not in computed]
+    check_spelling(carried, named, name)
+    return TopsFile(name, None, carried, frozenset(computed), named)
+
+
+def _objects(rows: Iterable[Numbered]) -> Iterator[dict[str, Any]]:
+    for _, raw in rows:
+        with suppress(LagtopError):  # which the row will name
+            yield json_object(raw)
 
 
 def _known_inputs(names: Sequence[str]) -> int:
@@ -257,42 +252,22 @@ def _known_inputs(names: Sequence[str]) -> int:
     return sum(column_of(name)[0] in {*INPUTS, TILT} for name in names)
 
 
-def _while_open(stack: ExitStack, lines: Iterator[Numbered]) -> Iterator[Numbered]:
+def _while_open(stack: ExitStack, rows: Iterator[Numbered]) -> Iterator[Numbered]:
     with stack:
-        yield from lines
+        yield from rows
 
 
-def _blocks(file: TopsFile, lines: Iterator[tuple[int, bytes]], size: int) -> Iterator[Lines]:
-    while block := list(_some(file.name, lines, size)):
-        yield Lines(file, block[0][0], [raw for _, raw in block])
+def _blocks(file: TopsFile, rows: Iterator[Numbered], size: int) -> Iterator[Lines]:
+    while block := list(_some(file.name, rows, size)):
+        yield Lines(file, block)
 
 
-def _some(name: str, lines: Iterable[tuple[int, bytes]], size: int) -> Iterator[tuple[int, bytes]]:
-    """Yield the next lines.  Raises DataError if together they are too long to keep."""
+def _some(name: str, rows: Iterable[Numbered], size: int) -> Iterator[Numbered]:
+    """Yield the next rows.  Raises DataError if together they are too long to keep."""
     left = LARGEST_BLOCK
-    for number, raw in islice(lines, size):
+    for number, raw in islice(rows, size):
         left -= len(raw)
         if left < 0:
             wrong = f"{size} lines must have at most {LARGEST_BLOCK} bytes together"
             raise DataError(f"{name}, line {number}: {wrong}")
         yield number, raw
-
-
-def _names(lines: Iterable[bytes]) -> list[str]:
-    """Return the keys of JSON lines that name no input, in order of appearance."""
-    names: dict[str, None] = {}
-    for raw in lines:
-        with suppress(LagtopError):  # which the row will name
-            names |= dict.fromkeys(json_object(raw) if raw.strip() else ())
-    return [name for name in names if name not in INPUTS]
-
-
-def _named(lines: Iterable[bytes]) -> set[str]:
-    """Return the inputs of the first JSON object with an incomplete body, or with any input."""
-    named: set[str] = set()
-    for raw in lines:
-        with suppress(LagtopError):  # which the row will name
-            named = {*json_object(raw)} & {*INPUTS} if raw.strip() else named
-            if from_example(dict.fromkeys(named)):
-                break
-    return named

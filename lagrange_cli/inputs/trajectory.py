@@ -7,14 +7,13 @@ text with a row per line.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from fractions import Fraction
-from io import BufferedReader
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
-from .files import decoded, reading, shown_path, temporary_copy
+from .files import opened, shown_path, temporary_copy
 from .headings import in_known_unit
 from .names import ANGLES
 from .text_lines import UNDECIDED, Dialect
@@ -29,7 +28,7 @@ from .trajectory_columns import (
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .trajectory_text import Table, Words
+    from .trajectory_text import Table
 
 _MAGIC = {b"PAR1": "parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
 
@@ -91,10 +90,10 @@ class Trajectory:
             self._factors[key] = factor
         return known
 
-    def add_words(self, key: str, column: str) -> Words:
-        """Read one more column, of words, as numbers; the returned `Words` map them back."""
+    def add_words(self, key: str, column: str) -> Callable[[float], str]:
+        """Read one more column, of words, as numbers; return the word of a number."""
         self.add(key, column)
-        return self._table.words_of(self.names.index(column))
+        return self._table.word_of(self.names.index(column))
 
     def blocks(self, *, repeats: bool = False) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
         """Yield the quantities, once, as arrays of shape (rows, parts), and the places of rows.
@@ -189,36 +188,15 @@ def open_trajectory(
     for a file that cannot be read or holds no trajectory.
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
-    with reading(path) as file, decoded(file, name) as stream:
+    with opened(path) as stream:
         kind = _MAGIC.get(stream.peek(4)[:4])
-        with _seekable(stream, kind) as content:
-            if kind is None:
-                from .trajectory_text import read_text
+        if kind is None:
+            from .trajectory_text import read_text
 
-                width = None if names is None else len(names)
-                table = read_text(content, name, dialect, width)
-            else:
-                table = _arrays(kind)(content, name)
-            yield Trajectory(path, table, names)
+            width = None if names is None else len(names)
+            yield Trajectory(path, read_text(stream, name, dialect, width), names)
+            return
+        from .trajectory_arrays import read_arrays
 
-
-@contextmanager
-def _seekable(stream: BufferedReader, kind: str | None) -> Iterator[BinaryIO]:
-    """Yield a seekable stream: a forward-only stream of a binary format is copied to a file."""
-    if kind is None or stream.seekable():
-        yield stream
-        return
-    with temporary_copy(stream) as copy:
-        yield copy
-
-
-def _arrays(kind: str) -> Callable[[BinaryIO, str], Table]:
-    """Return the reader of a binary format, which loads NumPy."""
-    from . import trajectory_arrays as arrays
-
-    readers: dict[str, Callable[[BinaryIO, str], Table]] = {
-        "parquet": arrays.ParquetTable,
-        "npy": arrays.read_npy,
-        "npz": arrays.read_npz,
-    }
-    return readers[kind]
+        with nullcontext(stream) if stream.seekable() else temporary_copy(stream) as content:
+            yield Trajectory(path, read_arrays(content, name, kind), names)

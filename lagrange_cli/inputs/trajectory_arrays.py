@@ -9,20 +9,20 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from io import UnsupportedOperation
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 
 from ..arithmetic.text import quoted, shortened
 from ..errors import DataError, LagtopError, UnavailableError
-from .descriptions import Description, description_in
+from .descriptions import description_in
 from .names import repeated
 from .trajectory_columns import quantities_in
-from .trajectory_text import Block, PlainNumbers, Words, parts
+from .trajectory_text import Block, Table, parts
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -38,18 +38,25 @@ MOST_ARRAYS = 1000
 """Most arrays in an npz file."""
 
 
-class _Numbers:
-    """A table that holds only numbers."""
+class ArrayTable(Table):
+    """A table of numbers in blocks of rows."""
 
     place = "row"
-    description: Description = MappingProxyType({})
 
-    def __init__(self, name: str, form: str, names: Sequence[str] | None, width: int) -> None:
-        self.name, self.form, self.names, self.width = name, form, names, width
+    def __init__(
+        self,
+        name: str,
+        form: str,
+        names: Sequence[str] | None,
+        width: int,
+        tables: Callable[[int], Iterator[Array]],
+    ) -> None:
+        """Take a function of the most rows of a block; it yields blocks with all columns.
 
-    def words_of(self, column: int) -> Words:
-        """Return the numbers of the column as texts."""
-        return PlainNumbers()
+        `form` is the format with its article, for errors.
+        """
+        super().__init__(name, names, width)
+        self.form, self._tables = form, tables
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
         """Yield some columns of the rows; null becomes NaN."""
@@ -62,9 +69,13 @@ class _Numbers:
             yield Block(table[:, columns], range(first, first + len(table)))
             first += len(table)
 
-    def _tables(self, most: int) -> Iterator[Array]:
-        """Yield blocks of at most `most` rows with all columns."""
-        raise NotImplementedError
+
+def read_arrays(stream: BinaryIO, name: str, kind: str) -> Table:
+    """Return the rows of a file of some kind: npy, npz or parquet.  Raises DataError."""
+    readers = {"npy": _read_npy, "npz": _read_npz, "parquet": _read_parquet}
+    form = "a Parquet" if kind == "parquet" else f"an {kind}"
+    with _sound(name, form):
+        return readers[kind](stream, name, form)
 
 
 @contextmanager
@@ -108,10 +119,8 @@ class NpyStream:
         """Return the next rows, at most `most`, as columns of float64."""
         count, start = min(most, self.left), self.shape[0] - self.left
         self.left -= count
-        if self._whole is None:
-            table = self._read(count).reshape(count, *self.shape[1:])
-        else:
-            table = self._whole[start : start + count]
+        whole = self._whole
+        table = self._read(count) if whole is None else whole[start : start + count]
         if self._fields:
             from numpy.lib.recfunctions import structured_to_unstructured
 
@@ -143,97 +152,74 @@ class NpyStream:
         if size < rows * self._row_bytes:
             raise DataError(f"{self.name} must hold {self.shape[0]} rows, but ends early")
 
-    def names(self) -> list[str] | None:
-        """Return the names of the columns of a structured array; None for other arrays."""
-        if not self._fields:
-            return None
-        sizes = ((name, math.prod(x.shape) if x.shape else 0) for name, x in self._fields)
-        return [part for name, size in sizes for part in parts(name, size)]
+    def names(self, key: str | None = None) -> list[str] | None:
+        """Return the names of the columns, from the fields or the key of the array, if any."""
+        if self._fields:
+            sizes = ((name, math.prod(x.shape) if x.shape else 0) for name, x in self._fields)
+            return [part for name, size in sizes for part in parts(name, size)]
+        return None if key is None else parts(key, self.shape[1] if self.shape[1:] else 0)
 
 
-class ArrayTable(_Numbers):
-    """Arrays side by side; each holds some of the columns."""
-
-    arrays: Sequence[NpyStream]
-
-    def _tables(self, most: int) -> Iterator[Array]:
-        while self.arrays[0].left:
-            yield np.concatenate([array.rows(most) for array in self.arrays], axis=1)
+def _side_by_side(arrays: Sequence[NpyStream], most: int) -> Iterator[Array]:
+    """Yield blocks of rows of arrays that each hold some of the columns."""
+    while arrays[0].left:
+        yield np.concatenate([array.rows(most) for array in arrays], axis=1)
 
 
-def read_npy(stream: BinaryIO, name: str) -> ArrayTable:
-    """Return the rows of an npy file: a structured or a two-dimensional array."""
-    form = "an npy"
-    with _sound(name, form):
-        array = NpyStream(stream, name)
+def _read_npy(stream: BinaryIO, name: str, form: str) -> Table:
+    """Return the rows of a structured or a two-dimensional array."""
+    array = NpyStream(stream, name)
     names = array.names()
     width = len(names) if names else math.prod(array.shape[1:])
-    table = ArrayTable(name, form, names, width)
-    table.arrays = [array]
-    return table
+    return ArrayTable(name, form, names, width, partial(_side_by_side, [array]))
 
 
-def read_npz(stream: BinaryIO, name: str) -> ArrayTable:
-    """Return the rows of an npz file, from all arrays that are as long as the array of times."""
-    form = "an npz"
-    with _sound(name, form):
-        arrays = _arrays(stream, name)
-    keys = list(arrays)
-    if "t" not in (found := quantities_in(keys)):
-        raise DataError(f"{name} must have an array for the time, t, got {', '.join(keys)[:100]}")
-    count = arrays[keys[found["t"].columns[0]]].shape[0]
-    fitting = {key: array for key, array in arrays.items() if array.shape[0] == count}
-    names = [
-        part
-        for key, array in fitting.items()
-        for part in (array.names() or parts(key, array.shape[1] if array.shape[1:] else 0))
-    ]
-    table = ArrayTable(name, form, names, len(names))
-    table.arrays = list(fitting.values())
-    return table
-
-
-def _arrays(stream: BinaryIO, name: str) -> dict[str, NpyStream]:
-    """Return the arrays of an npz file by key."""
+def _read_npz(stream: BinaryIO, name: str, form: str) -> Table:
+    """Return the rows of all arrays that are as long as the array of times."""
     from zipfile import ZipFile
 
     archive = ZipFile(stream)
     members = {x.removesuffix(".npy"): x for x in archive.namelist()}
     if len(members) > MOST_ARRAYS:
         raise DataError(f"{name} must have at most {MOST_ARRAYS} arrays, got {len(members)}")
-    return {
+    arrays = {
         key: NpyStream(cast(Any, archive.open(member)), f"{name}, array {key}")
         for key, member in members.items()
     }
+    keys = list(arrays)
+    if "t" not in (found := quantities_in(keys)):
+        raise DataError(f"{name} must have an array for the time, t, got {', '.join(keys)[:100]}")
+    count = arrays[keys[found["t"].columns[0]]].shape[0]
+    fitting = {key: array for key, array in arrays.items() if array.shape[0] == count}
+    names = [part for key, array in fitting.items() for part in array.names(key) or ()]
+    return ArrayTable(name, form, names, len(names), partial(_side_by_side, [*fitting.values()]))
 
 
-class ParquetTable(_Numbers):
-    """Rows of a Parquet file: columns of numbers, or of lists of a fixed size."""
+def _read_parquet(stream: BinaryIO, name: str, form: str) -> Table:
+    """Return the rows of columns of numbers, or of lists of a fixed size."""
+    try:
+        from pyarrow import parquet
+    except ImportError:
+        raise UnavailableError(
+            f"{name}: Parquet needs pyarrow: pip install 'lagtop[parquet]'"
+        ) from None
+    file = parquet.ParquetFile(stream)
+    numeric = [x for x in file.schema_arrow if _is_numeric(x.type)]
+    fields = [x.name for x in numeric]
+    if (twice := repeated(fields)) is not None:
+        raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
+    names = [part for x in numeric for part in parts(x.name, getattr(x.type, "list_size", 0))]
 
-    def __init__(self, stream: BinaryIO, name: str) -> None:
-        try:
-            from pyarrow import parquet
-        except ImportError:
-            raise UnavailableError(
-                f"{name}: Parquet needs pyarrow: pip install 'lagtop[parquet]'"
-            ) from None
-        form = "a Parquet"
-        with _sound(name, form):
-            self.file = parquet.ParquetFile(stream)
-            metadata = self.file.schema_arrow.metadata or {}
-            fields = [x for x in self.file.schema_arrow if _is_numeric(x.type)]
-        self.fields = [x.name for x in fields]
-        if (twice := repeated(self.fields)) is not None:
-            raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
-        names = [part for x in fields for part in parts(x.name, getattr(x.type, "list_size", 0))]
-        super().__init__(name, form, names, len(names))
-        texts = (b": ".join(pair).decode(errors="replace") for pair in metadata.items())
-        self.description = description_in(texts)
-
-    def _tables(self, most: int) -> Iterator[Array]:
-        for batch in self.file.iter_batches(most, columns=self.fields):
+    def tables(most: int) -> Iterator[Array]:
+        for batch in file.iter_batches(most, columns=fields):
             if batch.num_rows:
                 yield np.concatenate([_column(x) for x in batch.columns], axis=1)
+
+    table = ArrayTable(name, form, names, len(names), tables)
+    metadata = file.schema_arrow.metadata or {}
+    texts = (b": ".join(pair).decode(errors="replace") for pair in metadata.items())
+    table.description = description_in(texts)
+    return table
 
 
 def _is_numeric(kind: Any) -> bool:

@@ -1,13 +1,13 @@
 """The columns of a trajectory by name: their quantities, and the conventions that names imply.
 
-To add a name or a quantity, add an entry to QUANTITIES.  The help of `lagtop compare` and the table
+To add a name or a quantity, add a line to the table.  The help of `lagtop compare` and the table
 in the README of `judge` are generated from it.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..arithmetic.text import quoted
@@ -53,104 +53,78 @@ class FoundQuantity(NamedTuple):
     """The unit in its headings."""
 
 
-def _spelt(prefixes: str, parts: str, says: str = "") -> list[Spelling]:
-    """Return one spelling for each prefix, joined to every part; `-` means an empty text."""
-    return [
-        Spelling([f"{prefix}{part}".replace("-", "") for part in parts.split()], says)
-        for prefix in prefixes.split()
-    ]
+_TABLE = """
+t | time | t, time, timestamp
+    - | t time timestamp times simtime xvalue
+quaternion | quaternion from body to space
+        | quaternion_w ..., qw qx qy qz; by number: quaternion_0 ..., q0 ...
+    w x y z | quaternion quat q orientation attitude xquat - | wxyz
+    0 1 2 3 | quaternion quat q orientation attitude
+    3 4 5 6 | qpos u | wxyz
+    3 4 5 6 | bodyq | xyzw
+    0 1 2 3 | qpos xquat ep eulerparameters | wxyz
+matrix | rotation matrix from body to space, row by row | matrix_0 ..., r11 r12 ... r33, R00 ... R22
+    0 1 2 3 4 5 6 7 8 | matrix rotationmatrix rotation xmat rot r m
+    11 12 13 21 22 23 31 32 33 | matrix rotationmatrix rotation xmat rot r m
+    00 01 02 10 11 12 20 21 22 | matrix rotationmatrix rotation xmat rot r m
+    xx xy xz yx yy yz zx zy zz | matrix rotationmatrix rotation xmat rot r m
+theta | tilt | theta, theta_deg, theta_rad, θ, tilt; elevation: 90 degrees minus the tilt
+    - | theta tilt
+    - | elevation | elevation
+phi | spin | phi, phi_deg, phi_rad, φ, spin
+    - | phi spin
+psi | precession | psi, psi_deg, psi_rad, ψ, precession
+    - | psi precession
+euler | three angles of turns about coordinate axes | euler_0 ..., roll pitch yaw
+    0 1 2 | euler rpy
+    roll pitch yaw | - | xyz
+    0 1 2 | rotxyz | XYZ
+rotvec | rotation vector from body to space, in radians | rotvec_x ..., rv0 rv1 rv2
+    x y z | rotvec rotationvector rv
+    0 1 2 | rotvec rotationvector rv
+axis | figure axis in space | axis_x axis_y axis_z
+    x y z | axis figureaxis director
+    0 1 2 | axis figureaxis director
+position | mass centre in space, from the pivot; read if nothing above is given
+        | x y z, com_x ..., tx ty tz
+    x y z | position com pos p t
+    0 1 2 | position com pos p t
+    x y z | -
+rates | angular velocity in radians per unit of time
+        | p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz
+    p q r | - | body
+    x y z | omega w angularvelocity gyro rates
+    x y z | omegabody omegalocal angularvelocitylocal wbody qvel | body
+    x y z | omegaspace omegaworld omegaglobal wspace | space
+    0 1 2 | omega w angularvelocity gyro rates
+    0 1 2 | omegabody omegalocal angularvelocitylocal wbody qvel | body
+    0 1 2 | omegaspace omegaworld omegaglobal wspace | space
+angle_rates | rates of tilt, spin and precession in radians per unit of time
+        | thetadot phidot psidot
+    thetadot phidot psidot | -
+    dtheta dphi dpsi | -
+    0 1 2 | anglerates
+"""
+"""A quantity per line: its name, its meaning, examples of names.  Indented lines are its spellings.
+
+A spelling has the parts, their prefixes and the convention that they imply; `-` is an empty text.
+"""
 
 
-_XYZ, _DIGITS = "x y z", ("0 1 2", "0 1 2 3", "0 1 2 3 4 5 6 7 8")
-_MATRIX = "matrix rotationmatrix rotation xmat rot r m"
+def _declared(table: str) -> Iterator[tuple[str, Quantity]]:
+    """Yield the quantities of a table; lines that begin with a bar continue the line before."""
+    for entry in re.split(r"\n(?=\w)", re.sub(r"\n\s*(?=\|)", " ", table.strip())):
+        heading, *lines = entry.split("\n")
+        name, meaning, shown = heading.split(" | ")
+        spellings = [
+            Spelling([f"{prefix}{part}".replace("-", "") for part in parts.split()], says)
+            for parts, prefixes, says in (f"{line.strip()} | ".split(" | ")[:3] for line in lines)
+            for prefix in prefixes.split()
+        ]
+        yield name, Quantity(meaning, shown, spellings)
 
-QUANTITIES: dict[str, Quantity] = {
-    "t": Quantity(
-        "time", "t, time, timestamp", _spelt("t time timestamp times simtime xvalue", "-")
-    ),
-    "quaternion": Quantity(
-        "quaternion from body to space",
-        "quaternion_w ..., qw qx qy qz; by number: quaternion_0 ..., q0 ...",
-        [
-            *_spelt("quaternion quat q orientation attitude xquat -", "w x y z", "wxyz"),
-            *_spelt("quaternion quat q orientation attitude", _DIGITS[1]),
-            *_spelt("qpos u", "3 4 5 6", "wxyz"),  # a position comes first
-            *_spelt("bodyq", "3 4 5 6", "xyzw"),
-            *_spelt("qpos xquat ep eulerparameters", _DIGITS[1], "wxyz"),
-        ],
-    ),
-    "matrix": Quantity(
-        "rotation matrix from body to space, row by row",
-        "matrix_0 ..., r11 r12 ... r33, R00 ... R22",
-        [
-            *_spelt(_MATRIX, _DIGITS[2]),
-            *_spelt(_MATRIX, "11 12 13 21 22 23 31 32 33"),
-            *_spelt(_MATRIX, "00 01 02 10 11 12 20 21 22"),
-            *_spelt(_MATRIX, "xx xy xz yx yy yz zx zy zz"),
-        ],
-    ),
-    "theta": Quantity(
-        "tilt",
-        "theta, theta_deg, theta_rad, \u03b8, tilt; elevation: 90 degrees minus the tilt",
-        [*_spelt("theta tilt", "-"), Spelling(["elevation"], ELEVATION)],
-    ),
-    "phi": Quantity("spin", "phi, phi_deg, phi_rad, \u03c6, spin", _spelt("phi spin", "-")),
-    "psi": Quantity(
-        "precession",
-        "psi, psi_deg, psi_rad, \u03c8, precession",
-        _spelt("psi precession", "-"),
-    ),
-    "euler": Quantity(
-        "three angles of turns about coordinate axes",
-        "euler_0 ..., roll pitch yaw",
-        [
-            *_spelt("euler rpy", _DIGITS[0]),
-            Spelling(["roll", "pitch", "yaw"], "xyz"),
-            *_spelt("rotxyz", _DIGITS[0], "XYZ"),
-        ],
-    ),
-    "rotvec": Quantity(
-        "rotation vector from body to space, in radians",
-        "rotvec_x ..., rv0 rv1 rv2",
-        [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("rotvec rotationvector rv", parts)],
-    ),
-    "axis": Quantity(
-        "figure axis in space",
-        "axis_x axis_y axis_z",
-        [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("axis figureaxis director", parts)],
-    ),
-    "position": Quantity(
-        "mass centre in space, from the pivot; read if nothing above is given",
-        "x y z, com_x ..., tx ty tz",
-        [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("position com pos p t", parts)]
-        + _spelt("-", _XYZ),
-    ),
-    "rates": Quantity(
-        "angular velocity in radians per unit of time",
-        "p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz",
-        [
-            *_spelt("-", "p q r", "body"),
-            *(
-                spelling
-                for parts in (_XYZ, _DIGITS[0])
-                for spelling in (
-                    *_spelt("omega w angularvelocity gyro rates", parts),
-                    *_spelt("omegabody omegalocal angularvelocitylocal wbody qvel", parts, "body"),
-                    *_spelt("omegaspace omegaworld omegaglobal wspace", parts, "space"),
-                )
-            ),
-        ],
-    ),
-    "angle_rates": Quantity(
-        "rates of tilt, spin and precession in radians per unit of time",
-        "thetadot phidot psidot",
-        [
-            Spelling(["thetadot", "phidot", "psidot"]),
-            Spelling(["dtheta", "dphi", "dpsi"]),
-            *_spelt("anglerates", _DIGITS[0]),
-        ],
-    ),
-}
+
+QUANTITIES = dict(_declared(_TABLE))
 """The quantities by name, in the order of preference for the attitude."""
 
 _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITIES.items()}

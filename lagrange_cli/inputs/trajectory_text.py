@@ -6,27 +6,19 @@ then become NaN, and errors name the line and column of a bad cell.
 
 from __future__ import annotations
 
+import json
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from itertools import chain
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from ..arithmetic.text import quoted
 from ..errors import DataError
 from .descriptions import Description, description_in
-from .text_lines import (
-    SWAP,
-    Dialect,
-    Numbered,
-    at_line,
-    decoded_row,
-    has_row,
-    is_number,
-    json_object,
-)
-from .text_tables import TableHead, read_head
+from .text_lines import SWAP, Dialect, at_line, decoded_row, is_number, json_object
+from .text_tables import TextTable, read_table
 from .trajectory_columns import known_quantities, names_in_comments
 
 if TYPE_CHECKING:
@@ -40,6 +32,33 @@ class Block(NamedTuple):
     """Array of shape (rows, requested columns); NaN for an empty cell."""
     places: Sequence[int]
     """The numbers of the lines, or of the rows in a file without lines, from 1."""
+
+
+class Table:
+    """Rows of numbers, in any file format."""
+
+    place = "line"
+    """The unit of the places of a block: `line` or `row`."""
+    description: Description = MappingProxyType({})
+    """The description in the file; empty if it has none."""
+
+    def __init__(self, name: str, names: Sequence[str] | None, width: int) -> None:
+        """Take the name of the file, the names of the columns, if any, and their number."""
+        self.name, self.names, self.width = name, names, width
+
+    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
+        """Yield some columns, once, a block of rows at a time; `names` are used in errors.
+
+        Raises DataError for cells that are not numbers.
+        """
+        raise NotImplementedError
+
+    def word_of(self, column: int) -> Callable[[float], str]:
+        """Read a column as the numbers of its words from now on; return the word of a number.
+
+        A number of a column of numbers is its own word, without a fraction if it is whole.
+        """
+        return "{:.17g}".format
 
 
 class Words:
@@ -57,188 +76,123 @@ class Words:
         return list(self._numbers)[int(number)]
 
 
-class PlainNumbers(Words):
-    """The numbers of a column, as words."""
-
-    def number(self, word: str) -> float:
-        """Return the number itself."""
-        return float(word)
-
-    def word(self, number: float) -> str:
-        """Return the number as text, without a fraction if it is whole."""
-        return f"{number:.17g}"
-
-
-class Table(Protocol):
-    """Rows of numbers, in any file format."""
-
-    @property
-    def place(self) -> str:
-        """The unit of the places of a block: `line` or `row`."""
-
-    @property
-    def width(self) -> int:
-        """The number of columns."""
-
-    @property
-    def description(self) -> Description:
-        """The description in the file; empty if it has none."""
-
-    @property
-    def names(self) -> Sequence[str] | None:
-        """The names of the columns, or None."""
-
-    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns, once, a block of rows at a time; `names` are used in errors."""
-
-    def words_of(self, column: int) -> Words:
-        """Return the words of a column, which is read as their numbers from now on."""
-
-
 def read_text(stream: BinaryIO, name: str, dialect: Dialect, width: int | None) -> Table:
     """Return the rows of a text; `width` is the number of columns if their names are given.
 
     Raises DataError if there are no rows.
     """
-    head = read_head(stream, name, dialect, known_quantities, width)
-    if not head.kept and head.headings is None:
+    source = read_table(stream, name, dialect, known_quantities, width)
+    if not source.first and source.headings is None:
         raise DataError(f"{name} must hold a trajectory, got no row")
-    return TextTable(name, head) if head.around is None else JsonTable(name, head)
+    return CellTable(source) if source.around is None else JsonTable(source)
 
 
-def _lines(head: TableHead) -> Iterator[list[Numbered]]:
-    """Yield the lines of a table, many at once and without blank ones."""
-    kept = ((number, line.strip(b" \r\n")) for number, line in head.kept)
-    return chain([[x for x in kept if x[1]]], head.lines.blocks())
-
-
-class TextTable:
+class CellTable(Table):
     """Rows of a text, with or without headings; comments may give the names too."""
 
-    place = "line"
+    def __init__(self, source: TextTable) -> None:
+        """Take the names of the columns.  Raises DataError for a bad first row."""
+        self.name, self._source, self._dialect = source.lines.name, source, source.dialect
+        self.description, self._words = description_in(source.comments), dict[int, Words]()
+        names = source.headings
+        width = len(self._cells(*source.first[0]) if names is None else names)
+        names = names_in_comments(source.comments, width) if names is None else names
+        super().__init__(self.name, names, width)
 
-    def __init__(self, name: str, head: TableHead) -> None:
-        self.name, self._head, self._words = name, head, dict[int, Words]()
-        self._dialect = head.dialect
-        self.description = description_in(head.comments)
-        rows = head.rows()
-        self.names = head.headings
-        if head.headings is None:
-            self.width = len(self._cells(*rows[0]))
-            self.names = names_in_comments(head.comments, self.width)
-        else:
-            self.width = len(head.headings)
-
-    def words_of(self, column: int) -> Words:
-        """Return the words of a column."""
-        return self._words.setdefault(column, Words())
+    def word_of(self, column: int) -> Callable[[float], str]:
+        """Read a column as words."""
+        return self._words.setdefault(column, Words()).word
 
     def _cells(self, number: int, line: bytes) -> list[str]:
         with at_line(self.name, number):
             return [x.strip() for x in self._dialect.cells(decoded_row(line))]
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns of the rows.  Raises DataError for what is no number."""
-        self._dialect = self._head.decided(i for i in columns if i not in self._words)
-        for lines in _lines(self._head):
-            block = [x for x in lines if has_row(x[1])]
-            if block:
-                places, texts = zip(*block, strict=True)
-                yield Block(self._parsed(block, texts, columns, names), places)
-
-    def _parsed(
-        self,
-        block: Sequence[Numbered],
-        texts: Sequence[bytes],
-        columns: Sequence[int],
-        names: Sequence[str],
-    ) -> Array:
+        """Yield some columns of the rows."""
         import numpy as np
 
-        text = b"\n".join(texts)
-        swaps = self._dialect.decimal == ","
-        is_plain = text.isascii() and b'"' not in text and b"\0" not in text
-        if is_plain and not (swaps and self._words):  # `_row` reads all others
-            delimiter = None if self._dialect.delimiter == " " else self._dialect.delimiter
-            if swaps:
-                texts = text.translate(SWAP).split(b"\n")
-            with suppress(ValueError):
-                values = np.loadtxt(
-                    texts,
-                    delimiter=delimiter,
-                    ndmin=2,
-                    comments=None,
-                    converters={i: words.number for i, words in self._words.items()} or None,
-                )
-                if values.shape == (len(texts), self.width):
-                    return values[:, columns]
-        return np.array([self._row(*x, columns, names) for x in block])
+        self._dialect = self._source.decided(i for i in columns if i not in self._words)
+        named = list(zip(columns, names, strict=True))
+        for rows in self._source.blocks():
+            places, texts = zip(*rows, strict=True)
+            values = self._plain(texts)
+            if values is None:
+                yield Block(np.array([self._row(*x, named) for x in rows]), places)
+            else:
+                yield Block(values[:, columns], places)
 
-    def _row(
-        self, number: int, line: bytes, columns: Sequence[int], names: Sequence[str]
-    ) -> list[float]:
-        cells = self._cells(number, line)
-        if len(cells) != self.width:
-            raise DataError(
-                f"{self.name}, line {number}: a row must have {self.width} cells, got {len(cells)}"
+    def _plain(self, texts: Sequence[bytes]) -> Array | None:
+        """Return all columns of rows, or None if NumPy cannot parse them."""
+        import numpy as np
+
+        text, swaps = b"\n".join(texts), self._dialect.decimal == ","
+        if not text.isascii() or b'"' in text or b"\0" in text or (swaps and self._words):
+            return None
+        with suppress(ValueError):
+            values = np.loadtxt(
+                text.translate(SWAP).split(b"\n") if swaps else texts,
+                delimiter=None if self._dialect.delimiter == " " else self._dialect.delimiter,
+                ndmin=2,
+                comments=None,
+                converters={i: words.number for i, words in self._words.items()} or None,
             )
+            if values.shape == (len(texts), self.width):
+                return values
+        return None
+
+    def _row(self, number: int, line: bytes, named: Sequence[tuple[int, str]]) -> list[float]:
+        cells, where = self._cells(number, line), f"{self.name}, line {number}"
+        if len(cells) != self.width:
+            raise DataError(f"{where}: a row must have {self.width} cells, got {len(cells)}")
         row = []
-        for i, name in zip(columns, names, strict=True):
+        for i, name in named:
             if i in self._words:
                 row.append(self._words[i].number(cells[i]))
                 continue
             plain = self._dialect.with_point(cells[i])
             if plain and (not is_number(plain) or "," in plain):
                 raise DataError(
-                    f"{self.name}, line {number}, column {i + 1}: {name} must be a number, "
+                    f"{where}, column {i + 1}: {name} must be a number, "
                     f"got {quoted(cells[i])}{self._dialect.remedy(cells[i])}"
                 )
             row.append(float(plain or "nan"))
         return row
 
 
-class JsonTable:
+class JsonTable(Table):
     """JSON lines, an object per row; an array with one object per line is accepted too."""
 
-    place = "line"
-
-    def __init__(self, name: str, head: TableHead) -> None:
-        self.name, self._around = name, head.around
-        self.description = description_in(head.comments)
-        self._lines = _lines(head)
-        number, bare = next(
-            ((i, x) for i, line in head.kept if (x := line.strip(head.around))), (1, b"")
-        )
-        entries = self._object(number, bare)
-        _check_once(bare, name)
+    def __init__(self, source: TextTable) -> None:
+        """Take the names of the columns from the first object.  Raises DataError for a bad one."""
+        self.name, self._source = source.lines.name, source
+        self.description, self._words = description_in(source.comments), dict[str, Words]()
+        entries = self._object(*source.first[0])
+        _check_once(source.first[0][1], self.name)
         self.sizes = {
             key: len(value) if isinstance(value, list) else 0
             for key, value in entries.items()
             if isinstance(value, int | float | list | str | None)
         }
         self._texts = {key for key, value in entries.items() if isinstance(value, str)}
-        self._words: dict[str, Words] = {}
-        self.names: Sequence[str] = [
-            name for key, n in self.sizes.items() for name in parts(key, n)
-        ]
-        self.width = len(self.names)
+        self._columns = [part for key, n in self.sizes.items() for part in parts(key, n)]
+        super().__init__(self.name, self._columns, len(self._columns))
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns of the rows.  Raises DataError for what is no number."""
+        """Yield some columns of the rows."""
         import numpy as np
 
-        if wrong := {self.names[i] for i in columns} & self._texts - self._words.keys():
+        if wrong := {self._columns[i] for i in columns} & self._texts - self._words.keys():
             raise DataError(f"{self.name}, column {min(wrong)}: must be numbers, got texts")
-        for lines in self._lines:
-            bare = ((i, line.strip(self._around)) for i, line in lines)
-            if block := [x for x in bare if has_row(x[1])]:
-                values = np.array([self._row(*x) for x in block], dtype=np.float64)
-                yield Block(values[:, columns], [i for i, _ in block])
+        for rows in self._source.blocks():
+            values = np.array([self._row(*x) for x in rows], dtype=np.float64)
+            yield Block(values[:, columns], [i for i, _ in rows])
 
-    def words_of(self, column: int) -> Words:
-        """Return the words of a column, or its numbers as texts."""
-        name = self.names[column]
-        return self._words.setdefault(name, Words()) if name in self._texts else PlainNumbers()
+    def word_of(self, column: int) -> Callable[[float], str]:
+        """Read a column as words, if it holds texts."""
+        name = self._columns[column]
+        if name not in self._texts:
+            return super().word_of(column)
+        return self._words.setdefault(name, Words()).word
 
     def _object(self, number: int, line: bytes) -> dict[str, Any]:
         with at_line(self.name, number):
@@ -248,13 +202,13 @@ class JsonTable:
         row: list[float] = []
         values = self._object(number, line)
         for key, size in self.sizes.items():
-            value, count = values.get(key), size or 1
+            value = values.get(key)
             if key in self._texts:
                 words = self._words.get(key)
                 row.append(words.number(str(value)) if words else math.nan)
                 continue
             numbers = [value] if not size else [None] * size if value is None else value
-            if not isinstance(numbers, list) or len(numbers) != count or not _are_real(numbers):
+            if not isinstance(numbers, list) or len(numbers) != (size or 1) or not _real(numbers):
                 wanted = f"{size} numbers" if size else "a number"
                 raise DataError(
                     f"{self.name}, line {number}, column {key}: must be {wanted}, "
@@ -266,14 +220,12 @@ class JsonTable:
 
 def _check_once(line: bytes, name: str) -> None:
     """Raise DataError for an object with a repeated key, of which a parser keeps only the last."""
-    import json
-
     counts = Counter(key for key, _ in json.loads(line, object_pairs_hook=list))
     if twice := [key for key, count in counts.items() if count > 1]:
         raise DataError(f"{name} must name each quantity once, got {twice[0]!r} and {twice[0]!r}")
 
 
-def _are_real(values: Sequence[Any]) -> bool:
+def _real(values: Sequence[Any]) -> bool:
     """Return whether each value is a real number or missing."""
     return all(
         x is None or (isinstance(x, int | float) and not isinstance(x, bool)) for x in values

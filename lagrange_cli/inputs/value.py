@@ -1,17 +1,12 @@
-"""Input values as users write them: numbers, units, standard uncertainties, correlations.
-
-`1587(2)`, `1587+/-2`, `1587+-2`, `1587±2` and `1587 +/- 0.1 %` are uncertain numbers.
-"""
+"""Input values as users write them: numbers, units and standard uncertainties."""
 
 from __future__ import annotations
 
 import re
-from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 from ..arithmetic.text import is_decimal, parse_number, quoted
@@ -22,15 +17,6 @@ _UNIT = r"(?s)(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*"
 """Pattern of a unit: any text from its first letter, which begins no exponent; `1/` may precede."""
 _LOG = "log:"
 """Prefix of a range with equal ratios."""
-_DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_PLUS_MINUS = rf"(?P<number>{_DECIMAL})\s*(?:\+/?-|±)\s*(?P<std>{_DECIMAL})\s*(?P<percent>%?)"
-_FORMS = (
-    r"(?P<number>[+-]?(?:\d+\.?\d*|\.\d+))\((?P<last>\d+\.?\d*)\)(?P<exponent>[eE].*)?",
-    _PLUS_MINUS,
-    rf"\(\s*{_PLUS_MINUS}\s*\)(?P<exponent>[eE].*)?",
-)
-
-
 STEADY_WORDS = ("steady", "steady-fast")
 """Words accepted as a precession rate: the steady rate of smaller or of larger size."""
 
@@ -62,10 +48,6 @@ class Value(Values):
 
 InputPair = frozenset[str]
 """The keys of two inputs."""
-_ROUNDING = Fraction(1, 10**14)
-"""A variance up to this size, of variables with variance 1, counts as 0."""
-_TOLERANCE = 1e-6
-"""Largest error of a correlation, because files have rounded ones."""
 
 
 class Stds(dict[str, float]):
@@ -87,34 +69,19 @@ class Stds(dict[str, float]):
 
     @cached_property
     def sources(self) -> Sequence[tuple[Fraction, Mapping[str, Fraction]]]:
-        """The independent sources of all uncertainties: their variances and shares by input.
+        """The independent sources of all uncertainties: their variances and shares by input."""
+        from .uncertain import independent_sources  # for few tops only
 
-        A source changes each input by its share of the standard uncertainty.  The shares are the
-        columns of L in the factors L D L^T of the matrix of correlations, the variances are D.
-        """
-        left = {(x, y): self._correlation(x, y) for x in self for y in self}
-        sources: list[tuple[Fraction, dict[str, Fraction]]] = []
-        names = list(self)
-        for i, name in enumerate(names):
-            if (variance := left[name, name]) > _ROUNDING:
-                shares = {x: left[name, x] / variance for x in names[i:] if left[name, x]}
-                sources.append((variance, shares))
-                for x, y in product(shares, repeat=2):
-                    left[x, y] -= shares[x] * shares[y] * variance
-        return sources
+        return independent_sources(self.matrix())
 
-    def _correlation(self, x: str, y: str) -> Fraction:
-        return Fraction(x == y) or self.correlations.get(InputPair((x, y)), Fraction(0))
-
-    def are_possible(self) -> bool:
-        """Return whether the matrix of correlations is positive semidefinite, up to rounding."""
-        made: dict[tuple[str, str], Fraction] = defaultdict(Fraction)
-        for variance, shares in self.sources:
-            for x, y in product(shares, repeat=2):
-                made[x, y] += variance * shares[x] * shares[y]
-        return all(
-            abs(made[x, y] - self._correlation(x, y)) < _TOLERANCE for x in self for y in self
-        )
+    def matrix(self) -> dict[tuple[str, str], Fraction]:
+        """Return the matrix of correlations by pair of inputs, in both orders."""
+        one, none = Fraction(1), Fraction(0)
+        return {
+            (x, y): one if x == y else self.correlations.get(InputPair((x, y)), none)
+            for x in self
+            for y in self
+        }
 
 
 def value_of(name: str, given: Any) -> Value:
@@ -164,7 +131,10 @@ def parse_value(
         return Value(number)
     try:
         if uncertain and not is_decimal(number) and re.search(r"[(±%]|\+/?-", number):
-            return _uncertain(number, parse).replace(unit=unit)
+            from .uncertain import split_uncertainty  # for few inputs only
+
+            plain, std = split_uncertainty(number)
+            return Value(parse(plain), unit, std)
         return Value(parse(number), unit)
     except LagtopError as error:
         got = f"got {quoted(text.strip())}"
@@ -173,15 +143,12 @@ def parse_value(
             whole = steady_refused(number)
         elif steady and not re.search(r"\d", number):
             whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
-        elif not uncertain and any(re.fullmatch(form, number) for form in _FORMS):
-            whole = f"must have no uncertainty in this command, {got}: leave out {_spread(number)}"
+        elif not uncertain:
+            from .uncertain import uncertainty_in
+
+            if spread := uncertainty_in(number):
+                whole = f"must have no uncertainty in this command, {got}: leave out {spread}"
         raise LagtopError(whole, error.key) from None
-
-
-def _spread(text: str) -> str:
-    """Return the uncertainty of an uncertain number as it is written, such as `(2)`."""
-    found = re.search(r"\([\d.]+\)|(\+/?-|±)\s*[^\s)%]+(\s*%)?", text)
-    return found[0] if found else "the uncertainty"
 
 
 def split_unit(text: str) -> tuple[str, str]:
@@ -200,27 +167,3 @@ def split_unit(text: str) -> tuple[str, str]:
     if set(unit) & {":", ","} or number.endswith((":", ",")) or not re.search(r"\d", number):
         return text, ""
     return number, unit
-
-
-def _uncertain(text: str, parse: Callable[[str], Any]) -> Value:
-    """Return an uncertain number.
-
-    Raises LagtopError for any other text, and for a negative uncertainty.
-    """
-    found = next((match for form in _FORMS if (match := re.fullmatch(form, text))), None)
-    if found is None:
-        forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
-        raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")
-    parts = found.groupdict(default="")
-    exponent = parts.get("exponent", "")
-    number, power = parts["number"] + exponent, parse_number(f"1{exponent}")
-    if "last" in parts:
-        last = parts["last"]
-        decimals = 0 if "." in last else len(parts["number"].partition(".")[2])
-        std = parse_number(f"{last}e-{decimals}") * power
-    else:
-        std = parse_number(parts["std"]) * power
-        std = abs(parse_number(number)) * std / 100 if parts["percent"] else std
-    if std < 0:
-        raise LagtopError(f"must have an uncertainty >= 0, got {quoted(text)}")
-    return Value(parse(number), "", std)

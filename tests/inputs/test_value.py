@@ -13,6 +13,7 @@ from uncertainties import ufloat
 
 from lagrange_cli.errors import LagtopError
 from lagrange_cli.inputs.ranges import parse_values
+from lagrange_cli.inputs.uncertain import are_possible
 from lagrange_cli.inputs.value import Stds, Value, parse_value, split_unit, value_of
 
 
@@ -178,7 +179,7 @@ def test_sources_are_factors_of_the_correlations() -> None:
             ]
         ).T
         assert columns @ columns.T == pytest.approx(matrix, abs=1e-6 if rank < 5 else 1e-14)
-        assert stds.are_possible()
+        assert are_possible(stds.matrix())
         some = stds.only(["s", "m"])
         assert (list(some), list(some.correlations)) == (["m", "s"], [frozenset("ms")])
 
@@ -194,6 +195,6 @@ def test_correlations_are_possible_if_no_eigenvalue_is_negative() -> None:
             for i in range(4)
             for j in range(i)
         }
-        assert Stds(dict.fromkeys(names, 1.0), pairs).are_possible() == (least > 0)
+        assert are_possible(Stds(dict.fromkeys(names, 1.0), pairs).matrix()) == (least > 0)
         found.append(least > 0)
     assert 20 < sum(found) < 180
