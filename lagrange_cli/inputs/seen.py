@@ -33,14 +33,17 @@ class Conventions(NamedTuple):
 
     def checked(self) -> Conventions:
         """Return the conventions.  Raises LagtopError for an unknown one."""
-        if self.quaternion not in {None, *ORDERS}:
-            _refuse("quaternion_order", "wxyz or xyzw", self.quaternion)
+        for key, known, got in (
+            ("quaternion_order", (None, *ORDERS), self.quaternion),
+            ("rates_frame", FRAMES, self.rates),
+        ):
+            if got not in known:
+                wanted = " or ".join(filter(None, known))
+                raise LagtopError(f"{key} must be {wanted}, got {quoted(got)}", key)
         try:
             euler_sequence(self.euler)
         except LagtopError as error:
             raise LagtopError(f"euler_sequence {error}", "euler_sequence") from None
-        if self.rates not in FRAMES:
-            _refuse("rates_frame", "body or space", self.rates)
         return self
 
 
@@ -53,10 +56,6 @@ def euler_sequence(text: str) -> str:
         wanted = "three axes, such as xyz (axes of space) or XYZ (axes of the body)"
         raise LagtopError(f"must be {wanted}, got {quoted(str(text))}")
     return text
-
-
-def _refuse(key: str, wanted: str, got: object) -> None:
-    raise LagtopError(f"{key} must be {wanted}, got {quoted(got)}", key)
 
 
 @dataclass(frozen=True)
@@ -82,16 +81,15 @@ class Seen:
 
         `space` converts coordinates in space to the new ones, `body` converts body coordinates.
         """
-        q, axis, rates, fixed = self.quaternion, self.axis, self.body_rates, self.space_rates
-        return replace(
-            self,
-            quaternion=None
-            if q is None
-            else rotations.product(rotations.product(space, q), rotations.conjugate(body)),
-            axis=None if axis is None else rotations.rotated(space, axis),
-            body_rates=None if rates is None else rotations.rotated(body, rates),
-            space_rates=None if fixed is None else rotations.rotated(space, fixed),
-        )
+        turns = {"axis": space, "body_rates": body, "space_rates": space}
+        vectors = {key: getattr(self, key) for key in turns}
+        turned: dict[str, Any] = {
+            key: rotations.rotated(turns[key], x) for key, x in vectors.items() if x is not None
+        }
+        if self.quaternion is not None:
+            in_space = rotations.product(space, self.quaternion)
+            turned["quaternion"] = rotations.product(in_space, rotations.conjugate(body))
+        return replace(self, **turned)
 
 
 Quantities = Mapping[str, Array]
@@ -126,45 +124,28 @@ class _Reader:
 
     def attitude(self) -> dict[str, Any]:
         """Return the attitude from the first quantity that gives all of it, or most of it."""
-        alone = angles_in(self.given, self.conventions, self.said)
-        if len(alone) == len(ANGLES) and not {"quaternion", "matrix"} & set(self.given):
-            return {"quaternion": rotations.of_angles(**alone)}
-        for key in ("quaternion", "matrix", "euler", "rotvec", "axis"):
-            if key in self.given:
-                found: dict[str, Any] = getattr(self, f"of_{key}")()
-                return found
-        if alone or "position" not in self.given:
-            return {"angles": alone}
-        position = self.given["position"]
-        return {
-            "axis": rotations.directed(position),
-            "distance": np.linalg.norm(position, axis=1),
-        }
-
-    def of_quaternion(self) -> dict[str, Any]:
-        """Return the attitude from a quaternion."""
-        order = self.convention("quaternion", self.conventions.quaternion or ORDERS[0])
-        q = self.given["quaternion"][:, [order.index(part) for part in "wxyz"]]
-        return {"quaternion": rotations.directed(q), "norm": np.linalg.norm(q, axis=1) - 1.0}
-
-    def of_matrix(self) -> dict[str, Any]:
-        """Return the attitude from a matrix."""
-        q, fault = rotations.of_matrix(self.given["matrix"])
-        return {"quaternion": q, "norm": fault}
-
-    def of_euler(self) -> dict[str, Any]:
-        """Return the attitude from three angles about coordinate axes."""
-        sequence = self.convention("euler", self.conventions.euler)
-        return {"quaternion": rotations.of_euler(sequence, self.angle("euler"))}
-
-    def of_rotvec(self) -> dict[str, Any]:
-        """Return the attitude from a rotation vector."""
-        return {"quaternion": rotations.of_vector(self.given["rotvec"])}
-
-    def of_axis(self) -> dict[str, Any]:
-        """Return the figure axis."""
-        axis = self.given["axis"]
-        return {"axis": rotations.directed(axis), "norm": np.linalg.norm(axis, axis=1) - 1.0}
+        given = self.given
+        alone = angles_in(given, self.conventions, self.said)
+        found: dict[str, Any] = {"angles": alone}
+        if len(alone) == len(ANGLES) and not {"quaternion", "matrix"} & given.keys():
+            found = {"quaternion": rotations.of_angles(**alone)}
+        elif "quaternion" in given:
+            order = self.convention("quaternion", self.conventions.quaternion or ORDERS[0])
+            found = _directed("quaternion", given["quaternion"][:, [*map(order.index, "wxyz")]])
+        elif "matrix" in given:
+            rotation, fault = rotations.of_matrix(given["matrix"])
+            found = {"quaternion": rotation, "norm": fault}
+        elif "euler" in given:
+            sequence = self.convention("euler", self.conventions.euler)
+            found = {"quaternion": rotations.of_euler(sequence, self.angle("euler"))}
+        elif "rotvec" in given:
+            found = {"quaternion": rotations.of_vector(given["rotvec"])}
+        elif "axis" in given:
+            found = _directed("axis", given["axis"])
+        elif "position" in given and not alone:
+            distance = np.linalg.norm(given["position"], axis=1)
+            found = {"axis": rotations.directed(given["position"]), "distance": distance}
+        return found
 
     def rates(self, seen: Seen) -> dict[str, Any]:
         """Return the angular velocity, in the frame in which it is given.
@@ -182,10 +163,8 @@ class _Reader:
         if seen.quaternion is None:
             return {}
         at = rotations.angles_of(seen.quaternion)
-        nutation, spin, precession = self.given["angle_rates"].T
-        found = rotations.body_rates(
-            at["theta"], at["phi"], thetadot=nutation, phidot=spin, psidot=precession
-        )
+        rates = dict(zip(rotations.EulerRates._fields, self.given["angle_rates"].T, strict=True))
+        found = rotations.body_rates(at["theta"], at["phi"], **rates)
         return {"body_rates": np.stack(found, axis=1)}
 
     def convention(self, key: str, other: str) -> str:
@@ -194,12 +173,17 @@ class _Reader:
 
     def angle(self, key: str) -> Array:
         """Return angles in radians."""
-        unit = self.said.get(key, ("", None))[1]
+        says, unit = self.said.get(key, ("", None))
         in_radians = self.conventions.radians if unit is None else unit == "rad"
         angles = self.given[key]
-        if self.convention(key, "") == ELEVATION:
+        if says == ELEVATION:
             angles = (np.pi / 2 if in_radians else 90.0) - angles
         return angles if in_radians else np.radians(angles)
+
+
+def _directed(key: str, values: Array) -> dict[str, Array]:
+    """Return quaternions or axes, and the distances of their norms from 1."""
+    return {key: rotations.directed(values), "norm": np.linalg.norm(values, axis=1) - 1.0}
 
 
 def rows_of(given: Quantities, rows: Sequence[int] | slice | Array) -> dict[str, Array]:
