@@ -23,7 +23,7 @@ _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 def reading(path: str) -> Iterator[BufferedIOBase]:
     """Open a file for reading bytes, or standard input for `-`.
 
-    Raises DataError if the file cannot be opened, or if reading fails inside the block.
+    Raises DataError if the file cannot be decoded_file, or if reading fails inside the block.
     """
     try:
         if path == "-":
@@ -38,7 +38,7 @@ def reading(path: str) -> Iterator[BufferedIOBase]:
 
 
 @contextmanager
-def opened(path: str, stream: BufferedIOBase | None = None) -> Iterator[BufferedReader]:
+def decoded_file(path: str, stream: BufferedIOBase | None = None) -> Iterator[BufferedReader]:
     """Open a file like `reading`; gzip is decompressed, and marked UTF-16 becomes UTF-8.
 
     An open `stream` is read in place of the path, and closed.  Raises DataError for a broken file,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
 from ..arithmetic.text import NumberText, parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path
+from .files import decoded_file, shown_path
 from .headings import in_known_unit
 from .text_lines import UNDECIDED, Dialect, at_line, decoded_row, json_object
 from .text_tables import TextTable, read_table
@@ -64,7 +64,7 @@ class TimesFile(Points):
 def _read(path: str, dialect: Dialect) -> Iterator[Fraction]:
     """Yield the times of a file, from its column `t` or its only column."""
     name = shown_path(path)
-    with opened(path) as stream:
+    with decoded_file(path) as stream:
         table = read_table(stream, name, dialect, known_quantities)
         with at_line(name, table.place):
             time_of = _reader(table)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path
+from .files import decoded_file, shown_path
 from .given import Given, checked_double, gather
 from .headings import check_header, check_spelling, column_of, heading_units
 from .input_keys import TILT, from_example, one_of_each, overridden
@@ -199,8 +199,8 @@ def open_tops(
     """
     name = shown_path(path)
     with ExitStack() as stack:
-        opened_file = stack.enter_context(opened(path, stream))
-        table = read_table(opened_file, name, dialect, _known_inputs)
+        file_of_tops = stack.enter_context(decoded_file(path, stream))
+        table = read_table(file_of_tops, name, dialect, _known_inputs)
         rows = table.rows()
         if table.around is None:
             file = _of_headings(table, computed)

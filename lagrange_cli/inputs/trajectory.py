@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path, temporary_copy
+from .files import decoded_file, shown_path, temporary_copy
 from .headings import in_known_unit
 from .names import ANGLES
 from .text_lines import UNDECIDED, Dialect
@@ -188,7 +188,7 @@ def open_trajectory(
     for a file that cannot be read or holds no trajectory.
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
-    with opened(path) as stream:
+    with decoded_file(path) as stream:
         kind = _MAGIC.get(stream.peek(4)[:4])
         if kind is None:
             from .trajectory_text import read_text

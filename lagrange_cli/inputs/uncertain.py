@@ -28,8 +28,6 @@ _TOLERANCE = 1e-6
 
 Correlations = Mapping[tuple[str, str], Fraction]
 """The matrix of correlations by pair of inputs, in both orders and with a 1 for equal ones."""
-Source = tuple[Fraction, Mapping[str, Fraction]]
-"""A source of uncertainty: its variance, and its shares of the standard uncertainties by input."""
 
 
 def split_uncertainty(text: str) -> tuple[str, Fraction]:
@@ -66,14 +64,16 @@ def uncertainty_in(text: str) -> str:
     return found[0] if found else ""
 
 
-def independent_sources(correlations: Correlations) -> list[Source]:
-    """Return the independent sources of the uncertainties of some inputs.
+def independent_sources(
+    correlations: Correlations,
+) -> list[tuple[Fraction, Mapping[str, Fraction]]]:
+    """Return the variances of the independent sources of uncertainty, and their shares by input.
 
     A source changes each input by its share of the standard uncertainty.  The shares are the
     columns of L in the factors L D L^T of the matrix of correlations, the variances are D.
     """
     left, names = dict(correlations), [x for x, y in correlations if x == y]
-    sources: list[Source] = []
+    sources: list[tuple[Fraction, Mapping[str, Fraction]]] = []
     for i, name in enumerate(names):
         if (variance := left[name, name]) > _ROUNDING:
             shares = {x: left[name, x] / variance for x in names[i:] if left[name, x]}
