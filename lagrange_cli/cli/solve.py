@@ -146,7 +146,7 @@ def _with_stds(keys: dict[str, Key]) -> dict[str, Key]:
 
 def _chain(system: System | None, radians: bool) -> dict[str, Key]:
     """Return the keys of the steps of section 8, in order."""
-    from ..motion.paper.worked_example import CHAIN
+    from ..motion.paper.requested import CHAIN
     from ..motion.quantity import unit_name
 
     keys = _keys(system, radians, requested=True)
@@ -202,7 +202,7 @@ def _numbers(motion: Numbers, record: dict[str, Any], keys: list[str]) -> dict[s
 
 def _steps(motion: Numbers, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
-    from ..motion.paper.worked_example import derivation_keys
+    from ..motion.paper.requested import derivation_keys
 
     if motion.roots_sum is None:
         top = motion.top

@@ -108,28 +108,17 @@ class Numbers:
 
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
         """Return a number known as a fraction, else None; a root may be a tie in `digits`."""
+        from .exact.rational_keys import fraction_in, known_fraction  # start-up: for few tops
 
-        def enclosure(x: str) -> Ball | None:
-            return self.enclosure(x, 2 * digits + 80)
+        if name in NUMBER_KEYS:
+            known = known_fraction(self.exact, name, radians=radians)
+        else:
+            from .paper.requested import requested_fraction  # start-up
 
-        if name not in NUMBER_KEYS:
-            from .paper.requested import fraction_by_roots, requested_fractions  # start-up
-
-            found = requested_fractions(self.exact).get(name)
-            if found is not None:
-                return found
-            return fraction_by_roots(
-                self.exact, name, lambda u: self.fraction(u, digits), enclosure
-            )
-        from .exact.half_rates import HALF_RATES  # start-up: for few tops
-        from .exact.rational_keys import known_fraction, rational_half_rate, rational_u
-
-        known = known_fraction(self.exact, name, radians=radians)
-        if known is None and name in {"u1", "u2", "u3"}:
-            return rational_u(self.exact, name, enclosure)
-        if known is None and name in HALF_RATES:
-            return rational_half_rate(self.exact, name, enclosure(name))
-        return known
+            known = requested_fraction(self.exact, name, lambda u: self.fraction(u, digits))
+        if known is not None:
+            return known
+        return fraction_in(self.exact, name, lambda x: self.enclosure(x, 2 * digits + 80))
 
     def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
         """Return a ball that contains a number, by key; None if the motion has no such number.
@@ -161,12 +150,12 @@ class Numbers:
 
     def _on_request(self, name: str, digits: int) -> Any:
         """Return the object that computes a key on request, in balls of `digits` digits."""
-        from .paper.requested import TEXTBOOK, Textbook, WorkedExample  # start-up
+        from .paper.requested import TEXTBOOK, Sections, Textbook  # start-up
 
         if digits not in self._requested:
             kind = self.kind(digits)
             self._requested[digits] = (
-                WorkedExample(kind, self.exact),
+                Sections(kind, self.exact),
                 Textbook(kind.ar, self.exact, kind.state),
             )
         return self._requested[digits][name in TEXTBOOK]

@@ -47,6 +47,25 @@ def key(
     return decorate
 
 
+def declared_keys(
+    group: str, exists: Callable[[Any], object] = bool, *, unit: str = "", absent: str = ""
+) -> Callable[..., quantity[Any]]:
+    """Return a function that declares a key of a group by its formula, without a method.
+
+    It takes the texts that `key` takes, the `value` as a function of the object, and perhaps other
+    keywords in place of those given here.  The value is None unless the key `exists`; by default it
+    always does, since every object is true.
+    """
+    usual: dict[str, Any] = {"exists": exists, "unit": unit, "absent": absent}
+
+    def declare(*texts: str, value: Callable[[Any], V], **changed: Any) -> quantity[V | None]:
+        options = usual | changed
+        there = options.pop("exists")
+        return key(group, *texts, **options)(lambda of: value(of) if there(of) else None)
+
+    return declare
+
+
 def keys_of(owner: type) -> dict[str, Key]:
     """Return the keys of the record that a class computes, base classes first."""
     return {

@@ -24,7 +24,7 @@ from errata import FIGURES, round_alike, true_values
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve, sweep
-from lagrange_cli.motion.paper.worked_example import derivation_keys
+from lagrange_cli.motion.paper.requested import derivation_keys
 from lagrange_cli.motion.record import KEYS, all_keys, record_keys, requested_keys
 
 DIGITS = 40

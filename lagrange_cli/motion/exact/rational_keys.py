@@ -3,33 +3,46 @@
 A computed 0 may be a number too small for the digits.  An enclosure of a number midway between two
 doubles cannot be rounded at any precision.  This module decides from the inputs which keys are
 exactly 0, or may be such a tie.
+
+Half a period on, sn^2 becomes cn^2/dn^2, so that u(T/2) = (u3 (u1 + u2) - u1 u2 - u0 u3)/(u3 - u0).
+By the sums and products of the roots of (4,9) this is N(x)/M(x) with x = u3.  Without torque it is
+u1 + u2 - u0.  A rate (4,7), (4,8) has a given value if a polynomial P(x) is 0.  The greatest common
+divisor of P and the cubic gives the number of common roots, and enclosures exclude the other roots.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any, cast
 
-from ...arithmetic.ball import Ball
+from ...arithmetic.ball import Ball, TooFewDigitsError
+from ...arithmetic.balls import balls
 from ...arithmetic.exact_cosine import Polynomial, U
+from ...arithmetic.numbers import polynomial
+from ...arithmetic.rounding import FIRST_DIGITS, decided
+from ...inputs.steady_rate import rational_root
+from ..any_start import largest_root
 from ..regime import Exact
-from .half_rates import HALF_RATES, is_half_rate, vanishing_half_rates
 
 _RATE_OF = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
 """The mean rate of each period."""
+_SPINS = ("mean_spin_rate", "spin_rate_start")
+_ROOTS = ("u1", "u2", "u3")
+
+InU3 = Polynomial
+"""A polynomial in u3 whose coefficients are polynomials in cos(theta0)."""
 
 
 def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fraction | None:
     """Return a number of the record of a motion if it is known as a fraction, else None.
 
-    An angle is in degrees or `radians`.
+    An angle is in degrees or `radians`.  `fraction_in` finds fractions among roots and rates at
+    T/2.
     """
-    keys = rational_keys(exact)
-    if name in HALF_RATES and name not in keys and not _half_over_pole(exact):
-        keys = keys | vanishing_half_rates(exact)
-    known = keys.get(name)
+    known = rational_keys(exact).get(name)
     if not radians or known == 0:
         return known
     at = {"theta_min_deg": starts_at_u1, "theta_max_deg": starts_at_u2}.get(name)
@@ -43,66 +56,57 @@ def is_endless(exact: Exact, name: str) -> bool:
 
 @lru_cache(maxsize=8)
 def rational_keys(exact: Exact) -> dict[str, Fraction]:
-    """Return the keys of a record that are known as fractions, mostly zeros.
-
-    `half_rates` decides the zeros of the rates at T/2 after a start with rates, which takes longer.
-    """
-    keys = {"a": exact.a, "b": exact.b}
-    facts = exact.facts
-    keys |= _tilt_keys(exact)
-    if exact.psi_rate is None:
+    """Return the keys of a record that follow from the inputs as fractions, many of them zeros."""
+    facts, r0, b, psi_rate = exact.facts, exact.r0, exact.b, exact.psi_rate
+    keys: dict[str, Fraction | None] = {"a": exact.a, "b": b, **_tilts(exact)}
+    if psi_rate is None:
         # without torque this is the fast rate, with psi' cos(theta0) = b
-        rates = dict.fromkeys(("mean_spin_rate", "spin_rate_start"), exact.r0 - exact.b)
-        return keys | (rates if facts.free else {})
-    spin = exact.cosine.fraction(exact.r0 - (0 if facts.pole else exact.psi_rate) * U)
+        return _known(keys | dict.fromkeys(_SPINS, r0 - b if facts.free else None))
+    spin = exact.cosine.fraction(r0 - (0 if facts.pole else psi_rate) * U)
     if facts.steady or not facts.pole:  # on the vertical neither rate is defined
-        keys["precession_rate_start"] = exact.psi_rate
-        keys |= {} if spin is None else {"spin_rate_start": spin}
+        keys |= {"precession_rate_start": psi_rate, "spin_rate_start": spin}
     if facts.steady:
-        keys["mean_precession_rate"] = exact.psi_rate
-        return keys | ({} if spin is None else {"mean_spin_rate": spin})
+        return _known(keys | {"mean_precession_rate": psi_rate, "mean_spin_rate": spin})
     if facts.free or (facts.upper_root == 1 and facts.over_bottom):  # half turns about both poles
-        turn = _turn_rate(exact) if facts.free else None
-        if facts.sign_plus == facts.sign_minus:
-            keys["mean_spin_rate"] = exact.r0 - exact.b
-            keys |= {} if turn is None else {"mean_precession_rate": facts.sign_plus * turn}
-        else:
-            keys["mean_precession_rate"] = Fraction(0)
-            drift = exact.r0 - exact.b
-            keys |= {} if turn is None else {"mean_spin_rate": drift + facts.sign_plus * turn}
+        # without torque a turn has the rate of the angular momentum over A
+        square = exact.cosine.fraction(exact.energy + b * b) if facts.free else None
+        turn = None if square is None else rational_root(square)
+        means = {"mean_precession_rate": (Fraction(0), 1), "mean_spin_rate": (r0 - b, -1)}
+        for name, (rate, sign) in means.items():
+            turns = (facts.sign_plus + sign * facts.sign_minus) // 2
+            around = None if turn is None else rate + turns * turn
+            keys[name] = around if turns else rate
     if facts.drifts:
-        keys["mean_spin_rate"] = exact.r0 - exact.b / 2
-    return keys | _zeros_of_roots(exact) | _half_rates(exact)
+        keys["mean_spin_rate"] = r0 - b / 2
+    if facts.falls and facts.spins and not facts.free:
+        keys["precession_rate_half"] = exact.a / b
+    if starts_at_u1(exact) and _quarter_is_level(exact):
+        keys["u_quarter"] = Fraction(0)
+    return _known(keys)
 
 
-def _turn_rate(exact: Exact) -> Fraction | None:
-    """Return the size of the angular momentum over A of a torque-free top, if it is a fraction."""
-    square = exact.cosine.fraction(exact.energy + exact.b * exact.b)
-    if square is None:
-        return None
-    rate = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
-    return rate if rate * rate == square else None
+def _known(keys: dict[str, Fraction | None]) -> dict[str, Fraction]:
+    """Return the keys that have a value."""
+    return {name: value for name, value in keys.items() if value is not None}
 
 
-def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
-    """Return the keys that follow from a start on a turning point: its tilt and perhaps its cosine.
+def _tilts(exact: Exact) -> dict[str, Fraction]:
+    """Return the angles of a record that follow from a start on a turning point.
 
     Without torque and spin the axis moves round a great circle, and the other turning point is
     opposite.
     """
-    facts, cosine, tilt = exact.facts, exact.cosine.rational, exact.cosine.degrees
-    opposite = facts.free and not facts.spins and not facts.steady
+    facts, tilt = exact.facts, exact.cosine.degrees
+    if tilt is None:
+        return {}
     keys: dict[str, Fraction] = {}
-    ends = (
-        ("u1", "theta_min_deg", starts_at_u1(exact)),
-        ("u2", "theta_max_deg", starts_at_u2(exact)),
-    )
-    for (u, theta, here), (other_u, other_theta, _) in (ends, ends[::-1]):
-        if here and cosine is not None:
-            keys |= {u: cosine} | ({other_u: -cosine} if opposite else {})
-        if here and tilt is not None:
-            keys |= {theta: tilt} | ({other_theta: 180 - tilt} if opposite else {})
-    if facts.at_rest and facts.regime == "no spin" and tilt is not None:
+    ends = ("theta_min_deg", starts_at_u1(exact)), ("theta_max_deg", starts_at_u2(exact))
+    for (name, here), (other, _) in (ends, ends[::-1]):
+        if here and facts.free and not facts.spins and not facts.steady:
+            keys[other] = 180 - tilt
+        if here:
+            keys[name] = tilt
+    if facts.at_rest and facts.regime == "no spin":
         keys["modular_angle_deg"] = 90 - tilt / 2
     return keys
 
@@ -124,70 +128,72 @@ def _starts_at(exact: Exact, side: int) -> bool:
     return facts.steady or (not exact.theta_rate and exact.cosine.sign(exact.fall) == -side)
 
 
-def rational_u(exact: Exact, name: str, enclosure: Callable[[str], Ball | None]) -> Fraction | None:
-    """Return a root of the cubic (4,9) if it is a fraction, such as a tie between doubles.
+def cubic(exact: Exact) -> tuple[Polynomial, Polynomial, Polynomial, Polynomial]:
+    """Return the coefficients of the cubic (4,9) in u, the constant first."""
+    alpha, beta, b = exact.alpha, exact.beta, exact.b
+    return alpha - beta * beta, 2 * b * beta - exact.a, -1 * alpha - b * b, Polynomial(exact.a)
 
-    The enclosure contains only this root, so that any fraction in it that is a root is this one.
+
+def keys_by_u1(exact: Exact, u1: Polynomial) -> dict[str, Polynomial]:
+    """Return the slope at u1, a u2 u3 and (a (u3 - u2))^2, from the sums of the other roots."""
+    _, pairs, c2, a = cubic(exact)
+    along, product = 2 * a * u1 + c2, (a * u1 + c2) * u1 + pairs
+    others = along - a * u1
+    return {
+        "f_slope_u1": along * u1 + product,
+        "u2_criterion": product,
+        "discriminant": others * others - 4 * a * product,
+    }
+
+
+def _quarter_is_level(exact: Exact) -> bool:
+    """Return whether u(T/4) = 0 (5,2), for a start at u1 = u0.
+
+    Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3.  Its square is a polynomial in u0.  Without
+    torque u(T/4) is the mean of u1 and u2, which is proportional to beta b.
     """
-    if exact.psi_rate is None:
-        return None
-    roots = {root: enclosure(root) for root in ("u1", "u2", "u3")}
-
-    def cubic(u: Fraction) -> Polynomial:
-        around = exact.beta - exact.b * u
-        return (1 - u * u) * (exact.alpha - exact.a * u) - around * around
-
-    return _rational_root(exact, cubic, roots.pop(name), roots.values())
+    cosine = exact.cosine
+    if exact.facts.free:
+        return cosine.vanishes(exact.b * exact.beta)
+    _, product, square = keys_by_u1(exact, U).values()
+    level = U * U * square - product * product
+    return cosine.vanishes(level) and cosine.sign(U) > 0 and cosine.sign(product) < 0
 
 
-def rational_criterion(exact: Exact, enclosure: Callable[[str], Ball | None]) -> Fraction | None:
-    """Return a u2 u3, the criterion of (4,12), if it is a fraction, such as a tie.
-
-    With it, a u1 u3 and a u1 u2 are the roots of a cubic, whose coefficients follow from (4,9).
-    """
-    if exact.psi_rate is None:
-        return None
-    a, u1, u2, u3 = (enclosure(key) for key in ("a", "u1", "u2", "u3"))
-    if a is None or u1 is None or u2 is None or u3 is None:
-        return None
-    square, pairs = exact.alpha + exact.b * exact.b, 2 * exact.b * exact.beta - exact.a
-    level = exact.alpha - exact.beta * exact.beta
-
-    def cubic(w: Fraction) -> Polynomial:
-        return ((w - pairs) * w - level * square) * w - exact.a * level * level
-
-    others = (a * u1 * u3, a * u1 * u2)
-    return _rational_root(exact, cubic, enclosure("u2_criterion"), others)
-
-
-def _rational_root(
-    exact: Exact,
-    equation: Callable[[Fraction], Polynomial],
-    ball: Ball | None,
-    others: Iterable[Ball | None],
+def fraction_in(
+    exact: Exact, name: str, enclosure: Callable[[str], Ball | None]
 ) -> Fraction | None:
-    """Return the root of an equation in a ball if it is a fraction and apart from the others."""
-    if ball is None or any(other is not None and (ball - other).least == 0 for other in others):
+    """Return a root of (4,9), a u2 u3 (4,12) or a rate at T/2 if it is a fraction, such as a tie.
+
+    The enclosure of a root must contain no other root of its cubic.  Any fraction in it that is a
+    root is then this one.
+    """
+    at_half = name.endswith("_half") and not exact.facts.steady
+    if exact.psi_rate is None or not (at_half or name in {*_ROOTS, "u2_criterion"}):
         return None
-    value = _simplest(ball)
-    return value if exact.cosine.vanishes(equation(value)) else None
-
-
-def rational_half_rate(exact: Exact, name: str, ball: Ball | None) -> Fraction | None:
-    """Return a rate at T/2 in an enclosure if it is a fraction, such as a tie between doubles."""
-    if ball is None or exact.facts.steady:
+    ball = enclosure(name)
+    if ball is None:
         return None
-    value = _simplest(ball)
-    return value if is_half_rate(exact, name, value) else None
-
-
-def _simplest(ball: Ball) -> Fraction:
-    """Return the fraction with the smallest denominator in a ball."""
     low, high = ball.ends()
-    return _simplest_between(Fraction(low), Fraction(high))
+    value = _simplest_between(Fraction(low), Fraction(high))
+    if at_half:
+        return value if _is_half_rate(exact, name, value) else None
+    equation = cubic(exact)
+    others = [enclosure(other) for other in _ROOTS if other != name]
+    if name == "u2_criterion":  # with a u1 u3 and a u1 u2, a root of another cubic
+        c0, c1, c2, a = equation
+        equation = -1 * a * c0 * c0, c0 * c2, -1 * c1, Polynomial(1)
+        a_ball, u1, u2, u3 = (enclosure(x) for x in ("a", *_ROOTS))
+        if a_ball is None or u1 is None or u2 is None or u3 is None:
+            return None
+        others = [a_ball * u1 * u3, a_ball * u1 * u2]
+    if any(other is not None and (ball - other).least == 0 for other in others):
+        return None
+    return value if exact.cosine.vanishes(polynomial(equation, value)) else None
 
 
 def _simplest_between(low: Fraction, high: Fraction) -> Fraction:
+    """Return the fraction with the smallest denominator in an interval."""
     if high < 0:
         return -_simplest_between(-high, -low)
     whole = Fraction(max(math.ceil(low), 0))
@@ -196,53 +202,77 @@ def _simplest_between(low: Fraction, high: Fraction) -> Fraction:
     return whole - 1 + 1 / _simplest_between(1 / (high - whole + 1), 1 / (low - whole + 1))
 
 
-def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
-    """Return u1 = 0 or u2 = 0 if f(0) = alpha - beta^2 (4,9) is 0, and u(T/4) = 0 if it holds."""
-    keys: dict[str, Fraction] = {}
-    if exact.cosine.vanishes(exact.alpha - exact.beta * exact.beta):
-        sign = exact.cosine.sign(U)
-        if sign:
-            keys["u2" if sign > 0 else "u1"] = Fraction(0)
-        else:  # the start is horizontal, and at u1 or u2
-            keys["u1" if starts_at_u1(exact) else "u2"] = Fraction(0)
-    if starts_at_u1(exact) and _quarter_is_level(exact):
-        keys["u_quarter"] = Fraction(0)
-    return keys
+def _is_half_rate(exact: Exact, name: str, value: Fraction) -> bool:
+    """Return whether a rate at T/2 of a nutating top is exactly a fraction close to it."""
+    N, M = _half_cosine(exact)
+    momentum = Polynomial(exact.beta) * M + N * -exact.b  # M (beta - b u)
+    rate = momentum * M if name == "precession_rate_half" else N * -1 * momentum
+    constant = value if name == "precession_rate_half" else value - exact.r0
+    return _is_zero_at_u3(exact, rate - (M * M - N * N) * constant)
 
 
-def _quarter_is_level(exact: Exact) -> bool:
-    """Return whether u(T/4) = 0 (5,2), for a start at u1 = u0.
-
-    Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3.  By x2 + x3 = -c2/a and x2 x3 = c1/a, its
-    square is a polynomial in u0.  Without torque u(T/4) is the mean of u1 and u2, which is
-    proportional to beta b.
-    """
-    a, b, energy, momentum = exact.a, exact.b, exact.energy, exact.momentum
+def _half_cosine(exact: Exact) -> tuple[InU3, InU3]:
+    """Return N and M for u(T/2) = N(u3)/M(u3); they are constants without torque."""
+    a, (_, pairs, c2, _) = exact.a, cubic(exact)
     if exact.facts.free:
-        return exact.cosine.vanishes(b * exact.beta)
-    c2 = 2 * a * U - energy - b * b
-    c1 = 2 * b * momentum - a * (1 - U * U) - 2 * (U * energy)
-    product = a * (U * U) - U * c2 + c1  # a u2 u3
-    level = (U * U) * (c2 * c2 - 4 * a * c1) - product * product
-    return (
-        exact.cosine.vanishes(level) and exact.cosine.sign(U) > 0 and exact.cosine.sign(product) < 0
+        return Polynomial(pairs + U * c2), Polynomial(-1 * c2)
+    N = Polynomial(-1 * pairs, -2 * c2 - a * U, Polynomial(-2 * a))
+    return N, Polynomial(-a * U, Polynomial(a))
+
+
+def _is_zero_at_u3(exact: Exact, P: InU3) -> bool:
+    """Return whether P is exactly 0 at the greatest root of the cubic.
+
+    Balls are tried first: they are cheap, and nearly always prove that P is not 0.
+    """
+    if exact.facts.free:
+        return exact.cosine.vanishes(P.coefficients[0])
+    if not _zeros_possible(exact, P, FIRST_DIGITS)[0]:
+        return False
+    shared = _shared_roots(exact, cubic(exact), P.coefficients)
+    if not shared:
+        return False
+
+    def at_u3(digits: int) -> bool:
+        possible = _zeros_possible(exact, P, digits)
+        if sum(possible) > shared:
+            raise TooFewDigitsError
+        return possible[0]
+
+    return decided("a rate at T/2", at_u3)
+
+
+def _zeros_possible(exact: Exact, P: InU3, digits: int) -> list[bool]:
+    """Return whether P may be 0 at u3, and at the other two roots of the cubic."""
+    ar = balls(digits)
+    terms, (c0, c1, c2, a) = (
+        [exact.cosine.at(ar, cast(Any, x)) for x in p] for p in (P.coefficients, cubic(exact))
     )
+    c0, c1, c2 = c0 / a, c1 / a, c2 / a
+    u3 = largest_root(ar, c2, c1, c0, 1 + abs(c0) + abs(c1) + abs(c2))
+    total, product = -c2 - u3, -c0 / u3
+    spread = ar.sqrt(total * total - 4 * product)
+    values = (polynomial(terms, u) for u in (u3, (total + spread) / 2, (total - spread) / 2))
+    return [(abs(value) > 0) is not True for value in values]
 
 
-def _half_over_pole(exact: Exact) -> bool:
-    """Return whether the axis is on a pole at T/2, where no rate is defined."""
-    below = exact.facts.over_bottom and starts_at_u1(exact)
-    return below or (exact.facts.upper_root == 1 and starts_at_u2(exact))
+def _shared_roots(exact: Exact, *polynomials: Sequence[Polynomial]) -> int:
+    """Return the number of common roots: the degree of the greatest common divisor.
+
+    Euclid's algorithm finds the divisor without dividing coefficients.
+    """
+    p, q = (_trimmed(exact, list(x)) for x in polynomials)
+    while q:
+        while len(p) >= len(q):
+            shifted = [Polynomial(0)] * (len(p) - len(q)) + q
+            p = [q[-1] * x - p[-1] * y for x, y in zip(p, shifted, strict=True)][:-1]
+            p = _trimmed(exact, p)
+        p, q = q, p
+    return len(p) - 1
 
 
-def _half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are known as fractions."""
-    facts = exact.facts
-    if _half_over_pole(exact):
-        return {}
-    if facts.plane:
-        return {"precession_rate_half": Fraction(0), "spin_rate_half": exact.r0}
-    if facts.cusp and starts_at_u2(exact):
-        return {"precession_rate_half": Fraction(0)}
-    falls = facts.at_rest and facts.spins and not facts.free
-    return {"precession_rate_half": exact.a / exact.b} if falls else {}
+def _trimmed(exact: Exact, coefficients: list[Any]) -> list[Any]:
+    """Return coefficients without leading zeros."""
+    while coefficients and exact.cosine.vanishes(coefficients[-1]):
+        coefficients.pop()
+    return coefficients

@@ -7,7 +7,6 @@ of the motion.
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import partial
 from typing import TYPE_CHECKING
 
 from ...arithmetic.exact_cosine import U
@@ -15,14 +14,15 @@ from ...arithmetic.numbers import R, absolute
 from ...arithmetic.values import Over
 from ...inputs.steady_rate import FAST, SLOW, SteadyRates, rational_root
 from ..gaps import State
-from ..quantity import key, keys_of
+from ..quantity import declared_keys, keys_of
 from ..regime import Exact
 
 if TYPE_CHECKING:
     from ...arithmetic.protocol import Arithmetic
 
-elementary_key = partial(key, "Steady precession and elementary theory")
-rate_key = partial(elementary_key, unit="rad/time")
+_GROUP = "Steady precession and elementary theory"
+_number = declared_keys(_GROUP)
+_rate = declared_keys(_GROUP, unit="rad/time")
 
 
 class Textbook(Over[R]):
@@ -33,83 +33,52 @@ class Textbook(Over[R]):
         self.a, self.b, self.cos = start.a, start.b, start.cos
         with ar.working():
             self.ratio = ar.convert(ratio_of(exact))
+        self.upper = exact.cosine.sign(U) >= 0
+        """Whether the tilt is at most 90 degrees."""
 
-    @elementary_key(
-        "λ", "stability factor C²r0²/(4Amgs)", "b²/2a", "b**2/(2*a)", absent="without torque"
+    stability_factor = _number(
+        *("λ", "stability factor C²r0²/(4Amgs)", "b²/2a", "b**2/(2*a)"),
+        value=lambda of: of.b * of.b / (2 * of.a),
+        exists=lambda of: of.exact.a,
+        absent="without torque",
     )
-    def stability_factor(self) -> R | None:
-        """The stability factor lambda = C^2 r0^2/(4 A mgs) = b^2/2a; None without torque."""
-        return self.b * self.b / (2 * self.a) if self.exact.a else None
-
-    @rate_key("r0 sleeping", "least r0 of a stable upright top", "2√(Amgs)/C", "2*sqrt(A*m*g*s)/C")
-    def r0_sleeping(self) -> R:
-        """The least total spin rate 2 sqrt(A mgs)/C of a stable upright top."""
-        return self.ratio * self.ar.sqrt(2 * self.a)
-
-    @rate_key(
-        "Ω slow",
-        "slow steady precession",
-        "ϑ'' = 0",
+    r0_sleeping = _rate(
+        *("r0 sleeping", "least r0 of a stable upright top", "2√(Amgs)/C", "2*sqrt(A*m*g*s)/C"),
+        value=lambda of: of.ratio * of.ar.sqrt(2 * of.a),
+    )
+    steady_rate_slow = _rate(  # the root of smaller size of A cos(theta) w^2 - C r0 w + mgs = 0
+        *("Ω slow", "slow steady precession", "ϑ'' = 0"),
         "m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2",
+        value=lambda of: of.steady.rate(of.ar, of.a, of.b, of.cos, SLOW),
+        exists=lambda of: of.steady.exists(SLOW),
         absent="if |r0| < r0_steady_min, or if r0 = 0 at 90 degrees",
     )
-    def steady_rate_slow(self) -> R | None:
-        """The root of smaller size of A cos(theta) Omega^2 - C r0 Omega + mgs = 0."""
-        return self._steady(SLOW)
-
-    @rate_key(
-        "Ω fast",
-        "fast steady precession",
-        "ϑ'' = 0",
+    steady_rate_fast = _rate(  # the root of larger size, which is infinite at 90 degrees
+        *("Ω fast", "fast steady precession", "ϑ'' = 0"),
         "m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
+        value=lambda of: of.steady.rate(of.ar, of.a, of.b, of.cos, FAST),
+        exists=lambda of: of.steady.exists(FAST),
         absent="if |r0| < r0_steady_min, or at 90 degrees",
     )
-    def steady_rate_fast(self) -> R | None:
-        """The root of larger size of this equation; None at 90 degrees, where it is infinite."""
-        return self._steady(FAST)
 
-    def _steady(self, word: str) -> R | None:
-        if not self.steady.exists(word):
-            return None
-        return self.steady.rate(self.ar, self.a, self.b, self.cos, word)
-
-    @rate_key(
-        "r0 steady",
-        "least r0 of steady precession",
-        "2√(Amgs u0)/C",
+    r0_steady_min = _rate(  # 0 from 90 degrees on
+        *("r0 steady", "least r0 of steady precession", "2√(Amgs u0)/C"),
         "2*sqrt(A*m*g*s*max(cos(theta0), 0))/C",
+        value=lambda of: of.ratio * of.ar.sqrt(2 * of.a * of.cos) if of.upper else 0 * of.a,
     )
-    def r0_steady_min(self) -> R:
-        """The least total spin rate 2 sqrt(A mgs cos(theta))/C of a steady precession at the tilt.
-
-        The rate is 0 from 90 degrees on.
-        """
-        if self.exact.cosine.sign(U) < 0:
-            return 0 * self.a
-        return self.ratio * self.ar.sqrt(2 * self.a * self.cos)
-
-    @rate_key(
-        "ψ' elementary",
-        "precession of a fast top",
-        "mgs/(C r0)",
-        "m*g*s/(C*r0)",
+    precession_rate_elementary = _rate(
+        *("ψ' elementary", "precession of a fast top", "mgs/(C r0)", "m*g*s/(C*r0)"),
+        value=lambda of: of.a / (2 * of.b),
+        exists=lambda of: of.exact.b,
         absent="if r0 = 0",
     )
-    def precession_rate_elementary(self) -> R | None:
-        """The precession rate mgs/(C r0) of a fast top; None if r0 = 0."""
-        return self.a / (2 * self.b) if self.exact.b else None
-
-    @elementary_key(
-        "T elementary",
-        "nutation of a fast top",
-        "2πA/(C r0)",
-        "2*pi*A/(C*abs(r0))",
+    T_nutation_elementary = _number(
+        *("T elementary", "nutation of a fast top", "2πA/(C r0)", "2*pi*A/(C*abs(r0))"),
+        value=lambda of: 2 * of.ar.pi / absolute(of.b),
+        exists=lambda of: of.exact.b,
         unit="time",
         absent="if r0 = 0",
     )
-    def T_nutation_elementary(self) -> R | None:
-        """The nutation period 2 pi A/(C |r0|) of a fast top; None if r0 = 0."""
-        return 2 * self.ar.pi / absolute(self.b) if self.exact.b else None
 
 
 TEXTBOOK = keys_of(Textbook)
