@@ -30,6 +30,9 @@ LEANING = re.compile(
 ERRORS = re.compile(r"\w*(Error|Warning)$|^(echo|warn|refused)$")
 """Calls whose texts users read."""
 
+HELP = {"option": 1, "choice": 1, "flag": 0}
+"""Declarations of options, and the place of the help among their arguments."""
+
 Node = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -110,6 +113,7 @@ def messages(tree: ast.Module) -> Iterator[tuple[int, str]]:
         )
         texts = [x.value for x in node.keywords if x.arg == "help"]
         texts += node.args[:1] if ERRORS.match(name) else []
+        texts += node.args[HELP[name] :][:1] if name in HELP else []
         yield from ((x.lineno, _text(x)) for x in texts)
 
 

@@ -136,6 +136,7 @@ def test_pages_are_plain_english(path: Path) -> None:
         ('def f():\n    """What a top does."""', "begins with 'What'"),
         ('def f():\n    """Return so many tops."""', "says 'so many'"),
         (f'def f():\n    """Return {"a " * 25}top."""', "has 27 words"),
+        ('x = option(int, "Print so many tops.")', "says 'so many'"),
         ('raise LagtopError("the rest hangs on it")', "says 'hangs on'"),
         ('raise LagtopError(f"What {x} is not given " + "is left")', "begins with 'What'"),
         ('def f():\n    """Return the top."""', None),

@@ -7,22 +7,23 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-import click
-
 from ..bench.hard_scenes import STRATA, stratum_lines
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from .app import Command, fail_for, write_report
+from .app import fail_for, write_report
 from .options import (
     COUNT,
     NUMBER,
-    exclude,
+    REPORT_FORMATS,
+    arguments,
+    command,
+    flag,
     jobs_option,
     late,
     names_type,
+    option,
     output_options,
     plot_option,
-    seed_option,
 )
 from .progress import with_progress
 from .top import INPUT, SCENE, TopOptions, top_options
@@ -57,46 +58,29 @@ def _methods() -> list[str]:
     return list(dict.fromkeys([*all_methods(1.0), *groups()]))
 
 
-@click.command(
+@command(
     "bench",
-    cls=Command,
-    examples="""
-        lagtop bench --methods lagtop,DOP853-quaternion --n 1000
-        lagtop bench chrapan-1952 stiff-top near-separatrix slow-top --plot p.svg
-        lagtop bench --long --methods lagtop,theta-series --n 100
+    """
+    lagtop bench --methods lagtop,DOP853-quaternion --n 1000
+    lagtop bench chrapan-1952 stiff-top near-separatrix slow-top --plot p.svg
+    lagtop bench --long --methods lagtop,theta-series --n 100
     """,
+    exclusive=["--long --t-max"],
 )
-@click.argument("scenes", nargs=-1, type=SCENE, metavar="[SCENE]...")
-@top_options(INPUT, scene=False)
-@click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
-@click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
-@click.option(
-    "--methods",
-    type=names_type(_methods),
-    help="Methods, or groups such as engines.  [default: all but engines]",
-)
-@click.option(
-    "--timeout",
-    type=NUMBER,
-    default="3",
-    show_default=True,
-    help="Time limit of a run, in seconds.",
-)
-@click.option(
-    "--long", "is_long", is_flag=True, help="Compare over spans of 1 to 1e6 periods instead."
-)
-@plot_option
-@output_options("table", "csv", "json", "ndjson", "markdown")
 def bench_command(
-    scenes: Sequence[str],
-    top: TopOptions,
-    t_max: Fraction | None,
-    count: int | None,
-    methods: list[str] | None,
-    timeout: Fraction,
-    is_long: bool,
-    plot: str | None,
-    out: Output,
+    scenes: Sequence[str] = arguments(SCENE, "[SCENE]..."),
+    top: TopOptions = top_options(INPUT, None),
+    t_max: Fraction | None = option(NUMBER, "Last time.  [default: 20.3 nutation periods]"),
+    count: int | None = option(COUNT, "Number of times.  [default: 1e4; 1e3 with --long]", "--n"),
+    methods: list[str] | None = option(
+        names_type(_methods), "Methods, or groups such as engines.  [default: all but engines]"
+    ),
+    timeout: Fraction = option(
+        NUMBER, "Time limit of a run, in seconds.", default="3", show_default=True
+    ),
+    is_long: bool = flag("Compare over spans of 1 to 1e6 periods instead.", "--long"),
+    plot: str | None = plot_option,
+    out: Output = output_options(*REPORT_FORMATS),
 ) -> None:
     """Measure the error of many methods against their run time.
 
@@ -114,7 +98,6 @@ def bench_command(
     from ..bench.pictures import draw_methods
     from ..plot.files import check_plot
 
-    exclude({"--long": is_long, "--t-max": t_max})
     if t_max == 0:
         raise LagtopError("--t-max must not be 0")
     if count is not None and not 1 <= count <= MOST_TIMES:
@@ -145,47 +128,37 @@ def bench_command(
     write_report(out, find)
 
 
-@click.command(
+@command(
     "stability",
-    cls=Command,
-    help=STABILITY.format(strata="\n".join(stratum_lines())),
-    examples="""
-        lagtop stability --strata slow,thresholds --samples 1
-        lagtop stability --strata slow --samples 2 --seed 7 -o battery.csv
-        lagtop stability --strata slow --samples 1 --plot stability.svg
+    """
+    lagtop stability --strata slow,thresholds --samples 1
+    lagtop stability --strata slow --samples 2 --seed 7 -o battery.csv
+    lagtop stability --strata slow --samples 1 --plot stability.svg
     """,
+    exclusive=["--certify --long"],
+    text=STABILITY.format(strata="\n".join(stratum_lines())),
 )
-@click.option(
-    "--samples",
-    "scenes",  # the help lists it among the options of the command, not those of uncertainty
-    type=COUNT,
-    default=str(SCENES),
-    show_default=True,
-    help="Scenes per stratum; 200 make a thorough test.",
-)
-@seed_option("first_seed", default=str(SEED), show_default=True, help="Seed of the random scenes.")
-@click.option(
-    "--strata",
-    type=names_type(late("bench.hard_scenes", "STRATA")),
-    help="Use only these strata.  [default: all]",
-)
-@jobs_option
-@click.option("--certify", is_flag=True, help="Print only proven bounds on the errors of lagtop.")
-@click.option("--long", "is_long", is_flag=True, help="Compare over 1e4 periods too.")
-@plot_option
-@output_options("table", "csv", "json", "ndjson", "markdown")
 def stability_command(
-    scenes: int,
-    first_seed: int,
-    strata: list[str] | None,
-    jobs: int | None,
-    certify: bool,
-    is_long: bool,
-    plot: str | None,
-    out: Output,
+    scenes: int = option(  # the help lists it among the options of the command, as `first_seed`
+        COUNT,
+        "Scenes per stratum; 200 make a thorough test.",
+        "--samples",
+        default=str(SCENES),
+        show_default=True,
+    ),
+    first_seed: int = option(
+        COUNT, "Seed of the random scenes.", "--seed", default=str(SEED), show_default=True
+    ),
+    strata: list[str] | None = option(
+        names_type(late("bench.hard_scenes", "STRATA")), "Use only these strata.  [default: all]"
+    ),
+    jobs: int | None = jobs_option,
+    certify: bool = flag("Print only proven bounds on the errors of lagtop."),
+    is_long: bool = flag("Compare over 1e4 periods too.", "--long"),
+    plot: str | None = plot_option,
+    out: Output = output_options(*REPORT_FORMATS),
 ) -> None:
     """Compare methods in random scenes; STABILITY is the help."""
-    exclude({"--certify": certify, "--long": is_long})
     if not 1 <= scenes <= MOST_SCENES:
         raise LagtopError(f"--samples must be in [1, {MOST_SCENES}], got {scenes}")
     from ..bench import stability

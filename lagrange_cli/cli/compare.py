@@ -6,25 +6,27 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-import click
-
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .app import Command, complain, fail_for, write_report
+from .app import complain, fail_for, write_report
 from .options import (
     FILE,
     NUMBER,
+    REPORT_FORMATS,
     Parsed,
+    choice,
+    command,
+    flag,
     late,
     names_type,
+    option,
     output_options,
     plot_option,
-    reading_options,
-    text_options,
 )
 from .progress import with_progress
-from .top import INPUT, TopOptions, scene_among, top_options
+from .tables import columns_option, euler_option, quaternion_option, text_options
+from .top import INPUT, TopOptions, top_options, words
 
 if TYPE_CHECKING:
     from ..inputs.text_lines import Dialect
@@ -37,56 +39,42 @@ def _parse_step_sizes(text: str) -> list[float]:
     return [float(parse_number(name)) for name in split_names(text)]
 
 
-@click.command(
+@command(
     "compare",
-    cls=Command,
-    examples="""
-        lagtop table looping-top --t-max 5 --columns t,quaternion -o run.csv
-        lagtop compare looping-top run.csv --max-error 1e-6 --plot errors.svg
-        lagtop table --columns t,axis --r0 -50 | lagtop compare - --exit-zero
+    """
+    lagtop table looping-top --t-max 5 --columns t,quaternion -o run.csv
+    lagtop compare looping-top run.csv --max-error 1e-6 --plot errors.svg
+    lagtop table --columns t,axis --r0 -50 | lagtop compare - --exit-zero
     """,
 )
-@click.argument("words", nargs=-1, required=True, type=FILE, metavar="[SCENE] TRAJECTORY...")
-@top_options(INPUT, scene=False)
-@reading_options(quaternion=None)
-@click.option(
-    "--rates-frame",
-    type=click.Choice(["body", "space"]),
-    metavar="FRAME",
-    default="body",
-    show_default=True,
-    help="Frame of p, q, r: body or space.",
-)
-@click.option(
-    "--align",
-    type=names_type(late("judge.alignment", "WORDS"), "WORD,..."),
-    help="Other axes: axis=y, up=y.  From the first row: start (zero of spin and precession), time "
-    "(zero of t), body or space (a constant rotation).",
-)
-@click.option(
-    "--step-sizes",
-    type=Parsed("X,...", _parse_step_sizes),
-    help="Step sizes of the trajectories, for the order of convergence.",
-)
-@click.option("--max-error", type=NUMBER, help="Largest acceptable error in rad.  [default: 0.001]")
-@click.option("--exit-zero", is_flag=True, help="Exit with 0 even if a trajectory is not fine.")
-@text_options
-@plot_option
-@output_options("table", "csv", "json", "ndjson", "markdown")
 def compare_command(
-    words: tuple[str, ...],
-    top: TopOptions,
-    names: list[str] | None,
-    quaternion_order: str | None,
-    euler_sequence: str,
-    rates_frame: str,
-    align: list[str] | None,
-    step_sizes: list[float] | None,
-    max_error: Fraction | None,
-    exit_zero: bool,
-    plot: str | None,
-    dialect: Dialect,
-    out: Output,
+    top: TopOptions = top_options(INPUT, words("[SCENE] TRAJECTORY...", FILE, required=True)),
+    names: list[str] | None = columns_option,
+    quaternion_order: str | None = quaternion_option(None),
+    euler_sequence: str = euler_option,
+    rates_frame: str = choice(
+        ["body", "space"],
+        "Frame of p, q, r: body or space.",
+        "FRAME",
+        default="body",
+        show_default=True,
+    ),
+    align: list[str] | None = option(
+        names_type(late("judge.alignment", "WORDS"), "WORD,..."),
+        "Other axes: axis=y, up=y.  From the first row: start (zero of spin and precession), time "
+        "(zero of t), body or space (a constant rotation).",
+    ),
+    step_sizes: list[float] | None = option(
+        Parsed("X,...", _parse_step_sizes),
+        "Step sizes of the trajectories, for the order of convergence.",
+    ),
+    max_error: Fraction | None = option(
+        NUMBER, "Largest acceptable error in rad.  [default: 0.001]"
+    ),
+    exit_zero: bool = flag("Exit with 0 even if a trajectory is not fine."),
+    dialect: Dialect = text_options,
+    plot: str | None = plot_option,
+    out: Output = output_options(*REPORT_FORMATS),
 ) -> None:
     """Compare computed or measured trajectories with the exact motion.
 
@@ -96,7 +84,6 @@ def compare_command(
 
     The exit code is 1 unless the verdict on every trajectory is fine.
     """
-    from ..inputs.scene_file import is_scene_file
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
     from ..judge.compare import ComparisonRequest, compare_files
@@ -106,20 +93,18 @@ def compare_command(
     if max_error is not None and not max_error > 0:
         raise LagtopError(f"--max-error must be > 0, got {float(max_error)}")
     check_plot(plot, out.path)
-    scene, trajectories = scene_among(words, is_scene_file)
-    if not trajectories:
+    if not top.words:
         raise LagtopError("no trajectory: give a file, or - for standard input")
-    top = top.replace(scene=scene)
     limit = None if max_error is None else float(max_error)
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, top.radians).checked()
     request = ComparisonRequest(
         names, conventions, alignment(align or []), limit, step_sizes, dialect
     )
-    is_named = scene is not None or bool(top.by_key())
+    is_named = top.scene is not None or bool(top.by_key())
     motion, units = top.solved_in_units()
 
     def find() -> Report:
-        comparison = compare_files(motion, trajectories, request, with_progress, is_named=is_named)
+        comparison = compare_files(motion, top.words, request, with_progress, is_named=is_named)
         for text in comparison.warnings:
             complain(f"Warning: {text}")
         if not is_named and comparison.motion is motion:

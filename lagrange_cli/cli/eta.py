@@ -5,22 +5,19 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-import click
-
 from ..arithmetic.points import ExactComplex, parse_complex
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from .app import Command
-from .jacobi import function_formats, write_constants, write_functions
+from .jacobi import RANGE, function_formats, write_constants, write_functions
 from .options import (
     MOST_TABLE_DIGITS,
     NUMBER,
-    RANGE,
     Parsed,
+    command,
     digits_option,
-    exclude,
     late,
     names_type,
+    option,
     rad_option,
 )
 
@@ -65,48 +62,34 @@ def _parse_distance(text: str) -> ExactComplex:
     return value
 
 
-@click.command(
+@command(
     "eta",
-    cls=Command,
-    examples="""
-        lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4
-        lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0:9:99 -o e.csv
-        lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
+    """
+    lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4
+    lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0:9:99 -o e.csv
+    lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
     """,
+    exclusive=["--p --gap-above", "--p --gap-below"],
 )
-@click.option("--delta", type=NUMBER, required=True, help="Upper end of the band.")
-@click.option("--delta-star", type=NUMBER, required=True, help="Lower end of the band.")
-@click.option("--p", type=NUMBER, help="Middle of the two outer roots p - q and p + q.")
-@click.option(
-    "--q",
-    type=Parsed("X", _parse_distance),
-    help="Half the distance between the outer roots; 0.7i for the roots p +- 0.7i.",
-)
-@click.option("--gap-above", type=NUMBER, help="Distance from delta up to an outer root.")
-@click.option("--gap-below", type=NUMBER, help="Distance from delta* down to an outer root.")
-@click.option("--g", type=NUMBER, default="1", help="Leading coefficient.  [default: 1]")
-@click.option("--tau", type=RANGE, help="Times: a list 0,1,2 or a range [log:]start:stop:count.")
-@click.option(
-    "--columns",
-    type=names_type(late("elliptic.eta_table", "ETA_COLUMNS")),
-    help="Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
-)
-@rad_option
-@digits_option(MOST_TABLE_DIGITS)
-@function_formats
 def eta_command(
-    delta: Fraction,
-    delta_star: Fraction,
-    p: Fraction | None,
-    q: ExactComplex | None,
-    gap_above: Fraction | None,
-    gap_below: Fraction | None,
-    g: Fraction,
-    tau: Points | None,
-    columns: list[str] | None,
-    rad: bool,
-    digits: int | None,
-    out: Output,
+    delta: Fraction = option(NUMBER, "Upper end of the band.", required=True),
+    delta_star: Fraction = option(NUMBER, "Lower end of the band.", required=True),
+    p: Fraction | None = option(NUMBER, "Middle of the two outer roots p - q and p + q."),
+    q: ExactComplex | None = option(
+        Parsed("X", _parse_distance),
+        "Half the distance between the outer roots; 0.7i for the roots p +- 0.7i.",
+    ),
+    gap_above: Fraction | None = option(NUMBER, "Distance from delta up to an outer root."),
+    gap_below: Fraction | None = option(NUMBER, "Distance from delta* down to an outer root."),
+    g: Fraction = option(NUMBER, "Leading coefficient.  [default: 1]", default="1"),
+    tau: Points | None = option(RANGE, "Times: a list 0,1,2 or a range [log:]start:stop:count."),
+    columns: list[str] | None = option(
+        names_type(late("elliptic.eta_table", "ETA_COLUMNS")),
+        "Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
+    ),
+    rad: bool = rad_option,
+    digits: int | None = digits_option(MOST_TABLE_DIGITS),
+    out: Output = function_formats,
 ) -> None:
     """Compute the coordinate eta of a satellite (Aksenov 1977, section 3.2).
 
@@ -150,8 +133,6 @@ def _quadrature(
     (p, q), (above, below) = middle, gaps
     if (p is None) != (q is None):
         raise LagtopError("--p and --q belong together: give both, or neither")
-    exclude({"--p": p, "--gap-above": above})
-    exclude({"--p": p, "--gap-below": below})
     if p is not None and q is not None:
         if q.real < 0 or q.imag < 0:
             raise LagtopError(f"--q must be >= 0, or imaginary as 0.7i, got {q}")

@@ -7,15 +7,12 @@ from collections.abc import Iterator, Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING, NamedTuple
 
-import click
-
 from ..arithmetic.text import value_text
 from ..inputs.scene_file import scene_names, scene_remark
 from ..output.report import Field, Report
 from ..output.terminal import View, spelt, view_of
-from .app import Command
-from .options import Parsed, output_options
-from .top import UNCERTAIN, TopOptions, motion_of, scene_among, top_options
+from .options import Parsed, command, output_options
+from .top import UNCERTAIN, TopOptions, motion_of, top_options, words
 
 if TYPE_CHECKING:
     from ..motion.explanation import Explained
@@ -30,19 +27,18 @@ def _names() -> list[str]:
     return [*explained_names(), *scene_names()]
 
 
-@click.command(
+@command(
     "explain",
-    cls=Command,
-    examples="""
-        lagtop explain
-        lagtop explain T_nutation mean_precession_rate looping-top
-        lagtop explain b psidot --r0 20 --format json
+    """
+    lagtop explain
+    lagtop explain T_nutation mean_precession_rate looping-top
+    lagtop explain b psidot --r0 20 --format json
     """,
 )
-@click.argument("words", nargs=-1, type=Parsed("KEY", str, _names), metavar="[SCENE] [KEY]...")
-@top_options(UNCERTAIN, scene=False)
-@output_options(*_FORMATS)
-def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> None:
+def explain_command(
+    top: TopOptions = top_options(UNCERTAIN, words("[SCENE] [KEY]...", Parsed("KEY", str, _names))),
+    out: Output = output_options(*_FORMATS),
+) -> None:
     """Explain keys and columns, with formulas and numbers.
 
     A key is the name of a result.  Each formula is shown in symbols and with the numbers of the
@@ -52,8 +48,7 @@ def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> Non
     """
     from ..motion.explanation import explanations, listed
 
-    scene, names = scene_among(words)
-    found = top.replace(scene=scene).given()
+    found, names = top.given(), top.words
     named = found.system.named if found.system else str
     if names:
         rows = explanations(motion_of(found), names, radians=top.radians, named=named)
@@ -138,17 +133,15 @@ class _Scene(NamedTuple):
     remark: str
 
 
-@click.command(
+@command(
     "scenes",
-    cls=Command,
-    examples="""
-        lagtop scenes
-        lagtop solve fast-gyroscope
-        lagtop scenes --format json
+    """
+    lagtop scenes
+    lagtop solve fast-gyroscope
+    lagtop scenes --format json
     """,
 )
-@output_options(*_FORMATS)
-def scenes_command(out: Output) -> None:
+def scenes_command(out: Output = output_options(*_FORMATS)) -> None:
     """List the built-in scenes.
 
     Commands that solve a top accept these names as SCENE.  You can write your own scene: a TOML

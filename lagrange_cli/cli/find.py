@@ -4,21 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..errors import LagtopError
-from .app import Command, complain
-from .options import COUNT, Parsed, keys_option, output_options
+from .app import complain
+from .options import COUNT, Parsed, command, keys_option, option, output_options
 from .progress import with_progress
-from .top import (
-    TopOptions,
-    key_headings,
-    scene_among,
-    top_options,
-    value_type,
-    warn_missing,
-    warn_unused,
-)
+from .tables import key_headings
+from .top import TopOptions, top_options, value_type, warn_missing, warn_unused, words
 
 if TYPE_CHECKING:
     from ..inputs.units import System
@@ -37,30 +28,24 @@ def _beginnings() -> list[str]:
 CONDITION = Parsed("CONDITION", str, _beginnings)
 
 
-@click.command(
+@command(
     "find",
-    cls=Command,
-    examples="""
-        lagtop find --r0 10:200 T_precession=2
-        lagtop find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43
-        lagtop find theta_min=3 theta_max=6 T_nutation=4 mean_precession_rate=5
+    """
+    lagtop find --r0 10:200 T_precession=2
+    lagtop find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43
+    lagtop find theta_min=3 theta_max=6 T_nutation=4 mean_precession_rate=5
     """,
 )
-@click.argument("words", nargs=-1, type=CONDITION, metavar="[SCENE] CONDITION...")
-@top_options(value_type("parse_number_or_span"), scene=False, units=False)
-@click.option(
-    "--scan",
-    type=COUNT,
-    help="Number of values of each unknown.  [default: 1000, 60 or 20 for 1, 2 or 3 unknowns]",
-)
-@keys_option
-@output_options("csv", "ndjson", "json", "table", "markdown", on_terminal="table")
 def find_command(
-    words: tuple[str, ...],
-    top: TopOptions,
-    scan: int | None,
-    keys: list[str] | None,
-    out: Output,
+    top: TopOptions = top_options(
+        value_type("parse_number_or_span"), words("[SCENE] CONDITION...", CONDITION), units=False
+    ),
+    scan: int | None = option(
+        COUNT,
+        "Number of values of each unknown.  [default: 1000, 60 or 20 for 1, 2 or 3 unknowns]",
+    ),
+    keys: list[str] | None = keys_option,
+    out: Output = output_options("csv", "ndjson", "json", "table", "markdown", on_terminal="table"),
 ) -> None:
     """Find the inputs for which results take given values.
 
@@ -86,22 +71,18 @@ def find_command(
     chosen = record_keys(radians=radians)
     if keys is not None:
         chosen = check_names("keys", keys, all_keys(radians=radians))
-    scene, conditions = scene_among(words)
-    top = top.replace(scene=scene)
     if scan is None and not any(isinstance(x.number, Span) for x in top.by_key().values()):
-        motions, system = _inverted(top, conditions)
+        motions, system = _inverted(top)
     else:
-        motions, system = _found(top, conditions, scan)
+        motions, system = _found(top, scan)
     _write(motions, system, chosen, radians, out)
 
 
-def _found(
-    top: TopOptions, conditions: list[str], count: int | None
-) -> tuple[list[Motion], System | None]:
+def _found(top: TopOptions, count: int | None) -> tuple[list[Motion], System | None]:
     from ..fits.find import find_tops
     from ..fits.search import search_of
 
-    search, given = search_of(top.by_key(), conditions, scene=top.scene, radians=top.radians)
+    search, given = search_of(top.by_key(), top.words, scene=top.scene, radians=top.radians)
     motions, looked = find_tops(search, count, with_progress)
     warn_missing(given)
     warn_unused(given.stds)
@@ -109,7 +90,7 @@ def _found(
     return motions, given.system
 
 
-def _inverted(top: TopOptions, conditions: list[str]) -> tuple[list[Motion], System | None]:
+def _inverted(top: TopOptions) -> tuple[list[Motion], System | None]:
     from ..fits.implied_body import BODY_INPUTS
     from ..fits.invert import invert
     from ..fits.search import system_asked
@@ -118,10 +99,10 @@ def _inverted(top: TopOptions, conditions: list[str]) -> tuple[list[Motion], Sys
         if name not in BODY_INPUTS:
             flag = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
             raise LagtopError(f"no input is unknown: give a range, such as --{flag} 10:200")
-    found = top.replace(units=system_asked(conditions)).given()
+    found = top.replace(units=system_asked(top.words)).given()
     known = {name: float(x) for name, x in found.inputs.items() if name in BODY_INPUTS}
     warn_unused(name for name in found.stds if name in known)
-    motions = invert(conditions, radians=top.radians, known=known, system=found.system)
+    motions = invert(top.words, radians=top.radians, known=known, system=found.system)
     return motions, found.system
 
 

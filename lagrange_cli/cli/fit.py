@@ -6,25 +6,25 @@ from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
-from .app import Command, complain, fail_for, write_report
+from .app import complain, fail_for, write_report
 from .options import (
-    ANY_NAMES,
     FILE,
+    REPORT_FORMATS,
     Parsed,
+    command,
     exclude,
     extension,
+    flag,
+    option,
     output_options,
     plot_option,
-    reading_options,
-    text_options,
 )
 from .progress import with_progress
-from .top import UNCERTAIN, TopOptions, scene_among, top_options
+from .tables import ANY_NAMES, columns_option, euler_option, quaternion_option, text_options
+from .top import UNCERTAIN, TopOptions, top_options, words
 
 if TYPE_CHECKING:
     from ..fits.record import Outcome
@@ -61,50 +61,38 @@ def _parse_window(text: str) -> tuple[float, bool]:
     return number, not text.strip().isdigit()
 
 
-@click.command(
+@command(
     "fit",
-    cls=Command,
-    examples="""
-        lagtop table --t-max 2 --n 200 -o recording.csv
-        lagtop fit recording.csv --m 1587 --g 981 -o fitted.toml
-        lagtop fit recording.csv --sigma 0.3 --plot residuals.svg
+    """
+    lagtop table --t-max 2 --n 200 -o recording.csv
+    lagtop fit recording.csv --m 1587 --g 981 -o fitted.toml
+    lagtop fit recording.csv --sigma 0.3 --plot residuals.svg
     """,
+    exclusive=["--window --by", "--window --plot"],
 )
-@click.argument("words", nargs=-1, required=True, type=FILE, metavar="[SCENE] RECORDING")
-@top_options(UNCERTAIN, scene=False, whole=False)
-@click.option("--fix", type=ANY_NAMES, help="Inputs of the scene that are known, such as m,g.")
-@click.option(
-    "--sigma",
-    type=Parsed("SIGMA", _parse_sigma),
-    help="Standard deviation of all angles, or theta=0.3,psi=0.5; columns NAME_std override it.  "
-    "[default: estimated from the residuals]",
-)
-@click.option(
-    "--window",
-    type=Parsed("N|TIME", _parse_window),
-    help="Fit N windows, or windows of TIME, which needs a decimal point (2.0).  All share one "
-    "body; the spin may decay.",
-)
-@click.option("--by", metavar="COLUMN", help="Column that names the recording of each row.")
-@click.option("--together", is_flag=True, help="Fit one body to all recordings of --by.")
-@reading_options(quaternion="wxyz")
-@text_options
-@plot_option
-@output_options("table", "csv", "json", "ndjson", "markdown", extensions=["toml"])
 def fit_command(
-    words: tuple[str, ...],
-    top: TopOptions,
-    fix: list[str] | None,
-    sigma: float | dict[str, float] | None,
-    window: tuple[float, bool] | None,
-    by: str | None,
-    together: bool,
-    names: list[str] | None,
-    quaternion_order: str,
-    euler_sequence: str,
-    plot: str | None,
-    dialect: Dialect,
-    out: Output,
+    top: TopOptions = top_options(
+        UNCERTAIN, words("[SCENE] RECORDING", FILE, required=True), whole=False
+    ),
+    fix: list[str] | None = option(ANY_NAMES, "Inputs of the scene that are known, such as m,g."),
+    sigma: float | dict[str, float] | None = option(
+        Parsed("SIGMA", _parse_sigma),
+        "Standard deviation of all angles, or theta=0.3,psi=0.5; columns NAME_std override it.  "
+        "[default: estimated from the residuals]",
+    ),
+    window: tuple[float, bool] | None = option(
+        Parsed("N|TIME", _parse_window),
+        "Fit N windows, or windows of TIME, which needs a decimal point (2.0).  All share one "
+        "body; the spin may decay.",
+    ),
+    by: str | None = option(Parsed("COLUMN", str), "Column that names the recording of each row."),
+    together: bool = flag("Fit one body to all recordings of --by."),
+    names: list[str] | None = columns_option,
+    quaternion_order: str = quaternion_option("wxyz"),
+    euler_sequence: str = euler_option,
+    dialect: Dialect = text_options,
+    plot: str | None = plot_option,
+    out: Output = output_options(*REPORT_FORMATS, extensions=["toml"]),
 ) -> None:
     """Fit a top to a recording, with uncertainties.
 
@@ -119,24 +107,20 @@ def fit_command(
     from ..fits.recording import Reading, read_recordings
     from ..fits.windows import fit_windows, split
     from ..inputs.files import shown_path
-    from ..inputs.scene_file import is_scene_file
     from ..inputs.seen import Conventions
     from ..plot.files import check_plot
 
     check_plot(plot, out.path)
-    scene, recordings_given = scene_among(words, is_scene_file)
-    if len(recordings_given) != 1:
-        raise LagtopError(f"fit takes one recording, got {len(recordings_given)}: use --by COLUMN")
-    recording, radians = recordings_given[0], top.radians
+    if len(top.words) != 1:
+        raise LagtopError(f"fit takes one recording, got {len(top.words)}: use --by COLUMN")
+    recording, radians = top.words[0], top.radians
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN")
     scene_path = out.path if extension(out.path) == "toml" else None
-    for other in ({"--by": by}, {"--plot": plot}, {f"--output {out.path}": scene_path}):
-        exclude({"--window": window, **other})
+    exclude({"--window": window, f"--output {out.path}": scene_path})
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
     reading = Reading(names, conventions, by, _in_radians(sigma, radians), dialect)
     recordings = read_recordings(recording, reading)
-    top = top.replace(scene=scene)
     known, stds, system = _known(top, recordings[0].scene, fix or [])
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {out.path} holds one top, got {len(recordings)} recordings")

@@ -6,22 +6,22 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
 from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from .app import Command, complain
+from .app import complain
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
     NUMBER,
-    RANGE,
     Parsed,
+    command,
     digits_option,
     exclude,
+    late,
     names_type,
+    option,
     output_options,
     rad_option,
 )
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from ..inputs.ranges import Multiple, Multiples
     from ..output.destination import Output
 
+RANGE = Parsed("X", late("inputs.ranges", "parse_values"))
 MOST_TERMS = 10_000
 _FAMILIES = ("am", "theta", "zeta", "omega", "pi")
 _JACOBI = """
@@ -95,59 +96,44 @@ def write_functions(table: TableOfFunctions, digits: int | None, out: Output) ->
 function_formats = output_options("table", "csv", "json", "ndjson", "markdown", "parquet", "npy")
 
 
-@click.command(
+@command(
     "jacobi",
-    cls=Command,
-    examples="""
-        lagtop jacobi --k 0.8
-        lagtop jacobi --modular-angle 45 --u 0:4K:101 -o sn.csv
-        lagtop jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i
+    """
+    lagtop jacobi --k 0.8
+    lagtop jacobi --modular-angle 45 --u 0:4K:101 -o sn.csv
+    lagtop jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i
     """,
 )
-@click.option(
-    "--k", type=Parsed("X", parse_complex), help="Modulus, 0 to 1, above 1, or imaginary as 0.8i."
-)
-@click.option("--k-prime", type=NUMBER, help="Complementary modulus k', for k close to 1.")
-@click.option("--modular-angle", type=NUMBER, help="Modular angle arcsin k, 0 to 90 degrees.")
-@click.option("--nome", type=NUMBER, help="Nome q = exp(-pi K'/K), below 1.")
-@click.option(
-    "--u",
-    type=Parsed("X", _parse_arguments),
-    help="Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
-    "K such as K/2,-2.5K.",
-)
-@click.option(
-    "--functions",
-    "families",
-    type=names_type(lambda: _FAMILIES),
-    help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
-    "omega, pi (of u and --param, after Chrapan).  [default: am]",
-)
-@click.option(
-    "--param", metavar="V", help="Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
-)
-@click.option(
-    "--phi", type=RANGE, help="Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
-)
-@click.option(
-    "--series", type=COUNT, help="Print the first N partial sums of the nome series instead."
-)
-@rad_option
-@digits_option(MOST_TABLE_DIGITS)
-@function_formats
 def jacobi_command(
-    k: ExactComplex | None,
-    k_prime: Fraction | None,
-    modular_angle: Fraction | None,
-    nome: Fraction | None,
-    u: Multiples | list[Multiple | ExactComplex] | None,
-    families: list[str] | None,
-    param: str | None,
-    phi: Points | None,
-    series: int | None,
-    rad: bool,
-    digits: int | None,
-    out: Output,
+    k: ExactComplex | None = option(
+        Parsed("X", parse_complex), "Modulus, 0 to 1, above 1, or imaginary as 0.8i."
+    ),
+    k_prime: Fraction | None = option(NUMBER, "Complementary modulus k', for k close to 1."),
+    modular_angle: Fraction | None = option(NUMBER, "Modular angle arcsin k, 0 to 90 degrees."),
+    nome: Fraction | None = option(NUMBER, "Nome q = exp(-pi K'/K), below 1."),
+    u: Multiples | list[Multiple | ExactComplex] | None = option(
+        Parsed("X", _parse_arguments),
+        "Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
+        "K such as K/2,-2.5K.",
+    ),
+    families: list[str] | None = option(
+        names_type(lambda: _FAMILIES),
+        "Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
+        "omega, pi (of u and --param, after Chrapan).  [default: am]",
+        "--functions",
+    ),
+    param: str | None = option(
+        Parsed("V", str), "Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
+    ),
+    phi: Points | None = option(
+        RANGE, "Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
+    ),
+    series: int | None = option(
+        COUNT, "Print the first N partial sums of the nome series instead."
+    ),
+    rad: bool = rad_option,
+    digits: int | None = digits_option(MOST_TABLE_DIGITS),
+    out: Output = function_formats,
 ) -> None:
     """Compute elliptic integrals, Jacobi's functions and theta functions.
 

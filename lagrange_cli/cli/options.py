@@ -1,13 +1,16 @@
-"""Options that commands share, each declared once with its type and its help."""
+"""Declarations of options, and the options and types that several commands share.
+
+Each parameter of a command declares its option by its default, which `option`, `flag`, `choice` or
+`arguments` makes.  A `Group` declares several options that become one value.
+"""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
-from functools import wraps
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from os.path import splitext
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,6 +18,7 @@ from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
 from ..output.destination import Output
 from ..output.terminal import is_terminal
+from .app import Command
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -22,8 +26,7 @@ if TYPE_CHECKING:
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 BINARY = ("parquet", "npy")
 """Formats that are not written to a terminal."""
-
-Command = TypeVar("Command", bound=Callable[..., Any])
+REPORT_FORMATS = ("table", "csv", "json", "ndjson", "markdown")
 
 
 def late(module: str, name: str, **how: Any) -> Callable[..., Any]:
@@ -73,12 +76,70 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         return found or ([CompletionItem(incomplete, type="file")] if is_file else [])
 
 
-def _parse_count(text: str) -> int:
-    """Return a whole number, which may be written as 1e6."""
-    exact = parse_number(text)
-    if exact.denominator != 1:
-        raise LagtopError(f"must be a whole number, got {text}")
-    return int(exact)
+class Group:
+    """Options that belong together: a command receives the one value that `make` returns."""
+
+    def __init__(self, make: Callable[..., Any], params: Sequence[click.Parameter]) -> None:
+        self.make, self.params = make, params
+
+
+def option(kind: Any, text: str, flag: str = "", **how: Any) -> Any:
+    """Declare an option with its help; its flags are `flag`, or the name of the parameter."""
+
+    def declared(name: str) -> click.Option:
+        flags = flag.split() or [f"--{name.replace('_', '-')}"]
+        return click.Option([*flags, name], type=kind, help=text, **how)
+
+    return declared
+
+
+def flag(text: str, name: str = "") -> Any:
+    """Declare an option without a value."""
+    return option(None, text, name, is_flag=True)
+
+
+def choice(names: Sequence[str], text: str, metavar: str, **how: Any) -> Any:
+    """Declare an option whose value is one of some words."""
+    return option(click.Choice(names), text, metavar=metavar, **how)
+
+
+def arguments(kind: Parsed, metavar: str) -> Any:
+    """Declare any number of words that are not options."""
+    return lambda name: click.Argument([name], type=kind, metavar=metavar, nargs=-1)
+
+
+def command(
+    name: str, examples: str, *, exclusive: Sequence[str] = (), text: str | None = None
+) -> Callable[[Callable[..., None]], Command]:
+    """Make a command of a function whose parameters declare options.
+
+    `exclusive` lists flags of which only one can be given, and `text` replaces the docstring.
+    """
+
+    def decorate(function: Callable[..., None]) -> Command:
+        code, defaults = function.__code__, function.__defaults__ or ()
+        declared = dict(zip(code.co_varnames[: code.co_argcount], defaults, strict=True))
+        groups = {argument: x for argument, x in declared.items() if isinstance(x, Group)}
+        params: list[click.Parameter] = []
+        for argument, declaration in declared.items():
+            one = argument not in groups
+            params += [declaration(argument)] if one else groups[argument].params
+        names = {flag: str(param.name) for param in params for flag in param.opts}
+
+        def run(**values: Any) -> None:
+            for flags in exclusive:
+                exclude({flag: values[names[flag]] for flag in flags.split()})
+            for argument, group in groups.items():
+                own = {param.name for param in group.params}
+                in_order = [name for name in values if name in own]  # of the command line
+                values[argument] = group.make(**{name: values.pop(name) for name in in_order})
+            function(**values)
+
+        return Command(
+            name, callback=run, params=params, help=text or function.__doc__, examples=examples
+        )
+
+    return decorate
 
 
 def exclude(options: dict[str, Any]) -> None:
@@ -88,11 +149,12 @@ def exclude(options: dict[str, Any]) -> None:
         raise LagtopError(f"use {given[0]} or {given[1]}, not both")
 
 
-def on_command_line(name: str) -> bool:
-    """Return whether an option of the running command was given on the command line."""
-    from click.core import ParameterSource
-
-    return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
+def _parse_count(text: str) -> int:
+    """Return a whole number, which may be written as 1e6."""
+    exact = parse_number(text)
+    if exact.denominator != 1:
+        raise LagtopError(f"must be a whole number, got {text}")
+    return int(exact)
 
 
 def names_type(
@@ -106,15 +168,12 @@ _all_keys = late("motion.record", "all_keys")
 FILE, FOLDER = Parsed("FILE", str), Parsed("DIR", str)
 NUMBER = Parsed("X", parse_number)
 COUNT = Parsed("N", _parse_count)
-RANGE = Parsed("X", late("inputs.ranges", "parse_values"))
-ANY_NAMES = names_type()
 KEY_NAMES = names_type(_all_keys, "KEY,...")
 KEY = Parsed("KEY", str, _all_keys)
-COLUMN_NAMES = names_type(late("motion.over_time.columns", "column_names"))
 
 
-def digits_option(most: int) -> Callable[[Command], Command]:
-    """Add the option --digits, from 1 to `most`."""
+def digits_option(most: int) -> Any:
+    """Declare --digits, from 1 to `most`."""
 
     def check(_: click.Context, __: click.Parameter, digits: int | None) -> int | None:
         if digits is not None and not 1 <= digits <= most:
@@ -122,28 +181,16 @@ def digits_option(most: int) -> Callable[[Command], Command]:
         return digits
 
     text = f"Print N correct digits, 1 to {most}; inputs are read as exact decimals."
-    return click.option("--digits", type=COUNT, callback=check, help=text)
+    return option(COUNT, text, callback=check)
 
 
-rad_option = click.option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
-certify_option = click.option(
-    "--certify", is_flag=True, help="Also print KEY_radius, a proven bound on the error."
-)
-keys_option = click.option(
-    "--keys", type=KEY_NAMES, help="Compute and print only these keys (see lagtop explain)."
-)
-
-
-def seed_option(*name: str, **how: Any) -> Callable[[Command], Command]:
-    """Add the option --seed, for an argument of another `name` if it has one."""
-    return click.option("--seed", *name, type=COUNT, **how)
-
-
-plot_option = click.option("--plot", type=FILE, help="Also draw the report: FILE.svg or FILE.png.")
-jobs_option = click.option(
-    "--jobs",
-    type=Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),
-    help="Number of processes; auto: one per core.  [default: 1]",
+rad_option = flag("Use radians for all angles, in and out.", "--rad")
+certify_option = flag("Also print KEY_radius, a proven bound on the error.")
+keys_option = option(KEY_NAMES, "Compute and print only these keys (see lagtop explain).")
+plot_option = option(FILE, "Also draw the report: FILE.svg or FILE.png.")
+jobs_option = option(
+    Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),
+    "Number of processes; auto: one per core.  [default: 1]",
 )
 
 
@@ -152,23 +199,22 @@ def extension(path: str) -> str:
     return splitext(path)[1][1:].lower()
 
 
-def output_options(
-    *formats: str, extensions: Iterable[str] = (), on_terminal: str = ""
-) -> Callable[[Command], Command]:
-    """Add the options --output and --format; the command receives an `Output` as `out`.
+def output_options(*formats: str, extensions: Iterable[str] = (), on_terminal: str = "") -> Any:
+    """Declare --output and --format, which become an `Output`.
 
     The default format is the extension of the file.  Without an extension it is the first of the
     formats, or `on_terminal` if standard output is a terminal.
     """
     default = f"{formats[0]}; on a terminal {on_terminal}" if on_terminal else formats[0]
 
-    def chosen(name: str, path: str, fmt: str | None) -> str:
+    def chosen(path: str, fmt: str | None) -> str:
         ending = extension(path)
         if fmt is None and ending in {"", "txt", *extensions}:
             at_screen = path == "-" and on_terminal and is_terminal(sys.stdout)
             return on_terminal if at_screen else formats[0]
         ending = "markdown" if ending == "md" else ending
         if fmt is None and (ending == "table" or ending not in formats):
+            name = click.get_current_context().command.name
             raise LagtopError(
                 f"{name} writes {', '.join(formats)} and no {extension(path)}, "
                 f"got --output {quoted(path)}: change the extension, or add --format"
@@ -178,104 +224,14 @@ def output_options(
             raise LagtopError(f"--format {fmt} is not for a terminal: use -o FILE.{fmt}")
         return fmt
 
-    def decorate(command: Command) -> Command:
-        @wraps(command)
-        def run(*args: Any, output: str, fmt: str | None, **options: Any) -> Any:
-            name = click.get_current_context().command.name or ""
-            return command(*args, out=Output(output, chosen(name, output, fmt)), **options)
-
-        decorated: Any = click.option(
-            "--format",
-            "fmt",
-            type=click.Choice(formats),
-            metavar="FORMAT",
-            help=f"{', '.join(formats)}.  [default: extension of FILE, or {default}]",
-        )(run)
-        return click.option(  # type: ignore[no-any-return]
-            "-o", "--output", type=FILE, default="-", help="Output file (replaced only on success)."
-        )(decorated)
-
-    return decorate
-
-
-_DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
-_DECIMALS = {"point": ".", "comma": ","}
-
-
-def _mark(marks: dict[str, str]) -> Callable[[str], str]:
-    """Return a parser for a mark, given by name or as a character."""
-
-    def parse(text: str) -> str:
-        if text not in {*marks, *marks.values()}:
-            raise LagtopError(f"must be {', '.join(marks)} or the character, got {quoted(text)}")
-        return marks.get(text, text)
-
-    return parse
-
-
-def text_options(command: Command) -> Command:
-    """Add --delimiter and --decimal; the command receives a `dialect`."""
-
-    @wraps(command)
-    def run(*args: Any, delimiter: str | None, decimal: str | None, **options: Any) -> Any:
-        from ..inputs.text_lines import Dialect
-
-        if delimiter == decimal == ",":
-            raise LagtopError("use --delimiter comma or --decimal comma, not both")
-        return command(*args, dialect=Dialect(delimiter or "", decimal or ""), **options)
-
-    decorated: Any = run
-    for name, marks in (("decimal", _DECIMALS), ("delimiter", _DELIMITERS)):
-        decorated = click.option(
-            f"--{name}",
-            type=Parsed("MARK", _mark(marks), lambda marks=marks: marks),  # type: ignore[misc]
-            help=f"Input: {', '.join(marks)}.  [default: detected]",
-        )(decorated)
-    return decorated  # type: ignore[no-any-return]
-
-
-header_comments_option = click.option(
-    "--header-comments",
-    is_flag=True,
-    help="Describe scene, version, units and conventions above the CSV, in # lines.",
-)
-
-
-def is_described(out: Output, header_comments: bool) -> bool:
-    """Return whether the output has a description: Parquet always, CSV with --header-comments.
-
-    Raises LagtopError for --header-comments with a format that cannot hold a description.
-    """
-    if header_comments and out.fmt not in {"csv", "parquet"}:
-        raise LagtopError(f"--header-comments describes CSV and Parquet, got --format {out.fmt}")
-    return header_comments or out.fmt == "parquet"
-
-
-def reading_options(quaternion: str | None) -> Callable[[Command], Command]:
-    """Add the options for the columns of a trajectory; `quaternion` is the default order."""
-    order = quaternion or "from the first row"
-
-    def decorate(command: Command) -> Command:
-        command = click.option(
-            "--euler-sequence",
-            type=Parsed("SEQ", late("inputs.seen", "euler_sequence")),
-            default="xyz",
-            show_default=True,
-            help="Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
-        )(command)
-        command = click.option(
-            "--quaternion-order",
-            type=click.Choice(["wxyz", "xyzw"]),
-            metavar="ORDER",
-            default=quaternion,
-            help=f"wxyz or xyzw.  [default: {order}]",
-        )(command)
-        return click.option(
-            "--columns",
-            "names",
-            type=ANY_NAMES,
-            help="Names of all columns; axis, quaternion and matrix stand for all of their "
-            "parts, _ skips a column.",
-        )(command)
-
-    return decorate
+    file = option(FILE, "Output file (replaced only on success).", "-o --output", default="-")
+    named = choice(
+        formats,
+        f"{', '.join(formats)}.  [default: extension of FILE, or {default}]",
+        "FORMAT",
+        flag="--format",
+    )
+    return Group(
+        lambda output, fmt: Output(output, chosen(output, fmt), fmt is not None),
+        [file("output"), named("fmt")],
+    )

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 import re
 import sys
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import PurePath
 from typing import TYPE_CHECKING
-
-import click
 
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import parse_number
@@ -21,20 +20,10 @@ from ..output.terminal import is_terminal
 from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, MAP_KEY, ON_THE_SHEET, SHEET, PlotRequest, help_lines
 from ..plot.style import chosen_look
-from .app import Command
-from .options import FILE, KEY, NUMBER, Parsed
+from .options import FILE, KEY, NUMBER, Parsed, choice, command, flag, option
 from .progress import with_progress
-from .top import (
-    INPUT,
-    TIME,
-    UNCERTAIN,
-    TopOptions,
-    angle_stds,
-    motion_of,
-    scene_among,
-    top_options,
-    warn_unused,
-)
+from .tables import angle_stds
+from .top import INPUT, TIME, UNCERTAIN, TopOptions, motion_of, top_options, warn_unused, words
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
@@ -61,66 +50,44 @@ def _axis_names() -> list[str]:
 
 
 AXIS = Parsed("RANGE", str, _axis_names)
+KIND = Parsed("KIND", str, _kinds_and_scenes)
 
 
-@click.command(
+@command(
     "plot",
-    cls=Command,
-    help=HELP.format(kinds="\n".join(help_lines())),
-    examples="""
-        lagtop plot looping-top sphere -o loops.svg
-        lagtop plot map --x r0=5:120:40 --y theta0=2:178:9 -o map.png
-        lagtop plot --r0 30 --animate top.gif --duration 2
+    """
+    lagtop plot looping-top sphere -o loops.svg
+    lagtop plot map --x r0=5:120:40 --y theta0=2:178:9 -o map.png
+    lagtop plot --r0 30 --animate top.gif --duration 2
     """,
+    text=HELP.format(kinds="\n".join(help_lines())),
 )
-@click.argument(
-    "words", nargs=-1, type=Parsed("KIND", str, _kinds_and_scenes), metavar="[SCENE] [KIND]..."
-)
-@top_options(UNCERTAIN, scene=False)
-@click.option("--t-max", type=TIME, help="Last time.  [default: a few nutation periods]")
-@click.option("--key", type=KEY, default=MAP_KEY, show_default=True, help="Key of `map`.")
-@click.option("--x", type=AXIS, help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
-@click.option("--y", type=AXIS, help="Vertical axis of `map`.  [default: theta0]")
-@click.option(
-    "--colour-limits",
-    metavar="LOW:HIGH",
-    help="Colour limits of `map`.  [default: 1st and 99th percentile]",
-)
-@click.option("--camera", metavar="AZ,EL", help="Azimuth and elevation of the camera.")
-@click.option("--dark", is_flag=True, help="Dark background.")
-@click.option("--size", metavar="WxH", help="Size of the page in inches, such as 8x6.")
-@click.option("--dpi", type=NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
-@click.option("--animate", type=FILE, help="Write a film of the top: FILE.gif or FILE.mp4.")
-@click.option("--duration", type=NUMBER, help="Length of the film in seconds.  [default: 6]")
-@click.option("--speed", type=NUMBER, help="Simulated time per second of film.")
-@click.option("--show", is_flag=True, help="Open a window.")
-@click.option(
-    "--format", "fmt", type=click.Choice(_FORMATS), metavar="FORMAT", help="png, svg or pdf."
-)
-@click.option("-o", "--output", type=FILE, help="FILE.png, .svg or .pdf (replaced on success).")
 def plot_command(
-    words: tuple[str, ...],
-    top: TopOptions,
-    t_max: Value | None,
-    key: str,
-    x: str | None,
-    y: str | None,
-    colour_limits: str | None,
-    camera: str | None,
-    dark: bool,
-    size: str | None,
-    dpi: Fraction | None,
-    animate: str | None,
-    duration: Fraction | None,
-    speed: Fraction | None,
-    show: bool,
-    fmt: str | None,
-    output: str | None,
+    top: TopOptions = top_options(UNCERTAIN, words("[SCENE] [KIND]...", KIND)),
+    t_max: Value | None = option(TIME, "Last time.  [default: a few nutation periods]"),
+    key: str = option(KEY, "Key of `map`.", default=MAP_KEY, show_default=True),
+    x: str | None = option(AXIS, "Horizontal axis of `map`, INPUT=[log:]start:stop:count."),
+    y: str | None = option(AXIS, "Vertical axis of `map`.  [default: theta0]"),
+    colour_limits: str | None = option(
+        Parsed("LOW:HIGH", str), "Colour limits of `map`.  [default: 1st and 99th percentile]"
+    ),
+    camera: str | None = option(Parsed("AZ,EL", str), "Azimuth and elevation of the camera."),
+    dark: bool = flag("Dark background."),
+    size: str | None = option(str, "Size of the page in inches, such as 8x6.", metavar="WxH"),
+    dpi: Fraction | None = option(NUMBER, "Pixels per inch, 20 to 1000.  [default: 150, film 100]"),
+    animate: str | None = option(FILE, "Write a film of the top: FILE.gif or FILE.mp4."),
+    duration: Fraction | None = option(NUMBER, "Length of the film in seconds.  [default: 6]"),
+    speed: Fraction | None = option(NUMBER, "Simulated time per second of film."),
+    show: bool = flag("Open a window."),
+    fmt: str | None = choice(_FORMATS, "png, svg or pdf.", "FORMAT", flag="--format"),
+    output: str | None = option(
+        FILE, "FILE.png, .svg or .pdf (replaced on success).", "-o --output"
+    ),
 ) -> None:
     """Write, film and show the pictures that the options request."""
     if not (output or show or animate):
         raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
-    top, chosen = _scene_and_kinds(top, words)
+    chosen = _kinds(top.words)
     written = _format_of(fmt, output)
     inches = _inches(size)
     eye, ends = _camera(camera, top.radians), _ends(colour_limits)
@@ -167,12 +134,11 @@ def plot_command(
         show_page(page)
 
 
-def _scene_and_kinds(top: TopOptions, words: tuple[str, ...]) -> tuple[TopOptions, tuple[str, ...]]:
-    """Return the options with the scene among the words, if any, and the kinds of picture."""
-    scene, names = scene_among(words)
-    check_names("KIND", names or [SHEET], [*KINDS, SHEET])
+def _kinds(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the kinds of picture, each once; `all` stands for several, and is the default."""
+    names = check_names("KIND", names or [SHEET], [*KINDS, SHEET])
     kinds = [kind for name in names for kind in (ON_THE_SHEET if name == SHEET else [name])]
-    return top.replace(scene=scene), tuple(dict.fromkeys(kinds)) or ON_THE_SHEET
+    return tuple(dict.fromkeys(kinds))
 
 
 def _format_of(fmt: str | None, output: str | None) -> str:
@@ -261,19 +227,19 @@ def _ends(text: str | None) -> tuple[float, float] | None:
     return low, high
 
 
-@click.command(
+@command(
     "view",
-    cls=Command,
-    examples="""
-        lagtop view -o top.html
-        lagtop view looping-top -o loops.html
-        lagtop view --r0 60 --theta0 0 -o sleeping.html
+    """
+    lagtop view -o top.html
+    lagtop view looping-top -o loops.html
+    lagtop view --r0 60 --theta0 0 -o sleeping.html
     """,
 )
-@top_options(INPUT)
-@click.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
-@click.option("-o", "--output", type=FILE, help="FILE.html (replaced only on success).")
-def view_command(top: TopOptions, opens: bool, output: str | None) -> None:
+def view_command(
+    top: TopOptions = top_options(INPUT),
+    opens: bool = flag("Open the page in the browser.", "--open"),
+    output: str | None = option(FILE, "FILE.html (replaced only on success).", "-o --output"),
+) -> None:
     """Write an interactive page for the browser.
 
     The page shows the top in space, its angles and its record.  Sliders change every input, and the

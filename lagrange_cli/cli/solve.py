@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..errors import AbsentError, LagtopError
 from ..motion.numbers import Numbers, record_in_range
 from ..motion.record import all_keys, record_keys, shown_keys
 from ..motion.regime import exact
-from .app import Command, complain, write_report
+from .app import complain, write_report
 from .options import (
     COUNT,
     KEY,
     KEY_NAMES,
     MOST_RECORD_DIGITS,
     certify_option,
+    command,
     digits_option,
-    exclude,
-    on_command_line,
+    flag,
+    option,
     output_options,
-    seed_option,
 )
 from .top import UNCERTAIN, TopOptions, top_options, warned
 
@@ -32,42 +30,31 @@ if TYPE_CHECKING:
     from ..output.destination import Output
 
 
-@click.command(
+@command(
     "solve",
-    cls=Command,
-    examples="""
-        lagtop solve simo-wong-1991 --r0 40
-        lagtop solve --theta0 60 --get T_nutation,theta_max_deg --digits 30
-        lagtop solve --r0 '477(2) rpm' --budget T_nutation
+    """
+    lagtop solve simo-wong-1991 --r0 40
+    lagtop solve --theta0 60 --get T_nutation,theta_max_deg --digits 30
+    lagtop solve --r0 '477(2) rpm' --budget T_nutation
     """,
+    exclusive=["--get --derivation --budget --samples"],
 )
-@top_options(UNCERTAIN)
-@click.option(
-    "--get", "keys", type=KEY_NAMES, help="Print only the values of these keys, one per line."
-)
-@click.option(
-    "--derivation",
-    is_flag=True,
-    help="Print the steps of section 8 of the paper, for a top released from rest.",
-)
-@digits_option(MOST_RECORD_DIGITS)
-@certify_option
-@click.option(
-    "--budget", type=KEY, help="Print the uncertainty budget of KEY: the share of each input."
-)
-@click.option("--samples", type=COUNT, help="Check linear propagation with N random tops.")
-@seed_option(help="Seed of the random tops.")
-@output_options("table", "json", "csv", "ndjson", "markdown")
 def solve_command(
-    top: TopOptions,
-    keys: list[str] | None,
-    derivation: bool,
-    digits: int | None,
-    certify: bool,
-    budget: str | None,
-    samples: int | None,
-    seed: int | None,
-    out: Output,
+    top: TopOptions = top_options(UNCERTAIN),
+    keys: list[str] | None = option(
+        KEY_NAMES, "Print only the values of these keys, one per line.", "--get"
+    ),
+    derivation: bool = flag(
+        "Print the steps of section 8 of the paper, for a top released from rest."
+    ),
+    digits: int | None = digits_option(MOST_RECORD_DIGITS),
+    certify: bool = certify_option,
+    budget: str | None = option(
+        KEY, "Print the uncertainty budget of KEY: the share of each input."
+    ),
+    samples: int | None = option(COUNT, "Check linear propagation with N random tops."),
+    seed: int | None = option(COUNT, "Seed of the random tops."),
+    out: Output = output_options("table", "json", "csv", "ndjson", "markdown"),
 ) -> None:
     """Compute the periods, turning points and mean rates of one top.
 
@@ -78,7 +65,6 @@ def solve_command(
     Inputs may have units ('480 rpm').  Give units for all inputs that you set, or for none; the
     tilt needs none.  An input may have an uncertainty ('1587(2)').
     """
-    exclude({"--get": keys, "--derivation": derivation, "--budget": budget, "--samples": samples})
     if keys is not None:
         _check_keys(keys, top.radians)
     if seed is not None and samples is None:
@@ -101,7 +87,7 @@ def solve_command(
         record["remark"] = found.system.in_words(record["remark"])
     is_summed = wanted is None and out.fmt != "csv"
     summed = _summary(record, motion.exact.facts, found.system) if is_summed else {}
-    bare = keys is not None and not on_command_line("fmt")
+    bare = keys is not None and not out.is_named
     if found.stds:
         drawn = out.fmt in {"table", "markdown"} and not bare
         record = uncertainty.with_stds(found, motion, record, drawn)

@@ -6,33 +6,30 @@ import re
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
-import click
-
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from .app import Command, complain
+from .app import complain
 from .options import (
     FOLDER,
     Parsed,
+    arguments,
+    command,
     exclude,
-    header_comments_option,
-    is_described,
+    flag,
     jobs_option,
     keys_option,
-    on_command_line,
+    option,
     output_options,
-    text_options,
 )
 from .progress import with_progress
-from .top import (
-    SCENE,
-    TopOptions,
+from .tables import (
+    header_comments_option,
+    is_described,
     key_headings,
-    top_options,
-    value_type,
-    warn_missing,
+    text_options,
     warn_no_tops,
 )
+from .top import SCENE, TopOptions, top_options, value_type, warn_missing
 
 if TYPE_CHECKING:
     from ..inputs.text_lines import Dialect
@@ -51,44 +48,33 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
-@click.command(
+@command(
     "sweep",
-    cls=Command,
-    examples="""
-        lagtop sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv
-        lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
-        lagtop sweep tops.csv --keys r0,T_nutation -o solved.ndjson
+    """
+    lagtop sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv
+    lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
+    lagtop sweep tops.csv --keys r0,T_nutation -o solved.ndjson
     """,
+    exclusive=["--jobs --dask"],
 )
-@click.argument("files", nargs=-1, type=SCENE, metavar="[SCENE] [TOPS.csv|.ndjson|-]")
-@top_options(value_type("parse_values", uncertain=True), scene=False)
-@keys_option
-@click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
-@jobs_option
-@click.option("--parts", "folder", type=FOLDER, help="Write one file per part into this folder.")
-@click.option(
-    "--shard",
-    type=Parsed("I/N", _parse_shard),
-    help="Compute only every N-th part, starting with the I-th.",
-)
-@click.option(
-    "--dask", "cluster", metavar="ADDRESS", help="Use a Dask cluster, or `local` for this machine."
-)
-@text_options
-@header_comments_option
-@output_options("csv", "ndjson", "json", "parquet", "table", "markdown", on_terminal="table")
 def sweep_command(
-    files: tuple[str, ...],
-    top: TopOptions,
-    keys: list[str] | None,
-    fail_fast: bool,
-    jobs: int | None,
-    folder: str | None,
-    shard: tuple[int, int] | None,
-    cluster: str | None,
-    dialect: Dialect,
-    header_comments: bool,
-    out: Output,
+    files: tuple[str, ...] = arguments(SCENE, "[SCENE] [TOPS.csv|.ndjson|-]"),
+    top: TopOptions = top_options(value_type("parse_values", uncertain=True), None),
+    keys: list[str] | None = keys_option,
+    fail_fast: bool = flag("Stop at the first top that cannot be solved."),
+    jobs: int | None = jobs_option,
+    folder: str | None = option(FOLDER, "Write one file per part into this folder.", "--parts"),
+    shard: tuple[int, int] | None = option(
+        Parsed("I/N", _parse_shard), "Compute only every N-th part, starting with the I-th."
+    ),
+    cluster: str | None = option(
+        Parsed("ADDRESS", str), "Use a Dask cluster, or `local` for this machine.", "--dask"
+    ),
+    dialect: Dialect = text_options,
+    header_comments: bool = header_comments_option,
+    out: Output = output_options(
+        *("csv", "ndjson", "json", "parquet", "table", "markdown"), on_terminal="table"
+    ),
 ) -> None:
     """Solve each top of a grid or of a file.
 
@@ -107,10 +93,9 @@ def sweep_command(
     from ..sweeps.folder import Folder
     from ..sweeps.plan import Tally, plan, shard_of
 
-    exclude({"--jobs": jobs, "--dask": cluster})
     exclude({"--parts": folder, "--output": out.path != "-"})
     if folder is not None:
-        out = out.replace(fmt="csv") if not on_command_line("fmt") else out
+        out = out.replace(fmt="csv") if not out.is_named else out
         if out.fmt in {"json", "table", "markdown"}:
             raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
     if out.fmt == "parquet":
@@ -130,7 +115,7 @@ def sweep_command(
     )
     warn_missing(todo.given)
     sweep = todo.sweep
-    if not (on_command_line("fmt") or 0 < todo.size <= FEW) and out.fmt == "table":
+    if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
         sweep, out = sweep._replace(fmt="csv"), out.replace(fmt="csv")
     tally = Tally(fail_fast=fail_fast)
     blocks = shard_of(todo.blocks, shard)

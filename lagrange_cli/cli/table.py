@@ -2,43 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from .. import __version__
 from ..arithmetic.text import value_text
-from ..errors import LagtopError
-from .app import Command
+from ..errors import DataError, LagtopError
 from .options import (
     BINARY,
-    COLUMN_NAMES,
     COUNT,
     FILE,
     MOST_TABLE_DIGITS,
     certify_option,
+    command,
     digits_option,
     exclude,
-    header_comments_option,
-    is_described,
+    flag,
     jobs_option,
+    late,
+    names_type,
+    option,
     output_options,
-    text_options,
 )
 from .progress import with_progress
-from .top import (
-    TIME,
-    UNCERTAIN,
-    TopOptions,
-    angle_stds,
-    blaming,
-    motion_of,
-    top_options,
-    warn_missing,
-    warn_no_tops,
-)
+from .tables import angle_stds, header_comments_option, is_described, text_options, warn_no_tops
+from .top import TIME, UNCERTAIN, TopOptions, motion_of, top_options, warn_missing
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -56,52 +46,39 @@ MAX_DRAWN_ROWS = 10_000
 _DRAWN = ("table", "markdown")
 
 
-@click.command(
+@command(
     "table",
-    cls=Command,
-    examples="""
-        lagtop table --t-max 1 -o angles.csv
-        lagtop table fast-gyroscope --t-max 10 --dt 0.01 --columns t,axis,energy
-        lagtop table --t-max 1e9 --n 3 --digits 30 --certify --format json
+    """
+    lagtop table --t-max 1 -o angles.csv
+    lagtop table fast-gyroscope --t-max 10 --dt 0.01 --columns t,axis,energy
+    lagtop table --t-max 1e9 --n 3 --digits 30 --certify --format json
     """,
+    exclusive=[
+        *("--n --dt", "--tops --digits", "--tops --certify"),
+        *("--times --t-max", "--times --t-min", "--times --n", "--times --dt"),
+    ],
 )
-@top_options(UNCERTAIN)
-@click.option(
-    "--t-max", type=TIME, help="Last time.  [default: one nutation period; 1 without nutation]"
-)
-@click.option("--t-min", type=TIME, help="First time.  [default: 0]")
-@click.option("--n", "count", type=COUNT, help="Number of times.  [default: 101]")
-@click.option("--dt", type=TIME, help="Time step, instead of --n.")
-@click.option("--times", type=FILE, help="Read the times from a file, one per line.")
-@click.option(
-    "--columns",
-    type=COLUMN_NAMES,
-    help="Columns (see lagtop explain).  [default: t,theta,phi,psi]",
-)
-@click.option("--tops", type=FILE, help="Tabulate each top of a file, as in sweep.")
-@jobs_option
-@click.option("--wrap", is_flag=True, help="Keep spin and precession in (-180, 180].")
-@digits_option(MOST_TABLE_DIGITS)
-@certify_option
-@text_options
-@header_comments_option
-@output_options("csv", "json", "ndjson", "table", "markdown", "parquet", "npy")
 def table_command(
-    top: TopOptions,
-    t_max: Value | None,
-    t_min: Value | None,
-    count: int | None,
-    dt: Value | None,
-    times: str | None,
-    columns: list[str] | None,
-    tops: str | None,
-    jobs: int | None,
-    wrap: bool,
-    digits: int | None,
-    certify: bool,
-    dialect: Dialect,
-    header_comments: bool,
-    out: Output,
+    top: TopOptions = top_options(UNCERTAIN),
+    t_max: Value | None = option(
+        TIME, "Last time.  [default: one nutation period; 1 without nutation]"
+    ),
+    t_min: Value | None = option(TIME, "First time.  [default: 0]"),
+    count: int | None = option(COUNT, "Number of times.  [default: 101]", "--n"),
+    dt: Value | None = option(TIME, "Time step, instead of --n."),
+    times: str | None = option(FILE, "Read the times from a file, one per line."),
+    columns: list[str] | None = option(
+        names_type(late("motion.over_time.columns", "column_names")),
+        "Columns (see lagtop explain).  [default: t,theta,phi,psi]",
+    ),
+    tops: str | None = option(FILE, "Tabulate each top of a file, as in sweep."),
+    jobs: int | None = jobs_option,
+    wrap: bool = flag("Keep spin and precession in (-180, 180]."),
+    digits: int | None = digits_option(MOST_TABLE_DIGITS),
+    certify: bool = certify_option,
+    dialect: Dialect = text_options,
+    header_comments: bool = header_comments_option,
+    out: Output = output_options("csv", "json", "ndjson", "table", "markdown", "parquet", "npy"),
 ) -> None:
     """Tabulate tilt, spin and precession, or other columns, over time.
 
@@ -112,15 +89,10 @@ def table_command(
     from ..motion.over_time.columns import DEFAULT_COLUMNS, DEFAULT_ROWS, TableRequest
 
     top, interval = top.in_seconds(t_min=t_min, t_max=t_max, dt=dt)
-    exclude({"--n": count, "--dt": dt})
     if jobs is not None and tops is None:
         raise LagtopError("--jobs needs --tops: one top is computed by one process")
-    exclude({"--tops": tops, "--digits": digits})
-    exclude({"--tops": tops, "--certify": certify})
     stdin = {"the scene -": top.scene, "--tops -": tops, "--times -": times}
     exclude({name: path == "-" for name, path in stdin.items()})
-    for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
-        exclude({"--times": times, name: value})
     _check_format(out.fmt, times, tops, digits, certify)
     request = TableRequest(
         _listed(times, tops, out.fmt, dialect) or partial(_grid, n=count, **interval),
@@ -273,3 +245,16 @@ def _write_many(
     tally.check()
     if not tally.count:
         warn_no_tops(tops)
+
+
+@contextmanager
+def blaming(times: str | None) -> Iterator[None]:
+    """Raise DataError for a time out of reach in a file of times."""
+    try:
+        yield
+    except LagtopError as error:
+        if times is None or error.key != "t":
+            raise
+        from ..inputs.files import shown_path
+
+        raise DataError(f"{shown_path(times)}: {error}") from None

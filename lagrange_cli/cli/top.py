@@ -1,27 +1,23 @@
-"""The top of a command: its options and scene, the motion that they describe, and warnings."""
+"""The top of a command: its options and scene, and the motion that they describe."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from functools import wraps
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from ..arithmetic.values import Values
-from ..errors import DataError, LagtopError
+from ..errors import LagtopError
 from .app import complain
-from .options import Command, Parsed, late, rad_option
+from .options import FILE, Group, Parsed, choice, late, option, rad_option
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.input_keys import Input
-    from ..inputs.units import System
     from ..inputs.value import Value
     from ..motion.numbers import Numbers
-    from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
 
 M = TypeVar("M", bound="Numbers")
@@ -48,10 +44,12 @@ class TopOptions(Values):
 
     options: Mapping[str, Any]
     """The inputs by the names of their options, in the order of the command line."""
-    radians: bool = False
-    units: str | None = None
+    radians: bool
+    units: str | None
     """The system of units of the output, si or cgs."""
-    scene: str | None = None
+    scene: str | None
+    words: Sequence[str]
+    """The words besides the scene, such as conditions or files."""
 
     def by_key(self) -> dict[str, Any]:
         """Return the inputs that were given, by key."""
@@ -71,12 +69,11 @@ class TopOptions(Values):
 
         return gather(self.by_key(), self.scene, system=self.units, others=others)
 
-    def solved(self) -> Motion:
-        """Return the motion; warn if uncertainties are not used."""
-        return self.solved_in_units()[0]
-
     def solved_in_units(self) -> tuple[Motion, dict[str, str]]:
-        """Return the motion, and the units of its inputs, if any, as a condition of a report."""
+        """Return the motion, and the units of its inputs, if any, as a condition of a report.
+
+        A warning names the inputs whose uncertainties are not used.
+        """
         found = self.given()
         warn_unused(found.stds)
         system = found.system
@@ -97,46 +94,50 @@ class TopOptions(Values):
         return top, {name: given[name].number if name in given else None for name in times}
 
 
+def words(metavar: str, kind: Parsed, *, required: bool = False) -> click.Argument:
+    """Return the argument of words among which a scene may be."""
+    return click.Argument(["words"], nargs=-1, type=kind, metavar=metavar, required=required)
+
+
+ONE_SCENE = click.Argument(["words"], required=False, type=SCENE, metavar="[SCENE]")
+
+
 def top_options(
-    kind: Parsed, *, scene: bool = True, units: bool = True, whole: bool = True
-) -> Callable[[Command], Command]:
-    """Add the inputs of a top, --rad, --units and SCENE; a command receives a `TopOptions`, `top`.
+    kind: Parsed,
+    scene: click.Argument | None = ONE_SCENE,
+    *,
+    units: bool = True,
+    whole: bool = True,
+) -> Any:
+    """Declare the inputs of a top, --rad, --units and a scene, which become a `TopOptions`.
 
     Some commands take no `scene` here, or no `units`; a top that is not `whole` has no defaults.
     """
     from ..inputs.input_keys import DECLARED  # not for commands without a top
 
     names = [name for name in DECLARED if whole or name != "phidot0"]  # which needs a whole start
-
     one_top = whole and kind in {INPUT, UNCERTAIN}
-    steady = value_type(uncertain=kind is UNCERTAIN, steady=True) if one_top else kind
+    kinds = dict.fromkeys(names, kind)
+    if one_top:
+        kinds["psidot0"] = value_type(uncertain=kind is UNCERTAIN, steady=True)
 
-    def decorate(command: Command) -> Command:
-        @wraps(command)
-        def run(**options: Any) -> Any:
-            inputs = {name: options.pop(name) for name in [*options] if name in names}
-            rest = (options.pop(name, None) for name in ("units", "scene"))
-            top = TopOptions(inputs, options.pop("rad"), *rest)
-            return command(top=top, **options)
+    def made(
+        rad: bool, units: str | None = None, words: Any = None, **inputs: Value | None
+    ) -> TopOptions:
+        if not isinstance(words, tuple):
+            return TopOptions(inputs, rad, units, words, ())
+        are_files = scene is not None and scene.type is FILE
+        return TopOptions(inputs, rad, units, *_scene_among(words, are_files=are_files))
 
-        decorated: Any = run
-        if units:
-            text = "Output in si or cgs if inputs have units.  [default: si]"
-            choice = click.Choice(["si", "cgs"])
-            decorated = click.option("--units", type=choice, metavar="SYSTEM", help=text)(decorated)
-        decorated = rad_option(decorated)
-        for name in reversed(names):
-            text = _help_of(DECLARED[name], shows_default=whole, one_top=one_top)
-            flag = f"--{name.replace('_', '-')}"
-            read = steady if name == "psidot0" else kind
-            decorated = click.option(flag, name, type=read, help=text)(decorated)
-        if scene:
-            decorated = click.argument("scene", required=False, type=SCENE, metavar="[SCENE]")(
-                decorated
-            )
-        return decorated  # type: ignore[no-any-return]
-
-    return decorate
+    params: list[click.Parameter] = [scene] if scene else []
+    for name, read in kinds.items():
+        text = _help_of(DECLARED[name], shows_default=whole, one_top=one_top)
+        params.append(option(read, text)(name))
+    params.append(rad_option("rad"))
+    if units:
+        text = "Output in si or cgs if inputs have units.  [default: si]"
+        params.append(choice(["si", "cgs"], text, "SYSTEM")("units"))
+    return Group(made, params)
 
 
 def _help_of(declared: Input, *, shows_default: bool, one_top: bool) -> str:
@@ -165,14 +166,15 @@ def is_scene(word: str) -> bool:
     )
 
 
-def scene_among(
-    words: Sequence[str], is_one: Callable[[str], bool] = is_scene
-) -> tuple[str | None, list[str]]:
+def _scene_among(words: Sequence[str], *, are_files: bool) -> tuple[str | None, list[str]]:
     """Return the scene among some words, or None, and the other words.
 
-    Raises LagtopError for more than one scene.
+    Words that are files are scenes only if they end in `.toml` or are shipped.  Raises LagtopError
+    for more than one scene.
     """
-    scenes = [word for word in words if is_one(word)]
+    from ..inputs.scene_file import is_scene_file
+
+    scenes = [word for word in words if (is_scene_file if are_files else is_scene)(word)]
     if len(scenes) > 1:
         raise LagtopError(f"use one scene, not {' and '.join(scenes)}")
     return scenes[0] if scenes else None, [word for word in words if word not in scenes]
@@ -196,19 +198,6 @@ def warned(motion: M, found: Given) -> M:
     return motion
 
 
-def key_headings(
-    names: Sequence[str], system: System | None, fmt: str, *, radians: bool
-) -> Sequence[str]:
-    """Return the headings of keys: with units in a table for people, if inputs have units."""
-    if system is None or fmt not in {"table", "markdown"}:
-        return names
-    from ..motion.record import shown_keys
-    from ..output.report import with_unit
-
-    keys = shown_keys(radians=radians, named=system.named, requested=True)
-    return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
-
-
 def warn_missing(found: Given) -> None:
     """Warn of inputs of the body from the worked example, and of a scene without inputs."""
     if found.empty is not None:
@@ -225,38 +214,3 @@ def warn_unused(uncertain: Iterable[str]) -> None:
     if names := ", ".join(uncertain):
         used = "solve, table, sweep and plot angles use it"
         complain(f"Warning: the uncertainty of {names} is not used: {used}")
-
-
-def warn_no_tops(path: str) -> None:
-    """Warn that a file of tops has only a header."""
-    from ..inputs.files import shown_path
-
-    complain(f"Warning: {shown_path(path)} holds no tops")
-
-
-def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
-    """Return the uncertainties of the angles over time, if inputs are uncertain.
-
-    If there are none, a warning states the reason.
-    """
-    if not found.stds:
-        return None
-    from ..motion.sensitivity.angle_sensitivities import AngleStds  # for few tops only
-
-    stds = AngleStds(motion.exact, found.stds, found.inputs.keys())
-    if stds.reason:
-        complain(f"Warning: no uncertainty of the angles: {stds.reason}")
-    return stds
-
-
-@contextmanager
-def blaming(times: str | None) -> Iterator[None]:
-    """Raise DataError for a time out of reach in a file of times."""
-    try:
-        yield
-    except LagtopError as error:
-        if times is None or error.key != "t":
-            raise
-        from ..inputs.files import shown_path
-
-        raise DataError(f"{shown_path(times)}: {error}") from None

@@ -36,6 +36,8 @@ class Output(Values):
 
     path: str
     fmt: str
+    is_named: bool = False
+    """Whether the user named the format."""
 
     def values(self, values: Iterable[Any]) -> None:
         """Write bare values, one per line."""

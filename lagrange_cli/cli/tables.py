@@ -1,0 +1,116 @@
+"""Tables that commands read and write: options of files and columns, headings, descriptions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..arithmetic.text import quoted
+from ..errors import LagtopError
+from .app import complain
+from .options import Group, Parsed, choice, flag, late, names_type, option
+
+if TYPE_CHECKING:
+    from ..inputs.given import Given
+    from ..inputs.text_lines import Dialect
+    from ..inputs.units import System
+    from ..motion.sensitivity.angle_sensitivities import AngleStds
+    from ..motion.solve import Motion
+    from ..output.destination import Output
+
+
+def _mark(**marks: str) -> Any:
+    """Declare a mark, given by name or as a character."""
+
+    def parse(text: str) -> str:
+        if text not in {*marks, *marks.values()}:
+            raise LagtopError(f"must be {', '.join(marks)} or the character, got {quoted(text)}")
+        return marks.get(text, text)
+
+    kind = Parsed("MARK", parse, lambda: marks)
+    return option(kind, f"Input: {', '.join(marks)}.  [default: detected]")
+
+
+def _dialect(delimiter: str | None, decimal: str | None) -> Dialect:
+    from ..inputs.text_lines import Dialect
+
+    if delimiter == decimal == ",":
+        raise LagtopError("use --delimiter comma or --decimal comma, not both")
+    return Dialect(delimiter or "", decimal or "")
+
+
+text_options: Any = Group(
+    _dialect,
+    [
+        _mark(comma=",", semicolon=";", tab="\t", blank=" ")("delimiter"),
+        _mark(point=".", comma=",")("decimal"),
+    ],
+)
+"""Options that become a `Dialect`."""
+header_comments_option = flag(
+    "Describe scene, version, units and conventions above the CSV, in # lines."
+)
+ANY_NAMES = names_type()
+columns_option = option(
+    ANY_NAMES,
+    "Names of all columns; axis, quaternion and matrix stand for all of their parts, _ skips a "
+    "column.",
+    "--columns",
+)
+euler_option = option(
+    Parsed("SEQ", late("inputs.seen", "euler_sequence")),
+    "Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
+    default="xyz",
+    show_default=True,
+)
+
+
+def quaternion_option(default: str | None) -> Any:
+    """Declare --quaternion-order; without a default the first row decides."""
+    text = f"wxyz or xyzw.  [default: {default or 'from the first row'}]"
+    return choice(["wxyz", "xyzw"], text, "ORDER", default=default)
+
+
+def is_described(out: Output, header_comments: bool) -> bool:
+    """Return whether the output has a description: Parquet always, CSV with --header-comments.
+
+    Raises LagtopError for --header-comments with a format that cannot hold a description.
+    """
+    if header_comments and out.fmt not in {"csv", "parquet"}:
+        raise LagtopError(f"--header-comments describes CSV and Parquet, got --format {out.fmt}")
+    return header_comments or out.fmt == "parquet"
+
+
+def warn_no_tops(path: str) -> None:
+    """Warn that a file of tops has only a header."""
+    from ..inputs.files import shown_path
+
+    complain(f"Warning: {shown_path(path)} holds no tops")
+
+
+def key_headings(
+    names: Sequence[str], system: System | None, fmt: str, *, radians: bool
+) -> Sequence[str]:
+    """Return the headings of keys: with units in a table for people, if inputs have units."""
+    if system is None or fmt not in {"table", "markdown"}:
+        return names
+    from ..motion.record import shown_keys
+    from ..output.report import with_unit
+
+    keys = shown_keys(radians=radians, named=system.named, requested=True)
+    return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
+
+
+def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
+    """Return the uncertainties of the angles over time, if inputs are uncertain.
+
+    If there are none, a warning states the reason.
+    """
+    if not found.stds:
+        return None
+    from ..motion.sensitivity.angle_sensitivities import AngleStds  # for few tops only
+
+    stds = AngleStds(motion.exact, found.stds, found.inputs.keys())
+    if stds.reason:
+        complain(f"Warning: no uncertainty of the angles: {stds.reason}")
+    return stds
