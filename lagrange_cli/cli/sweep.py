@@ -130,7 +130,7 @@ def sweep_command(
             if client is not None and not fail_fast:
                 make = stack.enter_context(parts_folder.made_by_workers())
         parts = stack.enter_context(computed(make, blocks, client, jobs or 1))
-        passing = tally.until_error(parts, ended=to_stdout) if fail_fast else tally.passing(parts)
+        passing = tally.passing(parts, ended=to_stdout)
         if todo.size:
             share = todo.size // (shard or (1, 1))[1]
             passing = with_progress(passing, "rows", share, tally.progress)

@@ -21,9 +21,8 @@ from .angle_arrays import (
     moving_motions,
     released_motions,
 )
-from .arguments import Together
 from .records import BLOCK_ROWS
-from .results import ResultColumn, Results
+from .results import ResultColumn, Results, Together
 from .top_arrays import TopArrays
 
 

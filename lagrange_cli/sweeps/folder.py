@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import json
 import os
-import secrets
 import socket
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from copy import copy
 from pathlib import Path
-from typing import Any, NamedTuple
+from secrets import token_hex
+from typing import Any
 
 from ..errors import CannotWriteError
 from ..output.destination import opened
@@ -27,58 +28,31 @@ _MOST_BYTES = 1 << 24
 """Bytes of a description, which may hold long lists of inputs."""
 
 
-class PartFiles(NamedTuple):
-    """The files of the parts of a sweep in a folder, written by any machine that sees it."""
-
-    path: Path
-    sweep: Sweep
-    token: str = ""
-    """The name of a file by which workers recognise this folder (others may have the same path)."""
-
-    def made(self, numbered: NumberedBlock) -> Part:
-        """Compute a part, and write it if this machine sees the folder and may write to it."""
-        part = self.sweep.part(numbered)
-        if not ((self.path / self.token).exists() and os.access(self.path, os.W_OK)):
-            return part
-        self.write(part)
-        return part._replace(text=b"", is_written=True)
-
-    def write(self, part: Part) -> None:
-        """Write a part into a file of its own, which appears whole or not at all."""
-        if part.failed:  # before the part, because a part that exists counts as done
-            errors = {"failed": part.failed, "first": part.first_error}
-            with opened(str(self.errors(part.number)), _mark()) as stream:
-                stream.write(json.dumps(errors).encode() + b"\n")
-        content = part_file(self.sweep.fmt, self.sweep.header, part.number, part.text)
-        with opened(str(self.part(part.number)), _mark()) as stream:
-            stream.write(content)
-
-    def part(self, number: int) -> Path:
-        """Return the file of a part."""
-        return self.path / f"part-{number:06}.{self.sweep.fmt}"
-
-    def errors(self, number: int) -> Path:
-        """Return the file that counts the errors of a part."""
-        return self.path / f"errors-{number:06}.json"
-
-
 class Folder:
-    """A folder that holds the parts of one sweep and of no other."""
+    """A folder that holds the parts of one sweep and of no other; workers unpickle it."""
 
     def __init__(self, path: str, sweep: Sweep, description: Mapping[str, Any]) -> None:
         """Take a folder for a sweep, and remove temporary files of killed runs.
 
         Raises CannotWriteError if the folder cannot be made or holds parts of another sweep.
         """
-        self.path = Path(path)
-        self.files = PartFiles(self.path, sweep)
+        self.path, self.sweep = Path(path), sweep
         self.found = 0  # parts of earlier runs
+        self._token = ""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             self._claim(json.loads(json.dumps(description)))
             self._remove_leftovers()
         except OSError as error:
             raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
+
+    def _part(self, number: int) -> Path:
+        """Return the file of a part."""
+        return self.path / f"part-{number:06}.{self.sweep.fmt}"
+
+    def _errors(self, number: int) -> Path:
+        """Return the file that counts the errors of a part."""
+        return self.path / f"errors-{number:06}.json"
 
     def missing(self, blocks: Iterable[NumberedBlock], tally: Tally) -> Iterator[NumberedBlock]:
         """Yield the blocks whose parts are still missing, and count the others as done."""
@@ -93,38 +67,59 @@ class Folder:
         """Write the parts that no worker has written."""
         for part in parts:
             if not part.is_written:
-                self.files.write(part)
+                self._write(part)
+
+    def _write(self, part: Part) -> None:
+        """Write a part into a file of its own, which appears whole or not at all."""
+        if part.failed:  # before the part, because a part that exists counts as done
+            errors = {"failed": part.failed, "first": part.first_error}
+            with opened(str(self._errors(part.number)), _mark()) as stream:
+                stream.write(json.dumps(errors).encode() + b"\n")
+        content = part_file(self.sweep.fmt, self.sweep.header, part.number, part.text)
+        with opened(str(self._part(part.number)), _mark()) as stream:
+            stream.write(content)
 
     @contextmanager
     def made_by_workers(self) -> Iterator[Make]:
         """Yield the function that computes a part, and writes it on workers that see this folder.
 
-        Workers recognise the folder by a file with a random name, which exists during the block.
-        At the end the temporary files of killed workers of this machine are removed.
+        Workers recognise the folder by a file with a random name, which exists during the block,
+        because others may have the same path.  At the end the temporary files of killed workers of
+        this machine are removed.
         """
-        token = f"{_TEMPORARY}{_mark()}{secrets.token_hex(8)}"
+        there = copy(self)
+        there.path, there._token = self.path.absolute(), f"{_TEMPORARY}{_mark()}{token_hex(8)}"
+        token = self.path / there._token
         try:
-            (self.path / token).touch()
+            token.touch()
         except OSError as error:
             raise CannotWriteError(f"cannot write {self.path}: {error.strerror}") from None
         try:
-            yield self.files._replace(path=self.path.absolute(), token=token).made
+            yield there._made
         finally:
             with suppress(OSError):
-                (self.path / token).unlink()
+                token.unlink()
                 self._remove_leftovers()
+
+    def _made(self, numbered: NumberedBlock) -> Part:
+        """Compute a part, and write it if this machine sees the folder and may write to it."""
+        part = self.sweep.part(numbered)
+        if not ((self.path / self._token).exists() and os.access(self.path, os.W_OK)):
+            return part
+        self._write(part)
+        return part._replace(text=b"", is_written=True)
 
     def _done(self, number: int, count: int) -> Part | None:
         """Return a part that is complete, without its text, or None if it must be computed.
 
         If the count of errors is damaged, the part is computed again.
         """
-        errors = self.files.errors(number)
-        if not _is_there(self.files.part(number)):
+        errors = self._errors(number)
+        if not _is_there(self._part(number)):
             return None
-        if not _is_there(errors):
-            return Part(number, b"", count, 0, "")
-        found = _object_in(errors) or {}
+        found = {"failed": 0, "first": ""}
+        if _is_there(errors):
+            found = _object_in(errors) or {}
         failed, first = found.get("failed"), found.get("first")
         if isinstance(failed, int) and isinstance(first, str):
             return Part(number, b"", count, failed, first)
@@ -139,8 +134,7 @@ class Folder:
                     f"cannot write {self.path}: {alien.name} is there without a {DESCRIPTION}; "
                     "take another folder or empty this one"
                 )
-            text = json.dumps(description, indent=1) + "\n"
-            _create(file, text.encode())
+            _create(file, f"{json.dumps(description, indent=1)}\n".encode())
         other = _object_in(file)
         if other is None:
             raise CannotWriteError(f"cannot write {self.path}: {DESCRIPTION} describes no sweep")

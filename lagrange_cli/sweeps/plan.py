@@ -266,22 +266,17 @@ class Tally:
             found = part.number, part.first_error
             self.first = min(self.first, found) if self.first else found
 
-    def passing(self, parts: Iterable[Part]) -> Iterator[Part]:
-        """Yield the parts, counted."""
+    def passing(self, parts: Iterable[Part], *, ended: bool = True) -> Iterator[Part]:
+        """Yield the parts, counted; with `fail_fast`, up to the first error.
+
+        The parts then end there, or SomeFailedError is raised before the part with the error.
+        """
         for part in parts:
             self.add(part)
-            yield part
-
-    def until_error(self, parts: Iterable[Part], *, ended: bool) -> Iterator[Part]:
-        """Yield the parts, counted, up to the first error.
-
-        The parts end there, or SomeFailedError is raised before the part with the error.
-        """
-        for part in self.passing(parts):
-            if not ended:
+            if self.fail_fast and not ended:
                 self.check()
             yield part
-            if self.failed:
+            if self.fail_fast and self.failed:
                 return
 
     def progress(self, _: Part) -> int:

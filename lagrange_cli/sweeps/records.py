@@ -25,8 +25,7 @@ from ..motion.quantity import degree_name
 from ..motion.regime import FAST, Regime
 from ..motion.solve import solve
 from ..motion.summary import fast_remark, vertical_remark
-from .arguments import Together
-from .results import TEXTS, ResultColumn, Results
+from .results import TEXTS, ResultColumn, Results, Together
 from .start_arrays import StartArrays
 from .top_arrays import TopArrays, facts_at_rest
 
