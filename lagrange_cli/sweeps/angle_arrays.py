@@ -5,7 +5,6 @@ The constants are computed in pairs of doubles by the formulas of `motion`, and 
 
 from __future__ import annotations
 
-from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +23,6 @@ from ..motion.over_time.samplers import tilt_of
 from ..motion.over_time.series_constants import theta_constants
 from ..motion.over_time.theta_sampler import arguments_of, moduli_of, unwound
 from ..motion.over_time.theta_series import (
-    Component,
     Frame,
     Series,
     circular_series,
@@ -204,7 +202,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
             speed=_columns(series.scale * steps, count)[0],
             first=_columns(series.scale * DoubleDouble(phase), count)[0],
             hyperbolic=hyperbolic,
-            frames=[_rounded(frame) for frame in series.frames],
+            frames=[frame.mapped(_high, _high) for frame in series.frames],
             slopes=[_columns(slope / series.scale, count)[0] for slope in slopes],
             growths=Growths(phi, psi),
         )
@@ -225,11 +223,12 @@ def _at_start(motions: PairMotions, series: Series) -> tuple[Array, Mask, Array,
     else:
         C, S = cosine_and_sine(PAIRS, m=motion.m, k_prime=motion.k_prime, s2=s2, c2=c2)
     S *= DoubleDouble(np.where(lower, -direction, direction))
-    arg_x, arg_y = (
-        _start_argument([getattr(frame, name) for frame in series.frames], lower, S, C)
-        for name in ("x", "y")
-    )
-    return direction * _phase(motion, motions.start, lower), lower, arg_x, arg_y
+    args = []
+    for components in zip(*(frame[:2] for frame in series.frames), strict=True):  # of X, then of Y
+        parts = zip(*(component.at(S, C) for component in components), strict=True)
+        real, imag = (PAIRS.where(lower, other, one).high for one, other in parts)
+        args.append(np.arctan2(imag, real))
+    return direction * _phase(motion, motions.start, lower), lower, *args
 
 
 def _phase(motion: Nutating[DoubleDouble], start: Start, lower: Mask) -> Array:
@@ -243,23 +242,6 @@ def _phase(motion: Nutating[DoubleDouble], start: Start, lower: Mask) -> Array:
     return phase
 
 
-def _start_argument(
-    components: list[Component], lower: Mask, S: DoubleDouble, C: DoubleDouble
-) -> Array:
-    """Return the argument of X or Y at t = 0."""
-    square, found = S * S, []
-    for component in components:
-        real, imag = (
-            reduce(lambda value, x: value * square + x, reversed(part))
-            for part in (component.real, component.imag)
-        )
-        found.append((real, S * C * imag) if component.even else (C * real, S * imag))
-    (real, imag), (other_real, other_imag) = found
-    real, imag = PAIRS.where(lower, other_real, real), PAIRS.where(lower, other_imag, imag)
-    argument: Array = np.arctan2(imag.high, real.high)
-    return argument
-
-
 def _growth(rate: DoubleDouble, start: DoubleDouble) -> Growth:
     """Return the growth of an angle of each top."""
     count, turns = start.high.size, rate / (2 * PAIRS.pi)
@@ -268,16 +250,14 @@ def _growth(rate: DoubleDouble, start: DoubleDouble) -> Growth:
     return Growth(first, mean, turn, Triple(*_columns(turns, count), 0.0))
 
 
+def _high(coefficients: list[DoubleDouble]) -> list[Array]:
+    """Return coefficients rounded to doubles."""
+    return [x.high for x in coefficients]
+
+
 def _columns(x: DoubleDouble, count: int) -> tuple[Array, Array]:
     """Return both parts of a number of each top (or of one number for all) as columns."""
     return tuple(np.broadcast_to(part, (count,))[:, None] for part in (x.high, x.low))  # type: ignore[return-value]
-
-
-def _rounded(frame: Frame) -> Frame:
-    def component(c: Component) -> Component:
-        return Component([x.high for x in c.real], [x.high for x in c.imag], c.even)
-
-    return Frame(component(frame.x), component(frame.y), [])
 
 
 def _rows_of(value: Any, rows: Any) -> Any:

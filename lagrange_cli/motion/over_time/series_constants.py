@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from typing import Any, Generic, NamedTuple
 
-from ...arithmetic.numbers import R, polynomial
+from ...arithmetic.numbers import R
 from ...arithmetic.protocol import FunctionArithmetic, Numeric
 from ...elliptic.complete import place
 from ..kinds import Constant, Kind, Separatrix
@@ -91,12 +91,11 @@ def evaluate(
     """
     z = phase * series.scale
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
-    s = S * S
 
     def polar(c: Component, side: int) -> tuple[Numeric, Numeric]:
-        P, Q = polynomial(c.real, s), polynomial(c.imag, s)
-        real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
-        return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)
+        real, imag = c.at(S, C)
+        along = imag if real or S else side * c.imag[0]  # on the pole: the limit
+        return ar.sqrt(real * real + imag * imag), ar.atan2(along, real)
 
     return *polar(frame.x, -rises), *polar(frame.y, rises)
 

@@ -245,10 +245,7 @@ def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
         count = count_needed([abs(x) for x in polynomial], greatest, _NEGLIGIBLE)
         return [float(x / size) + 0.0 for x in polynomial[:count]]  # no -0
 
-    def component(c: Component) -> Component:
-        return Component(scaled(c.real, size), scaled(c.imag, size), c.even)
-
-    return Frame(component(frame.x), component(frame.y), scaled(frame.rate, size**4))
+    return frame.mapped(lambda x: scaled(x, size), lambda x: scaled(x, size**4))
 
 
 def count_needed(sizes: Sequence[Decimal], greatest: Decimal, negligible: Decimal) -> int:

@@ -14,9 +14,11 @@ families.  The hyperbolic families are the same with -s.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from ...arithmetic.numbers import polynomial
 from ...arithmetic.protocol import Arithmetic, FunctionArithmetic, Numeric
 from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
 
@@ -42,6 +44,11 @@ class Component(NamedTuple):
     imag: Coefficients
     even: bool = False
 
+    def at(self, S: Numeric, C: Numeric) -> tuple[Numeric, Numeric]:
+        """Return the real and the imaginary part."""
+        P, Q = polynomial(self.real, S * S), polynomial(self.imag, S * S)
+        return (P, S * C * Q) if self.even else (C * P, S * Q)
+
 
 Components = tuple[Component, Component]
 """The series theta2 and theta1 of X or Y."""
@@ -53,6 +60,13 @@ class Frame(NamedTuple):
     x: Component
     y: Component
     rate: Coefficients
+
+    def mapped(
+        self, part: Callable[[Coefficients], Any], rate: Callable[[Coefficients], Any]
+    ) -> Frame:
+        """Return the frame with other coefficients of X and Y, and of the rate."""
+        x, y = (Component(part(c.real), part(c.imag), c.even) for c in self[:2])
+        return Frame(x, y, rate(self.rate))
 
 
 class SquaredRatio(NamedTuple):

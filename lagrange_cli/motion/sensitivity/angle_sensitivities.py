@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from decimal import Decimal
-from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
@@ -90,22 +89,17 @@ def angle_sensitivities(
         for part in blocks(flat.size):
             angles[:, part], partials = neighbours.at(flat[part])
             for i, name in enumerate(names):
-                found[:, part, i] = _chained_arrays(partials, chain[name])
+                found[:, part, i] = sum(
+                    float(slope) * partials[:, PARAMETERS.index(parameter)]
+                    for parameter, slope in chain[name].items()
+                    if parameter in PARAMETERS
+                )
     shape = times.shape
     return AngleSensitivities(
         tuple(names),
         Angles(*(angle.reshape(shape) for angle in angles)),
         *(derivative.reshape(*shape, len(names)) for derivative in found),
     )
-
-
-def _chained_arrays(partials: Array, by: dict[str, Fraction]) -> Array:
-    """Return the derivatives by an input, from those by the parameters that depend on it."""
-    total = np.zeros_like(partials[:, 0])
-    for i, name in enumerate(PARAMETERS):
-        if name in by:
-            total += float(by[name]) * partials[:, i]
-    return total
 
 
 def sharp_partials(scene: Exact) -> Partials:

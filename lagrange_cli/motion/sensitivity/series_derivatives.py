@@ -26,7 +26,7 @@ from ...elliptic.modulus import Modulus
 from ..over_time.attitude import Growths, Times, growths
 from ..over_time.series_constants import SeriesFromStart, series_from_start
 from ..over_time.theta_sampler import count_needed, greatest_argument
-from ..over_time.theta_series import Coefficients, Component
+from ..over_time.theta_series import Coefficients, Component, Frame
 from ..spin_precession import Nutating
 from .neighbourhood import PARAMETERS
 
@@ -52,14 +52,6 @@ class Rows(NamedTuple):
         return Rows(self.slopes * factor, self.sizes * (abs(factor) if size is None else size))
 
 
-class Polynomials(NamedTuple):
-    """X or Y about one turning point; coefficients are rows of value and derivatives."""
-
-    real: Array
-    imag: Array
-    even: bool
-
-
 class Polar(NamedTuple):
     """The squared modulus and the argument of X or Y, and their derivatives."""
 
@@ -79,7 +71,7 @@ class SeriesDerivatives:
             found = series_from_start(motion, rates=True)
             series, (x_start, y_start) = found.series, found.starts
             self.hyperbolic = series.hyperbolic
-            self.frames, self.rates_of_tilt = _in_doubles(ar, found)
+            self.frames = _in_doubles(ar, found)
             self.about_means = RatesAboutMeans.of(
                 motion, means, first_is_upper=found.first_is_upper
             )
@@ -138,7 +130,8 @@ class SeriesDerivatives:
         z = phase * self.scales[0]
         S, C = (np.sinh(z), np.cosh(z)) if self.hyperbolic else (np.sin(z), np.cos(z))
         odd = np.remainder(step, 2.0) != 0
-        rate = np.where(odd, *(polynomial(x, S * S) for x in self.rates_of_tilt[::-1])) * S * C
+        even_rate, odd_rate = (polynomial(frame.rate, S * S) for frame in self.frames)
+        rate = np.where(odd, odd_rate, even_rate) * S * C
         norm = x2 + y2
         theta = rate / (2.0 * norm * np.sqrt(x2 * y2))
         spinning = self.about_means.at(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
@@ -151,7 +144,7 @@ class SeriesDerivatives:
         odd = np.remainder(step, 2.0) != 0
         values, slopes, sizes = np.empty((2, z.size)), *np.empty((2, 2, *dz.slopes.shape))
         for rows, frame in ((~odd, self.frames[0]), (odd, self.frames[1])):
-            parts = _component(frame[which], z[rows], self.hyperbolic)
+            parts = _component((frame.x, frame.y)[which], z[rows], self.hyperbolic)
             for i, (at_phase, slope) in enumerate(parts):
                 turned = Rows(dz.slopes[:, rows], dz.sizes[:, rows]).times(slope)
                 values[i, rows] = at_phase[0]
@@ -166,30 +159,29 @@ class SeriesDerivatives:
         )
 
 
-def _in_doubles(
-    ar: Any, found: SeriesFromStart
-) -> tuple[list[tuple[Polynomials, Polynomials]], list[list[float]]]:
-    """Return X and Y, and the rate of the tilt, about both turning points as rows of doubles.
+def _in_doubles(ar: Any, found: SeriesFromStart) -> list[Frame]:
+    """Return the series about both turning points, without negligible coefficients.
 
-    Negligible coefficients are omitted.
+    Coefficients of X and Y are rows of doubles, the value and its derivatives.
     """
     greatest = greatest_argument(ar, found.series).value
     leading = max(abs(c.real[0].value) for frame in found.frames for c in frame[:2])
     size = Decimal(2) ** math.frexp(float(leading))[1]
 
-    def component(c: Component) -> Polynomials:
-        parts = (_kept(part, greatest) for part in (c.real, c.imag))
-        real, imag = (_rows([x / Dual(size) for x in part]) for part in parts)
-        return Polynomials(real, imag, c.even)
+    def kept(coefficients: Coefficients) -> Coefficients:
+        sizes = [abs(x.value) for x in coefficients]
+        return coefficients[: count_needed(sizes, greatest, _NEGLIGIBLE)]
+
+    def rows(coefficients: Coefficients) -> Array:
+        return np.array([_row(x / Dual(size)) for x in kept(coefficients)]).T
 
     def rate(coefficients: Coefficients) -> list[float]:
-        return [float(x.value / size**4) for x in _kept(coefficients, greatest)]
+        return [float(x.value / size**4) for x in kept(coefficients)]
 
-    frames = [(component(frame.x), component(frame.y)) for frame in found.frames]
-    return frames, [rate(frame.rate) for frame in found.frames]
+    return [frame.mapped(rows, rate) for frame in found.frames]
 
 
-def _component(component: Polynomials, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
+def _component(component: Component, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
     """Return real and imaginary parts, each in rows and with its derivative by z."""
     S, C = (np.sinh(z), np.cosh(z)) if hyperbolic else (np.sin(z), np.cos(z))
     s, rising, curvature = S * S, 2.0 * S * C, 1.0 if hyperbolic else -1.0
@@ -197,23 +189,13 @@ def _component(component: Polynomials, z: Array, hyperbolic: bool) -> list[tuple
     if component.even:
         factors = (np.ones_like(z), np.zeros_like(z)), (S * C, C * C + curvature * s)
     parts = []
-    for coefficients, (factor, slope) in zip(component[:2], factors, strict=True):
+    both: Any = component.real, component.imag
+    for coefficients, (factor, slope) in zip(both, factors, strict=True):
         powers = s ** np.arange(coefficients.shape[1])[:, None]
         rows = coefficients @ powers
         growing = coefficients[0, 1:] * np.arange(1, coefficients.shape[1]) @ powers[:-1]
         parts.append((factor * rows, slope * rows[0] + factor * growing * rising))
     return parts
-
-
-def _kept(coefficients: Coefficients, greatest: Decimal) -> Coefficients:
-    """Return the coefficients that are not negligible up to the greatest argument."""
-    sizes = [abs(x.value) for x in coefficients]
-    return coefficients[: count_needed(sizes, greatest, _NEGLIGIBLE)]
-
-
-def _rows(coefficients: Coefficients) -> Array:
-    """Return coefficients as columns of their value and derivatives."""
-    return np.array([_row(x) for x in coefficients]).T
 
 
 def _row(x: Dual | Decimal) -> Array:
