@@ -21,7 +21,7 @@ from .request import THIRD, FunctionRequest, known_values, put_exact_values
 from .tables import RealTable
 from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
 from .third_kind import third_kind
-from .third_kind_real import ThirdKind
+from .third_kind_series import ThirdKind
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array

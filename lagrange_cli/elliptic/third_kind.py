@@ -4,21 +4,16 @@
 
 The logarithm would lose digits if both theta functions nearly agree, and so would Pi if eta Z and
 Omega cancel.  So the constants of the modulus and the parameter v are computed once, in many
-digits.  The functions of eta are arranged so that nothing cancels.  Theta(eta -+ v) is split into P
-+- Q, and the growth of Pi over a period is one constant.
+digits, and the functions of eta are arranged so that nothing cancels.
 
-Parameters in many digits and in doubles obey the same formulas, over balls and over arrays.
-
-The classes below are for an imaginary parameter i alpha, |alpha| < K'.  Both functions are divided
-by i, so that they are real.  Omega is the phase of theta(x - i y), continuous in x = eta/2K, where
-y = alpha/2K.  The phase of the odd function grows by half a turn per period.  For alpha > 0 it is
--pi/2 at x = 0, as in (2,5).  Both functions are odd in alpha, so y > 0 below."""
+The conventions and the series for k <= k' are in `third_kind_series`.  The classes below are for
+k > k', where theta functions are sums of Gaussians with the steepness c = pi K/K'.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import partial
 from operator import mul
 from typing import Any, Self
 
@@ -30,8 +25,8 @@ from ..errors import LagtopError
 from .complete import complete_k
 from .modulus import Modulus, in_many_digits
 from .periods import Complex, Periods, each_alone, negligible
-from .theta import in_periods, series_for, widened_by, zeta_at
-from .third_kind_real import RealCircular, RealHyperbolic, ThirdKind, ZeroParameter
+from .theta import in_periods, series_for, widened_by
+from .third_kind_series import RealParameter, ThirdKind, ZeroParameter, circular
 
 
 def third_kind(
@@ -51,21 +46,18 @@ def third_kind(
         )
     series = series_for(ar, modulus)
     if not size:
-        return ZeroParameter(ij)
+        return ZeroParameter(sign=1, growth=math.nan if ij == "11" else 0)
     terms = 3 + int(math.sqrt(negligible(ar) / math.pi))
-    odd = ij[0] == "1"
     if imaginary:
         y = size * series.rate
-        if series.circular:
-            return ImaginaryCircular.at(ar, ij, y, series.q, terms)
-        return ImaginaryHyperbolic.at(ar, ij, y, series.steepness, terms)
-    y = in_periods(ar, size, series).rest
-    if ij[1] == "0":
-        y = Periods(0, y).half_further(ar).rest
+    else:
+        place = in_periods(ar, size, series)
+        y = (place if ij[1] == "1" else Periods(0, place.rest).half_further(ar)).rest
+        ij = f"{ij[0]}1"
     if series.circular:
-        zeta = zeta_at(ar, f"{ij[0]}1", Periods(0, abs(y)), series) / series.rate
-        return RealCircular.at(ar, odd, y, zeta, series.q, terms=terms)
-    return RealHyperbolic.at(ar, odd, y, series.steepness, terms)
+        return circular(ar, ij, y, series.q, terms, imaginary=imaginary)
+    make = ImaginaryHyperbolic.at if imaginary else RealHyperbolic.at
+    return make(ar, ij, y, series.steepness, terms)
 
 
 @in_arithmetic
@@ -99,198 +91,200 @@ def _evaluate(
         given, real, imag = Modulus(*parts), ar.re(v), ar.im(v)
         if imag and real:
             raise LagtopError("param must be real or imaginary", "param")
-        make = partial(third_kind, ij=ij, imaginary=bool(imag))
 
         def rounded(digits: int) -> ThirdKind:
-            exact, size = balls(digits), float(imag or real)
-            many = in_many_digits(exact, given)
-            return make(exact, size=exact.convert(size), modulus=many).rounded()
+            exact = balls(digits)
+            size, many = exact.convert(float(imag or real)), in_many_digits(exact, given)
+            return third_kind(exact, ij, size, many, imaginary=bool(imag)).rounded()
 
         if ar.is_array:
             kind = decided("the constants of the parameter", rounded)
         else:
-            kind = make(ar, size=imag or real, modulus=given)
+            kind = third_kind(ar, ij, imag or real, given, imaginary=bool(imag))
         value = getattr(kind, name)(ar, in_periods(ar, eta, series_for(ar, given)))
         return ar.mpc(0 * value, value) if imag else value
 
-    eta, v = place
-    if not ar.is_array:
-        eta, v = ar.convert(eta), ar.convert(v)
-    return each_alone(ar, function, eta, v, *modulus)
+    places = place if ar.is_array else map(ar.convert, place)
+    return each_alone(ar, function, *places, *modulus)
 
 
-@dataclass(frozen=True)
-class ImaginaryCircular(ThirdKind):
-    """The parameter for k <= k', where the series run in the nome q."""
-
-    odd: bool
-    shifted: bool
-    """Whether the series are evaluated at x + 1/2."""
-    sign: int
-    """Sign of alpha."""
-    zeta: Numeric
-    """2K Z(i |alpha|)/i."""
-    growth: Numeric
-    """Growth of Pi per period: zeta, with half a turn for the odd function."""
-    floor: Numeric
-    """theta01(i y) for the even function; it vanishes with K' - alpha."""
-    heights: tuple[Numeric, ...]
-    """Coefficients that contain cosh."""
-    slants: tuple[Numeric, ...]
-    """Coefficients that contain sinh."""
-    left_out: Numeric
-    """A bound on the truncation error of each series."""
-
-    @classmethod
-    def at(
-        cls, ar: FunctionArithmetic, ij: str, y: Numeric, q: Numeric, terms: int
-    ) -> ImaginaryCircular:
-        """Return the constants from y = alpha/2K and the nome.
-
-        As 2 pi |y| <= log(1/q), the terms of the sums from h = N on are at most 4 q^(N(N-1)).  The
-        terms of the slopes are at most (2 N + 1) pi times as large.  Each term is less than half of
-        the one before.
-        """
-        odd, shifted, size = ij[0] == "1", ij[1] == "0", abs(y)
-        orders = range(terms) if odd else range(1, terms)
-        rates = [(2 * h + odd) * ar.pi for h in orders]
-        if odd:
-            weights = [(-1) ** h * q ** (h * (h + 1)) / ar.cosh(ar.pi * size) for h in orders]
-        else:
-            weights = [2 * (-1) ** h * q ** (h * h) for h in orders]
-        heights = [w * ar.cosh(rate * size) for w, rate in zip(weights, rates, strict=True)]
-        slants = [w * ar.sinh(rate * size) for w, rate in zip(weights, rates, strict=True)]
-        signs = [(-1) ** h if shifted else 1 for h in orders]  # of the function half a period on
-        left_out = 8 * q ** (terms * (terms - 1))
-        value, slope = (slants, heights) if ij == "11" else (heights, slants)
-        total = sum(map(mul, signs, value), 0 if odd else ar.convert(1))
-        rising = sum(map(mul, map(mul, signs, slope), rates))
-        zeta = -widened_by(ar, rising, 4 * (2 * terms + 1) * left_out)
-        zeta = zeta / widened_by(ar, total, left_out)
-        floor = widened_by(ar, 1 + sum(heights), left_out)
-        if not odd:
-            heights = [-2 * height for height in heights]
-        growth, sign = zeta + ar.pi if odd else zeta, -1 if y < 0 else 1
-        parts = tuple(heights), tuple(slants), 2 * left_out
-        return cls(odd, shifted, sign, zeta, growth, floor, *parts)
-
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
-        """Return the phase of the theta function."""
-        half_turns, within = self._phase(ar, x)
-        return self.sign * (ar.pi * half_turns + within)
-
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
-        """Return Pi, from its growth over whole periods and its value within one."""
-        half_turns, within = self._phase(ar, x)
-        if self.odd:
-            within = within + ar.pi * (half_turns - x.turns)
-        return self.sign * (self.growth * x.turns + (self.zeta * x.rest + within))
-
-    def _phase(self, ar: FunctionArithmetic, x: Periods) -> tuple[Numeric, Numeric]:
-        """Return the whole half turns of the phase, and the rest."""
-        turns, rest, _ = x.half_further(ar) if self.shifted else x
-        series = list(enumerate(zip(self.heights, self.slants, strict=True)))
-        if self.odd:
-            across = sum(a * ar.sin((2 * h + 1) * ar.pi * rest) for h, (a, _) in series)
-            along = sum(b * ar.cos((2 * h + 1) * ar.pi * rest) for h, (_, b) in series)
-            return turns, self._angle(ar, across, along) - ar.pi / 2
-        along = self.floor + sum(a * ar.sin((h + 1) * ar.pi * rest) ** 2 for h, (a, _) in series)
-        across = sum(b * ar.sin(2 * (h + 1) * ar.pi * rest) for h, (_, b) in series)
-        return 0 * turns, self._angle(ar, across, along)
-
-    def _angle(self, ar: FunctionArithmetic, across: Numeric, along: Numeric) -> Numeric:
-        """Return the angle of two sums, widened by their truncation errors."""
-        return ar.atan2(*(widened_by(ar, x, self.left_out) for x in (across, along)))
-
-    def rounded(self, **others: Any) -> Self:
-        """Return the parameter with its constants in doubles."""
-        return super().rounded(left_out=0.0, **others)
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ImaginaryHyperbolic(ThirdKind):
-    """The parameter for k > k', where the theta functions are sums of Gaussians.
+    """An imaginary parameter for k > k'.
 
         theta(x - i y) = exp(2 i c x y) times the sum over n > 0 of exp(-c n^2) f(2 c n (x - i y))
 
     The function f is cosh or sinh, and n runs over half-integers or, for 00 and 10, over integers.
-    The steepness is c = pi K/K'.
     """
 
     ij: str
-    sign: int
-    """Sign of alpha."""
     steepness: Numeric
     turn: Numeric
     """2 c y = pi |alpha|/K', less than pi."""
     slope: Numeric
     """Z of the sum alone: 2K Z(i |alpha|)/i + 2 c y."""
-    growth: Numeric
-    """Growth of Pi per period: 2K Z(i |alpha|)/i, with half a turn for the odd function."""
-    cosines: tuple[Numeric, ...]
-    """cos 2 c n y."""
-    sines: tuple[Numeric, ...]
-    """sin 2 c n y."""
+    even: tuple[Numeric, ...]
+    """cos 2 c n y; sin 2 c n y for the function 11."""
+    odd: tuple[Numeric, ...]
+    """sin 2 c n y; cos 2 c n y for the function 11."""
 
     @classmethod
     def at(
         cls, ar: FunctionArithmetic, ij: str, y: Numeric, steepness: Numeric, terms: int
     ) -> ImaginaryHyperbolic:
         """Return the constants from y = alpha/2K and the steepness."""
-        c, half_turn = steepness, steepness * abs(y)
+        c, turn = steepness, 2 * steepness * abs(y)
         orders = [ar.convert(2 * i + 1 if ij[1] == "1" else 2 * i) / 2 for i in range(terms)]
         signs = [(-1) ** i if ij[0] == "1" else 1 for i in range(terms)]
-        cosines = tuple(ar.cos(2 * n * half_turn) for n in orders)
-        sines = tuple(ar.sin(2 * n * half_turn) for n in orders)
-        first = orders[0] ** 2
-        bells = [ar.exp(-c * (n * n - first)) for n in orders]
+        cosines, sines = (tuple(wave(n * turn) for n in orders) for wave in (ar.cos, ar.sin))
+        even, odd = (sines, cosines) if ij == "11" else (cosines, sines)
+        bells = [ar.exp(-c * (n * n - orders[0] ** 2)) for n in orders]
         if ij[1] == "0":
             bells[0] /= 2  # it is its own image
-        parts = list(zip(map(mul, signs, bells), orders, cosines, sines, strict=True))
-        if ij == "11":
-            rise = -sum(weight * 2 * c * n * cosine for weight, n, cosine, _ in parts)
-            total = sum(weight * sine for weight, _, _, sine in parts)
-        else:
-            rise = sum(weight * 2 * c * n * sine for weight, n, _, sine in parts)
-            total = sum(weight * cosine for weight, _, cosine, _ in parts)
+        weights = list(map(mul, signs, bells))
+        rise = 2 * c * sum(map(mul, weights, map(mul, orders, odd))) * (-1 if ij == "11" else 1)
         # from i = N on the terms are at most exp(-c N^2) and 2 c (N + 1) times that
         bell = 2 * ar.exp(-c * (terms * terms))
-        rise = widened_by(ar, rise, 2 * c * (terms + 1) * bell)
-        slope, turn = rise / widened_by(ar, total, bell), 2 * half_turn
-        growth = slope - turn + ar.pi if ij[0] == "1" else slope - turn
-        return cls(ij, -1 if y < 0 else 1, c, turn, slope, growth, cosines, sines)
+        total = widened_by(ar, sum(map(mul, weights, even)), bell)
+        slope = widened_by(ar, rise, 2 * c * (terms + 1) * bell) / total
+        growth, sign = slope - turn + ar.pi if ij[0] == "1" else slope - turn, -1 if y < 0 else 1
+        known = {"sign": sign, "growth": growth, "steepness": c, "turn": turn, "slope": slope}
+        return cls(ij=ij, even=even, odd=odd, **known)
 
     def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return the phase of the theta function."""
         half_turns = ar.pi * x.turns if self.ij[0] == "1" else 0 * x.turns
         return self.sign * (half_turns + (self.turn * x.rest + self._phase(ar, x.rest)))
 
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
-        """Return Pi, from its growth over whole periods and its value within one."""
-        within = self.slope * x.rest + self._phase(ar, x.rest)
-        return self.sign * (self.growth * x.turns + within)
+    def pi_within(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
+        """Return Pi for y > 0, without its growth over whole periods."""
+        return self.slope * x.rest + self._phase(ar, x.rest)
 
     def _phase(self, ar: FunctionArithmetic, rest: Numeric) -> Numeric:
         """Return the phase of the sum alone, within a period."""
         c, size, half = self.steepness, abs(rest), self.ij[1] == "1"
-        plus = minus = 0 * size, 0 * size
-        for i, (cosine, sine) in enumerate(zip(self.cosines, self.sines, strict=True)):
+        total = apart = 0 * size
+        for i, (along, across) in enumerate(zip(self.even, self.odd, strict=True)):
             sign = (-1) ** i if self.ij[0] == "1" else 1
-            bell = sign * ar.exp(-c * i * (i + (1 if half else 0) - 2 * size))
-            image = ar.expm1(-2 * c * (2 * i + 1 if half else 2 * i) * size)
+            bell = sign * ar.exp(-c * i * (i + half - 2 * size))
+            image = ar.expm1(-2 * c * (2 * i + half) * size)
             both = bell * (2 + image) if i or half else 1 + 0 * size
-            plus = plus[0] + both * cosine, plus[1] + both * sine
-            minus = minus[0] - bell * image * cosine, minus[1] - bell * image * sine
-        terms = len(self.cosines)  # from i = N on they are at most 2 exp(-c N(N - 1))
-        bell = 4 * ar.exp(-c * (terms * (terms - 1)))
+            total, apart = total + both * along, apart - bell * image * across
+        terms = len(self.even)  # from i = N on they are at most 2 exp(-c N(N - 1))
+        left_out = 4 * ar.exp(-c * (terms * (terms - 1)))
+        total, apart = widened_by(ar, total, left_out), widened_by(ar, apart, left_out)
         if self.ij != "11":
-            across, along = widened_by(ar, minus[1], bell), widened_by(ar, plus[0], bell)
-            return -ar.sign(rest) * ar.atan2(across, along)
-        across, along = widened_by(ar, plus[1], bell), widened_by(ar, minus[0], bell)
-        turned = ar.atan2(across, along)
+            return -ar.sign(rest) * ar.atan2(apart, total)
+        turned = ar.atan2(total, apart)
         return ar.where(rest < 0, turned - ar.pi, -turned)
 
     def rounded(self, **others: Any) -> Self:
         """Return the parameter with its constants in doubles, of which fewer are needed."""
-        few = {"cosines": self.cosines[:5], "sines": self.sines[:5]}
-        return super().rounded(**few, **others)
+        return super().rounded(even=self.even[:5], odd=self.odd[:5], **others)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RealHyperbolic(RealParameter):
+    """A real parameter for k > k'.
+
+    For a in [0, 1/2], theta(a) = exp(-c (1/2 - a)^2) S(a).  The sum S is close to 1 unless a is
+    small.  Let a = |x - y|, and let b be x + y or 1 - x - y, whichever is at most 1/2.  Then Omega
+    is log[theta(a)/theta(b)]/2.
+    """
+
+    room: Numeric
+    """1 - 2 |y|."""
+    steepness: Numeric
+    slope: Numeric
+    """d log S/da at |y|."""
+    tilt: Numeric
+    """The sum of slope and steepness, which cancel for small y."""
+    terms: int
+
+    @classmethod
+    def at(
+        cls, ar: FunctionArithmetic, ij: str, y: Numeric, steepness: Numeric, terms: int
+    ) -> RealHyperbolic:
+        """Return the constants from y and the steepness."""
+        odd, size, c, rise = ij[0] == "1", abs(y), steepness, 0 * y
+        nears = _nears(ar, c, size, terms)
+        for i, near in enumerate(nears):
+            sign, far = (-1) ** i if odd else 1, ar.exp(-c * (i + 1) * (i + 2 * size))
+            rise += sign * 2 * c * (i * near - (-1 if odd else 1) * (i + 1) * far)
+        # from i = N on the terms are at most (4 N + 2) c times exp(-c N^2)
+        rise = widened_by(ar, rise, (8 * terms + 4) * c * ar.exp(-c * (terms * terms)))
+        slope, room = rise / _sum(ar, c, size, nears, odd=odd), 1 - 2 * size
+        growth, sign = c * room + slope, -1 if y < 0 else 1
+        known = {"sign": sign, "growth": growth, "steepness": c, "slope": slope, "tilt": slope + c}
+        return cls(odd=odd, size=size, room=room, terms=terms, **known)
+
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
+        """Return -c small (1 - 2 large) + log[S(a)/S(b)]/2; small <= large are |x| and |y|."""
+        small, room, apart = self._sorted(ar, x)
+        within = -self.steepness * small * room + self._ratio(ar, small, room, apart)
+        return self.sign * ar.sign(x.rest) * within
+
+    def pi_within(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
+        """Return Pi for y > 0, without its growth over whole periods."""
+        size, c = abs(x.rest), self.steepness
+        small, room, apart = self._sorted(ar, x)
+        if ar.either(c * self.size > 1):  # the multiples of c have cancelled
+            within = size * self.slope + c * ar.where(size < self.size, 0 * apart, apart)
+        else:
+            within = size * self.tilt - c * small
+        return ar.sign(x.rest) * (within + self._ratio(ar, small, room, apart))
+
+    def rounded(self, **others: Any) -> Self:
+        """Return the parameter with its constants in doubles, of which fewer terms are needed."""
+        return super().rounded(terms=4, **others)
+
+    def _sorted(self, ar: FunctionArithmetic, x: Periods) -> tuple[Numeric, Numeric, Numeric]:
+        """Return the smaller of |x| and |y|, 1 - 2 times the larger, and their distance."""
+        size = abs(x.rest)
+        room = (1 - 2 * size) - 2 * ar.where(x.rest < 0, -x.low, x.low)
+        less = ar.either(size < self.size)
+        small = ar.where(less, size, self.size)
+        return small, ar.where(less, self.room, room), self.distance(ar, x)
+
+    def _ratio(self, ar: FunctionArithmetic, small: Numeric, room: Numeric, a: Numeric) -> Numeric:
+        """Return log[S(a)/S(b)]/2 from S(a) - S(b), which keeps its digits."""
+        c = self.steepness
+        apart = ar.where(ar.either(2 * small < room), 2 * small, room)
+        b, difference = a + apart, 0 * a
+        nears = _nears(ar, c, b, self.terms)
+        for i, near in enumerate(nears):
+            sign, image = (-1) ** i if self.odd else 1, ar.exp(-c * (i + 1) * (i + 2 * a))
+            fall, image_fall = ar.expm1(-2 * c * i * apart), ar.expm1(-2 * c * (i + 1) * apart)
+            difference = difference + sign * (
+                near * fall + (image if self.odd else -image) * image_fall
+            )
+        total = _sum(ar, c, b, nears, odd=self.odd)
+        left_out = 4 * ar.exp(-c * (self.terms * self.terms))  # as in `_sum`
+        quotient = widened_by(ar, difference, left_out) / total
+        if not self.odd:
+            return ar.log1p(quotient) / 2
+        pole = ar.either(quotient < -0.5)  # S(a) nearly vanishes
+        there = ar.where(pole, a, 0 * a + 0.5)
+        there = _sum(ar, c, there, _nears(ar, c, there, self.terms), odd=True) / total
+        logarithm = ar.log(ar.where(pole, there, 0 * there + 1))
+        return ar.where(pole, logarithm, ar.log1p(ar.where(pole, 0 * quotient, quotient))) / 2
+
+
+def _nears(ar: FunctionArithmetic, c: Numeric, a: Numeric, terms: int) -> list[Numeric]:
+    """Return the terms exp(-c i (i + 1 - 2a)) of S(a)."""
+    return [ar.exp(-c * i * (i + 1 - 2 * a)) for i in range(terms)]
+
+
+def _sum(
+    ar: FunctionArithmetic, c: Numeric, a: Numeric, nears: list[Numeric], *, odd: bool
+) -> Numeric:
+    """Return S(a), the sum of the terms `nears` and of their images exp(-c (i + 1)(i + 2a)).
+
+    For the odd function, the signs alternate and the images are subtracted.  From i = N on, the
+    terms are at most 2 exp(-c N^2).
+    """
+    total, terms = 0 * a, len(nears)
+    for i, near in enumerate(nears):
+        image = ar.expm1(-2 * c * (2 * i + 1) * a)
+        total = total + ((-1) ** i if odd else 1) * near * (-image if odd else 2 + image)
+    return widened_by(ar, total, 4 * ar.exp(-c * (terms * terms)))
