@@ -148,45 +148,55 @@ class EtaConstants(NamedTuple):
 
 
 def eta_constants(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstants:
-    """Return the constants in balls, or in an mpmath context.
+    """Return the constants in balls, or in an mpmath context."""
+    found = _of_pair(ar, quadrature) if quadrature.height else _of_real_roots(ar, quadrature)
+    m1, m2, sigma1 = found["m1"], found["m2"], found["sigma1"]
+    lower, upper, g = (ar.convert(x) for x in (quadrature.lower, quadrature.upper, quadrature.g))
+    rise, fall = _sum_and_difference(ar, quadrature, m2 * upper, m1 * lower)
+    square1, square2 = quadrature.squares
+    return EtaConstants(
+        **found,
+        s=fall / (m1 + m2),
+        d=ar.convert(square2 - square1) / (m1 + m2) ** 2,
+        gamma=rise / (m1 + m2),
+        period=2 * ar.pi / agm(ar, sigma1, ar.sqrt(g * m1 * m2)),
+    )
+
+
+def _of_real_roots(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Numeric]:
+    """Return m', m'', the moduli and sigma1 for real outer roots.
 
     The squares m'^2 and m''^2 are products of the distances of delta and delta* from the outer
     roots.  In each layout, 2 sigma1/sqrt(g) is a sum of square roots of such products.
     """
-    if quadrature.height:
-        return _constants_of_pair(ar, quadrature)
-    outer = quadrature.outer
-    g = ar.convert(quadrature.g)
-    to_lower = [ar.convert(abs(root - quadrature.lower)) for root in outer]
-    to_upper = [ar.convert(abs(root - quadrature.upper)) for root in outer]
-    apart = ar.convert(abs(outer[0] - outer[1]) if len(outer) > 1 else Fraction(len(outer)))
+    lower, upper, outer, g, _ = quadrature
+    to_lower = [ar.convert(abs(root - lower)) for root in outer]
+    to_upper = [ar.convert(abs(root - upper)) for root in outer]
     m1, m2 = ar.sqrt(prod(to_upper)), ar.sqrt(prod(to_lower))
+    crossed, apart = m1 + m2, Fraction(len(outer))
     if len(outer) > 1:
         crossed = ar.sqrt(to_lower[0] * to_upper[1]) + ar.sqrt(to_lower[1] * to_upper[0])
-    else:
-        crossed = m1 + m2
-    sigma1 = ar.sqrt(g) * crossed / 2
-    k1 = ar.convert(quadrature.upper - quadrature.lower) * apart / crossed**2
-    k1_prime = 2 * ar.sqrt(m1 * m2) / crossed
-    return _constants_from(ar, quadrature, (m1, m2), k1 / k1_prime, k1, k1_prime, sigma1)
+        apart = abs(outer[0] - outer[1])
+    k1 = ar.convert(upper - lower) * ar.convert(apart) / crossed**2
+    k1_prime, sigma1 = 2 * ar.sqrt(m1 * m2) / crossed, ar.sqrt(ar.convert(g)) * crossed / 2
+    moduli = {"k": k1 / k1_prime, "k1": k1, "k1_prime": k1_prime}
+    return {"m1": m1, "m2": m2, "sigma1": sigma1, **moduli}
 
 
-def _constants_of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstants:
-    """Return the constants for outer roots p +- i height, for which k and k1 are imaginary.
+def _of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Numeric]:
+    """Return m', m'', the moduli and sigma1 for outer roots p +- i height.
 
-    m' and m'' are the distances of delta and delta* from these roots.  With D = delta - delta*,
+    The moduli k and k1 are imaginary, and m' and m'' are the distances of delta and delta* from
+    these roots.  With D = delta - delta*,
 
         kappa^2 = -k^2 = (D^2 - (m' - m'')^2)/(4 m' m''),
         kappa' = sqrt((m' + m'' - D)(m' + m'' + D)/(4 m' m'')) = sigma1/sqrt(g m' m'').
 
     All numbers that are subtracted in kappa^2 are exact.
     """
-    p = quadrature.outer[0]
-    above, below = quadrature.upper - p, quadrature.lower - p
-    g, width, height = (
-        ar.convert(x)
-        for x in (quadrature.g, quadrature.upper - quadrature.lower, quadrature.height)
-    )
+    lower, upper, (p, *_), *others = quadrature
+    above, below = upper - p, lower - p
+    width, g, height = (ar.convert(x) for x in (upper - lower, *others))
     m1, m2 = (ar.sqrt(ar.convert(square)) for square in quadrature.squares)
     product, crossed = m1 * m2, ar.convert(above * below)
     if above * below > 0:
@@ -198,40 +208,14 @@ def _constants_of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaCon
     excess = _beyond(ar, m1, above, height) + _beyond(ar, m2, -below, height)
     sigma1 = ar.sqrt(g * excess * (m1 + m2 + width)) / 2
     kappa_prime = sigma1 / ar.sqrt(g * product)
-    return _constants_from(
-        ar, quadrature, (m1, m2), kappa, kappa / kappa_prime, 1 / kappa_prime, sigma1
-    )
+    moduli = {"k": kappa, "k1": kappa / kappa_prime, "k1_prime": 1 / kappa_prime}
+    return {"m1": m1, "m2": m2, "sigma1": sigma1, **moduli}
 
 
 def _beyond(ar: FunctionArithmetic, distance: Numeric, part: Fraction, height: Numeric) -> Numeric:
     """Return distance - part, where distance = sqrt(part^2 + height^2); part may be negative."""
     exact = ar.convert(part)
     return height**2 / (distance + exact) if part > 0 else distance - exact
-
-
-def _constants_from(
-    ar: FunctionArithmetic,
-    quadrature: Quadrature,
-    distances: tuple[Numeric, Numeric],
-    *moduli_and_rate: Numeric,
-) -> EtaConstants:
-    """Return all constants from m', m'', and from k, k1, k1', sigma1."""
-    (m1, m2), (k, k1, k1_prime, sigma1) = distances, moduli_and_rate
-    lower, upper, g = (ar.convert(x) for x in (quadrature.lower, quadrature.upper, quadrature.g))
-    rise, fall = _sum_and_difference(ar, quadrature, m2 * upper, m1 * lower)
-    square1, square2 = quadrature.squares
-    return EtaConstants(
-        m1=m1,
-        m2=m2,
-        k=k,
-        k1=k1,
-        k1_prime=k1_prime,
-        sigma1=sigma1,
-        s=fall / (m1 + m2),
-        d=ar.convert(square2 - square1) / (m1 + m2) ** 2,
-        gamma=rise / (m1 + m2),
-        period=2 * ar.pi / agm(ar, sigma1, ar.sqrt(g * m1 * m2)),
-    )
 
 
 def _sum_and_difference(
@@ -249,45 +233,8 @@ def _sum_and_difference(
     return (difference / (high - low) if moves else high + low), high - low
 
 
-class Band(NamedTuple):
-    """The ends of the band, and the distances of the outer roots from it, in some arithmetic."""
-
-    lower: Numeric
-    """delta*."""
-    upper: Numeric
-    """delta."""
-    width: Numeric
-    """delta - delta*."""
-    below: list[Numeric]
-    """Distances from delta* of the outer roots below the band."""
-    above: list[Numeric]
-    """Distances from delta of the outer roots above the band."""
-    g: Numeric
-    """The leading coefficient."""
-    pair: tuple[Numeric, Numeric, Numeric] | None = None
-    """The numbers delta* - p, delta - p and height of a complex pair p +- i height."""
-
-
-def band_of(ar: FunctionArithmetic, quadrature: Quadrature) -> Band:
-    """Return the band and the gaps of the exact roots, each rounded once."""
-    lower, upper, outer, g, height = quadrature
-    pair = None
-    if height:
-        pair = ar.convert(lower - outer[0]), ar.convert(upper - outer[0]), ar.convert(height)
-        outer = ()
-    return Band(
-        lower=ar.convert(lower),
-        upper=ar.convert(upper),
-        width=ar.convert(upper - lower),
-        below=[ar.convert(lower - root) for root in outer if root < lower],
-        above=[ar.convert(root - upper) for root in outer if root > upper],
-        g=ar.convert(g),
-        pair=pair,
-    )
-
-
-def modulus_in_use(c: EtaConstants, band: Band) -> Modulus:
+def modulus_in_use(c: EtaConstants, quadrature: Quadrature) -> Modulus:
     """Return k1 or, if it is imaginary, kappa = k/i, for which k1 = i kappa/kappa'."""
-    if band.pair:
+    if quadrature.height:
         return Modulus(c.k, 1 / c.k1_prime, 0 * c.k)
     return Modulus(c.k1, c.k1_prime, 0 * c.k1)

@@ -13,7 +13,7 @@ from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import Pair, decided, pair
 from .complete import complete_k
-from .eta import Band, EtaConstants, Quadrature, band_of, eta_constants, modulus_in_use
+from .eta import EtaConstants, Quadrature, eta_constants, modulus_in_use
 from .jacobi import jacobi, jacobi_at
 from .periods import whole_and_rest
 from .tables import ProvedNumbers, RealTable
@@ -31,7 +31,6 @@ class EtaMotion(NamedTuple):
     """The constants of a motion of eta in its band."""
 
     constants: EtaConstants
-    band: Band
     half_period: Numeric
     """2K of the modulus in use."""
     periods: Callable[[Numeric], tuple[Numeric, Numeric]]
@@ -68,18 +67,12 @@ class EtaTable(RealTable):
 
     def constants(self, ar: Balls) -> EtaMotion:
         """Return the motion in balls."""
-        c, band = eta_constants(ar, self.quadrature), band_of(ar, self.quadrature)
-        quarter = complete_k(ar, modulus_in_use(c, band).k_prime)
-
-        def periods(tau: Numeric) -> tuple[Numeric, Numeric]:
-            turns, rest, _ = whole_and_rest(ar, tau / c.period)
-            return turns, rest
-
-        return EtaMotion(c, band, 2 * quarter, periods)
+        c = eta_constants(ar, self.quadrature)
+        quarter = complete_k(ar, modulus_in_use(c, self.quadrature).k_prime)
+        return EtaMotion(c, 2 * quarter, lambda tau: whole_and_rest(ar, tau / c.period)[:2])
 
     def rounded_constants(self) -> EtaMotion:
         """Return the motion in doubles; raise LagtopError for times beyond 2^50 periods."""
-        from ..arithmetic.arrays import ARRAYS
         from ..arithmetic.double_double import reduce_phase
 
         def rounded(digits: int) -> tuple[EtaConstants, Pair]:
@@ -88,23 +81,21 @@ class EtaTable(RealTable):
 
         c, rate = decided("the constants of eta", rounded)
         check_reach("tau", self.points, min(MAX_PERIODS * c.period, MAX_TIME))
-        band = band_of(ARRAYS, self.quadrature)
-        quarter = complete_k(DOUBLES, float(modulus_in_use(c, band).k_prime))
-
-        return EtaMotion(c, band, 2 * quarter, lambda tau: reduce_phase(tau, rate))
+        quarter = complete_k(DOUBLES, modulus_in_use(c, self.quadrature).k_prime)
+        return EtaMotion(c, 2 * quarter, lambda tau: reduce_phase(tau, rate))
 
     def columns(
         self, ar: FunctionArithmetic, x: Numeric, constants: EtaMotion, known: Known
     ) -> dict[str, Numeric]:
         """Return tau, eta and the other columns of the table."""
-        c, band, half_period, periods = constants
+        c, half_period, periods = constants
         turns, rest = periods(x)
-        place = place_in_band(ar, half_period * rest, c, band)
+        place = place_in_band(ar, half_period * rest, c, self.quadrature)
         columns = {"tau": x, "eta": place.eta}
         if "etadot" in self.names:
-            columns["etadot"] = place.rate(ar, band)
+            columns["etadot"] = place.rate(ar, self.quadrature)
         if not set(_CHAIN).isdisjoint(self.names):
-            found = chain(ar, (turns, rest), c, band, self.angle)
+            found = chain(ar, (turns, rest), c, self.quadrature, self.angle)
             columns |= zip(_CHAIN, found, strict=True)
         angle = f"theta_{self.angle}"
         chosen = {name: columns[name] for name in ETA_COLUMNS if name in {"tau", *self.names}}
@@ -123,7 +114,11 @@ class EtaTable(RealTable):
 
 
 def chain(
-    ar: FunctionArithmetic, periods: tuple[Numeric, Numeric], c: EtaConstants, band: Band, unit: str
+    ar: FunctionArithmetic,
+    periods: tuple[Numeric, Numeric],
+    c: EtaConstants,
+    quadrature: Quadrature,
+    unit: str,
 ) -> tuple[Numeric, Numeric, Numeric]:
     """Return h1, theta and xi' at a time given in periods since a passage of delta*.
 
@@ -134,12 +129,12 @@ def chain(
     """
     turns, phase = periods
     half_turn = 180 if unit == "deg" else ar.pi
-    shift = 0 if band.pair else 0.5
+    shift = 0 if quadrature.height else 0.5
     x = whole_and_rest(ar, 2 * phase - shift)
-    am, sn, cn, _ = jacobi_at(ar, x, modulus_in_use(c, band))
+    am, sn, cn, _ = jacobi_at(ar, x, modulus_in_use(c, quadrature))
     theta = (2 * turns + am / ar.pi - (0.5 - shift)) * half_turn
     h1 = c.sigma1 * c.period * (turns + phase - 0.25)
-    return h1, theta, (-cn if band.pair else sn)
+    return h1, theta, (-cn if quadrature.height else sn)
 
 
 class PlaceInBand(NamedTuple):
@@ -153,19 +148,23 @@ class PlaceInBand(NamedTuple):
     falling: Numeric
     """Whether eta is returning to delta*."""
 
-    def rate(self, ar: FunctionArithmetic, band: Band) -> Numeric:
+    def rate(self, ar: FunctionArithmetic, quadrature: Quadrature) -> Numeric:
         """Return d eta/d tau, the root of (3.2.1), from distances that keep their digits."""
-        risen, left = self.risen, self.left
-        gaps = [gap + risen for gap in band.below] + [gap + left for gap in band.above]
-        if band.pair:
-            from_lower, from_upper, height = band.pair
+        risen, left, (lower, upper, outer, g, height) = self.risen, self.left, quadrature
+        if height:
+            from_lower, from_upper = (ar.convert(end - outer[0]) for end in (lower, upper))
             apart = ar.where(ar.either(risen < left), from_lower + risen, from_upper - left)
-            gaps = [ar.sqrt(apart * apart + height * height)] * 2
-        size = prod(map(ar.sqrt, (band.g, risen, left, *gaps)))
+            gaps = [ar.sqrt(apart * apart + ar.convert(height) * ar.convert(height))] * 2
+        else:
+            gaps = [ar.convert(lower - root) + risen for root in outer if root < lower]
+            gaps += [ar.convert(root - upper) + left for root in outer if root > upper]
+        size = prod(map(ar.sqrt, (ar.convert(g), risen, left, *gaps)))
         return ar.where(self.falling, -size, size)
 
 
-def place_in_band(ar: FunctionArithmetic, v: Numeric, c: EtaConstants, band: Band) -> PlaceInBand:
+def place_in_band(
+    ar: FunctionArithmetic, v: Numeric, c: EtaConstants, quadrature: Quadrature
+) -> PlaceInBand:
     """Return the place of eta at v = 2K w/T, where w is the time since a passage of delta*.
 
         (eta - delta*) : (delta - eta) = (sqrt(g) m'' sn v)^2 : (sigma1 cn v dn v)^2
@@ -174,15 +173,17 @@ def place_in_band(ar: FunctionArithmetic, v: Numeric, c: EtaConstants, band: Ban
     their digits.  For a complex pair of roots it is m'' (sn v dn v)^2 : m' cn^2 v, with the modulus
     kappa.
     """
-    _, sn, cn, dn = jacobi(ar, v, modulus_in_use(c, band))
-    if band.pair:
+    _, sn, cn, dn = jacobi(ar, v, modulus_in_use(c, quadrature))
+    lower, upper, _, g, height = quadrature
+    if height:
         up, down = abs(ar.sqrt(c.m2) * sn * dn), abs(ar.sqrt(c.m1) * cn)
     else:
-        up, down = abs(ar.sqrt(band.g) * c.m2 * sn), abs(c.sigma1 * cn * dn)
+        up, down = abs(ar.sqrt(ar.convert(g)) * c.m2 * sn), abs(c.sigma1 * cn * dn)
     larger = ar.where(ar.either(up < down), down, up)  # so that no square leaves the range
-    up, down = (up / larger) ** 2, (down / larger) ** 2
-    risen, left = band.width * up / (up + down), band.width * down / (up + down)
-    eta = ar.where(ar.either(risen < left), band.lower + risen, band.upper - left)
+    up, down, width = (up / larger) ** 2, (down / larger) ** 2, ar.convert(upper - lower)
+    risen, left = width * up / (up + down), width * down / (up + down)
+    lower_half = ar.either(risen < left)
+    eta = ar.where(lower_half, ar.convert(lower) + risen, ar.convert(upper) - left)
     return PlaceInBand(eta, risen, left, sn * cn < 0)
 
 

@@ -4,7 +4,7 @@
 
 The logarithm would lose digits if both theta functions nearly agree, and so would Pi if eta Z and
 Omega cancel.  So the constants of the modulus and the parameter v are computed once, in many
-digits, and the functions of eta are arranged so that nothing cancels.
+digits.  The functions of eta are arranged so that nothing cancels.
 
 The conventions and the series for k <= k' are in `third_kind_series`.  The classes below are for
 k > k', where theta functions are sums of Gaussians with the steepness c = pi K/K'.
