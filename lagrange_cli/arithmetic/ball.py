@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import decimal
 from collections.abc import Callable
-from decimal import Decimal, DecimalException, Inexact
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal, DecimalException, Inexact
 from functools import cached_property
 from typing import Any
 
-from .decimals import TRAPS, own_context
+from .decimals import TRAPS, Decimals, decimals, own_context
 from .numbers import power
 
 Truth = Any
@@ -25,16 +25,14 @@ SHORT = 6
 """Digits of a radius."""
 SMALLEST = Decimal("1e-300000000000000000")
 """A size far above every value below the exponents of decimals; products of it can be formed."""
+_MARGIN = 6
+"""Extra digits of elementary functions, besides the digits of the number of digits itself."""
 
 
-def _rounded(rounding: str) -> decimal.Context:
-    context = own_context(SHORT, TRAPS)
-    context.rounding = rounding
-    return context
-
-
-UP, DOWN = _rounded(decimal.ROUND_UP), _rounded(decimal.ROUND_DOWN)
-FLOOR, CEILING = _rounded(decimal.ROUND_FLOOR), _rounded(decimal.ROUND_CEILING)
+UP, DOWN, FLOOR, CEILING = (
+    own_context(SHORT, TRAPS, rounding)
+    for rounding in (decimal.ROUND_UP, decimal.ROUND_DOWN, ROUND_FLOOR, ROUND_CEILING)
+)
 add_up, multiply_up, fma_up, divide_up = UP.add, UP.multiply, UP.fma, UP.divide
 
 
@@ -249,7 +247,7 @@ class Ball:
 
 
 class Ring:
-    """Sums, products and quotients of balls whose middles have `digits` digits."""
+    """Sums, products, quotients and functions of balls whose middles have `digits` digits."""
 
     def __init__(self, digits: int) -> None:
         self.digits = digits
@@ -265,9 +263,8 @@ class Ring:
     @cached_property
     def outwards(self) -> tuple[decimal.Context, decimal.Context]:
         """Contexts that round down and up, with enough digits for both ends of a ball."""
-        floor, ceiling = (own_context(self.digits + SHORT, []) for _ in range(2))
-        floor.rounding, ceiling.rounding = decimal.ROUND_FLOOR, decimal.ROUND_CEILING
-        return floor, ceiling
+        digits = self.digits + SHORT
+        return own_context(digits, [], ROUND_FLOOR), own_context(digits, [], ROUND_CEILING)
 
     def exactly(self, operation: str, x: Decimal, y: Decimal | int) -> Ball:
         """Return an operation on exact numbers; the result is exact if it has few digits."""
@@ -285,3 +282,17 @@ class Ring:
     def exact(self, value: Decimal | float) -> Ball:
         """Return the ball of radius 0 around a decimal, which may have more digits."""
         return Ball(self, Decimal(value), ZERO)
+
+    @cached_property
+    def plain(self) -> Decimals:
+        """Decimals whose elementary functions are correct to `digits` digits (see `Decimals`)."""
+        return decimals(self.digits + _MARGIN + len(str(self.digits)))
+
+    def function(self, function: Callable[..., Decimal], *at: Decimal) -> Ball:
+        """Return the value of a function of exact numbers, in `plain`, as a ball."""
+        try:
+            with self.plain.working():
+                value = function(*at)
+            return self.about(self._context.plus(value), 2)
+        except DecimalException:  # beyond all exponents
+            return self.unbounded

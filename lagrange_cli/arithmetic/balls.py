@@ -1,4 +1,4 @@
-"""The arithmetic of balls over decimals: roots, elementary functions and truncation errors.
+"""The arithmetic of balls over decimals: roots, angles and truncation errors.
 
 A middle has the digits of its arithmetic, rounded to nearest.  A radius has six digits, rounded up.
 `widened` adds the truncation error of an iteration to a radius, from the bound that is proved
@@ -7,11 +7,11 @@ beside the iteration.
 
 from __future__ import annotations
 
-import decimal
 from collections.abc import Callable
 from decimal import Decimal, DecimalException, Inexact
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from typing import Any
 
 from .ball import (
     CEILING,
@@ -22,7 +22,6 @@ from .ball import (
     ZERO,
     Ball,
     Ring,
-    TooFewDigitsError,
     Truth,
     add_up,
     divide_up,
@@ -32,10 +31,16 @@ from .ball import (
 from .decimals import Decimals, decimals, pi_to
 from .numbers import Scalars
 
-_LOWEST, _TINY = -23 * 10**17, Decimal("1e-310000000000000000")
-"""Exponent below which a power of e may underflow in decimals, and half a bound on that power."""
-_MARGIN = 6
-"""Extra digits of elementary functions, besides the digits of the number of digits itself."""
+
+def _late(name: str) -> Callable[[Any, Ball], Any]:
+    """Return a method of `BallFunctions`, which is loaded on the first call."""
+
+    def method(ar: Any, x: Ball) -> Any:
+        from .ball_functions import BallFunctions  # start-up: not for a record
+
+        return getattr(BallFunctions, name)(ar, x)
+
+    return method
 
 
 class Balls(Ring, Scalars):
@@ -103,20 +108,6 @@ class Balls(Ring, Scalars):
         half = multiply_up(UP.sqrt(upper), Decimal("0.50001"))  # sqrt rounds to nearest
         return Ball(self, half, half)
 
-    @cached_property
-    def plain(self) -> Decimals:
-        """Decimals whose elementary functions are correct to `digits` digits (see `Decimals`)."""
-        return decimals(self.digits + _MARGIN + len(str(self.digits)))
-
-    def _value(self, function: Callable[..., Decimal], *at: Decimal) -> Ball:
-        """Return a function of exact numbers as a ball."""
-        try:
-            with self.plain.working():
-                value = function(*at)
-            return self.about(self._context.plus(value), 2)
-        except DecimalException:  # beyond all exponents
-            return self.unbounded
-
     def sin(self, x: Ball) -> Ball:
         """Return the sine of x."""
         return self._turned(x, 0)
@@ -135,77 +126,8 @@ class Balls(Ring, Scalars):
             return self.within(Decimal(1))
         which = (quarters + turns) % 4
         function = self.plain.cos if which % 2 else self.plain.sin
-        value = self._value(function, x.middle).enlarged(x.radius)
+        value = self.function(function, x.middle).enlarged(x.radius)
         return -value if which > 1 else value
-
-    def exp(self, x: Ball) -> Ball:
-        """Return e to the power x; e^r - 1 <= 2 r for r <= 1."""
-        if (x < _LOWEST) is True:
-            return Ball(self, _TINY, _TINY)
-        return self._growing(self.plain.exp, x, 2)
-
-    def sinh(self, x: Ball) -> Ball:
-        """Return the hyperbolic sine of x; its slope is cosh x <= 1 + |sinh x|."""
-        return self._growing(self.plain.sinh, x, 3, more=1)
-
-    def cosh(self, x: Ball) -> Ball:
-        """Return the hyperbolic cosine of x; its slope is less than itself."""
-        return self._growing(self.plain.cosh, x, 3)
-
-    def _growing(
-        self, function: Callable[[Decimal], Decimal], x: Ball, factor: int, more: int = 0
-    ) -> Ball:
-        """Return a function whose slope within 1 of x is at most factor (its size + `more`)."""
-        if not x.radius <= 1:
-            return self.unbounded
-        value = self._value(function, x.middle)
-        try:
-            slope = multiply_up(factor, add_up(more, value.greatest))
-            return value.enlarged(multiply_up(slope, x.radius))
-        except DecimalException:
-            return self.unbounded
-
-    def expm1(self, x: Ball) -> Ball:
-        """Return e to the power x, less 1."""
-        if (x < -1) is True:
-            return self.exp(x) - 1
-        return 2 * self.sinh(x / 2) * self.exp(x / 2)
-
-    def tanh(self, x: Ball) -> Ball:
-        """Return the hyperbolic tangent of x, from exp -2|x|."""
-        if x.middle > 0:
-            return -self.tanh(-x)
-        twice = self.expm1(2 * x)
-        return twice / (twice + 2)
-
-    def sech(self, x: Ball) -> Ball:
-        """Return 1/cosh x, from exp -|x|."""
-        return 2 * self.exp(-abs(x)) / (1 + self.exp(-2 * abs(x)))
-
-    def log(self, x: Ball) -> Ball:
-        """Return the natural logarithm of x > 0."""
-        return self._logarithm(self.plain.log, x, x)
-
-    def log1p(self, x: Ball) -> Ball:
-        """Return the natural logarithm of 1 + x, for x > -1."""
-        return self._logarithm(self.plain.log1p, x, 1 + x)
-
-    def _logarithm(self, function: Callable[[Decimal], Decimal], x: Ball, of: Ball) -> Ball:
-        """Return a function of x whose slope is 1/`of`."""
-        if not of.least > 0:
-            return self.unbounded
-        return self._value(function, x.middle).enlarged(divide_up(x.radius, of.least))
-
-    def atanh(self, x: Ball) -> Ball:
-        """Return the number whose hyperbolic tangent is x."""
-        if x.middle < 0:
-            return -self.atanh(-x)
-        return self.log1p(2 * x / (1 - x)) / 2
-
-    def asinh(self, x: Ball) -> Ball:
-        """Return the inverse hyperbolic sine of x, to a fixed number of digits after the point."""
-        value = self._value(self.plain.asinh, x.middle)
-        return value.enlarged(add_up(x.radius, self.unit))
 
     def atan2(self, y: Ball, x: Ball) -> Ball:
         """Return the angle of the point (x, y); all angles if it may lie on the cut or at 0.
@@ -214,32 +136,15 @@ class Balls(Ring, Scalars):
         """
         r, s = x.radius, y.radius
         if not (r or s):
-            return self._value(self.plain.atan2, y.middle, x.middle)
+            return self.function(self.plain.atan2, y.middle, x.middle)
         across, along = y.least, x.least
         on_the_cut = not across and s and not x.middle > r
         if on_the_cut or not (across or along) or not (r < INFINITE and s < INFINITE):
             return self.within(Decimal(4))
         square = DOWN.fma(along, along, DOWN.multiply(across, across))
         moved = fma_up(x.greatest, s, multiply_up(y.greatest, r))
-        value = self._value(self.plain.atan2, y.middle, x.middle)
+        value = self.function(self.plain.atan2, y.middle, x.middle)
         return value.enlarged(divide_up(moved, square))
-
-    def nint(self, x: Ball) -> int:
-        """Return an integer within 3/4 of all numbers in x.
-
-        Raises TooFewDigitsError for a ball wider than half a unit.
-        """
-        if not x.radius <= Decimal("0.25"):
-            raise TooFewDigitsError
-        return self.plain.nint(x.middle)
-
-    @staticmethod
-    def ceiling(x: Ball) -> int:
-        """Return the least integer >= x; raise TooFewDigitsError if x leaves it open."""
-        low, high = (int(end.to_integral_value(decimal.ROUND_CEILING)) for end in x.ends())
-        if low != high:
-            raise TooFewDigitsError
-        return low
 
     def where(self, condition: Truth, yes: Ball | float, no: Ball | float) -> Ball:
         """Return one of two numbers, or a ball that holds both if the condition is open."""
@@ -278,19 +183,10 @@ class Balls(Ring, Scalars):
         """Return x as a constant."""
         return x
 
-    @staticmethod
-    def sign(x: Ball) -> int:
-        """Return 1, 0 or -1 with the sign of x; raise TooFewDigitsError if the sign is open."""
-        return 0 if not x else 1 if x > 0 else -1
-
-    @staticmethod
-    def re(x: Ball) -> Ball:
-        """Return the real part, x itself."""
-        return x
-
-    def im(self, x: Ball) -> Ball:
-        """Return the imaginary part, 0."""
-        return self.exact(0)
+    exp, expm1, log, log1p = map(_late, ("exp", "expm1", "log", "log1p"))
+    sinh, cosh, tanh, sech = map(_late, ("sinh", "cosh", "tanh", "sech"))
+    asinh, atanh = map(_late, ("asinh", "atanh"))
+    nint, ceiling, sign, re, im = map(_late, ("nint", "ceiling", "sign", "re", "im"))
 
 
 @lru_cache(maxsize=64)

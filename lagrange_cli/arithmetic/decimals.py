@@ -25,11 +25,15 @@ TRAPS: list[type[decimal.DecimalException]] = [
 _GUARD = 5
 
 
-def own_context(digits: int, traps: list[type[decimal.DecimalException]]) -> decimal.Context:
+def own_context(
+    digits: int,
+    traps: list[type[decimal.DecimalException]],
+    rounding: str = decimal.ROUND_HALF_EVEN,
+) -> decimal.Context:
     """Return a decimal context that does not depend on the context of the host program."""
     return decimal.Context(
         prec=digits,
-        rounding=decimal.ROUND_HALF_EVEN,
+        rounding=rounding,
         Emin=decimal.MIN_EMIN,
         Emax=decimal.MAX_EMAX,
         capitals=0,

@@ -40,28 +40,18 @@ class Dual:
         return Dual(self.value.middle, partials)
 
     def __add__(self, other: Dual | int) -> Dual:
-        if isinstance(other, int) or other.partials is None:
-            return Dual(self.value + _value(other), self.partials)
-        if self.partials is None:
-            return Dual(self.value + other.value, other.partials)
-        sums = [x + y for x, y in zip(self.partials, other.partials, strict=True)]
-        return Dual(self.value + other.value, sums)
+        other = _dual(other)
+        return Dual(self.value + other.value, _total([self.partials, other.partials]))
 
     def __mul__(self, other: Dual | int) -> Dual:
-        if isinstance(other, int) or other.partials is None:
-            return self._times(_value(other))
-        if self.partials is None:
-            return other._times(self.value)
-        v, w = self.value, other.value
-        pairs = zip(self.partials, other.partials, strict=True)
-        return Dual(v * w, [x * w + v * y for x, y in pairs])
+        other = _dual(other)
+        value = self.value * other.value
+        for x in (self, other):
+            if x.partials is None and is_zero(x.value):
+                return Dual(value)
+        return _chained(value, (self, other.value), (other, self.value))
 
     __radd__, __rmul__ = __add__, __mul__
-
-    def _times(self, factor: Plain) -> Dual:
-        """Return the product with a constant."""
-        value = self.value * factor
-        return Dual(value) if is_zero(factor) else _chained(self, value, factor)
 
     def __neg__(self) -> Dual:
         return Dual(-self.value, None if self.partials is None else [-x for x in self.partials])
@@ -82,43 +72,39 @@ class Dual:
         return -self + other
 
     def __truediv__(self, other: Dual | int) -> Dual:
-        if isinstance(other, int) or other.partials is None:
-            divisor = _value(other)
-            partials = None if self.partials is None else [x / divisor for x in self.partials]
-            return Dual(self.value / divisor, partials)
-        inverse = 1 / other.value
+        other = _dual(other)
         value = self.value / other.value
-        if self.partials is None:
-            factor = -value * inverse
-            return Dual(value, None if is_zero(value) else [factor * y for y in other.partials])
-        pairs = zip(self.partials, other.partials, strict=True)
-        return Dual(value, [(x - value * y) * inverse for x, y in pairs])
+        if other.partials is None:
+            return Dual(value, self.partials and [x / other.value for x in self.partials])
+        if self.partials is None and is_zero(value):
+            return Dual(value)
+        inverse = 1 / other.value
+        return _chained(value, (self, inverse), (other, -value * inverse))
 
     def __rtruediv__(self, other: int) -> Dual:
-        inverse = 1 / self.value
-        return _chained(self, other * inverse, -other * inverse * inverse)
+        return Dual(other) / self
 
     def __bool__(self) -> bool:
         return bool(self.value)
 
     def __lt__(self, other: Dual | int) -> Any:
-        return self.value < _value(other)
+        return self.value < _dual(other).value
 
     def __le__(self, other: Dual | int) -> Any:
-        return self.value <= _value(other)
+        return self.value <= _dual(other).value
 
     def __gt__(self, other: Dual | int) -> Any:
-        return self.value > _value(other)
+        return self.value > _dual(other).value
 
     def __ge__(self, other: Dual | int) -> Any:
-        return self.value >= _value(other)
+        return self.value >= _dual(other).value
 
     def __repr__(self) -> str:
         return f"Dual({self.value}, {self.partials})"
 
 
-def _value(x: Dual | int) -> Plain:
-    return x if isinstance(x, int) else x.value
+def _dual(x: Dual | int) -> Dual:
+    return x if isinstance(x, Dual) else Dual(x)
 
 
 def is_zero(x: Plain) -> bool:
@@ -128,16 +114,26 @@ def is_zero(x: Plain) -> bool:
     return not x
 
 
-def _chained(x: Dual, value: Plain, slope: Plain) -> Dual:
-    """Return a function of x from its value and its slope at x."""
-    return Dual(value, None if x.partials is None else [slope * dx for dx in x.partials])
+def _total(terms: Iterable[Sequence[Plain] | None]) -> Sequence[Plain] | None:
+    """Return sums of derivatives; None if all numbers are constants."""
+    total = None
+    for row in terms:
+        if row is not None:
+            total = row if total is None else [x + y for x, y in zip(total, row, strict=True)]
+    return total
+
+
+def _chained(value: Plain, *slopes: tuple[Dual, Plain]) -> Dual:
+    """Return a function from its value, and from each of its arguments with the slope along it."""
+    terms = (x.partials and [slope * dx for dx in x.partials] for x, slope in slopes)
+    return Dual(value, _total(terms))
 
 
 def _function(name: str, slope: Callable[[Any, Plain], Plain]) -> Callable[[Duals, Dual], Dual]:
     """Return the function `name` of dual numbers, with its slope."""
 
     def function(ar: Duals, x: Dual) -> Dual:
-        return _chained(x, getattr(ar.plain, name)(x.value), slope(ar.plain, x.value))
+        return _chained(getattr(ar.plain, name)(x.value), (x, slope(ar.plain, x.value)))
 
     return function
 
@@ -175,10 +171,9 @@ class Duals(Scalars):
 
     def sqrt(self, x: Dual | int) -> Dual:
         """Return the square root of x >= 0."""
-        root = self.plain.sqrt(_value(x))
-        if isinstance(x, int) or x.partials is None:
-            return Dual(root)
-        return _chained(x, root, self.plain.nan if is_zero(root) else 1 / (2 * root))
+        x = _dual(x)
+        root = self.plain.sqrt(x.value)
+        return _chained(root, (x, self.plain.nan if is_zero(root) else 1 / (2 * root)))
 
     sin = _function("sin", lambda ar, x: ar.cos(x))
     cos = _function("cos", lambda ar, x: -ar.sin(x))
@@ -190,9 +185,7 @@ class Duals(Scalars):
         """Return the angle of the point (x, y), in (-pi, pi]."""
         angle = self.plain.atan2(y.value, x.value)
         square = x.value * x.value + y.value * y.value
-        along, across = x.value / square, -y.value / square
-        none = self.plain.convert(0)
-        return Dual(angle) + (_chained(y, none, along) + _chained(x, none, across))
+        return _chained(angle, (y, x.value / square), (x, -y.value / square))
 
     def nint(self, x: Dual) -> int:
         """Return the integer nearest to x."""

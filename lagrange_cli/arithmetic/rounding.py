@@ -25,8 +25,7 @@ FIRST_DIGITS, MOST_DIGITS = 32, 4_500
 """Digits of the first enclosure of a double, and of the last before a question stays open."""
 _GUARD = 10
 """Extra digits of an enclosure beyond the N digits requested."""
-_OUTWARDS, _SHORT = own_context(20, []), own_context(2, [])
-_OUTWARDS.rounding = _SHORT.rounding = ROUND_UP
+_OUTWARDS, _SHORT = own_context(20, [], ROUND_UP), own_context(2, [], ROUND_UP)
 _A_HAIR_MORE = Decimal("1.000000000001")
 
 DecimalOrFraction = Decimal | Fraction
@@ -175,18 +174,11 @@ def text_of(value: DecimalOrFraction, digits: int) -> NumberText:
         rounded = context.plus(value)
     if not rounded:
         return NumberText("0.0")
-    sign, figures, _ = rounded.normalize(context).as_tuple()
-    exponent = rounded.adjusted()
-    text = "".join(map(str, figures))
-    if -5 < exponent < 16:
-        if exponent < 0:
-            body = "0." + "0" * (-exponent - 1) + text
-        else:
-            text = text.ljust(exponent + 1, "0")
-            body = text[: exponent + 1] + "." + (text[exponent + 1 :] or "0")
-    else:
-        body = f"{text[0]}.{text[1:] or '0'}e{exponent:+d}"
-    return NumberText("-" * sign + body)
+    rounded = rounded.normalize(context)
+    style = "f" if -5 < rounded.adjusted() < 16 else "e"
+    figures, e, exponent = f"{rounded:{style}}".partition("e")
+    point = "" if "." in figures else ".0"
+    return NumberText(f"{figures}{point}{e}{exponent}")
 
 
 def _distance(end: DecimalOrFraction, value: float | NumberText) -> Decimal:

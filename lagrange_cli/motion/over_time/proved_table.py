@@ -62,8 +62,10 @@ class BallSample(ColumnFormulas[Ball]):
         """Return an angle in (-pi, pi]."""
         ar: Balls = self.t.ar
         if self.kind.facts.plane:  # half turns: both ends belong to pi
-            return ar.pi * (ar.nint(angle / ar.pi) % 2)
-        return angle - 2 * ar.pi * ar.ceiling(angle / (2 * ar.pi) - ar.convert(Fraction(1, 2)))
+            half_turns: int = ar.nint(angle / ar.pi)
+            return ar.pi * (half_turns % 2)
+        turns: int = ar.ceiling(angle / (2 * ar.pi) - ar.convert(Fraction(1, 2)))
+        return angle - 2 * ar.pi * turns
 
     @property
     def dphi(self) -> Ball:
