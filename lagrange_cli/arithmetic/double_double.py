@@ -75,16 +75,11 @@ class Period(NamedTuple):
     """Time up to which the number of periods is below 2^26."""
 
 
-def period_of(length: Pair, rate: float) -> Period:
-    """Return a period from its length and rate = 1/length; a rate of 0 means that it never ends."""
-    long, low = (float(part) if math.isfinite(length.high) else 0.0 for part in length)
-    mantissa, exponent = math.frexp(long)
-    high = math.ldexp(math.trunc(mantissa * MANY), exponent - 26)
-    return Period(rate, high, long - high, low, MANY / abs(rate) if rate else math.inf)
+def period_of(length: Pair, rate: float | Array) -> Period:
+    """Return a period, or one per top, from its length and rate = 1/length.
 
-
-def periods_of(length: Pair, rate: Array) -> Period:
-    """Return the periods of many tops; `period_of` is quicker for one."""
+    A rate of 0 means that it never ends.
+    """
     long, low = (np.where(np.isfinite(length.high), part, 0.0)[()] for part in length)
     mantissa, exponent = np.frexp(long)
     high = np.ldexp(np.trunc(mantissa * MANY), exponent - 26)

@@ -151,37 +151,29 @@ def exact(top: Top) -> Exact:
     m, A, C, s, g, r0, theta_rate = (
         Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0, top.thetadot0)
     )
-    if top.steady_word:
-        return _exact_steady(top, r0)
-    psi_rate = Fraction(top.psidot0)
-    if top.pole and psi_rate:
-        raise LagtopError(
-            f"psidot0 must be 0 if the axis is vertical, got {float(psi_rate)} "
-            "(a vertical axis cannot precess; count the rate as spin)",
-            "psidot0",
-        )
     a, b = 2 * m * g * s / A, C * r0 / A
     degrees, radians = (
         None if x is None else Fraction(x) for x in (top.theta0_deg, top.theta0_rad)
     )
     cosine = Cosine(degrees, radians)
-    facts = _facts(top.pole, a, b, (theta_rate, psi_rate), cosine)
-    return Exact(top, a, b, r0, theta_rate, psi_rate, cosine, facts)
+    if top.steady_word:
+        from ..inputs.steady_rate import rates_of  # start-up: for few tops
 
-
-def _exact_steady(top: Top, r0: Fraction) -> Exact:
-    """Return a top in steady precession, whose rate is a root of a quadratic equation."""
-    from ..inputs.steady_rate import rates_of  # start-up: for few tops
-
-    rates = rates_of(top)
-    a, b, cosine = rates.a, rates.b, rates.cosine
-    psi_rate = rates.fraction(str(top.steady_word))
-    if psi_rate is not None:
-        facts = _facts(top.pole, a, b, (Fraction(0), psi_rate), cosine)
+        psi_rate = rates_of(top).fraction(str(top.steady_word))
     else:
+        psi_rate = Fraction(top.psidot0)
+    if psi_rate is None:
         regime = Regime.STEADY if a else Regime.TORQUE_FREE
         facts = Facts(regime, at_rest=False, steady=True, free=not a, spins=bool(b))
-    return Exact(top, a, b, r0, Fraction(0), psi_rate, cosine, facts)
+    else:
+        if top.pole and psi_rate:
+            raise LagtopError(
+                f"psidot0 must be 0 if the axis is vertical, got {float(psi_rate)} "
+                "(a vertical axis cannot precess; count the rate as spin)",
+                "psidot0",
+            )
+        facts = _facts(top.pole, a, b, (theta_rate, psi_rate), cosine)
+    return Exact(top, a, b, r0, theta_rate, psi_rate, cosine, facts)
 
 
 def _facts(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import PAIRS
-from ..arithmetic.double_double import DoubleDouble, Period, periods_of, whole_periods
+from ..arithmetic.double_double import DoubleDouble, Period, period_of, whole_periods
 from ..arithmetic.points import MAX_TIME
 from ..arithmetic.rounding import Pair, Triple
 from ..arithmetic.types import Array, Mask
@@ -196,7 +196,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
         phi = _growth(motion.mean_spin_rate, x - y)
         psi = _growth(motion.mean_precession_rate, x + y)
         return ArraySampler(
-            step=periods_of(Pair(*_columns(period / 2, count)), _columns(steps, count)[0]),
+            step=period_of(Pair(*_columns(period / 2, count)), _columns(steps, count)[0]),
             offset=phase[:, None],
             lower=lower[:, None],
             speed=_columns(series.scale * steps, count)[0],
@@ -245,7 +245,7 @@ def _phase(motion: Nutating[DoubleDouble], start: Start, lower: Mask) -> Array:
 def _growth(rate: DoubleDouble, start: DoubleDouble) -> Growth:
     """Return the growth of an angle of each top."""
     count, turns = start.high.size, rate / (2 * PAIRS.pi)
-    turn = periods_of(Pair(*_columns(1 / turns, count)), _columns(turns, count)[0])
+    turn = period_of(Pair(*_columns(1 / turns, count)), _columns(turns, count)[0])
     first, mean = (Pair(*_columns(x, count)) for x in (start, rate))
     return Growth(first, mean, turn, Triple(*_columns(turns, count), 0.0))
 
