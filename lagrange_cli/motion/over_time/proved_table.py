@@ -62,10 +62,8 @@ class BallSample(ColumnFormulas[Ball]):
         """Return an angle in (-pi, pi]."""
         ar: Balls = self.t.ar
         if self.kind.facts.plane:  # half turns: both ends belong to pi
-            half_turns: int = ar.nint(angle / ar.pi)
-            return ar.pi * (half_turns % 2)
-        turns: int = ar.ceiling(angle / (2 * ar.pi) - ar.convert(Fraction(1, 2)))
-        return angle - 2 * ar.pi * turns
+            return ar.pi * int(ar.nint(angle / ar.pi) % 2)
+        return angle - 2 * ar.pi * int(ar.ceiling(angle / (2 * ar.pi) - ar.convert(0.5)))
 
     @property
     def dphi(self) -> Ball:
