@@ -18,7 +18,7 @@ import numpy as np
 from ..arithmetic.arrays import PAIRS
 from ..arithmetic.double_double import DoubleDouble, two_sum
 from ..arithmetic.exact_cosine import Tilt
-from ..arithmetic.numbers import polynomial
+from ..arithmetic.numbers import R, polynomial
 from ..arithmetic.types import Array, Mask
 from ..inputs.measured import spin
 from ..motion.gaps import State
@@ -135,34 +135,13 @@ class TopArrays(NamedTuple):
 
     def state(self) -> State[Array]:
         """Return constants and start of tops released from rest, each rounded once."""
-        sin, cos, sin_half, cos_half = self.tilt()
-        zero = np.zeros_like(sin)
-        return State(
-            **{name: x.high for name, x in self._constants().items()},
-            sin=sin,
-            cos=cos,
-            sin_half=sin_half,
-            cos_half=cos_half,
-            below=2 * cos_half * cos_half,
-            above=2 * sin_half * sin_half,
-            theta_rate=zero,
-            psi_rate=zero,
-        )
+        constants = {name: x.high for name, x in self._constants().items()}
+        return _state(constants, self.tilt(), np.zeros_like(self.m), np.zeros_like(self.m))
 
     def pair_state(self) -> State[DoubleDouble]:
         """Return constants and start of tops in pairs of doubles."""
-        sine, cosine = self._half_tilt()
-        return State(
-            **self._constants(),
-            sin=(sine * cosine).scaled(2),
-            cos=(cosine - sine) * (cosine + sine),
-            sin_half=sine,
-            cos_half=cosine,
-            below=(cosine * cosine).scaled(2),
-            above=(sine * sine).scaled(2),
-            theta_rate=DoubleDouble(self.thetadot0),
-            psi_rate=DoubleDouble(self.psidot0),
-        )
+        rates = DoubleDouble(self.thetadot0), DoubleDouble(self.psidot0)
+        return _state(self._constants(), self._tilt_in_pairs(), *rates)
 
     def tilt(self) -> Tilt[Array]:
         """Return sines and cosines of theta0 and theta0/2, each with full relative accuracy."""
@@ -173,8 +152,8 @@ class TopArrays(NamedTuple):
         given = np.sin(rad), np.cos(rad), np.sin(rad / 2), np.cos(rad / 2)
         return Tilt(*(np.where(in_radians, x, y) for x, y in zip(given, tilt, strict=True)))
 
-    def _half_tilt(self) -> tuple[DoubleDouble, DoubleDouble]:
-        """Return sine and cosine of theta0/2 in pairs, from the nearer pole."""
+    def _tilt_in_pairs(self) -> Tilt[DoubleDouble]:
+        """Return sines and cosines of theta0 and theta0/2 in pairs, from the nearer pole."""
         in_radians = ~np.isnan(self.theta0_rad)
         down = np.where(in_radians, self.theta0_rad > np.pi / 2, self.theta0_deg > 90)
         nearer = DoubleDouble(np.where(down, 180 - self.theta0_deg, self.theta0_deg)) * _DEGREE
@@ -185,7 +164,22 @@ class TopArrays(NamedTuple):
             nearer = DoubleDouble.choose(in_radians, given, nearer)
         sine = _sine(nearer.scaled(0.5))
         cosine = (1.0 - sine * sine).sqrt()
-        return DoubleDouble.choose(down, cosine, sine), DoubleDouble.choose(down, sine, cosine)
+        sine, cosine = (
+            DoubleDouble.choose(down, *both) for both in ((cosine, sine), (sine, cosine))
+        )
+        return Tilt((sine * cosine).scaled(2), (cosine - sine) * (cosine + sine), sine, cosine)
+
+
+def _state(constants: Mapping[str, R], tilt: Tilt[R], theta_rate: R, psi_rate: R) -> State[R]:
+    """Return the start of tops from their constants, tilts and rates."""
+    return State(
+        **constants,
+        **tilt.as_dict(),
+        below=2 * tilt.cos_half * tilt.cos_half,
+        above=2 * tilt.sin_half * tilt.sin_half,
+        theta_rate=theta_rate,
+        psi_rate=psi_rate,
+    )
 
 
 def _tilt_of_degrees(tilt: Array) -> Tilt[Array]:
