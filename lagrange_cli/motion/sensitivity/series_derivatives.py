@@ -9,6 +9,7 @@ below it.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from decimal import Decimal
 from typing import Any, NamedTuple
 
@@ -72,9 +73,7 @@ class SeriesDerivatives:
             series, (x_start, y_start) = found.series, found.starts
             self.hyperbolic = series.hyperbolic
             self.frames = _in_doubles(ar, found)
-            self.about_means = RatesAboutMeans.of(
-                motion, means, first_is_upper=found.first_is_upper
-            )
+            self.about_means = rates_about_means(motion, means, first_is_upper=found.first_is_upper)
             speed, step = 2 / motion.T_nutation, motion.T_nutation.value / 2
             rates = means.mean_spin_rate, means.mean_precession_rate
             slopes = series.spin_slope, series.precession_slope
@@ -134,7 +133,7 @@ class SeriesDerivatives:
         rate = np.where(odd, odd_rate, even_rate) * S * C
         norm = x2 + y2
         theta = rate / (2.0 * norm * np.sqrt(x2 * y2))
-        spinning = self.about_means.at(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
+        spinning = self.about_means(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
         return [gain / self.speed for gain in (theta, *spinning)]
 
     def _polar(self, which: int, step: Array, phase: Array) -> Polar:
@@ -209,55 +208,38 @@ def _decimal(x: Any) -> Decimal:
     return x.value if isinstance(x, Dual) else Decimal(x)
 
 
-class RatesAboutMeans(NamedTuple):
-    """The rates of spin and precession about their means, from the distances of u to u1 and u2."""
+def rates_about_means(
+    motion: Nutating[Dual], means: Nutating[Dual], *, first_is_upper: bool
+) -> Callable[..., tuple[Array, Array, Array]]:
+    """Return the rates of spin and precession about their means, from the distances to u1 and u2.
 
-    modulus: Modulus
-    quarter: float
-    """K."""
-    south: float
-    """(beta + b)/2 (u1 - u2)/(1 + u1); over 1 + u, the change of the precession rate from u1."""
-    north: float
-    south_at_u1: float
-    """(beta + b)/2/(1 + u1) less the mean of (beta + b)/2/(1 + u)."""
-    north_at_u2: float
-    first_is_upper: bool
-    """Whether the turning point of the even steps is u1."""
+    The result is a function of the phase, of the mask of odd steps, of 1 + u and of 1 - u.  It
+    returns both rates minus their means, and the size of their summands.  The turning point of the
+    even steps is u1 if `first_is_upper`.  Constants are rounded from many digits.
+    """
+    gaps = motion.gaps
+    plus, minus = gaps.beta_plus_b.value / 2, gaps.beta_minus_b.value / 2
+    drift = means.mean_spin_rate.value - motion.state.pole_drift.value
+    precession, width = means.mean_precession_rate.value, gaps.u1_u2.value
+    at_u1, at_u2 = plus / gaps.below_u1.value, minus / gaps.above_u2.value
+    # over 1 + u and 1 - u: the changes of both parts of the precession rate from u1 and from u2
+    from_u1, from_u2 = float(at_u1 * width), float(at_u2 * width)
+    # the parts themselves there, less their means
+    south_at_u1 = float(at_u1 - (precession + drift) / 2)
+    north_at_u2 = float(at_u2 - (precession - drift) / 2)
+    quarter = float(motion.K.value)
+    modulus = Modulus(float(motion.k.value), float(motion.k_prime.value))
 
-    @classmethod
-    def of(
-        cls, motion: Nutating[Dual], means: Nutating[Dual], *, first_is_upper: bool
-    ) -> RatesAboutMeans:
-        """Return the constants of a motion, rounded from many digits."""
-        gaps = motion.gaps
-        plus, minus = gaps.beta_plus_b.value / 2, gaps.beta_minus_b.value / 2
-        drift = means.mean_spin_rate.value - motion.state.pole_drift.value
-        precession, width = means.mean_precession_rate.value, gaps.u1_u2.value
-        south, north = plus / gaps.below_u1.value, minus / gaps.above_u2.value
-        return cls(
-            Modulus(float(motion.k.value), float(motion.k_prime.value)),
-            quarter=float(motion.K.value),
-            south=float(south * width),
-            north=float(north * width),
-            south_at_u1=float(south - (precession + drift) / 2),
-            north_at_u2=float(north - (precession - drift) / 2),
-            first_is_upper=first_is_upper,
-        )
-
-    def at(
-        self, phase: Array, odd: Array, below: Array, above: Array
-    ) -> tuple[Array, Array, Array]:
-        """Return both rates minus their means, and the size of their summands.
-
-        `below` and `above` are 1 + u and 1 - u.
-        """
-        _, sn, cn, dn = jacobi(ARRAYS, phase * self.quarter, self.modulus)
+    def rates(phase: Array, odd: Array, below: Array, above: Array) -> tuple[Array, Array, Array]:
+        _, sn, cn, dn = jacobi(ARRAYS, phase * quarter, modulus)
         away = sn * sn  # (u - u2)/(u1 - u2) about u2, and cn^2 its complement
-        mirrored = (self.modulus.k_prime * sn / dn) ** 2
-        upper = odd != self.first_is_upper
+        mirrored = (modulus.k_prime * sn / dn) ** 2
+        upper = odd != first_is_upper
         under_u1 = np.where(upper, mirrored, cn * cn)
         over_u2 = np.where(upper, (cn / dn) ** 2, away)
-        south, north = self.south * under_u1 / below, self.north * over_u2 / above
-        size = abs(south) + abs(north) + abs(self.south_at_u1) + abs(self.north_at_u2)
-        south, north = south + self.south_at_u1, north + self.north_at_u2
+        south, north = from_u1 * under_u1 / below, from_u2 * over_u2 / above
+        size = abs(south) + abs(north) + abs(south_at_u1) + abs(north_at_u2)
+        south, north = south + south_at_u1, north + north_at_u2
         return south - north, south + north, size
+
+    return rates
