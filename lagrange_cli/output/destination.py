@@ -66,15 +66,15 @@ class Output(Values):
         """
         from .formats import FORMATS
 
-        with opened(self.path) as stream:
-            FORMATS[self.fmt].write_table(stream, names, blocks, view_of(self.path), count)
+        made = FORMATS[self.fmt].rows
+        self.blocks(names, (made(block, names) for block in blocks), count)
 
-    def blocks(self, names: Sequence[str], blocks: Iterable[bytes]) -> None:
+    def blocks(self, names: Sequence[str], blocks: Iterable[bytes], count: int = 0) -> None:
         """Write blocks made by `formats.block_text`, with the header and footer of the format."""
         from .formats import FORMATS
 
         with opened(self.path) as stream:
-            FORMATS[self.fmt].write_blocks(stream, names, blocks, view_of(self.path))
+            FORMATS[self.fmt].write(stream, names, blocks, view_of(self.path), count)
 
     def report(self, find: Callable[[], Report]) -> Report:
         """Write what `find` returns, and return it; the destination is opened first."""

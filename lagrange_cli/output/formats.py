@@ -1,4 +1,4 @@
-"""The formats of rows, one object each: csv, json, ndjson, parquet, npy, table and markdown.
+"""The formats of rows: csv, json, ndjson, parquet, npy, table and markdown.
 
 A double has the same text in all formats (see `arithmetic.text`).  Any process may format a block
 of rows as bytes (`block_text`); one process writes all blocks (`Output.blocks`).
@@ -7,12 +7,12 @@ of rows as bytes (`block_text`); one process writes all blocks (`Output.blocks`)
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from io import BytesIO
-from itertools import chain
-from typing import TYPE_CHECKING, Any, BinaryIO, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
-from ..arithmetic.text import csv_text, value_text
+from ..arithmetic.text import csv_text
 from .terminal import View
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Texts = Sequence[Sequence[str]]
 """A block of rows with numbers as text; an empty text is a missing number."""
+Names = Sequence[str]
 
 
 class Header(list[str]):
@@ -31,175 +32,89 @@ class Header(list[str]):
         self.description = description
 
 
-def description_of(names: Sequence[str]) -> Mapping[str, str]:
+def description_of(names: Names) -> Mapping[str, str]:
     """Return the description that belongs to the names of columns, if any."""
     return names.description if isinstance(names, Header) else {}
 
 
-class Format:
+class Format(NamedTuple):
     """A format: the bytes before, between and after blocks of rows, and of a block itself."""
 
-    between = b""
-    closing = b""
+    block: Callable[[Columns, Names], bytes]
+    """Makes the bytes of rows of numbers and JSON values, from their columns."""
+    texts: Callable[[Texts, Names], bytes] | None = None
+    """Makes the bytes of numbers as text; a format without it holds doubles."""
+    opening: Callable[..., bytes] = lambda names, count=0: b""
+    """Makes the bytes before the rows, whose number is 0 if it is unknown."""
+    between: bytes = b""
+    closing: bytes = b""
+    whole: Callable[[Names, Iterable[bytes], View, BinaryIO], None] | None = None
+    """Writes one document of all blocks, if that is not the blocks one after the other."""
 
-    def opening(self, names: Sequence[str]) -> bytes:
-        """Return the bytes before the rows."""
-        return b""
+    def rows(self, block: Array | Texts, names: Names) -> bytes:
+        """Return the bytes of an array, or of numbers as text."""
+        if not isinstance(block, list):
+            return self.block([block], names)
+        return self.texts(block, names) if self.texts else self.block([_doubles(block)], names)
 
-    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return rows of numbers and JSON values as bytes, from their columns."""
-        raise NotImplementedError
-
-    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return rows of numbers as bytes, from numbers as text."""
-        raise NotImplementedError
-
-    def write_blocks(
-        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes], view: View
+    def write(
+        self, stream: BinaryIO, names: Names, blocks: Iterable[bytes], view: View, count: int
     ) -> None:
-        """Write blocks made by `block`, with the bytes before, between and after them."""
-        texts = filter(None, blocks)
-        first = next(texts, b"")  # before anything is written, because most errors occur here
-        stream.write(self.opening(names) + first)
-        for text in texts:
-            stream.write(self.between + text)
+        """Write blocks of rows, with the bytes before, between and after them."""
+        blocks = filter(None, blocks)
+        if self.whole:
+            self.whole(names, blocks, view, stream)
+            return
+        first = next(blocks, b"")  # before anything is written, because most errors occur here
+        stream.write(self.opening(names, count) + first)
+        for block in blocks:
+            stream.write(self.between + block)
         stream.write(self.closing)
 
-    def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:
-        """Return the file of a part of a sweep; only part 0 begins with the header."""
-        return text if number else self.opening(names) + text
 
-    def write_table(
-        self,
-        stream: BinaryIO,
-        names: Sequence[str],
-        blocks: Iterable[Array | Texts],
-        view: View,
-        count: int,
-    ) -> None:
-        """Write `count` rows in blocks, arrays or numbers as text; the count is 0 if unknown."""
-        made = (
-            self.texts(block, names) if isinstance(block, list) else self._array(block, names)
-            for block in blocks
-        )
-        self.write_blocks(stream, names, made, view)
+def _of_rows(function: str, **how: Any) -> Callable[..., Any]:
+    """Return a function of `rows`, which is imported with NumPy and orjson when it is called."""
 
-    def _array(self, block: Any, names: Sequence[str]) -> bytes:
-        return self.block([block], names)
+    def call(*args: Any) -> Any:
+        from . import rows
+
+        return getattr(rows, function)(*args, **how)
+
+    return call
 
 
-class Csv(Format):
-    """Comma-separated values with a header; an empty cell is a missing value."""
-
-    def opening(self, names: Sequence[str]) -> bytes:
-        """Return the header, below comments that describe it."""
-        comments = "".join(f"# {key}: {text}\n" for key, text in description_of(names).items())
-        return f"{comments}{','.join(map(csv_text, names))}\n".encode()
-
-    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return a line per row."""
-        from .rows import csv_lines
-
-        return csv_lines(columns, names)
-
-    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return a line per row."""
-        return "".join(",".join(row) + "\n" for row in rows).encode()
+def _csv_header(names: Names, count: int = 0) -> bytes:
+    """Return the header, below comments that describe it."""
+    comments = "".join(f"# {key}: {text}\n" for key, text in description_of(names).items())
+    return f"{comments}{','.join(map(csv_text, names))}\n".encode()
 
 
-class Json(Format):
-    """JSON: an array with an object per row, each on a line; null is a missing value."""
-
-    between = b",\n"
-    closing = b"]\n"
-
-    def opening(self, names: Sequence[str]) -> bytes:
-        """Return the opening bracket of the array."""
-        return b"["
-
-    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return the objects, separated by commas."""
-        from .rows import json_objects
-
-        return json_objects(columns, names, b",\n")
-
-    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return the objects, separated by commas."""
-        return ",\n".join(_objects(rows, names)).encode()
+def _csv_texts(rows: Texts, names: Names) -> bytes:
+    """Return a line per row; readers would skip an empty line."""
+    return "".join(f"{','.join(row) or _EMPTY}\n" for row in rows).encode()
 
 
-class Ndjson(Format):
-    """JSON lines: an object per row; null is a missing value."""
-
-    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return a line per row."""
-        from .rows import json_objects
-
-        return json_objects(columns, names, b"\n", b"\n")
-
-    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return a line per row."""
-        return "".join(f"{line}\n" for line in _objects(rows, names)).encode()
+def _json_texts(rows: Texts, names: Names, between: str, end: str) -> bytes:
+    """Return the JSON objects of rows of numbers as text, as orjson would write them."""
+    keys = [f'"{name}":' for name in names]
+    members = ([f"{key}{x or 'null'}" for key, x in zip(keys, row, strict=True)] for row in rows)
+    return between.join(f"{{{','.join(few)}}}{end}" for few in members).encode()
 
 
-def _objects(rows: Texts, names: Sequence[str]) -> Iterator[str]:
-    """Yield the JSON objects of rows of numbers as text, as orjson would write them."""
-    for row in rows:
-        pairs = zip(names, row, strict=True)
-        yield f"{{{','.join([f'{_QUOTE}{name}{_QUOTE}:{x or _NULL}' for name, x in pairs])}}}"
+def _npy_header(names: Names, count: int) -> bytes:
+    """Return the header of a structured array with a field of doubles per column."""
+    import numpy as np
+
+    stream, row = BytesIO(), np.dtype([(name, "<f8") for name in names])
+    header = {"descr": row.descr, "fortran_order": False, "shape": (count,)}
+    np.lib.format.write_array_header_1_0(stream, header)
+    return stream.getvalue()
 
 
-_QUOTE, _NULL = '"', "null"
+def _npy_rows(columns: Columns, names: Names) -> bytes:
+    import numpy as np
 
-
-class Parquet(Format):
-    """Parquet, a row group per block; between processes a block is an Arrow stream."""
-
-    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return an Arrow stream."""
-        from .rows import arrow_block
-
-        return arrow_block(columns, names) if len(columns[0]) else b""
-
-    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return an Arrow stream of doubles."""
-        return self._array(_doubles(rows), names)
-
-    def write_blocks(
-        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes], view: View
-    ) -> None:
-        """Write one file of all blocks."""
-        from .rows import write_parquet
-
-        write_parquet(stream, names, filter(None, blocks), description_of(names))
-
-    def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:
-        """Return the file of a part of a sweep, which is complete by itself."""
-        stream = BytesIO()
-        self.write_blocks(stream, names, [text], View())
-        return stream.getvalue()
-
-
-class Npy(Format):
-    """One structured array of NumPy: a field of doubles per column."""
-
-    def write_table(
-        self,
-        stream: BinaryIO,
-        names: Sequence[str],
-        blocks: Iterable[Array | Texts],
-        view: View,
-        count: int,
-    ) -> None:
-        """Write a header with the number of rows, and the rows as they arrive."""
-        import numpy as np
-
-        row = np.dtype([(name, "<f8") for name in names])
-        header = {"descr": row.descr, "fortran_order": False, "shape": (count,)}
-        np.lib.format.write_array_header_1_0(stream, header)
-        for block in blocks:
-            rows = _doubles(block) if isinstance(block, list) else block
-            stream.write(np.ascontiguousarray(rows, dtype="<f8").tobytes())
+    return np.ascontiguousarray(columns[0], dtype="<f8").tobytes()
 
 
 def _doubles(rows: Texts) -> Array:
@@ -209,61 +124,57 @@ def _doubles(rows: Texts) -> Array:
     return np.array([[float(x or "nan") for x in row] for row in rows])
 
 
-class Drawn(Csv):
-    """A table or markdown, drawn when all rows are known; between processes a block is CSV."""
+def _write_parquet(names: Names, blocks: Iterable[bytes], view: View, stream: BinaryIO) -> None:
+    """Write a row group per block, an Arrow stream."""
+    from .rows import write_parquet
 
-    def __init__(self, fmt: str) -> None:
-        self.fmt = fmt
-
-    def write_blocks(
-        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes], view: View
-    ) -> None:
-        """Write a column per name and a line per row."""
-        self._draw(stream, names, csv.reader(b"".join(blocks).decode().splitlines()), view)
-
-    def write_table(
-        self,
-        stream: BinaryIO,
-        names: Sequence[str],
-        blocks: Iterable[Array | Texts],
-        view: View,
-        count: int,
-    ) -> None:
-        """Write a column per name and a line per row."""
-        rows = chain.from_iterable(
-            block if isinstance(block, list) else cast("Array", block).tolist() for block in blocks
-        )
-        self._draw(stream, names, (map(value_text, row) for row in rows), view)
-
-    def _draw(
-        self, stream: BinaryIO, names: Sequence[str], rows: Iterable[Iterable[str]], view: View
-    ) -> None:
-        from .report import rows_text
-
-        stream.write(rows_text(names, [list(row) for row in rows], self.fmt, view))
+    write_parquet(stream, names, blocks, description_of(names))
 
 
-FORMATS: dict[str, Format] = {
-    "table": Drawn("table"),
-    "markdown": Drawn("markdown"),
-    "csv": Csv(),
-    "json": Json(),
-    "ndjson": Ndjson(),
-    "parquet": Parquet(),
-    "npy": Npy(),
+def _draw(fmt: str, names: Names, blocks: Iterable[bytes], view: View, stream: BinaryIO) -> None:
+    """Write a table or markdown, drawn when all rows are known, from blocks of CSV."""
+    from .report import rows_text
+
+    rows = list(csv.reader(b"".join(blocks).decode().splitlines()))
+    stream.write(rows_text(names, rows, fmt, view))
+
+
+_EMPTY = '""'
+_CSV = Format(_of_rows("csv_lines"), _csv_texts, _csv_header)
+FORMATS = {
+    "table": _CSV._replace(whole=partial(_draw, "table")),
+    "markdown": _CSV._replace(whole=partial(_draw, "markdown")),
+    "csv": _CSV,
+    "json": Format(
+        _of_rows("json_objects", between=b",\n"),
+        partial(_json_texts, between=",\n", end=""),
+        lambda names, count=0: b"[",
+        b",\n",
+        b"]\n",
+    ),
+    "ndjson": Format(
+        _of_rows("json_objects", between=b"\n", end=b"\n"),
+        partial(_json_texts, between="", end="\n"),
+    ),
+    "parquet": Format(_of_rows("arrow_block"), whole=_write_parquet),
+    "npy": Format(_npy_rows, opening=_npy_header),
 }
 """The formats by name."""
 
 
-def block_text(columns: Columns, names: Sequence[str], fmt: str) -> bytes:
+def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
     """Return a block of rows in a format, for `Output.blocks`."""
     return FORMATS[fmt].block(columns, names)
 
 
-def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes:
+def part_file(fmt: str, names: Names, number: int, text: bytes) -> bytes:
     """Return the content of the file of a part, from the text that `block_text` made.
 
-    The concatenation of the files is the output of `Output.blocks`.  A Parquet file is complete by
-    itself.
+    The concatenation of the files is the output of `Output.blocks`.  Only part 0 begins with the
+    header.  A Parquet file is complete by itself.
     """
-    return FORMATS[fmt].part(names, number, text)
+    form, stream = FORMATS[fmt], BytesIO()
+    if not form.whole:
+        return text if number else form.opening(names) + text
+    form.write(stream, names, [text], View(), 0)
+    return stream.getvalue()
