@@ -16,8 +16,18 @@ import click
 from .. import __version__
 from ..errors import CannotWriteError, LagtopError, SomeFailedError
 from ..output.destination import opened
-from ..output.signals import CLOSED_PIPE, INTERRUPT, Terminated, die_by, interrupts
-from ..output.terminal import has_colours, one_line, spelt, view_of
+from ..output.terminal import (
+    CLOSED_PIPE,
+    INTERRUPT,
+    Screen,
+    Terminated,
+    die_by,
+    has_colours,
+    interrupts,
+    one_line,
+    spelt,
+    view_of,
+)
 
 if TYPE_CHECKING:
     from ..output.destination import Output
@@ -206,6 +216,8 @@ class LagtopGroup(Command, click.Group):
             number = INTERRUPT
         except Terminated as error:
             number = error.number
+        finally:
+            Screen.end_progress()
         return die_by(number)  # here the frames of the command are gone and have cleaned up
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from ..bench.hard_scenes import STRATA, stratum_lines
 from ..errors import LagtopError
 from ..inputs.names import check_names
+from ..output.progress import with_progress
 from .app import fail_for, write_report
 from .options import (
     COUNT,
@@ -25,7 +26,6 @@ from .options import (
     output_options,
     plot_option,
 )
-from .progress import with_progress
 from .top import INPUT, SCENE, TopOptions, top_options
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
+from ..output.progress import with_progress
 from .app import complain, fail_for, write_report
 from .options import (
     FILE,
@@ -24,7 +25,6 @@ from .options import (
     output_options,
     plot_option,
 )
-from .progress import with_progress
 from .tables import columns_option, euler_option, quaternion_option, text_options
 from .top import INPUT, TopOptions, top_options, words
 

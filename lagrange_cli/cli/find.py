@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..errors import LagtopError
+from ..output.progress import with_progress
 from .app import complain
 from .options import COUNT, Parsed, command, keys_option, option, output_options
-from .progress import with_progress
 from .tables import key_headings
 from .top import TopOptions, top_options, value_type, warn_missing, warn_unused, words
 
@@ -111,7 +111,6 @@ def _write(
 ) -> None:
     """Write the records as `lagtop sweep` does, a row for each motion."""
     from ..motion.numbers import record_in_range
-    from ..output.formats import block_text
 
     records: list[dict[str, Any]] = [
         record_in_range(motion, radians=radians, keys=keys)[0] for motion in motions
@@ -119,6 +118,4 @@ def _write(
     for record in records:
         if system is not None and record.get("remark"):
             record["remark"] = system.in_words(record["remark"])
-    columns = [[record[key] for record in records] for key in keys]
-    names = key_headings(keys, system, out.fmt, radians=radians)
-    out.blocks(names, [block_text(columns, keys, out.fmt)])
+    out.rows(records, keys, key_headings(keys, system, out.fmt, radians=radians))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
+from ..output.progress import with_progress
 from .app import complain, fail_for, write_report
 from .options import (
     FILE,
@@ -22,7 +23,6 @@ from .options import (
     output_options,
     plot_option,
 )
-from .progress import with_progress
 from .tables import ANY_NAMES, columns_option, euler_option, quaternion_option, text_options
 from .top import UNCERTAIN, TopOptions, top_options, words
 
@@ -209,8 +209,6 @@ def _write(found: list[Outcome], source: str, system: System | None, out: Output
 
         write_report(out, lambda: fit_report(found, shown_path(source), system))
         return
-    from ..output.formats import block_text
-
     records: list[dict[str, Any]] = [outcome.record() for outcome in found]
     if system is not None and out.fmt != "csv":
         for outcome, record in zip(found, records, strict=True):
@@ -218,9 +216,7 @@ def _write(found: list[Outcome], source: str, system: System | None, out: Output
     if len(records) == 1 and out.fmt == "json":
         out.record(records[0], dict)
     else:
-        keys = list(dict.fromkeys(key for record in records for key in record))
-        columns = [[record.get(key) for record in records] for key in keys]
-        out.blocks(keys, [block_text(columns, keys, out.fmt)])
+        out.rows(records, list(dict.fromkeys(key for record in records for key in record)))
     for outcome in found:
         name = f"{outcome.recording.name}: " if outcome.recording.name else ""
         notes = [*outcome.notes(), *outcome.undetermined()]
@@ -242,10 +238,7 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
 
         out.text(f"{json_text(found.record())}\n")
     else:
-        from ..output.formats import block_text
-
-        columns = [[row[key] for row in rows] for key in rows[0]]
-        out.blocks(list(rows[0]), [block_text(columns, list(rows[0]), out.fmt)])
+        out.rows(rows, list(rows[0]))
     failed = [window.outcome for window in found.windows if window.verdict == FAILED]
     fail_for([outcome.failure() for outcome in failed], len(rows), "windows")
     if not found.is_described:

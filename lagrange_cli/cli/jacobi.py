@@ -10,6 +10,7 @@ from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
 from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.names import check_names
+from ..output.progress import with_progress
 from .app import complain
 from .options import (
     COUNT,
@@ -25,7 +26,6 @@ from .options import (
     output_options,
     rad_option,
 )
-from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

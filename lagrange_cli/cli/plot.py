@@ -16,12 +16,12 @@ from ..errors import LagtopError
 from ..inputs.input_keys import TILT
 from ..inputs.names import check_names
 from ..output.destination import write_bytes
+from ..output.progress import with_progress
 from ..output.terminal import is_terminal
 from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, MAP_KEY, ON_THE_SHEET, SHEET, PlotRequest, help_lines
 from ..plot.style import chosen_look
 from .options import FILE, KEY, NUMBER, Parsed, choice, command, flag, option
-from .progress import with_progress
 from .tables import angle_stds
 from .top import INPUT, TIME, UNCERTAIN, TopOptions, motion_of, top_options, warn_unused, words
 

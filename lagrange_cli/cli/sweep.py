@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
+from ..output.progress import with_progress
 from .app import complain
 from .options import (
     FOLDER,
@@ -21,7 +22,6 @@ from .options import (
     option,
     output_options,
 )
-from .progress import with_progress
 from .tables import (
     header_comments_option,
     is_described,

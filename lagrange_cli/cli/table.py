@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .. import __version__
 from ..arithmetic.text import value_text
 from ..errors import DataError, LagtopError
+from ..output.progress import with_progress
 from .options import (
     BINARY,
     COUNT,
@@ -26,7 +27,6 @@ from .options import (
     option,
     output_options,
 )
-from .progress import with_progress
 from .tables import angle_stds, header_comments_option, is_described, text_options, warn_no_tops
 from .top import TIME, UNCERTAIN, TopOptions, motion_of, top_options, warn_missing
 

@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from ..arithmetic.text import csv_text, json_text, value_text
 from ..arithmetic.values import Values
 from ..errors import CannotWriteError
-from .signals import ENDING, terminated_by
-from .terminal import Screen, view_of
+from .terminal import ENDING, Screen, terminated_by, view_of
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer as Buffer
@@ -75,6 +74,15 @@ class Output(Values):
 
         with opened(self.path) as stream:
             FORMATS[self.fmt].write(stream, names, blocks, view_of(self.path), count)
+
+    def rows(
+        self, rows: Sequence[Mapping[str, Any]], keys: Sequence[str], names: Sequence[str] = ()
+    ) -> None:
+        """Write some rows by key; their columns have the keys, or other names, as headings."""
+        from .formats import block_text
+
+        columns = [[row.get(key) for row in rows] for key in keys]
+        self.blocks(names or keys, [block_text(columns, keys, self.fmt)])
 
     def report(self, find: Callable[[], Report]) -> Report:
         """Write what `find` returns, and return it; the destination is opened first."""

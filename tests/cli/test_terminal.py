@@ -24,7 +24,7 @@ ESCAPE = re.compile("\x1b\\[[?]?([0-9;]*)([A-Za-z])|([\r\n])|([^\x1b\r\n]+)")
 IMPATIENT = """if True:
     import sys
     from lagrange_cli.__main__ import main
-    from lagrange_cli.cli import progress
+    from lagrange_cli.output import progress
     progress.DELAY = 0.0
     main()
 """
