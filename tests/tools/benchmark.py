@@ -329,11 +329,9 @@ def writing(t: Array) -> None:
     command = [sys.executable, "-m", "lagrange_cli", "table", "--t-max", "100", "--n", str(t.size)]
     with tempfile.NamedTemporaryFile(dir="/dev/shm") as file:
         process = nanoseconds(lambda: subprocess.run([*command, "-o", file.name], check=True))
-    floor = nanoseconds(least)
-    print("\nA table of 1e6 rows to a file, per row")
-    print(f"{'sampling and orjson.dumps':65} {floor:8.1f} ns")
-    name = "lagtop table, whole process (<= 1.4)"
-    print(f"{name:65} {process:8.1f} ns  that x {judged(name, process / floor)}")
+    costs = {"sampling and orjson.dumps": nanoseconds(least)}
+    costs["lagtop table, whole process (<= 1.4)"] = process
+    shown("A table of 1e6 rows to a file, per row", costs, "that")
 
 
 def reading() -> None:
@@ -371,16 +369,11 @@ def cpu_of(
 def columns(t: Array) -> None:
     """Compare single columns with all angles."""
     motion, three = solve(Top()), ["t", "theta", "phi", "psi"]
-    names = ["theta", "u", "t", "r", "thetadot", "psidot", "phidot", "axis_z", "psi", "energy"]
+    titles = ["theta (<= 0.7)", "u (<= 0.6)", "t (<= 0.1)", "r (<= 0.1)", "thetadot", "psidot"]
     works: dict[str, Callable[[], object]] = {"t theta phi psi": partial(motion.table, t, three)}
-    works |= {name: partial(motion.table, t, [name]) for name in names}
-    costs = cpu_of(works, t.size)
-    bars = {"theta": " (<= 0.7)", "u": " (<= 0.6)", "t": " (<= 0.1)", "r": " (<= 0.1)"}
-    print("\nColumns of Motion.table, CPU per sample")
-    for name, cost in costs.items():
-        title = name + bars.get(name, "")
-        ratio = cost / costs["t theta phi psi"]
-        print(f"{title:65} {cost:8.1f} ns  all angles x {judged(title, ratio)}")
+    for title in [*titles, "phidot", "axis_z", "psi", "energy"]:
+        works[title] = partial(motion.table, t, [title.partition(" ")[0]])
+    shown("Columns of Motion.table, CPU per sample", cpu_of(works, t.size), "all angles")
 
 
 FRESH = """
@@ -400,20 +393,14 @@ print(costs[0], min(costs[1:]))
 
 def fresh() -> None:
     """Compare few samples in a fresh process with many warm ones."""
-    costs = {}
-    for count in (10_000, 100_000, 1_000_000):
+    costs: dict[str, float] = {}
+    for count in (1_000_000, 100_000, 10_000):
         command = [sys.executable, "-c", FRESH, str(count)]
         runs = [subprocess.run(command, capture_output=True, check=True).stdout for _ in range(5)]
-        costs[count] = [
-            min(part) for part in zip(*(map(float, x.split()) for x in runs), strict=True)
-        ]
-    many = costs[1_000_000][1]
-    print("\nSamples in a process of their own, CPU per sample: the first call, and later ones")
-    for count, pair in costs.items():
-        for when, cost in zip(("first call", "later calls"), pair, strict=True):
-            few = when == "later calls" and count == 10_000
-            name = f"{count} samples, {when}{' (<= 1.5)' * few}"
-            print(f"{name:65} {cost:8.1f} ns  many x {judged(name, cost / many)}")
+        first, later = map(min, zip(*(map(float, x.split()) for x in runs), strict=True))
+        costs[f"{count} samples, later calls{' (<= 1.5)' * (count == 10_000)}"] = later
+        costs[f"{count} samples, first call"] = first
+    shown("Samples in a process of their own, CPU per sample", costs, "many")
 
 
 def set_up(rng: np.random.Generator) -> None:

@@ -28,7 +28,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -59,6 +59,7 @@ NEAR = 5
 COSINES = ("u1", "u2", "u_quarter")
 NEIGHBOURS, ELSEWHERE = 5, 5
 CHUNK, MOST_SHOWN = 50, 40
+T = TypeVar("T")
 
 
 @dataclass
@@ -77,6 +78,15 @@ class Tally:
         if not error <= bound:
             self.counts[name] += 1
             self.violations.append(f"{name} {error:.3g}: {show}")
+
+    def both(self, key: str, value: T | None, exact: arb | None, show: str) -> tuple[T, arb] | None:
+        """Return a number and its exact value, or None; note the key if only one of both exists."""
+        if value is not None and exact is not None:
+            return value, exact
+        if value is not None or exact is not None:
+            self.counts[f"absent {key}"] += 1
+            self.violations.append(f"{key} is {value!r}, the judge has {exact}: {show}")
+        return None
 
     def add(self, other: Tally) -> None:
         """Take in the tally of more scenes."""
@@ -147,36 +157,29 @@ def number_of(motion: Motion, key: str) -> float | None:
 def judge_record(tally: Tally, judge: Judge, motion: Motion) -> None:
     """Judge every number of a record and on request: the nearest double, or rightly none."""
     for key in (*NUMBER_KEYS, *requested_keys()):
-        value, exact = number_of(motion, key), judge.exact(key)
         show = f"lagtop solve {motion.top.options()} --get {key}"
         tally.counts["numbers"] += 1
-        if (value is None) != (exact is None):
-            tally.counts[f"absent {key}"] += 1
-            tally.violations.append(f"{key} is {value!r}, the judge has {exact}: {show}")
-        elif value is not None and not (value == math.inf and is_beyond(exact)):
-            tally.note("key", judge.ulps(key, value), HALF_ULP, show + f"  # {key} {value!r}")
-
-
-def is_beyond(exact: arb | None) -> bool:
-    """Return whether a number is beyond all doubles."""
-    return exact is not None and bool(abs(exact) > arb(1.7976931348623157e308))
+        if pair := tally.both(key, number_of(motion, key), judge.exact(key), show):
+            value, exact = pair
+            is_beyond = value == math.inf and bool(abs(exact) > arb(sys.float_info.max))
+            if not is_beyond:
+                tally.note("key", judge.ulps(key, value), HALF_ULP, f"{show}  # {key} {value!r}")
 
 
 def judge_digits(tally: Tally, judge: Judge, motion: Motion, digits: int) -> None:
     """Judge every number of a record and on request with `digits` digits."""
     found = motion.record(digits=digits, keys=[*NUMBER_KEYS, *requested_keys()])
-    for key, value in found.items():
-        exact = judge.exact(key)
-        show = f"{typed(motion.top)} --digits {digits} --get {key}  # {value}"
+    for key, text in found.items():
+        show = f"{typed(motion.top)} --digits {digits} --get {key}  # {text}"
         tally.counts["numbers in digits"] += 1
-        if (value is None) != (exact is None):
-            tally.counts[f"absent {key}"] += 1
-            tally.violations.append(f"{key}, the judge has {exact}: {show}")
-        elif value is not None and Decimal(value):
+        if not (pair := tally.both(key, text, judge.exact(key), show)):
+            continue
+        value, exact = pair
+        if Decimal(value):
             last = Decimal(value).adjusted() + 1 - digits
             away = judge.away(key, Fraction(value), digits) / arb(10) ** last
             tally.note("digits", float(away.abs_upper()), HALF_ULP, show)
-        elif exact is not None and not exact.contains(0):
+        elif not exact.contains(0):
             tally.violations.append(f"{key} is no zero: {show}")
 
 
@@ -269,14 +272,10 @@ def judge_sweep(tally: Tally, judges: Sequence[tuple[Scene, Judge]]) -> None:
             continue
         options = Top(**scene).options()
         for key in NUMBER_KEYS:
-            value, exact = float(columns[key][i]), judge.record.get(key)
-            show = f"lagtop sweep {options} --keys {key}  # {value!r}"
-            if math.isnan(value) != (exact is None):
-                tally.counts[f"sweep absent {key}"] += 1
-                tally.violations.append(f"sweep {key}, the judge has {exact}: {show}")
-            elif exact is not None:
-                error = sweep_error(judge, key, value)
-                tally.note("sweep", error, SWEEP_EPS, show)
+            value = float(columns[key][i])
+            show, known = f"lagtop sweep {options} --keys {key}  # {value!r}", not math.isnan(value)
+            if tally.both(f"sweep {key}", value if known else None, judge.record.get(key), show):
+                tally.note("sweep", sweep_error(judge, key, value), SWEEP_EPS, show)
 
 
 def sweep_error(judge: Judge, key: str, value: float) -> float:

@@ -18,12 +18,11 @@ errors: its binomial standard deviation times CHANCE is the bound, for each numb
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -32,6 +31,7 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
 
+from campaign import options
 from engines import Array, Body, dop853
 from scipy.spatial.transform import Rotation
 
@@ -83,10 +83,22 @@ def period_of(top: Top) -> tuple[float, float]:
     scale = math.sqrt(2 * float(top.g)) + abs(float(top.C * top.r0))
     t = np.linspace(0, 60 / scale, 6000)
     theta = motion_of(top, t)["theta"]
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(theta))) < 0)
+    turns = greatest(t, theta)
     if turns.size < 2:
         return math.nan, math.nan
-    return float(t[turns[1]] - t[turns[0]]), float(np.ptp(theta)) / 2
+    return float(turns[1] - turns[0]), float(np.ptp(theta)) / 2
+
+
+def greatest(t: Array, theta: Array) -> Array:
+    """Return the times of the greatest tilts."""
+    times: Array = t[np.flatnonzero(np.diff(np.sign(np.diff(theta))) < 0)]
+    return times
+
+
+def wrap(rng: np.random.Generator, angles: dict[str, Any], names: Iterable[str]) -> None:
+    """Let some angles count from anywhere, and bring them to a turn."""
+    for name in names:
+        angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
 
 
 def drawn(seed: int) -> Drawn:
@@ -107,8 +119,7 @@ def drawn(seed: int) -> Drawn:
     exact = motion_of(top, t)
     names = CHANNELS[int(rng.integers(len(CHANNELS)))]
     angles = {name: exact[name] + rng.normal(scale=sizes[name], size=count) for name in names}
-    for name in set(names) - {"theta"}:
-        angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
+    wrap(rng, angles, [name for name in names if name != "theta"])
     if "phi" in names and "psi" in names and rng.random() < 0.5:
         angles["psi"] = -angles["psi"]
     known = rng.random() < 0.5
@@ -157,17 +168,14 @@ def judged(seed: int) -> Verdict:
 
 def main() -> int:
     """Judge some recordings, write the counts, and return the exit code."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--recordings", type=int, default=500)
-    parser.add_argument("--seed", type=int, default=1, help="seed of the first recording")
-    parser.add_argument("--jobs", type=int, default=2)
+    parser = options(__doc__, recordings=500, jobs=2)
     parser.add_argument("--show", action="store_true", help="show every fit")
-    options = parser.parse_args()
-    seeds = range(options.seed, options.seed + options.recordings)
+    given = parser.parse_args()
+    seeds = range(given.seed, given.seed + given.recordings)
     begun = time.perf_counter()
     counts: Counter[tuple[str, str]] = Counter()
     bad, errors = 0, defaultdict[str, list[float]](list)
-    with ProcessPoolExecutor(options.jobs) as pool:
+    with ProcessPoolExecutor(given.jobs) as pool:
         for one in pool.map(judged, seeds):
             fate = f"{'right' if one.is_right else 'wrong'}, {one.word}"
             counts["+".join(one.names), fate] += 1
@@ -175,13 +183,13 @@ def main() -> int:
             bad += worst
             for name, x in one.pulls.items() if one.word != FAILED else ():
                 errors[name].append(abs(x))
-            if options.show or fate != "right, good":
+            if given.show or fate != "right, good":
                 print(f"{one.seed:6} {'+'.join(one.names):14} {fate}: {one.shown}", flush=True)
     print(*_table(counts), sep="\n")
     print(f"{time.perf_counter() - begun:.0f} s")
     good = sum(n for (_, fate), n in counts.items() if fate == "right, good")
     off = [*_miscovered(errors)]
-    return int(bad > 0 or good < GOOD_SHARE * options.recordings or any(off))
+    return int(bad > 0 or good < GOOD_SHARE * given.recordings or any(off))
 
 
 def _miscovered(errors: Mapping[str, list[float]]) -> Iterator[bool]:

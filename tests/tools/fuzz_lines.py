@@ -10,7 +10,6 @@ something, or if infinite numbers or what is no number are printed.
 
 from __future__ import annotations
 
-import argparse
 import json
 import multiprocessing
 import os
@@ -18,7 +17,6 @@ import random
 import re
 import shlex
 import signal
-import sys
 import tempfile
 import time
 import warnings
@@ -29,6 +27,7 @@ from types import FrameType
 from typing import Any, NoReturn
 
 import click
+from campaign import fault_of, finish, options
 from click.testing import CliRunner, Result
 
 from lagrange_cli.cli.app import NAMES as COMMANDS
@@ -37,7 +36,6 @@ from lagrange_cli.cli.app import main
 WEIGHTS = {"solve": 30, "table": 25, "sweep": 18, "find": 8, "jacobi": 20, "eta": 15} | {
     **{"compare": 10, "fit": 0.5, "plot": 1, "view": 3, "bench": 1, "stability": 1}
 }
-CODES = {0, 1, 2, 65, 69, 74}
 SECONDS = 60
 """A line that takes longer is a fault: none asks for much."""
 USUAL = "0 1 -1 2 3 5 7.5 30 40 50 90 0.5 1e-3 100".split()
@@ -133,8 +131,8 @@ def line(rng: random.Random) -> list[str]:
     assert command is not None
     words = [*ALWAYS.get(name, []), *(OFTEN.get(name, []) if rng.random() < 0.7 else [])]
     avoided = {*LEFT_OUT.get(name, set()), "--help", "--version"}
-    options = [x for x in command.params if isinstance(x, click.Option) and not avoided & {*x.opts}]
-    for option in rng.sample(options, min(len(options), int(rng.expovariate(0.45)))):
+    known = [x for x in command.params if isinstance(x, click.Option) and not avoided & {*x.opts}]
+    for option in rng.sample(known, min(len(known), int(rng.expovariate(0.45)))):
         words.append(rng.choice(option.opts))
         if not option.is_flag:
             words.append(value(rng, option))
@@ -149,15 +147,11 @@ def line(rng: random.Random) -> list[str]:
 
 def faults_of(words: Sequence[str], result: Result, folder: Path) -> Iterator[str]:
     """Yield what is wrong with the end of a command."""
-    code, said = result.exit_code, result.stderr.splitlines()
+    code = result.exit_code
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         yield f"ends with {result.exception!r}"
-    elif code not in CODES:
-        yield f"ends with the exit code {code}"
-    elif code and not (said and said[-1].startswith("Error: ")):
-        yield f"ends with {code} and does not say why: {said[-1:]}"
-    if any(".py:" in x or not x.isprintable() for x in said):
-        yield f"says {result.stderr[-200:]!r}"
+    elif wrong := fault_of(code, result.stderr):
+        yield wrong
     if code in {2, 65, 69} and result.stdout_bytes:
         yield f"is refused with {code}, and prints {result.stdout[:80]!r}"
     is_page = result.stdout_bytes.startswith(b"<!DOCTYPE html>")  # its programs name NaN
@@ -196,7 +190,7 @@ Found = tuple[Counter[tuple[str, int]], list[str], list[tuple[float, str]]]
 def run(job: tuple[int, int]) -> Found:
     """Run so many lines of a seed."""
     seed, count = job
-    rng, counts, faults = random.Random(seed), Counter[tuple[str, int]](), list[str]()
+    rng, counts, wrong = random.Random(seed), Counter[tuple[str, int]](), list[str]()
     times: list[tuple[float, str]] = []
     warnings.simplefilter("default")
     signal.signal(signal.SIGALRM, late)
@@ -215,36 +209,31 @@ def run(job: tuple[int, int]) -> Found:
             signal.alarm(0)
             counts[words[0] if words[0] in COMMANDS else "?", result.exit_code] += 1
             times.append((time.perf_counter() - begun, shown))
-            faults += [f"{wrong}: {shown}" for wrong in faults_of(words, result, folder)]
+            wrong += [f"{fault}: {shown}" for fault in faults_of(words, result, folder)]
         os.chdir("/")
-    return counts, faults, sorted(times)[-3:]
+    return counts, wrong, sorted(times)[-3:]
 
 
 def script() -> None:
     """Print counts and faults; the exit code is 1 if there is a fault."""
-    parser = argparse.ArgumentParser(description="Run random command lines.")
-    parser.add_argument("--lines", type=int, default=2000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=2)
-    given = parser.parse_args()
-    starts = range(0, given.lines, 250)
-    jobs = [(given.seed * 10**9 + i, min(250, given.lines - i)) for i in starts]
-    counts, faults, begun = Counter[Any](), 0, time.perf_counter()
-    times: list[tuple[float, str]] = []
-    with multiprocessing.get_context("spawn").Pool(given.jobs, maxtasksperchild=20) as pool:
+    given = options(__doc__, lines=2000, jobs=2).parse_args()
+    finish(faults(given.lines, given.seed, given.jobs), longest=10_000)
+
+
+def faults(lines: int, seed: int, processes: int) -> Iterator[str]:
+    """Yield the faults of so many lines, then print counts and the slowest lines."""
+    jobs = [(seed * 10**9 + i, min(250, lines - i)) for i in range(0, lines, 250)]
+    counts, times = Counter[Any](), list[tuple[float, str]]()
+    with multiprocessing.get_context("spawn").Pool(processes, maxtasksperchild=20) as pool:
         for found, wrong, slowest in pool.imap_unordered(run, jobs):
             counts += found
-            faults += len(wrong)
             times += slowest
-            for text in wrong:
-                print(ascii(text), flush=True)
-    print(f"{sum(counts.values())} lines, {faults} faults, {time.perf_counter() - begun:.0f} s")
+            yield from wrong
     for name in [*COMMANDS, "?"]:
         codes = {code: n for (command, code), n in sorted(counts.items()) if command == name}
         print(f"  {name:9} {sum(codes.values()):6}  {codes}")
     for seconds, text in sorted(times)[-3:]:
         print(f"  {seconds:5.1f} s  {ascii(text)[:150]}")
-    sys.exit(1 if faults else 0)
 
 
 if __name__ == "__main__":

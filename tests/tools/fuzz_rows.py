@@ -11,21 +11,19 @@ first bad line, and at no other.  A file whose decimal mark is unclear must be r
 
 from __future__ import annotations
 
-import argparse
 import csv
 import io
 import json
 import math
 import random
 import re
-import sys
 import tempfile
-import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from campaign import finish, options
 from click.testing import CliRunner, Result
 
 from lagrange_cli.cli.app import main
@@ -297,25 +295,16 @@ def of_lines(rng: random.Random, count: int, folder: Path, counts: Counter[str])
             yield f"trajectory, line {at + 2}, {wrong!r}: {shown.exit_code} {shown.stderr!r}"
 
 
-def script() -> None:
-    """Print counts and faults; the exit code is 1 if there is a fault."""
-    parser = argparse.ArgumentParser(description="Give files of dirty rows to the commands.")
-    parser.add_argument("--rows", type=int, default=1000, help="rows in each dialect")
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    rng, counts, faults = random.Random(given.seed), Counter[str](), 0
-    begun = time.perf_counter()
+def faults(rows: int, seed: int) -> Iterator[str]:
+    """Yield the faults of all files, then print the numbers of their rows."""
+    rng, counts = random.Random(seed), Counter[str]()
     with tempfile.TemporaryDirectory() as name:
         for part in (of_tops, of_decisions, of_lines):
-            count = given.rows if part is of_tops else given.rows // 5
-            for wrong in part(rng, count, Path(name), counts):
-                faults += 1
-                print(ascii(wrong)[:400])
-    print(f"{sum(counts.values())} rows, {faults} faults, {time.perf_counter() - begun:.0f} s")
+            yield from part(rng, rows if part is of_tops else rows // 5, Path(name), counts)
     for what, count in sorted(counts.items()):
         print(f"  {what}: {count}")
-    sys.exit(1 if faults else 0)
 
 
 if __name__ == "__main__":
-    script()
+    given = options(__doc__, rows=1000).parse_args()
+    finish(faults(given.rows, given.seed))

@@ -11,7 +11,6 @@ and the exit code of a run that nobody disturbed.
 
 from __future__ import annotations
 
-import argparse
 import os
 import random
 import signal
@@ -23,6 +22,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
+
+from campaign import finish, options
 
 LAGTOP = [sys.executable, "-m", "lagrange_cli"]
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1]
@@ -182,29 +183,17 @@ def kills(rng: random.Random, count: int, folder: Path, more: Sequence[str]) -> 
     print(f"{done} kills{' ' if more else ''}{' '.join(more)}")
 
 
-def script() -> None:
-    """Print counts and faults; the exit code is 1 if there is a fault."""
-    parser = argparse.ArgumentParser(description="Disturb commands by signals.")
-    parser.add_argument("--signals", type=int, default=26)
-    parser.add_argument("--kills", type=int, default=12)
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    rng, faults = random.Random(given.seed), 0
+def faults(signal_count: int, kill_count: int, seed: int) -> Iterator[str]:
+    """Yield the faults of signals to all commands, and of kills of a sweep in parts."""
+    rng, half = random.Random(seed), kill_count // 2
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         prepare(folder)
-        half = given.kills // 2
-        for campaign in (
-            signals(rng, given.signals, folder),
-            kills(rng, given.kills - half, folder, []),
-            kills(rng, half, folder, ["--jobs", "2"]),
-        ):
-            for wrong in campaign:
-                faults += 1
-                print(wrong, flush=True)
-    print(f"{faults} faults")
-    sys.exit(1 if faults else 0)
+        yield from signals(rng, signal_count, folder)
+        yield from kills(rng, kill_count - half, folder, [])
+        yield from kills(rng, half, folder, ["--jobs", "2"])
 
 
 if __name__ == "__main__":
-    script()
+    given = options(__doc__, signals=26, kills=12).parse_args()
+    finish(faults(given.signals, given.kills, given.seed))

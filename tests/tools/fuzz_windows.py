@@ -13,7 +13,6 @@ their first window shows no whole period.
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from concurrent.futures import ProcessPoolExecutor
@@ -21,10 +20,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from fuzz_fits import greatest, wrap
 from scipy.integrate import solve_ivp
 
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
 
+from campaign import options
 from engines import Array
 
 from lagrange_cli import LagtopError
@@ -69,12 +70,6 @@ def motion(a: float, b: float, ratio: float, start: tuple[float, ...], t: Array)
     return np.asarray(run.y[[0, 2, 4]])
 
 
-def _period(t: Array, theta: Array) -> float:
-    """Return the mean time between greatest tilts."""
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(theta))) < 0)
-    return float(np.mean(np.diff(t[turns]))) if turns.size > 2 else math.inf
-
-
 def drawn(seed: int) -> Slowed:
     """Return the recording of a seed."""
     rng = np.random.default_rng(seed)
@@ -83,14 +78,14 @@ def drawn(seed: int) -> Slowed:
         a, b = rng.uniform(40, 80), rng.choice([-1, 1]) * rng.uniform(8, 12)
         ratio, start = rng.uniform(0.4, 0.9), (rng.uniform(0.7, 1.4), rng.normal(), rng.normal())
         exact = dict(zip(NOISE, motion(a, b, ratio, start, t), strict=True))
-        if _period(t, exact["theta"]) < 0.9 * WINDOW:  # the first window shows a whole period
-            break
+        turns = greatest(t, exact["theta"])
+        if turns.size > 2 and np.mean(np.diff(turns)) < 0.9 * WINDOW:
+            break  # the first window shows a whole period
     gap = rng.uniform(3, SECONDS - 4)
     kept = (rng.random(t.size) > 0.05) & ~((t > gap) & (t < gap + 0.4))
     kept[0] = True
     angles = {name: x + rng.normal(scale=NOISE[name], size=t.size) for name, x in exact.items()}
-    for name in ("psi", "phi"):
-        angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
+    wrap(rng, angles, ("psi", "phi"))
     return Slowed(t[kept], {name: x[kept] for name, x in angles.items()}, a, b, ratio)
 
 
@@ -134,14 +129,10 @@ def judged(seed: int) -> Judged | str:
 
 def main() -> int:
     """Judge some recordings, write the shares, and return the exit code."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--recordings", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1, help="seed of the first recording")
-    parser.add_argument("--jobs", type=int, default=2)
-    options = parser.parse_args()
-    seeds = range(options.seed, options.seed + options.recordings)
+    given = options(__doc__, recordings=200, jobs=2).parse_args()
+    seeds = range(given.seed, given.seed + given.recordings)
     rows = []
-    with ProcessPoolExecutor(options.jobs) as pool:
+    with ProcessPoolExecutor(given.jobs) as pool:
         for one in pool.map(judged, seeds):
             if isinstance(one, str):
                 print(one, flush=True)
@@ -156,10 +147,10 @@ def main() -> int:
     pulls, chi2 = np.abs([one.pull for one in rows]), np.mean([one.chi2_dof for one in rows])
     one_sigma, two_sigma = float(np.mean(pulls < 1)), float(np.mean(pulls < 2))
     good = float(np.mean([one.good for one in rows]))
-    refused = options.recordings - len(rows)
+    refused = given.recordings - len(rows)
     print(f"within 1 sigma {one_sigma:.3f}, within 2 {two_sigma:.3f}, chi2/dof {chi2:.3f}")
     print(f"good windows {good:.3f}, refused recordings {refused}")
-    bounds = refused <= MOST_REFUSED * options.recordings
+    bounds = refused <= MOST_REFUSED * given.recordings
     bounds &= 0.58 <= one_sigma <= 0.78 and 0.91 <= two_sigma <= 0.99 and 0.9 <= chi2 <= 1.1
     return int(not bounds)
 

@@ -9,7 +9,6 @@ a warning of a library or an undocumented exit code, or if it fails and no line 
 
 from __future__ import annotations
 
-import argparse
 import io
 import os
 import random
@@ -21,7 +20,7 @@ import tempfile
 import traceback
 import zipfile
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
@@ -29,6 +28,7 @@ from typing import Any, BinaryIO, NoReturn
 import numpy as np
 import pyarrow as pa
 import scipy.optimize  # noqa: F401 - before the processes are started, which inherit it
+from campaign import fault_of, finish, options
 from pyarrow import parquet
 
 from lagrange_cli.cli.app import main as command
@@ -293,26 +293,16 @@ def fault(words: list[str]) -> tuple[int, str]:
             run(words, said)
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         said.seek(0)
-        lines = said.read().decode().splitlines()
-    if code not in CODES or any("Traceback" in x or ".py:" in x for x in lines):
-        return code, f"exit code {code}: {' | '.join(lines)[-400:]}"
-    if code and not (lines and lines[-1].startswith("Error: ") and lines[-1].isprintable()):
-        return code, f"exit code {code} without a reason"
-    return code, ""
+        return code, fault_of(code, said.read().decode(), CODES)
 
 
-def main() -> None:
-    """Print what became of the files; the exit code is 1 if there is a fault."""
-    parser = argparse.ArgumentParser(description="Give hostile files to every command that reads.")
-    parser.add_argument("--count", type=int, default=150)
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
+def faults(count: int, seed: int) -> Iterator[str]:
+    """Yield the faults of so many files, then print the exit codes."""
     codes: Counter[tuple[str, int]] = Counter()
-    faults = 0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         os.chdir(folder)
-        for number, (title, make) in enumerate(files(given.count, given.seed).items()):
+        for number, (title, make) in enumerate(files(count, seed).items()):
             path = folder / f"{number}{'.toml' if 'TOML' in title else ''}"
             path.write_bytes(make())
             for kind, words in COMMANDS.items():
@@ -320,16 +310,15 @@ def main() -> None:
                 code, wrong = fault(filled)
                 codes[kind, code] += 1
                 if wrong:
-                    faults += 1
-                    print(f"{title}: lagtop {' '.join(filled)}: {wrong}")
+                    yield f"{title}: lagtop {' '.join(filled)}: {wrong}"
             path.unlink()
-        left = sorted(path.name for path in folder.iterdir())
+        for left in folder.iterdir():
+            yield f"leaves {left.name}"
         os.chdir("/")
-    print(f"{given.count} files, {sum(codes.values())} runs, {faults} faults, left behind: {left}")
-    for (kind, code), count in sorted(codes.items()):
-        print(f"  {kind:8} exit code {code:3}: {count}")
-    sys.exit(1 if faults or left else 0)
+    for (kind, code), number in sorted(codes.items()):
+        print(f"  {kind:8} exit code {code:3}: {number}")
 
 
 if __name__ == "__main__":
-    main()
+    given = options(__doc__, count=150).parse_args()
+    finish(faults(given.count, given.seed))

@@ -24,7 +24,8 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple
 
@@ -69,14 +70,7 @@ class Outcome(NamedTuple):
 def mutations(root: Path, path: Path) -> list[Mutation]:
     """Return all mutations of a module that still compile."""
     text = path.read_bytes()
-    starts = [0]
-    for line in text.splitlines(keepends=True):
-        starts.append(starts[-1] + len(line))
-    name = str(path.relative_to(root))
-
-    def mutation(line: int, start: int, end: int, new: str) -> Mutation:
-        """Return the change of the bytes from start to end into a new text."""
-        return Mutation(name, line, start, end, text[start:end].decode(), new)
+    starts = [0, *accumulate(map(len, text.splitlines(keepends=True)))]
 
     def place(node: ast.expr | ast.stmt) -> tuple[int, int]:
         """Return the bytes that a node takes."""
@@ -85,41 +79,33 @@ def mutations(root: Path, path: Path) -> list[Mutation]:
         start = starts[node.lineno - 1] + node.col_offset
         return start, starts[node.end_lineno - 1] + node.end_col_offset
 
-    found = []
-    for node in changeable(ast.parse(text)):
-        for start, end, new in changes(node, place, text.decode("latin-1")):
-            found.append(mutation(node.lineno, start, end, new))
+    name = str(path.relative_to(root))
+    found = [
+        Mutation(name, node.lineno, start, end, text[start:end].decode(), new)
+        for node in changeable(ast.parse(text))
+        for start, end, new in changes(node, place, text.decode("latin-1"))
+    ]
     return [m for m in found if m.old != m.new and compiles(mutated(text, m))]
 
 
 def changeable(node: ast.AST) -> Iterator[ast.expr | ast.stmt]:
-    """Yield the expressions and statements below a node, but no annotations and no docstrings."""
+    """Yield the expressions and statements below a node.
+
+    Annotations, docstrings, and statements for the type checker are left out.
+    """
     for field, value in ast.iter_fields(node):
         if field in {"annotation", "returns", "decorator_list"}:
             continue
         for child in value if isinstance(value, list) else [value]:
-            if isinstance(child, ast.JoinedStr) or is_text(child) or is_for_types(child):
-                continue
-            if isinstance(child, ast.expr | ast.stmt):
-                yield child
+            match child:
+                case ast.JoinedStr() | ast.Expr(ast.Constant(str())):
+                    continue
+                case ast.If(ast.Name("TYPE_CHECKING")):
+                    continue
+                case ast.expr() | ast.stmt():
+                    yield child
             if isinstance(child, ast.AST):
                 yield from changeable(child)
-
-
-def is_text(node: object) -> bool:
-    """Return whether a statement is a docstring."""
-    match node:
-        case ast.Expr(ast.Constant(str())):
-            return True
-    return False
-
-
-def is_for_types(node: object) -> bool:
-    """Return whether a statement only concerns the type checker."""
-    match node:
-        case ast.If(ast.Name("TYPE_CHECKING")):
-            return True
-    return False
 
 
 OPERATORS: dict[type, tuple[str, str]] = {
@@ -308,22 +294,25 @@ def main() -> None:
             return
         done = known(options.out)
 
-        def judge(task: tuple[int, Mutation]) -> None:
-            """Judge one mutation in a free clone and add it to the file."""
+        @contextmanager
+        def free_clone() -> Iterator[Path]:
+            """Yield a clone in which nobody else works."""
             clone = clones.get()
             try:
-                add(options.out, judged(clone, *task))
+                yield clone
             finally:
                 clones.put(clone)
 
+        def judge(task: tuple[int, Mutation]) -> None:
+            """Judge one mutation and add it to the file."""
+            with free_clone() as clone:
+                add(options.out, judged(clone, *task))
+
         def prove(folders: tuple[str, ...]) -> None:
             """End the run if the tests of a room fail without any mutation."""
-            clone = clones.get()
-            try:
+            with free_clone() as clone:
                 if failed := run_tests(clone, list(folders), ROOM_SECONDS, "not slow"):
                     raise SystemExit(f"Error: {failed} fails without any mutation")
-            finally:
-                clones.put(clone)
 
         left = [(i, mutation) for i, mutation in wanted if str(mutation) not in done]
         rooms = {tuple(tests_of(clones.queue[0], mutation)) for _, mutation in left}
