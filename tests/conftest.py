@@ -8,7 +8,9 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -104,13 +106,21 @@ def process(*args: str, check: bool = True, **extra: Any) -> subprocess.Complete
     return subprocess.run([*LAGTOP, *args], capture_output=True, check=check, **extra)
 
 
-def is_alive(group: int) -> bool:
-    """Return whether a process group has a process left."""
-    try:
-        os.killpg(group, 0)
-    except ProcessLookupError:
-        return False
-    return True
+def wait_until(is_so: Callable[[], object], running: subprocess.Popen[Any]) -> None:
+    """Wait until something is so, while a process runs."""
+    while not is_so():
+        assert running.poll() is None
+        time.sleep(0.01)
+
+
+def assert_gone(group: int) -> None:
+    """Check that a process group soon has no process left."""
+    deadline = time.monotonic() + 30
+    with suppress(ProcessLookupError):
+        while True:
+            os.killpg(group, 0)
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
 
 
 def joined(folder: Path) -> bytes:

@@ -187,27 +187,23 @@ def test_the_extra_installs_every_engine() -> None:
     assert {text.partition(">")[0] for text in wanted} == {x.package for x in SCHEMES.values()}
 
 
-def test_missing_engines_are_named(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("is_long", [False, True])
+def test_missing_engines_are_named(
+    is_long: bool, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(methods, "find_spec", lambda _: None)
-    result = lagtop("bench", "--methods", "lagtop,engines", "--n", 5, "--format", "json")
-    whole = json.loads(result.stdout)
-    assert whole["conclusions"][0] == "lagtop was compared with nothing."
-    assert "drake-rk3 (not applicable: needs drake: pip install drake)" in whole["conclusions"][1]
-    assert len(whole["rows"]) == 1 + len(engines(1))
+    monkeypatch.setattr(compare_methods, "SPANS", [1.3, 2.3])
+    line = ["--methods", "lagtop,engines", "--n", 5, "--format", "json", *(["--long"] * is_long)]
+    whole = json.loads(lagtop("bench", *line).stdout)
+    said = whole["conclusions"]
+    assert is_long or said[0] == "lagtop was compared with nothing."
+    assert "drake-rk3 (not applicable: needs drake: pip install drake)" in said[1]
+    needs = "not applicable: needs pybullet: pip install pybullet"
+    assert said[1].endswith(f", pybullet ({needs}).")
+    assert len(whole["rows"]) == 1 + is_long + len(engines(1))
 
 
 def test_only_missing_engines_are_an_error(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(methods, "find_spec", lambda _: None)
     result = lagtop("bench", "--methods", "drake,pybullet")
     assert_one_line(result, 69, "none of these methods is installed: pip install drake pybullet\n")
-
-
-def test_missing_engines_are_named_over_long_spans_too(
-    lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(methods, "find_spec", lambda _: None)
-    monkeypatch.setattr(compare_methods, "SPANS", [1.3, 2.3])
-    words = ["--long", "--methods", "lagtop,pybullet", "--n", 5, "--format", "json"]
-    said = json.loads(lagtop("bench", *words).stdout)["conclusions"]
-    needs = "not applicable: needs pybullet: pip install pybullet"
-    assert said[-1] == f"Not compared: pybullet ({needs})."

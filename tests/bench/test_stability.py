@@ -17,8 +17,6 @@ import numpy as np
 import pytest
 from ball_judge import Judge
 from conftest import Lagtop, assert_one_line
-from scipy.integrate import solve_ivp
-from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.text import value_text
@@ -26,7 +24,6 @@ from lagrange_cli.bench import battery, stability
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.battery import HardScene, hard_scene
 from lagrange_cli.bench.hard_scenes import STRATA, words_of
-from lagrange_cli.bench.integrators import FORMS, problem_of
 from lagrange_cli.bench.measure import settled_reference
 from lagrange_cli.bench.peers import SPANS, VERDICTS, PeerRun, peer_runs
 from lagrange_cli.bench.reference import EPS, Reference
@@ -307,28 +304,6 @@ def runs() -> dict[str, PeerRun]:
     return {x.method: x for x in peer_runs(MOVING_TOP, Reference(MOVING_TOP, 60), SPANS)}
 
 
-def attitude(theta: Any, phi: Any, psi: Any) -> Rotation:
-    return Rotation.from_euler("ZXZ", [float(psi), float(theta), float(phi)])
-
-
-def test_errors_are_turns_of_the_attitude(runs: dict[str, PeerRun]) -> None:
-    """Radau and RK4 again, by SciPy's rotations and integrators, in the units printed."""
-    reference = Reference(MOVING_TOP, 60)
-    times = [t * float(reference.T) for t, _ in runs["Radau-quaternion"].points[:8]]
-    p, form = problem_of(MOVING_TOP), FORMS["quaternion"]
-    slope: Any = form.slope(p, math)
-    flow = solve_ivp(
-        slope, (0, times[-1]), form.start(p), "Radau", dense_output=True, rtol=1e-7, atol=1e-7
-    )
-    errors = []
-    for t in times:
-        w, x, y, z = flow.sol(t)[2:]
-        exact = attitude(*reference.at(t)[:3])
-        errors.append((Rotation.from_quat([x, y, z, w]) * exact.inv()).magnitude())
-    assert [x for _, x in runs["Radau-quaternion"].points[:8]] == pytest.approx(errors, rel=0.02)
-    assert runs["Radau-quaternion"].error(5) == pytest.approx(max(errors), rel=0.02)
-
-
 def test_the_condition_is_what_half_a_unit_of_each_input_does(runs: dict[str, PeerRun]) -> None:
     """The reference of inputs that differ by so much, in all its digits."""
     inputs = {name: x for name, x in MOVING_TOP.as_dict().items() if x}
@@ -342,36 +317,6 @@ def test_the_condition_is_what_half_a_unit_of_each_input_does(runs: dict[str, Pe
                 away = [a - b for a, b in zip(other.quaternion, exact.quaternion, strict=True)]
                 total += float(2 * mpmath.sqrt(sum(x * x for x in away)))
         assert bound == pytest.approx(total, rel=0.01)
-
-
-def test_energy_and_momentum_drift(runs: dict[str, PeerRun]) -> None:
-    """The drift of Radau, from the plain definitions of both."""
-    p, form = problem_of(MOVING_TOP), FORMS["quaternion"]
-    slope: Any = form.slope(p, math)
-    period = float(Reference(MOVING_TOP, 60).T)
-    grid = np.geomspace(5, 100, 9)[1:] * period
-    flow = solve_ivp(
-        slope, (0, grid[-1]), form.start(p), "Radau", dense_output=True, rtol=1e-7, atol=1e-7
-    )
-    m, A, C, s, g, r0 = (float(x) for x in list(MOVING_TOP.as_dict().values())[:6])
-    energy, Lz = [], []
-    for t in [0.0, *grid]:
-        x, y, *quaternion = flow.sol(t)
-        up = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()[2]
-        up *= np.sum(np.square(quaternion))  # which drifts as well
-        energy.append((A * (x * x + y * y) + C * r0**2) / 2 + m * g * s * up[2])
-        Lz.append(A * (x * up[0] + y * up[1]) + C * r0 * up[2])
-    drift = runs["Radau-quaternion"].drift
-    assert drift is not None
-    sizes = np.max(np.abs(np.array([energy, Lz]) - [[energy[0]], [Lz[0]]]), axis=1) / drift
-    x0, y0 = form.start(p)[:2]
-    assert sizes[0] == pytest.approx(
-        A * (x0 * x0 + y0 * y0) / 2 + m * g * s * (1 + math.cos(math.radians(55))) + C * r0**2 / 2,
-        rel=0.02,
-    )
-    assert sizes[1] == pytest.approx(
-        A * abs(-0.4) * math.sin(math.radians(55)) ** 2 + 2 * C * r0, rel=0.02
-    )
 
 
 def test_verdicts(runs: dict[str, PeerRun]) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import Result
-from conftest import LAGTOP, Lagtop, assert_one_line, is_alive
+from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, wait_until
 
 from lagrange_cli.errors import CannotWriteError, LagtopError, UnavailableError
 from lagrange_cli.sweeps.jobs import _Worker, in_order, parse_jobs
@@ -173,15 +173,11 @@ def test_a_signal_ends_all_processes(
     running = subprocess.Popen(
         command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, start_new_session=True
     )
-    while not any(path.stat().st_size for path in tmp_path.glob("lagtop-*/*")):  # work is shared
-        assert running.poll() is None
-        time.sleep(0.01)
+    shared = tmp_path.glob
+    wait_until(lambda: any(path.stat().st_size for path in shared("lagtop-*/*")), running)
     running.send_signal(number)
     assert running.wait(timeout=60) == -number
-    deadline = time.monotonic() + 30
-    while is_alive(running.pid) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not is_alive(running.pid)
+    assert_gone(running.pid)
     said = running.communicate()[1]
     if number != signal.SIGKILL:  # which nothing can clean up after
         assert (said, list(tmp_path.iterdir())) == (b"", [])
@@ -238,9 +234,7 @@ def sharing(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
         env=os.environ | {"TMPDIR": str(folder)},
     )
     try:
-        while len(list(folder.glob("lagtop-*/*.result"))) < 4:
-            assert running.poll() is None
-            time.sleep(0.01)
+        wait_until(lambda: len(list(folder.glob("lagtop-*/*.result"))) >= 4, running)
         yield running
     finally:
         with suppress(ProcessLookupError):
@@ -281,16 +275,11 @@ def test_a_worker_ends_with_its_parent_in_the_middle_of_its_work() -> None:
     running = subprocess.Popen(
         [sys.executable, "-c", code], start_new_session=True, env=environment
     )
-    while not any("spawn_main" in line for line in children(running.pid).values()):
-        assert running.poll() is None
-        time.sleep(0.01)
+    wait_until(lambda: "spawn_main" in " ".join(children(running.pid).values()), running)
     time.sleep(1.0)  # it has an item by now
     running.kill()
     running.wait()
-    deadline = time.monotonic() + 20
-    while is_alive(running.pid) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    assert not is_alive(running.pid)
+    assert_gone(running.pid)
 
 
 @pytest.mark.slow
