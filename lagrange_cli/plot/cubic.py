@@ -6,8 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -105,53 +104,33 @@ def _draw_poles(axes: Axes, cubic: Cubic, look: Look) -> None:
         if cubic.u[0] <= pole <= cubic.u[-1]:
             axes.axvline(pole, color=look.quiet, lw=points(1.0), ls=(0, (4, 3)), zorder=0.5)
             part = (pole - cubic.u[0]) / np.ptp(cubic.u)
-            axes.annotate(
-                *(name, (pole, 1.0), (0, 2)),
-                xycoords=axes.get_xaxis_transform(),
-                textcoords="offset points",
-                ha="left" if part < 0.1 else "right" if part > 0.9 else "center",
-                size="small",
-                color=look.quiet,
-            )
+            ha = "left" if part < 0.1 else "right" if part > 0.9 else "center"
+            how: dict[str, Any] = {"ha": ha, "size": "small", "color": look.quiet}
+            how["xycoords"] = axes.get_xaxis_transform()
+            axes.annotate(name, (pole, 1.0), (0, 2), textcoords="offset points", **how)
 
 
 def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:
-    """Draw the roots, with names where the curve is out of the way and values below the picture."""
-    known = {"u₁": cubic.u1, "u₂": cubic.u2}
-    if cubic.u1 == cubic.u2:
-        known = {"u₁ = u₂": cubic.u1}
-    seen = known | ({"u₃": cubic.u3_in_view} if cubic.u3_in_view is not None else {})
-    axes.plot(list(seen.values()), [0.0] * len(seen), "o", ms=points(7), color=look.ink)
-    for name, root, (right, above) in _named(seen, float(np.ptp(cubic.u))):
-        axes.annotate(
-            *(name, (root, 0.0), (points(7 if right else -7), points(8 if above else -8))),
-            textcoords="offset points",
-            ha="left" if right else "right",
-            va="bottom" if above else "top",
-            color=look.ink,
-        )
-    values = [f"{name} = {number_text(root)}" for name, root in known.items()]
-    if cubic.u3 is not None:
-        beyond = "" if cubic.u3_in_view is not None else ", out of sight"
-        values.append(f"u₃ = {number_text(cubic.u3)}{beyond}")
-    axes.set_xlabel(f"u = cos ϑ\n{',   '.join(values)}", fontsize="small")
-
-
-def _named(
-    roots: Mapping[str, float], window: float
-) -> Iterator[tuple[str, float, tuple[bool, bool]]]:
-    """Yield each name, its root, and whether it goes to the right and above the axis.
+    """Draw the roots, with names where the curve is out of the way and values below the picture.
 
     f(u) rises through u2 and u3 and falls through u1.  The upper left of u2, the lower left of u1
     and the lower right of u3 are therefore free.  Names that would touch are joined.
     """
-    free = {"u₁": (False, False), "u₂": (False, True), "u₃": (True, False)}
-    together = {"u₁", "u₃"} <= set(roots) and roots["u₃"] - roots["u₁"] < TOUCHING * window
-    for name, root in roots.items():
-        if name == "u₁" and together:
-            yield "u₁, u₃" if roots["u₃"] > root else "u₁ = u₃", root, free[name]
-        elif name != "u₃" or not together:
-            yield name, root, free.get(name, (False, True))
+    u1, u2, u3 = cubic.u1, cubic.u2, cubic.u3_in_view
+    known = {"u₁ = u₂": u1} if u1 == u2 else {"u₁": u1, "u₂": u2}
+    named = known | ({} if u3 is None else {"u₃": u3})
+    axes.plot(list(named.values()), [0.0] * len(named), "o", ms=points(7), color=look.ink)
+    if u3 is not None and u1 > u2 and u3 - u1 < TOUCHING * np.ptp(cubic.u):
+        named = {"u₁, u₃" if u3 > u1 else "u₁ = u₃": u1, "u₂": u2}
+    for name, root in named.items():
+        ha, x = ("left", points(7)) if name == "u₃" else ("right", points(-7))
+        va, y = ("bottom", points(8)) if name.endswith("u₂") else ("top", points(-8))
+        how: dict[str, Any] = {"ha": ha, "va": va, "color": look.ink}
+        axes.annotate(name, (root, 0.0), (x, y), textcoords="offset points", **how)
+    values = [f"{name} = {number_text(root)}" for name, root in known.items()]
+    if cubic.u3 is not None:
+        values.append(f"u₃ = {number_text(cubic.u3)}" + ", out of sight" * (u3 is None))
+    axes.set_xlabel(f"u = cos ϑ\n{',   '.join(values)}", fontsize="small")
 
 
 class PhasePortrait(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
@@ -202,7 +202,9 @@ def _settle_layout(figure: Figure) -> None:
     if _write_powers(figure) | _fit_titles(figure):
         engine.execute(figure)
     figure.set_layout_engine("none")
-    _round_boxes(figure)
+    for panel in _panels(figure):
+        box = panel.bbox_relative
+        box.p0, box.p1 = box.p0.round(5), box.p1.round(5)
     for axes in figure.axes:
         axes.apply_aspect()
         x, y, width, height = (round(z, 5) for z in axes.get_position().bounds)
@@ -210,37 +212,35 @@ def _settle_layout(figure: Figure) -> None:
         axes.set_position((x, y, width, height))
 
 
+def _panels(part: FigureBase) -> Iterator[SubFigure]:
+    """Yield the panels of a figure, and theirs."""
+    for panel in part.subfigs:
+        yield panel
+        yield from _panels(panel)
+
+
 def _write_powers(figure: Figure) -> bool:
     """Write common factors of an axis as powers of ten, not as 1e5; return whether any exists.
 
     Other axes do without mathtext, which takes twice the time of the rest of a picture.
     """
-    formatters: list[Any] = [
-        axis.get_major_formatter() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)
-    ]
+    both = [axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
+    formatters: list[Any] = [axis.get_major_formatter() for axis in both]
     with_factor = [formatter for formatter in formatters if formatter.get_offset()]
     for formatter in with_factor:
         formatter.set_useMathText(True)
     return bool(with_factor)
 
 
-def _fit_titles(part: Figure | SubFigure) -> bool:
+def _fit_titles(figure: Figure) -> bool:
     """Reduce the letters of titles that are wider than their panel; return whether any was."""
-    changed = [_fit_titles(panel) for panel in part.subfigs]
-    for title in part.texts:
-        while (
-            title.get_text() == part.get_suptitle() and title.get_window_extent().x1 > part.bbox.x1
-        ):
-            title.set_fontsize(float(title.get_fontsize()) * 0.95)
-            changed.append(True)
-    return any(changed)
-
-
-def _round_boxes(figure: FigureBase) -> None:
-    for part in figure.subfigs:
-        box = part.bbox_relative
-        box.p0, box.p1 = box.p0.round(5), box.p1.round(5)
-        _round_boxes(part)
+    changed = False
+    for panel in _panels(figure):
+        for title in [text for text in panel.texts if text.get_text() == panel.get_suptitle()]:
+            while title.get_window_extent().x1 > panel.bbox.x1:
+                title.set_fontsize(float(title.get_fontsize()) * 0.95)
+                changed = True
+    return changed
 
 
 def show_page(page: Page) -> None:

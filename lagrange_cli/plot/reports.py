@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import cycle
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..errors import check_type
 from .files import About, report_bytes, require_matplotlib
-from .style import LIGHT, scale, styled, symbol_and_colour
+from .style import LIGHT, scale, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from ..fits.record import Outcome
     from ..fits.report import FittedCurve
-
-_DASHES = ("-", "--", "-.", ":")
-_MARKS = "os^Dv<>pP*X"
 
 
 def _report(
@@ -49,13 +47,6 @@ class ErrorCurve(NamedTuple):
     compared: float | None = None
     """Error used in the convergence plot."""
 
-    def positive(self) -> Array:
-        """Return the errors with gaps (NaN) where they have no logarithm, as at the start."""
-        import numpy as np
-
-        errors: Array = np.where(self.error > 0, self.error, np.nan)
-        return errors
-
     @property
     def has_step(self) -> bool:
         """Whether there is a positive error at a positive step, as a logarithmic plot needs."""
@@ -74,13 +65,16 @@ def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float
 
     If the trajectories have steps, a second panel shows the error of each over its step.
     """
+    import numpy as np
+
     stepped = [curve for curve in curves if curve.has_step]
     over_time, *over_step = figure.subplots(1, 2 if stepped else 1, squeeze=False)[0]
     shades = scale(LIGHT)([i / max(len(curves) - 1, 1) for i in range(len(curves))])
     colors = {curve.name: shade for curve, shade in zip(curves, shades, strict=True)}
-    for i, curve in enumerate(curves):
-        look = {"color": colors[curve.name], "ls": _DASHES[i % len(_DASHES)]}
-        over_time.plot(curve.t, curve.positive(), lw=1.2, label=curve.name, **look)
+    for curve, dashes in zip(curves, cycle(("-", "--", "-.", ":"))):
+        positive = np.where(curve.error > 0, curve.error, np.nan)  # others have no logarithm
+        colour = colors[curve.name]
+        over_time.plot(curve.t, positive, lw=1.2, label=curve.name, color=colour, ls=dashes)
     over_time.axhline(limit, color=LIGHT.quiet, lw=0.8)
     over_time.set(yscale="log", xlabel="time", ylabel="error (rad)")
     over_time.set_title("Error over time")
@@ -93,21 +87,16 @@ def _draw_convergence(
     axes: Axes, curves: Sequence[ErrorCurve], colors: Mapping[str, Array]
 ) -> None:
     """Draw error over step, with the slopes of orders 1, 2 and 4 from the coarsest step."""
+    how: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8, "color": LIGHT.quiet}
     points = {curve.name: (curve.step or 0.0, curve.compared or 0.0) for curve in curves}
-    for i, (name, point) in enumerate(points.items()):
-        axes.plot(*point, _MARKS[i % len(_MARKS)], color=colors[name], ms=7)
+    for (name, point), mark in zip(points.items(), cycle("os^Dv<>pP*X")):
+        axes.plot(*point, mark, color=colors[name], ms=7)
     step, error = max(points.values())
     finest = min(points.values())[0]
     for order in (1, 2, 4):
         ends = [error, error * (finest / step) ** order]
         axes.plot([step, finest], ends, color=LIGHT.quiet, lw=0.7, ls=":")
-        axes.annotate(
-            *(f"order {order}", (finest, ends[1])),
-            xytext=(2, -9),
-            textcoords="offset points",
-            fontsize=8,
-            color=LIGHT.quiet,
-        )
+        axes.annotate(f"order {order}", (finest, ends[1]), (2, -9), **how)
     axes.set(xscale="log", yscale="log", xlabel="step", ylabel="error (rad)")
     steps = sorted({step for step, _ in points.values()})
     axes.set_xticks(steps, [f"{step:g}" for step in steps], rotation=30)
@@ -158,7 +147,8 @@ def draw_fit_panels(figure: Figure, curves: Sequence[FittedCurve], unit: str) ->
     for i, curve in enumerate(curves):
         above, below = panels[2 * i], panels[2 * i + 1]
         recording, _, angle = curve.name.rpartition(": ")
-        symbol, colour = symbol_and_colour(angle, LIGHT)
+        number = ("theta", "phi", "psi").index(angle)
+        symbol, colour = "ϑφψ"[number], LIGHT.lines[number]
         above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label="fit")
         above.plot(curve.t, curve.data, ".", ms=3, color=LIGHT.ink, label="data")
         above.set(ylabel=f"{symbol} ({unit})", title=recording)

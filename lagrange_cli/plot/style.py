@@ -114,12 +114,6 @@ def points(length: float) -> float:
     return length * float(matplotlib.rcParams["font.size"]) / POINTS
 
 
-def symbol_and_colour(name: str, look: Look) -> tuple[str, str]:
-    """Return the symbol and the colour of an angle: `theta`, `phi` or `psi`."""
-    symbols = {"theta": "ϑ", "phi": "φ", "psi": "ψ"}
-    return symbols[name], look.lines[[*symbols].index(name)]
-
-
 def head(panel: FigureBase, title: str) -> None:
     """Write the title of a picture at its upper left."""
     panel.suptitle(title, x=0.012, ha="left")

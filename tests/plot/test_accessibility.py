@@ -122,12 +122,15 @@ def test_paper_shows_no_controls(browser: Browser, page_file: Path) -> None:
     assert height < 90 / 25.4 * 96
 
 
-@pytest.mark.parametrize(("width", "zoom"), [(1280, 2), (1280, 4), (820, 2)])
-def test_nothing_is_lost_if_the_page_is_enlarged(
+@pytest.mark.parametrize(
+    ("width", "zoom"), [(1280, 1), (820, 1), (390, 1), (1280, 2), (1280, 4), (820, 2)]
+)
+def test_nothing_is_lost_on_a_small_screen_or_if_the_page_is_enlarged(
     browser: Browser, page_file: Path, width: int, zoom: int
 ) -> None:
-    """At 200 % and at 400 %: nothing is cut, covered or beside the screen."""
-    browser.open(page_file, width=width, zoom=zoom)
+    """Up to 400 % and on a phone: nothing is cut, covered or beside the screen."""
+    browser.open(page_file, width=width, height=844 if width == 390 else 800, zoom=zoom)
+    assert width > 390 or browser.ask("return at.space.clientWidth") > 340
     assert browser.ask("return document.documentElement.scrollWidth") <= width // zoom
     lost = browser.ask(
         f"""return {CONTROLS}.filter((part) => {{

@@ -27,14 +27,16 @@ def test_the_page_is_one_small_file_that_needs_no_other() -> None:
 
 
 def test_every_module_is_in_the_page_once_and_after_those_it_needs() -> None:
-    script = joined_script("{}")
-    names = [path.relative_to(FOLDER).as_posix() for path in SCRIPTS]
-    assert script.count('modules["data.js"] = {};') == 1
-    for name in names:
-        assert script.count(f'modules["{name}"] = (') == 1
-    assert "import {" not in script
-    for line in re.finditer(r'^const \{.*\} = modules\["(.*)"\];', script, re.MULTILINE):
-        assert f'modules["{line[1]}"] = ' in script[: line.start()]
+    script = joined_script("const DATA = {};\n")
+    assert script.startswith("const DATA = {};\n")
+    assert not re.search("^(import|export) ", script, re.MULTILINE)
+    names = re.findall(r"^(?:async )?(?:function|class|const) (\w+)", script, re.MULTILINE)
+    assert len(names) == len(set(names)) > 100  # one scope holds them
+    starts = {path: script.index(path.read_text().partition("\n")[0]) for path in SCRIPTS}
+    for path, start in starts.items():
+        needed = re.findall(r'^import .* from "(.*)";$', path.read_text(), re.MULTILINE)
+        others = [(path.parent / other).resolve() for other in needed]
+        assert all(starts[x] < start for x in others if x.name != "data.js"), path
 
 
 def test_modules_of_the_page_are_small() -> None:

@@ -1,7 +1,12 @@
-"""The page of a top for the browser: one HTML file that needs no network and no other file."""
+"""The page of a top for the browser: one HTML file that needs no network and no other file.
+
+Its scripts receive inputs, keys, words, examples and limits as JSON and repeat none of them.
+"""
 
 from __future__ import annotations
 
+import json
+import posixpath
 import re
 import tempfile
 import webbrowser
@@ -10,18 +15,72 @@ from collections.abc import Callable
 from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from ...errors import LagtopError, check_type
+from ...inputs.input_keys import DECLARED, EXAMPLE, NINE, TILT, Input
+from ...inputs.top import Top
+from ...motion.explanation import listed
 from ...motion.notebook import Document
-from ...motion.solve import Motion
+from ...motion.record import KEYS, requested_keys
+from ...motion.solve import Motion, solve
+from ...motion.summary import PHRASES
 from ..style import DARK, LIGHT, Look
-from .data import page_data
 
-_IMPORT = re.compile(r'^import (\{[^}]*\}) from "([^"]+)";$', re.MULTILINE)
-_EXPORT = re.compile(r"^export (?=(?:function|class|const) (\w+))", re.MULTILINE)
+_IMPORT = re.compile(r'^import \{[^}]*\} from "([^"]+)";\n', re.MULTILINE)
 
 _TRACES = {LIGHT: "#472d7b", DARK: "#dde318"}
 """Colour of the path of the axis on each paper: an end of viridis, unlike the colours of angles."""
+UNITLESS = "in any consistent units"
+
+SMALLEST, LARGEST = 1e-30, 1e30
+"""Limits of the sizes of inputs; other sizes would leave the range of doubles."""
+LEAST_TILT = 9e-13
+"""Least tilt (degrees) from the vertical; it allows the double next to 180 - 1e-12."""
+
+FACTOR = "stability_factor"
+"""The key on request that the page shows below a and b."""
+
+PageScene = dict[str, float]
+
+UNIT = dict.fromkeys(EXAMPLE, 0.0) | dict.fromkeys(("m", "A", "C", "s", "g", "r0"), 1.0)
+LEVEL = UNIT | {"theta0_deg": 90.0}
+GYROSCOPE = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81, "r0": 1256.6370614359172}
+
+EXAMPLES: dict[str, PageScene] = {
+    "Cusps: released at rest (Chrapan 1952)": EXAMPLE,
+    "Loops: started against its precession": EXAMPLE | {"psidot0": -4.0},
+    "Waves: started along its precession": EXAMPLE | {"psidot0": 4.0},
+    "Steady precession": LEVEL | {"psidot0": 1.0},
+    "Fast gyroscope": EXAMPLE | GYROSCOPE | {"theta0_deg": 60.0},
+    "Slow top: falls nearly to the bottom": EXAMPLE | {"r0": 5.0, "theta0_deg": 20.0},
+    "Sleeping": EXAMPLE | {"r0": 60.0, "theta0_deg": 0.0},
+    "Too slow to sleep: waits, then falls": EXAMPLE | {"theta0_deg": 1e-3},
+    "Separatrix: rises for ever": LEVEL | {"A": 2.0, "r0": 0.0, "thetadot0": -1.0},
+    "Hanging and swinging": EXAMPLE | {"r0": 10.0, "theta0_deg": 150.0},
+    "Hanging straight down": EXAMPLE | {"r0": 10.0, "theta0_deg": 180.0},
+    "Spherical pendulum": EXAMPLE | {"r0": 0.0, "theta0_deg": 120.0, "psidot0": 9.0},
+    "Plane pendulum": EXAMPLE | {"r0": 0.0, "theta0_deg": 120.0},
+    "Without torque": EXAMPLE | {"g": 0.0, "psidot0": 8.0},
+}
+"""Scenes offered as examples."""
+
+TITLES: list[tuple[dict[str, Any], str]] = [
+    ({"regime": "sleeping", "stable": True}, "Sleeping, stable"),
+    ({"regime": "sleeping"}, "Sleeping, unstable"),
+    ({"regime": "hanging"}, "Hanging"),
+    ({"regime": "torque-free"}, "Without torque"),
+    ({"regime": "separatrix"}, "Separatrix"),
+    ({"regime": "steady precession"}, "Steady precession"),
+    ({"plane": True}, "Plane pendulum"),
+    ({"regime": "no spin"}, "Spherical pendulum"),
+    ({"constant": True}, "Almost steady precession"),
+    ({"fast": True}, "Pseudo-regular precession"),
+    ({"path": "cusped"}, "Regular motion with cusps"),
+    ({"path": "looping"}, "Regular motion with loops"),
+    ({}, "Regular motion in waves"),
+]
+"""The title of each kind of motion, by the rules of `PHRASES`."""
 
 
 def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
@@ -35,9 +94,10 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     '<!DOCTYPE html>'
     """
     check_type("motion", motion, Motion)
+    units = [unit(name) for name in ("mass", "len", "time")]
     parts = {
         "style": _filled(_text_of("style.css"), {"light": _colours(LIGHT), "dark": _colours(DARK)}),
-        "units": _units_in_words(*map(unit, ("mass", "len", "time"))),
+        "units": "in {}, {} and {}".format(*units) if units[0] != "mass" else UNITLESS,
         "script": joined_script(page_data(motion, unit)),
     }
     hashes = {f"{name}_hash": _hash(parts[name]) for name in ("style", "script")}
@@ -49,17 +109,10 @@ def _hash(text: str) -> str:
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
-def _units_in_words(mass: str, length: str, time: str) -> str:
-    if mass == "mass":
-        return "in any consistent units"
-    return f"in {mass}, {length} and {time}"
-
-
 def _colours(look: Look) -> str:
     """Return the colours of a look as variables of the style sheet."""
-    blue, red, green = look.lines
-    names = {"paper": look.paper, "ink": look.ink, "quiet": look.quiet, "faint": look.faint}
-    names |= {"blue": blue, "red": red, "green": green, "trace": _TRACES[look]}
+    names = {name: getattr(look, name) for name in ("paper", "ink", "quiet", "faint")}
+    names |= dict(zip(("blue", "red", "green"), look.lines, strict=True)) | {"trace": _TRACES[look]}
     return " ".join(f"--{name}: {colour};" for name, colour in names.items())
 
 
@@ -83,35 +136,85 @@ def open_page(page: Document, path: str | None) -> None:
 def joined_script(data: str) -> str:
     """Return the page's main module and all its imports as one script, each import first.
 
-    Each module becomes a function that is called once, so that its names stay local.  The module
-    `data.js` is the JSON `data`.
+    Their names are all different, as one scope holds them.  `data` is the module `data.js`.
     """
-    scripts = {"data.js": f'modules["data.js"] = {data};'}
-    _collect("page/main.js", scripts)
-    return "\n".join(["const modules = {};", *scripts.values()])
+    scripts = {"data.js": data}
+
+    def add(name: str) -> None:
+        """Add the script of a module after those of the modules it imports."""
+        text = _text_of(name)
+        for other in _IMPORT.findall(text):
+            path = posixpath.normpath(f"{posixpath.dirname(name)}/{other}")
+            if path not in scripts:
+                add(path)
+        scripts[name] = re.sub(r"^export ", "", _IMPORT.sub("", text), flags=re.MULTILINE)
+
+    add("page/main.js")
+    return "".join(scripts.values())
 
 
-def _collect(name: str, scripts: dict[str, str]) -> None:
-    """Add the script of a module after those of the modules it imports."""
-    text = _text_of(name)
-    for match in _IMPORT.finditer(text):
-        path = _resolved(name, match[2])
-        if path not in scripts:
-            _collect(path, scripts)
-    body = _IMPORT.sub(lambda found: _taken(name, *found.groups()), _EXPORT.sub("", text))
-    shown = ", ".join(_EXPORT.findall(text))
-    scripts[name] = f'modules["{name}"] = (() => {{\n{body}\nreturn {{ {shown} }};\n}})();\n'
+def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
+    """Return the constants of `data.js` for a motion; their JSON is safe inside a script.
+
+    `unit` names mass, len and time in the units of the inputs.  Raises LagtopError as `page_scene`
+    does.
+    """
+    data = {
+        "SCENE": page_scene(motion),
+        "UNITS": {name: unit(name) for name in ("mass", "len", "time")},
+        "EXAMPLES": EXAMPLES,
+        "INPUTS": {_key(name): _input(DECLARED[name]) for name in NINE},
+        "KEYS": _keys(),
+        "PHRASES": {"title": TITLES} | PHRASES,
+        "LIMITS": {"least": SMALLEST, "largest": LARGEST, "tilt": LEAST_TILT},
+    }
+    texts = {name: json.dumps(value, ensure_ascii=False) for name, value in data.items()}
+    return "".join(f"const {x} = {text};\n" for x, text in texts.items()).replace("</", "<\\/")
 
 
-def _taken(name: str, names: str, other: str) -> str:
-    """Return the line that takes names from a module earlier in the script."""
-    return f'const {names} = modules["{_resolved(name, other)}"];'
+def page_scene(motion: Motion) -> PageScene:
+    """Return the inputs of the page as doubles, with the tilt in degrees.
+
+    Raises LagtopError for inputs out of the range of the page.
+    """
+    scene = {name: float(value) for name, value in motion.top.inputs().items()}
+    tilt = scene[_key(TILT)]
+    if 0 < min(tilt, 180 - tilt) < LEAST_TILT:
+        raise LagtopError(
+            f"theta0_deg must be 0, 180 or 1e-12 from both for a page, got {tilt}", "theta0_deg"
+        )
+    for name, value in scene.items():
+        if name != _key(TILT) and value and not SMALLEST <= abs(value) <= LARGEST:
+            raise LagtopError(f"{name} must be from 1e-30 to 1e30 for a page, got {value}", name)
+    solve(Top(**scene))  # a tilt in radians may round to the vertical, where nothing precesses
+    return scene
 
 
-def _resolved(name: str, other: str) -> str:
-    """Return the path of a module that another one imports as `./x.js` or `../room/x.js`."""
-    room = name.rpartition("/")[0]
-    return other.removeprefix("../") if other.startswith("../") else f"{room}/{other[2:]}"
+def _key(name: str) -> str:
+    """Return the key of an input in a scene of the page."""
+    return f"{name}_deg" if name == TILT else name
+
+
+def _keys() -> dict[str, dict[str, str]]:
+    """Return the declarations of the keys of the page, each with its formula in symbols.
+
+    They are the keys of a record and the stability factor.
+    """
+    formulas = {row.name: row.formula for row in listed()}
+    keys = KEYS | {FACTOR: requested_keys()[FACTOR].replace(group=KEYS["a"].group)}
+    groups = [key.group for key in keys.values()]
+    return {
+        name: key.replace(formula=formulas.get(name, "")).as_dict()
+        for name, key in sorted(keys.items(), key=lambda item: groups.index(item[1].group))
+    }
+
+
+def _input(declared: Input) -> dict[str, str]:
+    """Return symbol, name, unit and allowed sign of an input."""
+    signs = {"positive": "positive", "0 or more": "not negative"}
+    sign = next((sign for bound, sign in signs.items() if declared.bound.startswith(bound)), "any")
+    named = {name: getattr(declared, name) for name in ("symbol", "name", "unit")}
+    return named | {"sign": sign}
 
 
 def _text_of(name: str) -> str:

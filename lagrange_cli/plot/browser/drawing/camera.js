@@ -47,10 +47,6 @@ function dot3(p, q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-function cross(p, q) {
-  return [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-}
-
 /** x p + y q + z r */
 export function combined(x, p, y, q, z = 0, r = p) {
   return [0, 1, 2].map((i) => x * p[i] + y * q[i] + z * r[i]);
@@ -60,9 +56,7 @@ export function combined(x, p, y, q, z = 0, r = p) {
 export function frameOf({ theta, psi }) {
   const [st, ct] = [Math.sin(theta), Math.cos(theta)];
   const [sp, cp] = [Math.sin(psi), Math.cos(psi)];
-  const nodes = [cp, sp, 0];
-  const axis = [st * sp, -st * cp, ct];
-  return { nodes, axis, across: cross(axis, nodes) };
+  return { nodes: [cp, sp, 0], axis: [st * sp, -st * cp, ct], across: [-ct * sp, ct * cp, st] };
 }
 
 /** A vector times a number. */
@@ -102,15 +96,6 @@ export function followHands(canvas, camera, moved) {
     camera.reset();
     moved();
   });
-  canvas.addEventListener("keydown", (event) => {
-    if (!moveByKey(camera, event.key)) return;
-    event.preventDefault();
-    event.stopPropagation();
-    moved();
-  });
-}
-
-function moveByKey(camera, key) {
   const moves = {
     ArrowLeft: () => camera.turn(-5, 0),
     ArrowRight: () => camera.turn(5, 0),
@@ -120,6 +105,16 @@ function moveByKey(camera, key) {
     "-": () => camera.magnify(1 / 1.2),
     0: () => camera.reset(),
   };
-  moves[key]?.();
-  return key in moves;
+  canvas.addEventListener("keydown", (event) => {
+    if (actOnKey(event, moves)) moved();
+  });
+}
+
+/** Do what a table has for the key of an event, and return whether it has anything. */
+export function actOnKey(event, actions) {
+  if (!actions[event.key]) return false;
+  event.preventDefault();
+  event.stopPropagation();
+  actions[event.key]();
+  return true;
 }

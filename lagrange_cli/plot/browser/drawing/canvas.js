@@ -75,16 +75,37 @@ export function textOf(x, digits = 10) {
   return String(Number(x.toPrecision(digits))).replace("e+", "e").replace(/-/g, "−");
 }
 
-/** At most `most` round numbers `x` from `low` to `high`, each with its `text`. */
+/** A rectangle of a canvas with scales: the places `x` and `y` of values in [x0, x1], [y0, y1]. */
+export function chartOf(box, [x0, x1], [y0, y1]) {
+  const { left, right, top, bottom } = box;
+  return {
+    ...box, x0, x1,
+    x: (value) => left + (value - x0) / (x1 - x0) * (right - left),
+    y: (value) => bottom - (value - y0) / (y1 - y0) * (bottom - top),
+    valueAt: (place) => x0 + (place - left) / (right - left) * (x1 - x0),
+  };
+}
+
+/** Write at most `most` numbers and, at `foot`, a name below a chart, with lines if `ruled`. */
+export function drawNumbers(context, look, chart, name, most, ruled = false) {
+  const { x, right, top, bottom, foot } = chart;
+  for (const { at, text } of ticksBetween(chart.x0, chart.x1, most)) {
+    const line = { colour: look.quiet, width: 0.6, alpha: 0.35 };
+    if (ruled) stroke(context, [[x(at), top], [x(at), bottom]], line);
+    write(context, text, [x(at), bottom + 10], look.ink, { size: 11 });
+  }
+  write(context, name, [right, foot], look.quiet, { size: 11, align: "right" });
+}
+
+/** At most `most` round numbers from `low` to `high`, as their values `at` and texts. */
 export function ticksBetween(low, high, most) {
   const rough = (high - low) / Math.max(most, 1);
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((x) => x * power).find((x) => x >= rough * (1 - 1e-9));
-  const first = Math.ceil(low / step - 1e-9);
-  const last = Math.floor(high / step + 1e-9);
-  if (!(last - first < 100)) return [];
-  const numbers = [...Array(last - first + 1).keys()].map((i) => (first + i) * step);
-  return numbers.map((x) => ({ x, text: tickText(x, step) }));
+  const [first, last] = [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)];
+  const count = last - first < 100 ? last - first + 1 : 0;
+  return [...Array(count).keys()].map((i) => (
+    { at: (first + i) * step, text: tickText((first + i) * step, step) }));
 }
 
 /** A tick as text, with as many digits as tell it from its neighbours. */

@@ -3,14 +3,14 @@
 // Times are even in the amplitude of the nutation, so that cusps stay sharp, and even in time for a
 // top that waits; there are more of them where the axis is fast.
 
-import { firstKind } from "../numerics/integrals.js";
+import { firstKind } from "../numerics/arithmetic.js";
 import { frameOf } from "./camera.js";
-import { even, prepared, stroke, ticksBetween, write } from "./canvas.js";
+import { chartOf, drawNumbers, even, prepared, stroke, ticksBetween, write } from "./canvas.js";
 
 const PHASES = 40;  // samples per half period
 const MOST = 6000;  // samples of a window
 const STEP = 0.15;  // the longest way of the axis between two samples, in radians
-const MARGIN = { left: 54, right: 10, top: 20, bottom: 30, gap: 24 };
+const GAP = 24;  // between two rows
 const DEGREES = 180 / Math.PI;
 
 /** The length of a window: some nutation periods, the swing of a separatrix, or a turn. */
@@ -83,83 +83,68 @@ function refined(motion, times) {
   return refining;
 }
 
-/** The three rows of the plot; `waves` shows their periodic parts. */
-function rowsOf({ motion }, look, waves) {
-  const { facts } = motion;
-  const undefinedWhy = facts.vertical ? "not defined: all is spin" : null;
-  const still = waves && (facts.steady || facts.vertical) ? "no waves: the rate is constant" : null;
-  return [
-    { name: "ϑ", colour: look.blue, value: (at) => at.theta },
-    {
-      name: waves ? "Δφ" : "φ", colour: look.red, why: still,
-      value: (at) => (waves ? at.dphi : at.phi),
-      mean: waves ? null : (t) => +motion.spinRate * t,
-    },
-    {
-      name: waves ? "Δψ" : "ψ", colour: look.green, why: undefinedWhy ?? still,
-      value: (at) => (waves ? at.dpsi : at.psi),
-      mean: waves ? null : (t) => +motion.precessionRate * t,
-    },
-  ];
+/** The three rows of the plot; `waves` shows the periodic parts of spin and precession. */
+function rowsOf({ facts, spinRate, precessionRate }, look, waves) {
+  const constant = waves && (facts.steady || facts.vertical);
+  const why = constant ? "no waves: the rate is constant" : null;
+  const rowOf = (symbol, name, colour, rate) => ({
+    name: waves ? `Δ${symbol}` : symbol,
+    value: (at) => at[waves ? `d${name}` : name],
+    mean: waves ? null : (t) => +rate * t,
+    colour, why,
+  });
+  const precession = rowOf("ψ", "psi", look.green, precessionRate);
+  if (facts.vertical) precession.why = "not defined: all is spin";
+  const tilt = { name: "ϑ", colour: look.blue, value: (at) => at.theta };
+  return [tilt, rowOf("φ", "phi", look.red, spinRate), precession];
 }
 
-/** Draw the window of the curves; returns where a time is on the canvas. */
+/** Draw the window of the curves in a row per angle; returns the chart of the whole canvas. */
 export function drawPlots(canvas, look, curves, waves, unit) {
   const { context, width, height } = prepared(canvas);
-  const { left, right, top, bottom, gap } = MARGIN;
-  const rows = rowsOf(curves, look, waves);
-  const rowHeight = (height - top - bottom - (rows.length - 1) * gap) / rows.length;
-  const x = (t) => left + (t - curves.from) / curves.span * (width - left - right);
-  drawTimes(context, look, curves, x, { width, height, unit });
+  const box = { left: 54, right: width - 10, top: 20, bottom: height - 30, foot: height - 8 };
+  const times = [curves.from, curves.until];
+  const whole = chartOf(box, times, [0, 1]);
+  drawNumbers(context, look, whole, `time t${unit && ` (${unit})`}`, width / 90, true);
+  const rows = rowsOf(curves.motion, look, waves);
+  const rowHeight = (box.bottom - box.top + GAP) / rows.length - GAP;
   rows.forEach((row, i) => {
-    const box = { left, width: width - left - right, top: top + i * (rowHeight + gap), rowHeight };
-    drawRow(context, look, curves, row, x, box);
+    const top = box.top + i * (rowHeight + GAP);
+    drawRow(context, look, curves, row, { ...box, top, bottom: top + rowHeight });
   });
-  return { left, right: width - right, timeAt: (px) => (
-    curves.from + (px - left) / (width - left - right) * curves.span) };
+  return whole;
 }
 
-/** Draw lines of time and their numbers, and the nutation periods as thin marks above. */
-function drawTimes(context, look, { from, until }, x, { width, height, unit }) {
-  for (const { x: t, text } of ticksBetween(from, until, width / 90)) {
-    stroke(context, [[x(t), MARGIN.top], [x(t), height - MARGIN.bottom]], {
-      colour: look.quiet, width: 0.6, alpha: 0.35,
-    });
-    write(context, text, [x(t), height - MARGIN.bottom + 10], look.ink, { size: 11 });
-  }
-  write(context, `time t${unit && ` (${unit})`}`, [width - MARGIN.right, height - 8], look.quiet, {
-    size: 11, align: "right",
-  });
-}
-
-function drawRow(context, look, curves, row, x, { left, width, top, rowHeight }) {
-  const bottom = top + rowHeight;
-  stroke(context, [[left, top], [left, bottom], [left + width, bottom]], { colour: look.quiet });
+/** Draw one angle in its part of the canvas, with its mean rate, or why it has no curve. */
+function drawRow(context, look, { times, samples, from, until }, row, box) {
+  const { left, right, top, bottom } = box;
+  stroke(context, [[left, top], [left, bottom], [right, bottom]], { colour: look.quiet });
+  const title = row.why ? row.name : `${row.name} (°)`;
+  write(context, title, [left, top - 9], row.colour, { align: "left" });
   if (row.why) {
-    write(context, row.name, [left, top - 9], row.colour, { align: "left" });
-    write(context, row.why, [left + width / 2, (top + bottom) / 2], look.quiet, { size: 12 });
+    const middle = [(left + right) / 2, (top + bottom) / 2];
+    write(context, row.why, middle, look.quiet, { size: 12 });
     return;
   }
-  const inside = curves.samples.filter((_, i) => curves.times[i] >= curves.from);
-  const times = curves.times.filter((t) => t >= curves.from);
-  const values = inside.map((at) => row.value(at) * DEGREES);
-  const [low, high] = rangeOf(values);
-  const y = (value) => bottom - 3 - (value - low) / (high - low) * (rowHeight - 6);
-  for (const { x: tick, text } of ticksBetween(low, high, rowHeight / 28)) {
-    stroke(context, [[left - 4, y(tick)], [left, y(tick)]], { colour: look.quiet });
-    write(context, text, [left - 7, y(tick)], look.ink, { size: 11, align: "right" });
+  const first = times.findIndex((t) => t >= from);
+  const values = samples.slice(first).map((at) => row.value(at) * DEGREES);
+  const [low, high] = heightsOf(values);
+  const inner = { ...box, top: top + 3, bottom: bottom - 3 };
+  const { x, y } = chartOf(inner, [from, until], [low, high]);
+  for (const { at, text } of ticksBetween(low, high, (bottom - top) / 28)) {
+    stroke(context, [[left - 4, y(at)], [left, y(at)]], { colour: look.quiet });
+    write(context, text, [left - 7, y(at)], look.ink, { size: 11, align: "right" });
   }
   if (row.mean) {
-    const ends = [curves.from, curves.until].map((t) => [x(t), y(row.mean(t) * DEGREES)]);
+    const ends = [from, until].map((t) => [x(t), y(row.mean(t) * DEGREES)]);
     stroke(context, ends, { colour: look.quiet, width: 0.9 });
   }
-  const points = times.map((t, i) => [x(t), y(values[i])]);
+  const points = values.map((value, i) => [x(times[first + i]), y(value)]);
   stroke(context, points, { colour: row.colour, width: 1.8 });
-  write(context, `${row.name} (°)`, [left, top - 9], row.colour, { align: "left" });
 }
 
 /** A range that holds all values, and is wide enough to be shown. */
-function rangeOf(values) {
+function heightsOf(values) {
   const [low, high] = [Math.min(...values), Math.max(...values)];
   const least = Math.max(1e-9, 1e-12 * Math.abs(high));
   if (high - low > least) return [low, high];

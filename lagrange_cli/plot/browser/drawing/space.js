@@ -8,9 +8,10 @@ import { dot, even, fill, prepared, stroke, write } from "./canvas.js";
 const HEIGHT = 0.62;
 const RADIUS = 0.34;
 const WEDGES = 24;
+const SIXTH = WEDGES / 6;  // of the same colour
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 const LENGTH = 1.2;  // of the axes in space
-const TURN = even(0, 2 * Math.PI, 360);
+const CIRCLE = even(0, 2 * Math.PI, 360);
 
 /** Draw the top at one time; `shown` says which parts. */
 export function drawSpace(canvas, camera, look, { motion, curves, t, angles, blurred, shown }) {
@@ -60,7 +61,7 @@ function drawCircles(context, view, look, { theta_min_deg, theta_max_deg }, near
   ];
   const faded = near ? {} : { alpha: 0.4, dash: [3, 3] };
   for (const [tilt, style] of circles) {
-    const circle = TURN.map((psi) => frameOf({ theta: tilt * Math.PI / 180, psi }).axis);
+    const circle = CIRCLE.map((psi) => frameOf({ theta: tilt * Math.PI / 180, psi }).axis);
     drawSide(context, view, circle, near, { ...style, ...faded });
   }
 }
@@ -85,49 +86,32 @@ function drawAxes(context, view, look, near) {
   }
 }
 
-/** A point of the lid's plane, at an angle from the line of nodes, counted like the spin. */
-export function onLid({ nodes, across, axis }, angle, radius) {
+/** A point of the body, on the lid or at a height, at an angle from the nodes like the spin. */
+export function onLid({ nodes, across, axis }, angle, radius, height = HEIGHT) {
   return combined(
-    radius * Math.cos(angle), nodes, radius * Math.sin(angle), across, HEIGHT, axis);
+    radius * Math.cos(angle), nodes, radius * Math.sin(angle), across, height, axis);
 }
 
 /** Draw the cone; `blurred` if it turns too fast for its wedges to be seen. */
 function drawBody(context, view, look, frame, spin, blurred) {
   const angles = even(spin, spin + 2 * Math.PI, WEDGES);
   const rim = angles.map((angle) => view.project(onLid(frame, angle, RADIUS)));
-  const sides = angles.slice(0, -1).map((angle) => (
-    facesEye(view, frame, angle + Math.PI / WEDGES)));
-  const parts = (apex, colour, seen) => {
-    for (let sixth = 0; sixth < 6; sixth += 1) {
-      const ink = blurred ? mixed(look.paper, colour) : [look.paper, colour][sixth % 2];
-      const corners = cornersOf(rim, sixth * WEDGES / 6, seen);
-      if (corners.length) fill(context, [apex, ...corners], ink);
+  const facesEye = angles.slice(0, -1).map((angle) => (
+    view.depth(onLid(frame, angle + Math.PI / WEDGES, HEIGHT, -RADIUS)) > 0));
+  const drawSixths = (apex, colour, seen) => {
+    for (let first = 0; first < WEDGES; first += SIXTH) {
+      const wedges = even(first, first + SIXTH - 1, SIXTH - 1).filter((j) => seen[j]);
+      const ink = first / SIXTH % 2 ? colour : look.paper;
+      const corners = [apex, rim[wedges[0]], ...wedges.map((j) => rim[j + 1])];
+      const mixed = `color-mix(in srgb, ${look.paper}, ${colour})`;
+      if (wedges.length) fill(context, corners, blurred ? mixed : ink);
     }
   };
-  parts(view.project([0, 0, 0]), look.red, sides);
+  drawSixths(view.project([0, 0, 0]), look.red, facesEye);
   if (view.depth(frame.axis) > 0) {
-    parts(view.project(onLid(frame, 0, 0)), look.blue, sides.map(() => true));
+    drawSixths(view.project(onLid(frame, 0, 0)), look.blue, facesEye.map(() => true));
   }
   stroke(context, rim, { colour: look.ink, width: 0.9 });
-}
-
-/** The corners along the rim of the seen wedges of the sixth that begins at `first`. */
-function cornersOf(rim, first, seen) {
-  const wedges = [...Array(WEDGES / 6).keys()].map((j) => first + j).filter((j) => seen[j]);
-  return wedges.length ? [rim[wedges[0]], ...wedges.map((j) => rim[j + 1])] : [];
-}
-
-/** Whether the side of the cone at an angle from the line of nodes is in sight. */
-function facesEye(view, { nodes, across, axis }, angle) {
-  return view.depth(combined(
-    HEIGHT * Math.cos(angle), nodes, HEIGHT * Math.sin(angle), across, -RADIUS, axis)) > 0;
-}
-
-/** The colour midway between two, each #rrggbb. */
-function mixed(first, second) {
-  const parts = (colour) => [1, 3, 5].map((i) => parseInt(colour.slice(i, i + 2), 16));
-  const [p, q] = [parts(first), parts(second)];
-  return `rgb(${p.map((x, i) => Math.round((x + q[i]) / 2)).join(" ")})`;
 }
 
 /** Draw the axes in the body: the figure axis out to the sphere, x' and y' on the lid. */

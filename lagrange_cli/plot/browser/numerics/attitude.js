@@ -7,8 +7,7 @@
 // transformation gives series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi): four
 // terms are enough for doubles.  See `lagrange_cli/motion/over_time/theta_series.py`.
 
-import { firstKind } from "./integrals.js";
-import { PI, pair } from "./pair.js";
+import { firstKind, pair, PI } from "./arithmetic.js";
 
 const TURN = PI.times(2);
 const TERMS = 4;
@@ -150,17 +149,16 @@ export function offsetOf(start, gaps, kPrime, K) {
   return w / K * (start.thetaRate < 0 ? -1 : 1);
 }
 
-/** An angle that has grown so much, and on: whole, and without whole turns in (-pi, pi]. */
-function grown(growth, rest) {
-  const angle = growth.plus(rest);
-  return { whole: +angle, within: +angle.minus(TURN.times(Math.round(angle.over(TURN)))) };
+/** An angle without whole turns, in (-pi, pi]. */
+function within(angle) {
+  return +angle.minus(TURN.times(Math.round(angle.over(TURN))));
 }
 
-/** Angles of a motion at t: tilt, spin and precession, and their periodic parts (6,4), (7,4). */
+/** Tilt, spin and precession, as their mean growths and their periodic parts (6,4), (7,4). */
 function anglesAt(theta, spin, precession, dphi = 0, dpsi = 0) {
+  const [phi, psi] = [spin.plus(dphi), precession.plus(dpsi)];
   return {
-    theta, phi: spin.whole, psi: precession.whole,
-    phiWithin: spin.within, psiWithin: precession.within, dphi, dpsi,
+    theta, phi: +phi, psi: +psi, phiWithin: within(phi), psiWithin: within(psi), dphi, dpsi,
   };
 }
 
@@ -184,16 +182,15 @@ export function nutatingSampler(motion) {
     const since = phase - sinceFirst;
     const dphi = t === 0 ? 0 : plus - minus + since * series.spinSlope;
     const dpsi = t === 0 ? 0 : plus + minus + since * series.precessionSlope;
-    const spin = grown(spinRate.times(t), dphi);
-    const precession = grown(precessionRate.times(t), dpsi);
-    return anglesAt(2 * Math.atan2(y.size, x.size), spin, precession, dphi, dpsi);
+    const theta = 2 * Math.atan2(y.size, x.size);
+    return anglesAt(theta, spinRate.times(t), precessionRate.times(t), dphi, dpsi);
   };
 }
 
 /** A tilt that stays, with constant rates. */
 export function constantSampler({ start, spinRate, precessionRate }) {
   const theta = 2 * Math.atan2(start.sinHalf, start.cosHalf);
-  return (t) => anglesAt(theta, grown(spinRate.times(t), 0), grown(precessionRate.times(t), 0));
+  return (t) => anglesAt(theta, spinRate.times(t), precessionRate.times(t));
 }
 
 /** The swing up in infinite time: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset. */
@@ -209,7 +206,6 @@ export function separatrixSampler({ start, gaps, argumentRate }) {
     const tangent = Math.tanh(h);
     const theta = 2 * Math.atan2(y / Math.cosh(h), Math.hypot(x, y * tangent));
     const turned = t === 0 ? 0 : turnedAt(tangent) - beginning;
-    const spin = grown(start.spinDrift.times(t), turned);
-    return anglesAt(theta, spin, grown(rate.times(t), turned), turned, turned);
+    return anglesAt(theta, start.spinDrift.times(t), rate.times(t), turned, turned);
   };
 }

@@ -1,10 +1,8 @@
 // The motion of one top: periods, tilts and mean rates.  Equation numbers are those of the paper.
 
+import { completeK, pair, periodMean, PI } from "./arithmetic.js";
 import { constantSampler, nutatingSampler, offsetOf, separatrixSampler } from "./attitude.js";
-import { checkRoots, gapsOf } from "./gaps.js";
-import { completeK, periodMean } from "./integrals.js";
-import { PI, pair } from "./pair.js";
-import { checkScene, factsOf, startOf } from "./start.js";
+import { checkRoots, checkScene, factsOf, gapsOf, startOf } from "./start.js";
 
 /** A number over the parts that cancel in it is shown from here on: ten digits must be right. */
 const LEAST = 1e-20;
@@ -19,17 +17,13 @@ export function motionOf(scene) {
   const motion = { scene, start, facts, gaps, ...moduliOf(start, facts, gaps) };
   Object.assign(motion, ratesOf(motion));
   motion.record = recordOf(motion);
-  motion.angles = samplerOf(motion);
+  const constant = facts.vertical || facts.steady;
+  const moving = facts.separatrix ? separatrixSampler : nutatingSampler;
+  motion.angles = (constant ? constantSampler : moving)(motion);
   if (!Object.values(motion.angles(motion.period ?? 1)).every(Number.isFinite)) {
     throw new RangeError("its numbers leave the range of the page: ask lagtop solve");
   }
   return motion;
-}
-
-function samplerOf(motion) {
-  const { facts } = motion;
-  if (facts.vertical || facts.steady) return constantSampler(motion);
-  return facts.separatrix ? separatrixSampler(motion) : nutatingSampler(motion);
 }
 
 /** Moduli (4,19), (4,21), quarter periods and the period of the nutation (5,1). */
@@ -50,18 +44,13 @@ function moduliOf(start, facts, gaps) {
 }
 
 /** Mean rates of spin (6,3) and precession (7,3); those of a constant tilt. */
-function ratesOf(motion) {
-  const { start, facts } = motion;
+function ratesOf({ start, facts, gaps, kPrime, period }) {
   if (facts.vertical) return { spinRate: start.r0, precessionRate: pair(0) };
   if (facts.steady) {
     const spinRate = start.r0.minus(start.psiRate.times(start.cos));  // (4,8)
     return { spinRate, precessionRate: start.psiRate, spinSize: Math.abs(start.r0) };
   }
   if (facts.separatrix) return {};
-  return nutatingRates(motion, PI.over(motion.period));
-}
-
-function nutatingRates({ start, facts, gaps, kPrime }, halfTurn) {
   // south and north are the means of (beta - b u)/(2 (1 + u)) and (beta - b u)/(2 (1 - u)): the
   // precession rate is their sum (4,7), the spin rate r0 + south - north (4,8)
   const { belowU1, belowU2, aboveU1, aboveU2, momentumU1, momentumU2 } = gaps;
@@ -80,7 +69,7 @@ function nutatingRates({ start, facts, gaps, kPrime }, halfTurn) {
   // apart, (beta + b)/(2 (1 + u)) and (beta - b)/(2 (1 - u)): each makes half a turn per period
   // without torque, and over its pole
   const poleRate = (pole, sign, fromU1, fromU2, beta) => (
-    facts.free || pole ? halfTurn.times(sign) : mean(fromU1, fromU2, beta, beta));
+    facts.free || pole ? PI.over(period).times(sign) : mean(fromU1, fromU2, beta, beta));
   const south = poleRate(facts.overBottom, facts.signPlus, belowU1, belowU2, gaps.betaPlusB);
   const north = poleRate(overTop, facts.signMinus, aboveU1, aboveU2, gaps.betaMinusB);
   return rates(start.poleDrift, south, north);

@@ -1,14 +1,13 @@
 // The page: one scene, its motion, and all that shows it.
 
 import { EXAMPLES, INPUTS, SCENE, UNITS } from "../data.js";
-import { Camera, followHands, frameOf } from "../drawing/camera.js";
+import { actOnKey, Camera, followHands, frameOf } from "../drawing/camera.js";
 import { readLook, textOf } from "../drawing/canvas.js";
 import { drawCubic } from "../drawing/cubic.js";
 import { curvesAt, drawPlots, windowOf } from "../drawing/plots.js";
 import { drawSpace, onLid } from "../drawing/space.js";
 import { motionOf } from "../numerics/motion.js";
-import { Clock } from "./clock.js";
-import { Inputs, linkOf, readLink, showLink } from "./inputs.js";
+import { Clock, Inputs, linkOf, readLink, showLink } from "./controls.js";
 import { showRecord, unitText, wordsOf } from "./record.js";
 
 const FRAME = 1 / 60;  // seconds
@@ -71,26 +70,24 @@ class Page {
   }
 
   listen() {
-    const { space, plots, periods, waves, copy, theme, save, kind } = this.at;
-    const { record, explained } = this.at;
+    const { space, plots, periods, waves, copy, theme, save, kind, record, explained } = this.at;
     followHands(space, this.camera, () => this.stale());
     for (const box of document.querySelectorAll("[data-shows]")) {
       const note = () => { this.shown[box.dataset.shows] = box.checked; };
       note();
       box.addEventListener("change", () => { note(); this.stale(); });
     }
-    periods.addEventListener("change", () => this.recurve());
-    waves.addEventListener("change", () => this.recurve());
+    for (const part of [periods, waves]) part.addEventListener("change", () => this.recurve());
     copy.addEventListener("click", () => this.copyLink());
     theme.addEventListener("click", () => this.changeTheme());
     save.addEventListener("click", () => this.save(kind.value));
     record.addEventListener("focusin", (event) => { explained.textContent = event.target.title; });
     const scrub = (event) => {
-      if (event.buttons) this.clock.set(this.field.timeAt(event.offsetX));
+      if (event.buttons) this.clock.set(this.field.valueAt(event.offsetX));
     };
     plots.addEventListener("pointerdown", scrub);
     plots.addEventListener("pointermove", scrub);
-    new ResizeObserver(() => { this.curves = null; this.stale(); }).observe(document.body);
+    new ResizeObserver(() => this.recurve()).observe(document.body);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.relook());
     window.addEventListener("hashchange", () => this.follow());
     document.addEventListener("keydown", (event) => this.key(event));
@@ -105,19 +102,16 @@ class Page {
       ArrowRight: () => this.clock.step(1, event.shiftKey),
       Home: () => this.clock.set(0),
     };
-    if (!keys[event.key]) return;
-    event.preventDefault();
-    keys[event.key]();
+    actOnKey(event, keys);
   }
 
   /** Change one input; a value that cannot be leaves the scene as it was, and is said. */
   change(name, x, text) {
     const scene = { ...this.scene, [name]: x };
-    const rescaled = Number(this.inputs.fields[name].slider.max) < x
-      || Number(this.inputs.fields[name].slider.min) > x;
+    const { slider } = this.inputs.fields[name];
+    const rescaled = Number(slider.max) < x || Number(slider.min) > x;
     try {
       this.show(scene, rescaled, false);
-      this.complain("");
     } catch (error) {
       const given = text || "nothing";
       this.complain(Number.isNaN(x) ? `${name} must be a number, got ${given}` : error.message);
@@ -175,23 +169,22 @@ class Page {
   /** Save the picture in space, the curves of the window, or the scene as a file. */
   save(kind) {
     if (!this.fresh) this.draw();
-    const { motion, curves, scene } = this;
-    const download = (blob, name) => {
+    const download = (blob) => {
       const link = document.createElement("a");
-      Object.assign(link, { href: URL.createObjectURL(blob), download: name });
+      Object.assign(link, { href: URL.createObjectURL(blob), download: `top.${kind}` });
       link.click();
       URL.revokeObjectURL(link.href);
     };
-    const degrees = (x) => x * 180 / Math.PI;
-    const rows = curves.times.map((t) => {
-      const { theta, phi, psi } = motion.angles(t);
-      return [t, ...[theta, phi, psi].map(degrees)].join(",");
-    });
-    const table = ["t,theta_deg,phi_deg,psi_deg", ...rows, ""].join("\n");
-    const toml = Object.entries(scene).map(([name, x]) => `${name} = ${x}\n`).join("");
-    if (kind === "png") this.at.space.toBlob((blob) => download(blob, "top.png"));
-    if (kind === "csv") download(new Blob([table], { type: "text/csv" }), "top.csv");
-    if (kind === "toml") download(new Blob([toml], { type: "application/toml" }), "top.toml");
+    const { times, samples } = this.curves;
+    const rows = samples.map(({ theta, phi, psi }, i) => (
+      [times[i], ...[theta, phi, psi].map((x) => x * 180 / Math.PI)].join(",")));
+    const scene = Object.entries(this.scene).map(([name, x]) => `${name} = ${x}\n`);
+    if (kind === "png") this.at.space.toBlob(download);
+    if (kind === "csv") {
+      const table = ["t,theta_deg,phi_deg,psi_deg", ...rows, ""].join("\n");
+      download(new Blob([table], { type: "text/csv" }));
+    }
+    if (kind === "toml") download(new Blob(scene, { type: "application/toml" }));
   }
 
   async copyLink() {
@@ -235,9 +228,7 @@ class Page {
     drawSpace(this.at.space, this.camera, look, {
       motion, curves, t: clock.t, angles, blurred, shown: this.shown,
     });
-    const part = (clock.t - curves.from) / curves.span;
-    const x = field.left + part * (field.right - field.left);
-    this.at.cursor.style.transform = `translateX(${x}px)`;
+    this.at.cursor.style.transform = `translateX(${field.x(clock.t)}px)`;
     const place = this.placeOnCubic(angles.theta);
     this.at.point.hidden = !place;
     if (place) this.at.point.style.transform = `translate(${place[0]}px, ${place[1]}px)`;

@@ -10,12 +10,11 @@ export function showRecord(table, record, units) {
   for (const [name, key] of Object.entries(KEYS)) {
     const value = record[name];
     if (typeof value !== "number") continue;
-    if (key.group !== last) rows.push(rowOf([["th", key.group]]));
+    if (key.group !== last) rows.push(rowOf([key.group]));
     last = key.group;
     const shown = Number.isNaN(value)
       ? "ask lagtop solve" : `${textOf(value)} ${named(key.unit, units)}`;
-    const cells = [["th", key.symbol], ["td", key.meaning], ["td", shown]];
-    rows.push(rowOf(cells, explained(name, key)));
+    rows.push(rowOf([key.symbol, key.meaning, shown], explained(name, key)));
   }
   table.tBodies[0].replaceChildren(...rows);
 }
@@ -37,18 +36,15 @@ export function unitText(unit, units) {
   return text === unit && !unit.startsWith("rad") ? "" : text;
 }
 
-function rowOf(cells, title = "") {
+/** A row of a key, which can be selected, or of a group of keys, with one cell. */
+function rowOf([name, ...cells], title) {
   const row = document.createElement("tr");
-  row.title = title;
-  row.append(...cells.map(([kind, text]) => {
-    const cell = document.createElement(kind);
-    cell.textContent = text;
-    return cell;
-  }));
-  row.firstChild.scope = title ? "row" : "rowgroup";
-  if (title) row.tabIndex = 0;
-  else row.firstChild.colSpan = 3;
-  return row;
+  const first = document.createElement("th");
+  Object.assign(first, title ? { scope: "row" } : { scope: "rowgroup", colSpan: 3 });
+  first.textContent = name;
+  row.append(first);
+  for (const text of cells) row.insertCell().textContent = text;
+  return Object.assign(row, title && { title, tabIndex: 0 });
 }
 
 /** The title of a motion and the sentence of `lagtop solve`. */

@@ -1,7 +1,9 @@
-// Numbers of 32 digits: unevaluated sums of two doubles (Dekker 1971).
+// Numbers of 32 digits, unevaluated sums of two doubles (Dekker 1971), and elliptic integrals.
 //
 // Everything that is computed once per scene is computed with them, so that differences of nearly
 // equal numbers, next to a pole or to the separatrix, keep more digits than the screen can show.
+// The integrals of places on the way are doubles.  Every loop adds and multiplies positive numbers
+// only, and ends at NaN as well, which no comparison finds larger.
 
 /** The exact sum of two doubles, as the nearest double and what it lacks. */
 function twoSum(x, y) {
@@ -80,11 +82,6 @@ class Pair {
     return new Pair(root, rest.high / (2 * root));
   }
 
-  /** -1, 0 or 1. */
-  sign() {
-    return Math.sign(this.high);
-  }
-
   valueOf() {
     return this.high;  // so that pairs can be compared, and stand where a double will do
   }
@@ -95,11 +92,6 @@ export function pair(x) {
 }
 
 export const PI = new Pair(3.141592653589793, 1.2246467991473532e-16);
-
-/** Whether a sum is 0 but for the rounding of its terms, the greatest of which has this size. */
-export function vanishes(sum, size) {
-  return Math.abs(sum) <= 2 ** -96 * Math.abs(size);
-}
 
 /** The sine of an angle up to a right angle, in degrees, by its power series. */
 export function sineOfDegrees(degrees) {
@@ -112,4 +104,57 @@ export function sineOfDegrees(degrees) {
     sum = sum.plus(term);
   }
   return sum;
+}
+
+const CLOSE = 1e-17;  // the mean of two numbers as close as that is their arithmetic-geometric mean
+
+/** The arithmetic-geometric mean of two positive numbers (DLMF 19.8.1). */
+function agm(x, y) {
+  let [a, b] = [pair(x), pair(y)];
+  while (Math.abs(a.minus(b)) > CLOSE * a) {
+    [a, b] = [a.plus(b).over(2), a.times(b).sqrt()];
+  }
+  return a.plus(b).over(2);
+}
+
+/** The quarter period K = F(pi/2, k), from the complement k' of the modulus (DLMF 19.8.5). */
+export function completeK(kPrime) {
+  return PI.over(agm(1, kPrime).times(2));
+}
+
+/** The mean over a period of (a cn^2 + b sn^2)/(cn^2 + p sn^2), Bulirsch's cel over K. */
+export function periodMean(kPrime, p, a, b) {
+  let [mean, geometric, root] = [pair(1), kPrime, p.sqrt()];
+  let [first, second] = [a, b.over(root)];
+  for (let close = false; !close;) {
+    const product = mean.times(geometric);
+    const quotient = product.over(root);
+    [first, second] = [
+      first.plus(second.over(root)).over(2),
+      second.plus(first.times(quotient)).over(2),
+    ];
+    root = root.plus(quotient).over(2);
+    close = !(Math.abs(mean.minus(geometric)) > CLOSE * mean);
+    [mean, geometric] = [mean.plus(geometric).over(2), product.sqrt()];
+  }
+  return first.times(mean).plus(second).over(mean.plus(root));
+}
+
+/**
+ * The integral of the first kind whose sn^2 : cn^2 is s2 : c2, where the complement of the modulus
+ * has the square mc: Carlson's R_F by duplication (DLMF 19.36.1), until its series will do.
+ */
+export function firstKind(s2, c2, mc) {
+  const [sn2, cn2] = [s2 / (+s2 + +c2), c2 / (+s2 + +c2)];
+  let all = [cn2, cn2 + mc * sn2, 1];
+  for (let turn = 0; turn < 100; turn += 1) {
+    const mean = (all[0] + all[1] + all[2]) / 3;
+    const [x, y, z] = all.map((number) => 1 - number / mean);
+    if (Math.max(Math.abs(x), Math.abs(y), Math.abs(z)) < 1e-4) {
+      return Math.sqrt(sn2 / mean) * (1 - (x * y - z * z) / 10 + x * y * z / 14);
+    }
+    const [r, s, t] = all.map(Math.sqrt);
+    all = all.map((number) => (number + r * s + s * t + t * r) / 4);
+  }
+  throw new RangeError("an integral does not converge: ask lagtop solve");
 }

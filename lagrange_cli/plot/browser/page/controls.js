@@ -1,8 +1,107 @@
-// The inputs: a slider and a number field for each; and all of them, with the time, in the address
-// of the page after the #: m=1587&A=39032 ... &t=0.5.
+// The controls.  Time: play, pause, speed, step, and any time at once, as no time is farther than
+// another in closed form.  Inputs: a slider and a number field for each; and all of them, with the
+// time, in the address of the page after the #: m=1587&A=39032 ... &t=0.5.
 
 import { INPUTS } from "../data.js";
+import { textOf } from "../drawing/canvas.js";
 import { unitText } from "./record.js";
+
+const FARTHEST = 1e15;
+
+export class Clock {
+  /** `changed()` is called when the time is set by hand. */
+  constructor(page, changed) {
+    this.page = page;
+    this.changed = changed;
+    this.t = 0;
+    this.playing = false;
+    this.period = 1;
+    this.usual = 1;
+    page.play.addEventListener("click", () => this.play(!this.playing));
+    page.restart.addEventListener("click", () => this.set(0));
+    page.back.addEventListener("click", (event) => this.step(-1, event.shiftKey));
+    page.forward.addEventListener("click", (event) => this.step(1, event.shiftKey));
+    page.scrub.addEventListener("input", () => this.set(Number(page.scrub.value)));
+    page.time.addEventListener("change", () => this.setText(page.time.value));
+    page.speed.addEventListener("input", () => this.showSpeed());
+  }
+
+  /** Scene time per second of the clock on the wall. */
+  get speed() {
+    return this.usual * 10 ** Number(this.page.speed.value);
+  }
+
+  /** Adapt to the period of a scene; `anew` also sets the usual speed. */
+  adapt(period, anew) {
+    this.period = period;
+    if (!this.reaches(this.t)) this.t = 0;
+    if (anew) this.usual = nice(period / 2.5);
+    this.page.scrub.max = String(100 * period);
+    this.page.scrub.step = String(period / 1000);
+    this.showSpeed();
+    this.show();
+  }
+
+  play(on) {
+    this.playing = on;
+    this.page.play.textContent = on ? "❚❚ Pause" : "▶ Play";
+    this.page.play.setAttribute("aria-pressed", String(on));
+    this.changed();
+  }
+
+  /** Go by a fiftieth of a period, or by a whole one. */
+  step(direction, whole) {
+    this.play(false);
+    this.set(this.t + direction * this.period / (whole ? 1 : 50));
+  }
+
+  /** Whether a time is near enough for the angles to mean anything. */
+  reaches(t) {
+    return Math.abs(t) <= FARTHEST * this.period;
+  }
+
+  setText(text) {
+    const t = numberOf(text);
+    const fine = this.reaches(t);
+    this.page.time.setAttribute("aria-invalid", String(!fine));
+    if (fine) this.set(t);
+  }
+
+  set(t) {
+    this.t = t;
+    this.show();
+    this.changed();
+  }
+
+  /** Let a part of a second pass. */
+  pass(seconds) {
+    if (!this.playing) return false;
+    this.t += this.speed * seconds;
+    this.show();
+    return true;
+  }
+
+  show() {
+    const { time, scrub } = this.page;
+    const shown = this.t === 0 ? "0" : textOf(this.t, 7);
+    if (document.activeElement !== time) time.value = shown;
+    scrub.value = String(this.t);
+    scrub.setAttribute("aria-valuetext", `t = ${shown}`);
+  }
+
+  showSpeed() {
+    const text = `${textOf(this.speed, 2)} t/s`;
+    this.page.speedShown.textContent = text;
+    this.page.speed.setAttribute("aria-valuetext", text);
+  }
+}
+
+/** The nearest of 1, 2, 5, 10, 20 ... */
+function nice(x) {
+  const power = 10 ** Math.floor(Math.log10(x));
+  const lead = x / power;
+  return (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10) * power;
+}
 
 /** The range of a slider about a value. */
 function rangeOf(name, scene) {
@@ -33,24 +132,17 @@ export class Inputs {
   constructor(list, changed) {
     this.fields = {};
     for (const [name, input] of Object.entries(INPUTS)) {
-      const row = document.createElement("div");
-      row.className = "input";
-      const label = document.createElement("label");
-      label.htmlFor = `field-${name}`;
-      label.innerHTML = `<b>${input.symbol}</b> <span></span>`;
-      const field = document.createElement("input");
-      Object.assign(field, { id: `field-${name}`, type: "text", inputMode: "decimal" });
-      field.setAttribute("aria-describedby", "error");
-      const slider = document.createElement("input");
-      Object.assign(slider, { id: `slider-${name}`, type: "range", step: "any" });
-      slider.setAttribute("aria-label", `${name}: ${input.name}`);
-      row.append(label, field, slider);
-      list.append(row);
+      list.insertAdjacentHTML("beforeend", `<div class="input">
+        <label for="field-${name}"><b>${input.symbol}</b> <span></span></label>
+        <input id="field-${name}" type="text" inputmode="decimal" aria-describedby="error">
+        <input id="slider-${name}" type="range" step="any" aria-label="${name}: ${input.name}">
+      </div>`);
+      const [label, field, slider] = list.lastElementChild.children;
       const take = () => changed(name, valueOf(name, field.value), field.value);
       field.addEventListener("change", take);
       slider.addEventListener("input", () => changed(name, rounded(slider), slider.value));
       slider.addEventListener("change", () => this.rescale(this.scene));
-      this.fields[name] = { field, slider, name: label.lastChild };
+      this.fields[name] = { field, slider, name: label.lastElementChild };
     }
   }
 
