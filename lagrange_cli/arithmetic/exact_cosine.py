@@ -13,7 +13,7 @@ only the zero polynomial vanishes.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from fractions import Fraction
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
@@ -125,8 +125,12 @@ class Cosine(Values):
         if self.rational is not None:
             return Fraction(P(self.rational))
         n = self._order(len(coefficients) - 1)
-        mean = None if n is None else _mean_at_roots_of_unity(coefficients, n)
-        return mean if mean is not None and self.vanishes(P - mean) else None
+        if n is None:
+            return None
+        from .roots_of_unity import mean_at_roots_of_unity  # start-up: for few tops
+
+        mean = mean_at_roots_of_unity(coefficients, n)
+        return mean if self.vanishes(P - mean) else None
 
     def sign(self, P: Polynomial) -> int:
         """Return the sign of a polynomial, -1, 0 or 1."""
@@ -157,7 +161,11 @@ class Cosine(Values):
         if self.rational is not None:
             return not P(self.rational)
         n = self._order(len(coefficients) - 1)
-        return n is not None and _vanishes_at_root_of_unity(coefficients, n)
+        if n is None:
+            return False
+        from .roots_of_unity import vanishes_at_root_of_unity  # start-up: for few tops
+
+        return vanishes_at_root_of_unity(coefficients, n)
 
     def _order(self, degree: int) -> int | None:
         """Return n for k/n turns, or None if no polynomial of a degree has a rational value."""
@@ -221,38 +229,3 @@ def _trimmed(P: Polynomial) -> list[Fraction]:
     while coefficients and not coefficients[-1]:
         coefficients.pop()
     return coefficients
-
-
-def _powers(coefficients: Sequence[Fraction], n: int) -> list[Fraction]:
-    """Return the coefficients of P((z + 1/z)/2) modulo z^n - 1."""
-    cyclic = [Fraction(0)] * n
-    for degree, coefficient in enumerate(coefficients):
-        for i in range(degree + 1):
-            cyclic[(degree - 2 * i) % n] += coefficient * Fraction(math.comb(degree, i), 2**degree)
-    return cyclic
-
-
-def _mean_at_roots_of_unity(coefficients: Sequence[Fraction], n: int) -> Fraction:
-    """Return the mean of P((z + 1/z)/2) over the primitive n-th roots of unity z.
-
-    The sum of a power of these roots is an integer (Ramanujan's sum).
-    """
-    primitive = [j for j in range(n) if math.gcd(j, n) == 1]
-    total = Fraction(0)
-    for i, coefficient in enumerate(_powers(coefficients, n)):
-        if coefficient:
-            total += coefficient * round(sum(math.cos(math.tau * i * j / n) for j in primitive))
-    return total / len(primitive)
-
-
-def _vanishes_at_root_of_unity(coefficients: Sequence[Fraction], n: int) -> bool:
-    """Return whether P((z + 1/z)/2) is 0 for a primitive n-th root of unity z.
-
-    For the primes p that divide n, the factors z^(n/p) - 1 vanish at all n-th roots of unity except
-    the primitive ones.
-    """
-    cyclic = _powers(coefficients, n)
-    for p in range(2, n + 1):
-        if n % p == 0 and all(p % q for q in range(2, p)):
-            cyclic = [cyclic[i - n // p] - x for i, x in enumerate(cyclic)]
-    return not any(cyclic)

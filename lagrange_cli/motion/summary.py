@@ -10,7 +10,7 @@ from typing import Any
 
 from .regime import Facts, Regime
 
-Real = float | Decimal
+_Known = float | Decimal
 
 _ENDS = "between {least} and {most} {angle}"
 
@@ -105,7 +105,7 @@ def vertical_remark(regime: Regime, stable: bool) -> str:
 
 
 def fast_remark(
-    nodding: Real, period: Real, elementary: Real, excess: Real, *, radians: bool
+    nodding: _Known, period: _Known, elementary: _Known, excess: _Known, *, radians: bool
 ) -> str:
     """Return the remark on a pseudo-regular precession.
 
