@@ -180,7 +180,8 @@ def jacobi_command(
     elif arguments is not None:
         from ..elliptic.request import FunctionRequest
 
-        request = FunctionRequest(given, asked, parameter, imaginary, rad, in_quarters)
+        v = parameter.nearest() if digits is None else parameter
+        request = FunctionRequest(given, asked, v, imaginary, rad, in_quarters)
         write_functions(_table(arguments, request, real=real), digits, out)
     elif families is not None:
         raise LagtopError("--functions needs --u")

@@ -44,17 +44,6 @@ class AnyModulus(NamedTuple):
     """Factor of the argument."""
 
 
-class AnyConstants(NamedTuple):
-    """K, K', E, E' and the nome q of any modulus; None for infinite values."""
-
-    k_prime: Numeric
-    K: Numeric
-    K_prime: Numeric
-    E: Numeric
-    E_prime: Numeric
-    q: Numeric
-
-
 def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
     """Reduce a modulus k >= 0, or i kbar with kbar > 0, to a modulus in [0, 1].
 
@@ -78,23 +67,23 @@ def check_any_modulus(k: ExactComplex | complex) -> None:
         raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {k}", "k")
 
 
-def any_constants(ar: ManyDigits, given: AnyModulus) -> AnyConstants:
-    """Return the constants of a modulus in an mpmath context.
+def any_constants(ar: ManyDigits, modulus: ExactComplex | complex) -> dict[str, Numeric]:
+    """Return the record of a modulus that is imaginary or above 1, in an mpmath context.
 
     For imaginary k, q is negative and K' = k'(K' - iK), with the constants of the modulus in [0, 1]
     on the right.  For k > 1, k' = i sqrt(k^2 - 1), and K, E and q are complex.
     """
-    (k, k_prime, _), s = given.modulus, given.stretch
+    kind, (k, k_prime, _), s = given = any_modulus(ar, modulus)
     K, K_prime, E, E_prime, q = constants(ar, given.modulus)
-    if given.kind is ModulusKind.IMAGINARY:
-        both = ar.mpc(K_prime, -K) / s
-        return AnyConstants(s, K / s, both, s * E, _e_beyond(ar, k_prime, k), -q)
-    if given.kind is ModulusKind.LARGE:
-        K_here, K_prime_here = ar.mpc(K, -K_prime) / s, K_prime / s
-        q = ar.exp(-ar.pi * K_prime_here / K_here)
-        E_here = _e_beyond(ar, k, k_prime)
-        return AnyConstants(ar.mpc(0, s * k_prime), K_here, K_prime_here, E_here, s * E_prime, q)
-    return AnyConstants(k_prime, K, K_prime, E, E_prime, q)
+    if kind is ModulusKind.IMAGINARY:
+        found = s, -q, K / s, ar.mpc(K_prime, -K) / s, s * E, _e_beyond(ar, k_prime, k)
+    else:
+        K, K_prime, complement = ar.mpc(K, -K_prime) / s, K_prime / s, ar.mpc(0, s * k_prime)
+        q = ar.exp(-ar.pi * K_prime / K)
+        found = complement, q, K, K_prime, _e_beyond(ar, k, k_prime), s * E_prime
+    k = ar.mpc(ar.convert(modulus.real), ar.convert(modulus.imag))
+    names = ("k", "k_prime", "nome", "K", "K_prime", "E", "E_prime")
+    return dict(zip(names, (k, *found), strict=True))
 
 
 def _e_beyond(ar: ManyDigits, k: Numeric, k_prime: Numeric) -> Numeric:

@@ -29,27 +29,20 @@ def blockwise(function: F) -> F:
     @in_arithmetic
     @wraps(function)
     def evaluate(ar: Any, *arguments: Any) -> Any:
-        if not ar.is_array:
+        if not ar.is_array or any(hasattr(x, "high") for x in arguments):  # numbers or pairs
             return function(ar, *arguments)
-        return _in_blocks(function, ar, arguments)
+        import numpy as np
+
+        from ..arithmetic.arrays import BLOCK, blocks
+
+        arrays = np.broadcast_arrays(*arguments)
+        if arrays[0].size <= BLOCK:
+            return function(ar, *arrays)
+        flat = [array.ravel() for array in arrays]
+        parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
+        return np.concatenate(parts).reshape(arrays[0].shape)
 
     return cast(F, evaluate)
-
-
-def _in_blocks(function: Callable[..., Any], ar: Any, arguments: tuple[Any, ...]) -> Any:
-    import numpy as np
-
-    from ..arithmetic.arrays import BLOCK, blocks
-    from ..arithmetic.double_double import DoubleDouble
-
-    if any(isinstance(x, DoubleDouble) for x in arguments):
-        return function(ar, *arguments)
-    arrays = np.broadcast_arrays(*arguments)
-    if arrays[0].size <= BLOCK:
-        return function(ar, *arrays)
-    flat = [array.ravel() for array in arrays]
-    parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
-    return np.concatenate(parts).reshape(arrays[0].shape)
 
 
 def in_pairs(function: F) -> F:

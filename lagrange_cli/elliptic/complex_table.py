@@ -82,11 +82,10 @@ class ComplexTable(TableOfFunctions):
 
     def array_columns(self) -> ArrayColumns:
         """Return the columns of a block of arguments in doubles, and the blocks."""
-        table = ComplexTable(self.arguments, self.request.in_doubles())
-        exact = table._constants(ManyDigits())
-        table._check_doubles(exact)
+        exact = self._constants(ManyDigits())
+        self._check_doubles(exact)
         ready = exact.rounded()
-        return lambda u: table._parts(ARRAYS, u, ready), self.arguments.blocks()
+        return lambda u: self._parts(ARRAYS, u, ready), self.arguments.blocks()
 
     def _constants(self, ar: ManyDigits) -> _ComplexConstants:
         """Return the constants in an mpmath context."""
@@ -168,11 +167,7 @@ def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str,
     """Return constants of a modulus that is imaginary or above 1, in real and imaginary parts."""
 
     def compute(ar: ManyDigits) -> dict[str, Numeric]:
-        given = any_modulus(ar, modulus)
-        k_prime, K, K_prime, E, E_prime, q = any_constants(ar, given)
-        k = ar.mpc(ar.convert(modulus.real), ar.convert(modulus.imag))
-        columns = {"k": k, "k_prime": k_prime, "nome": q, "K": K, "K_prime": K_prime}
-        return _both(ar, columns | {"E": E, "E_prime": E_prime})
+        return _both(ar, any_constants(ar, modulus))
 
     if digits is None:
         return {name: float(x) for name, x in compute(ManyDigits()).items()}

@@ -17,16 +17,15 @@ from typing import NamedTuple
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, Numeric
-from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind
 from .many_digits import ManyDigits
 from .modulus import Modulus, in_many_digits
 from .periods import (
-    INDICES,
     Complex,
     Fine,
     Lattice,
     Place,
+    check_index,
     coarse,
     coordinate_of,
     fine_whole,
@@ -48,8 +47,7 @@ def inner_name(ij: str, kind: ModulusKind) -> str:
 
     Raises LagtopError for indices other than 01, 00, 11 and 10.
     """
-    if ij not in INDICES:
-        raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
+    check_index(ij)
     return _OTHER_NAMES[kind].get(ij, ij)
 
 

@@ -47,8 +47,11 @@ class Quadrature(NamedTuple):
     height: Fraction = Fraction(0)
     """Absolute value of the imaginary parts of a complex pair."""
 
-    def check(self) -> None:
-        """Raise LagtopError unless lower <= upper, g > 0 and the band has no real outer root."""
+    def check(self, *, doubles: bool) -> None:
+        """Raise LagtopError unless lower <= upper, g > 0 and the band has no real outer root.
+
+        In doubles, sizes outside 1e-100 to 1e100 raise it, too.
+        """
         if self.upper < self.lower:
             raise LagtopError(
                 f"delta must be >= delta_star = {float(self.lower)}, got {float(self.upper)}",
@@ -68,9 +71,11 @@ class Quadrature(NamedTuple):
                     f"[{float(self.lower)}, {float(self.upper)}], got {float(root)}"
                 )
 
-    def check_doubles(self) -> None:
-        """Raise LagtopError as `check` does, and for sizes outside 1e-100 to 1e100."""
-        self.check()
+        if doubles:
+            self._check_sizes()
+
+    def _check_sizes(self) -> None:
+        """Raise LagtopError for sizes outside 1e-100 to 1e100."""
         gaps = [abs(end - root) for root in self.outer for end in (self.lower, self.upper)]
         sizes = {
             "delta": [self.upper],

@@ -40,8 +40,7 @@ class EtaMotion(NamedTuple):
 class EtaTable(RealTable):
     """Tables of eta, its rate, h1, theta and xi' over tau, with eta = delta* at tau = 0.
 
-    Raises LagtopError as `Quadrature.check` does.  In doubles it also raises LagtopError as
-    `Quadrature.check_doubles` does, and for times beyond 2^50 periods.
+    Raises LagtopError as `Quadrature.check` does and, in doubles, for times beyond 2^50 periods.
     """
 
     def __init__(
@@ -56,14 +55,9 @@ class EtaTable(RealTable):
         super().__init__(points)
         self.quadrature, self.names, self.angle = quadrature, names, angle
 
-    def in_doubles(self) -> EtaTable:
-        """Return the table itself."""
-        self.quadrature.check_doubles()
-        return self
-
-    def check(self) -> None:
-        """Raise LagtopError unless the motion is periodic."""
-        self.quadrature.check()
+    def check(self, *, doubles: bool) -> None:
+        """Raise LagtopError unless the motion is periodic; see the class for doubles."""
+        self.quadrature.check(doubles=doubles)
 
     def constants(self, ar: Balls) -> EtaMotion:
         """Return the motion in balls."""
@@ -190,13 +184,9 @@ def place_in_band(
 def record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
     """Return the roots and constants, correctly rounded to doubles or to `digits` digits.
 
-    Raises LagtopError as `Quadrature.check` does and, for doubles, as `Quadrature.check_doubles`
-    does.
+    Raises LagtopError as `Quadrature.check` does.
     """
-    if digits is not None:
-        quadrature.check()
-    else:
-        quadrature.check_doubles()
+    quadrature.check(doubles=digits is None)
     zeros = dict.fromkeys(_zeros_of_record(quadrature), 0)
     return ProvedNumbers(digits).of(lambda ar: _record_in(ar, quadrature), zeros)
 

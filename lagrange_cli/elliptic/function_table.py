@@ -60,27 +60,24 @@ class FunctionTable(RealTable):
         self.request, self.modulus = request, request.real_modulus
         self.functions, self.rounds = 4 * len(request.families), not request.in_quarters
 
-    def in_doubles(self) -> FunctionTable:
-        """Return the table with its parameter rounded to doubles."""
-        request, modulus = self.request.in_doubles(), self.modulus.in_doubles()
-        has_periods = modulus.k_prime > 0
-        K = complete_k(DOUBLES, modulus.k_prime) if has_periods else MAX_TIME
-        self.check()
+    def check(self, *, doubles: bool) -> None:
+        """Raise LagtopError if arguments are multiples of an infinite K; see the class."""
+        request, endless = self.request, "k_prime" in self.modulus.zeros()
+        if doubles or request.in_quarters:
+            self.modulus.check()
+        if request.in_quarters and endless:
+            message = "u must be a number, without K, for k = 1, where K is infinite"
+            raise LagtopError(message, "u")
+        if not doubles:
+            return
+        k_prime = self.modulus.in_doubles().k_prime
+        reach = MAX_TIME if endless else MAX_PERIODS * 2 * complete_k(DOUBLES, k_prime)
         if request.in_quarters:
             check_reach("u in units of K", self.points, 2 * MAX_PERIODS)
         else:
-            check_reach("u", self.points, min(MAX_PERIODS * 2 * K, MAX_TIME))
-        if request.has_parameter and has_periods and not request.imaginary:
-            check_reach("param", ListedPoints([request.size]), MAX_PERIODS * 2 * K)
-        return FunctionTable(self.points, request)
-
-    def check(self) -> None:
-        """Raise LagtopError if arguments are multiples of K and K is infinite."""
-        if not self.request.in_quarters:
-            return
-        self.modulus.check()
-        if "k_prime" in self.modulus.zeros():
-            raise LagtopError("u must be a number, without K, for k = 1, where K is infinite", "u")
+            check_reach("u", self.points, min(reach, MAX_TIME))
+        if request.has_parameter and not (endless or request.imaginary):
+            check_reach("param", ListedPoints([request.size]), reach)
 
     def constants(self, ar: Balls) -> FunctionConstants:
         """Return the constants of the modulus and the parameter."""

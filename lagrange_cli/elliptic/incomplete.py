@@ -157,16 +157,12 @@ class AmplitudeTable(RealTable):
         super().__init__(points)
         self.modulus, self.radians = modulus_input, modulus_input.radians
 
-    def in_doubles(self) -> AmplitudeTable:
-        """Return the table itself."""
-        self.check()
-        check_reach("phi", self.points, MAX_PERIODS * (math.pi if self.radians else 180.0))
-        self.modulus.in_doubles()
-        return self
-
-    def check(self) -> None:
-        """Raise LagtopError for a modulus out of range."""
+    def check(self, *, doubles: bool) -> None:
+        """Raise LagtopError for a modulus out of range; see the class for doubles."""
         self.modulus.check()
+        if doubles:
+            check_reach("phi", self.points, MAX_PERIODS * (math.pi if self.radians else 180.0))
+            self.modulus.in_doubles()
 
     def constants(self, ar: Balls) -> Modulus:
         """Return the modulus in balls."""

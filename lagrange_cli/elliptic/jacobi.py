@@ -95,11 +95,30 @@ def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jaco
     stays within a quarter of a turn.
     """
     k, k_prime, _ = given.modulus
-    inner = (k, k_prime) if not ar.is_array else (float(k), float(k_prime))
-    real, _ = _real(ar, ar.re(u), given.modulus, given.stretch)
-    other, turns = _real(ar, ar.im(u), Modulus(k_prime, k), given.stretch)
-    result = _combined(ar, real, other, given.kind, inner)
-    return result._replace(am=ar.where(turns == 0, result.am, ar.mpc(ar.nan, ar.nan)))
+    am, s, c, d = _real(ar, ar.re(u), given.modulus, given.stretch)[0]
+    (_, s1, c1, d1), turns = _real(ar, ar.im(u), Modulus(k_prime, k), given.stretch)
+    if ar.is_array:
+        k, k_prime = float(k), float(k_prime)
+    if given.kind is ModulusKind.IMAGINARY:
+        s, c, d = c / d, -k_prime * s / d, k_prime / d
+    slant, ratio = k * s * s1, d1 / c1
+    lift = slant / c1
+    below = c1 + lift * slant  # all divided by cn of the imaginary part
+    sn = ar.mpc(s * ratio, c * d * s1) / below
+    cn = ar.mpc(c, -s * d * s1 * ratio) / below
+    dn = ar.mpc(d * d1, -k * c * lift) / below
+    size = ar.sqrt(c1 * c1 + slant * slant)
+    rise = d * s1 / size
+    if given.kind is ModulusKind.LARGE:
+        angle, rise = ar.atan2(k * s, d * c1), k * c * s1 / size
+        sn, cn, dn = k * sn, dn, cn
+    elif given.kind is ModulusKind.IMAGINARY:
+        angle = _near(ar, ar.atan2(-c * c1, s * d1), am)
+        sn, cn, dn = -cn, sn, dn / k_prime
+    else:
+        angle = _near(ar, ar.atan2(s * d1, c * c1), am)
+    am = ar.where(turns == 0, ar.mpc(angle, ar.asinh(rise)), ar.mpc(ar.nan, ar.nan))
+    return Jacobi(am, sn, cn, dn)
 
 
 def _real(
@@ -114,36 +133,6 @@ def _real(
         return jacobi(ar, u, Modulus(float(k), float(k_prime))), 0 * u
     x = reduced(u, triple(rate))
     return jacobi_at(ar, x, Modulus(float(k), float(k_prime))), x.turns
-
-
-def _combined(
-    ar: ComplexArithmetic,
-    real: Jacobi,
-    other: Jacobi,
-    kind: ModulusKind,
-    inner: tuple[Numeric, Numeric],
-) -> Jacobi:
-    """Return the functions from their values at the real part and at the imaginary part."""
-    k, k_prime = inner
-    am, s, c, d = real
-    _, s1, c1, d1 = other
-    if kind is ModulusKind.IMAGINARY:
-        s, c, d = c / d, -k_prime * s / d, k_prime / d
-    slant, ratio = k * s * s1, d1 / c1
-    lift = slant / c1
-    below = c1 + lift * slant  # all divided by cn of the imaginary part
-    sn = ar.mpc(s * ratio, c * d * s1) / below
-    cn = ar.mpc(c, -s * d * s1 * ratio) / below
-    dn = ar.mpc(d * d1, -k * c * lift) / below
-    size = ar.sqrt(c1 * c1 + slant * slant)
-    if kind is ModulusKind.IMAGINARY:
-        angle = _near(ar, ar.atan2(-c * c1, s * d1), am)
-        return Jacobi(ar.mpc(angle, ar.asinh(d * s1 / size)), -cn, sn, dn / k_prime)
-    if kind is ModulusKind.LARGE:
-        angle, rise = ar.atan2(k * s, d * c1), k * c * s1 / size
-        return Jacobi(ar.mpc(angle, ar.asinh(rise)), k * sn, dn, cn)
-    angle = _near(ar, ar.atan2(s * d1, c * c1), am)
-    return Jacobi(ar.mpc(angle, ar.asinh(d * s1 / size)), sn, cn, dn)
 
 
 def _near(ar: ComplexArithmetic, angle: Numeric, am: Numeric) -> Numeric:

@@ -12,17 +12,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.arrays import ARRAYS, blocks
-from ..arithmetic.double_double import reduce_phase, sqrt_pair, two_product, two_sum
+from ..arithmetic.arrays import ARRAYS, PAIRS, blocks
+from ..arithmetic.double_double import DoubleDouble, reduce_phase
 from ..arithmetic.numbers import polynomial
 from ..arithmetic.protocol import Numeric
 from ..arithmetic.rounding import Pair
 from ..arithmetic.types import Array
-from .complete import nome
+from .complete import agm, nome
 from .modulus import Modulus
 from .periods import Periods
 
-_INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 _LARGEST_ARGUMENT = 350.0
 """Greatest argument of sinh; beyond it, for k' = 0 only, cn and dn are exponentials."""
 _SMALL = 1e-290
@@ -96,21 +95,9 @@ def _series(modulus: Modulus) -> _Series:
 
 def rate_of_half_periods(k_prime: Numeric, rest: Numeric) -> Pair:
     """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
-    a, a_low = two_sum(np.asarray(k_prime) / 2, 0.5)
-    a_low += rest / 2
-    b, b_low = sqrt_pair(np.asarray(k_prime), np.asarray(rest))
-    while (abs(a - b) > 2.0**-26 * a).any():
-        total, total_error = two_sum(a, b)
-        product, product_error = two_product(a, b)
-        product_error += a * b_low + b * a_low
-        a, a_low = total / 2, (total_error + a_low + b_low) / 2
-        b, b_low = sqrt_pair(product, product_error)
-    mean, mean_low = two_sum(a / 2, b / 2)
-    apart = (a - b) + (a_low - b_low)
-    mean_low += (a_low + b_low) / 2 - apart * apart / (16 * mean)  # agm(1 + x, 1 - x) = 1 - x^2/4
-    high, low = two_product(mean, _INVERSE_PI[0])
-    low += mean_low * _INVERSE_PI[0] + mean * _INVERSE_PI[1]
-    return Pair(*two_sum(high, low))
+    parts = np.broadcast_arrays(np.asarray(k_prime, dtype=float), rest)
+    rate = agm(PAIRS, 1, DoubleDouble(*parts)) / PAIRS.pi
+    return Pair(*(part.reshape(np.shape(k_prime)) for part in (rate.high, rate.low)))
 
 
 def _circular(q: Numeric, root: Numeric) -> tuple[Powers, Powers]:

@@ -27,6 +27,13 @@ if TYPE_CHECKING:  # NumPy is loaded for arrays only
 INDICES = ("01", "00", "11", "10")
 """The indices of the four theta functions, in the order of the sources."""
 
+
+def check_index(ij: str) -> None:
+    """Raise LagtopError unless ij is the index of a theta function."""
+    if ij not in INDICES:
+        raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
+
+
 Complex = Numeric
 """A real or complex number, or array, of the arithmetic in use."""
 

@@ -30,6 +30,7 @@ class FunctionRequest(NamedTuple):
     families: tuple[str, ...] = ("am",)
     """Some of am (with sn, cn and dn), theta, zeta, omega and pi."""
     parameter: ExactComplex = ExactComplex(Fraction(0))
+    """The parameter of omega and pi; a number in doubles if the table is."""
     imaginary: bool = False
     """Whether the parameter of a table of real functions is imaginary (0i counts as imaginary)."""
     radians: bool = False
@@ -56,10 +57,6 @@ class FunctionRequest(NamedTuple):
     def has_parameter(self) -> bool:
         """Whether Omega or Pi is among the families."""
         return bool({"omega", "pi"} & set(self.families))
-
-    def in_doubles(self) -> FunctionRequest:
-        """Return the request with its parameter rounded to doubles."""
-        return self._replace(parameter=self.parameter.nearest())
 
 
 class ComplexPoints(NamedTuple):

@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import chain
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.ball import Ball, TooFewDigitsError, TooSmallError
 from ..arithmetic.balls import Balls, balls
@@ -148,12 +148,9 @@ class RealTable(TableOfFunctions):
     def __init__(self, points: Points) -> None:
         self.points, self.count = points, points.count
 
-    def in_doubles(self) -> Self:
-        """Return the table rounded to doubles; raise LagtopError if doubles cannot hold it."""
+    def check(self, *, doubles: bool) -> None:
+        """Raise LagtopError for inputs that are invalid, or that doubles cannot hold."""
         raise NotImplementedError
-
-    def check(self) -> None:
-        """Raise LagtopError for inputs that are invalid at any number of digits."""
 
     def constants(self, ar: Balls) -> Any:
         """Return the constants that do not depend on the point, in balls."""
@@ -182,21 +179,17 @@ class RealTable(TableOfFunctions):
 
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
         """Yield rows of proved numbers; see `TableOfFunctions`."""
-        if digits is None:
-            table = self.in_doubles()
-        else:
-            self.check()
-            table = self
-        numbers, constants = ProvedNumbers(digits, short=short), cache(table.constants)
+        self.check(doubles=digits is None)
+        numbers, constants = ProvedNumbers(digits, short=short), cache(self.constants)
 
         def row(point: Fraction) -> dict[str, NumberText]:
             x = Fraction(float(point)) if digits is None and self.rounds else point
-            known = table.known(x)
+            known = self.known(x)
 
             def compute(ar: Balls) -> dict[str, Numeric]:
-                return table.columns(ar, ar.convert(x), constants(ar), known)
+                return self.columns(ar, ar.convert(x), constants(ar), known)
 
-            return numbers.texts(compute, known, table.digits_lost(x))
+            return numbers.texts(compute, known, self.digits_lost(x))
 
         return map(row, self.points.decimals())
 
@@ -204,12 +197,12 @@ class RealTable(TableOfFunctions):
         """Return the columns of a block of points in doubles, and the blocks."""
         from ..arithmetic.arrays import ARRAYS
 
-        table = self.in_doubles()
-        constants = table.rounded_constants()
+        self.check(doubles=True)
+        constants = self.rounded_constants()
 
         def columns(x: Array) -> dict[str, Array]:
-            found = table.columns(ARRAYS, x, constants, {})
-            table.put_known(found, x)
+            found = self.columns(ARRAYS, x, constants, {})
+            self.put_known(found, x)
             return found
 
         return columns, self.points.blocks()

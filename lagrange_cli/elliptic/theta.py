@@ -25,9 +25,9 @@ from ..errors import LagtopError
 from .complete import complete_k, nome
 from .modulus import Modulus, in_many_digits
 from .periods import (
-    INDICES,
     Complex,
     Periods,
+    check_index,
     each_alone,
     is_complex,
     negligible,
@@ -61,7 +61,14 @@ def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     """
     if not modulus.k_prime > 0:
         raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
-    return rounded_series(modulus) if ar.is_array else series_constants(ar, modulus)
+    if not ar.is_array:
+        return series_constants(ar, modulus)
+
+    def rounded(digits: int) -> ThetaSeries:
+        exact = balls(digits)
+        return series_in_doubles(series_constants(exact, in_many_digits(exact, modulus)))
+
+    return decided("the constants of the modulus", rounded)
 
 
 def series_constants(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
@@ -89,20 +96,10 @@ def series_in_doubles(series: ThetaSeries) -> ThetaSeries:
     return ThetaSeries(series.circular, q, steepness, even_size, odd_size, rate, exact)
 
 
-def rounded_series(modulus: Modulus) -> ThetaSeries:
-    """Return the constants for a modulus in doubles, rounded from balls."""
-
-    def series(digits: int) -> ThetaSeries:
-        ar = balls(digits)
-        return series_in_doubles(series_constants(ar, in_many_digits(ar, modulus)))
-
-    return decided("the constants of the modulus", series)
-
-
 @in_arithmetic
 def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
     """Return theta_ij(x, iK'/K) of section 1; `ij` is 01, 00, 11 or 10."""
-    _check(ij)
+    check_index(ij)
 
     def function(x: Complex, *parts: Numeric) -> Complex:
         if is_complex(ar, x):
@@ -120,7 +117,7 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
 
     Poles are infinite in arrays, and at v = 0 also in many digits.
     """
-    _check(ij)
+    check_index(ij)
 
     def function(v: Complex, *parts: Numeric) -> Complex:
         if is_complex(ar, v):
@@ -133,11 +130,6 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
         return zeta_at(ar, ij, in_periods(ar, ar.re(v), series), series)
 
     return each_alone(ar, function, v, *modulus)
-
-
-def _check(ij: str) -> None:
-    if ij not in INDICES:
-        raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
 
 
 def theta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Numeric:

@@ -133,15 +133,16 @@ def test_columns_that_are_hard(case: Case) -> None:
         assert error <= 4, (name, u)
 
 
-@pytest.mark.parametrize("k", [0.3 + 0j, 0.95 + 0j, 0.8j, 3j, 1.5 + 0j, 40 + 0j])
+@pytest.mark.parametrize("k", [0.8j, 3j, 1.5 + 0j, 40 + 0j])
 def test_constants(k: complex) -> None:
     """All of them as mpmath has them, on its side of the cuts."""
-    found = any_constants(AR, any_modulus(AR, k))
+    given, *found = any_constants(AR, k).values()
+    assert given == k
     with mpmath.workdps(50):
         m = (mpmath.mpmathify(k) ** 2).real
         K, K_prime = mpmath.ellipk(m), mpmath.ellipk(1 - m)
         q = mpmath.exp(-mpmath.pi * K_prime / K)
-        exact = mpmath.sqrt(1 - m), K, K_prime, mpmath.ellipe(m), mpmath.ellipe(1 - m), q
+        exact = mpmath.sqrt(1 - m), q, K, K_prime, mpmath.ellipe(m), mpmath.ellipe(1 - m)
         for ours, theirs in zip(found, exact, strict=True):
             assert abs(mpmath.mpmathify(ours) - theirs) < 1e-45 * (1 + abs(theirs))
 
