@@ -153,11 +153,17 @@ def exudyn(body: Body, scheme: str, steps: float) -> Simulate:
     uses the joint.
     """
     import exudyn as engine
+    from exudyn import utilities as add
     from scipy.spatial.transform import Rotation
 
-    implicit = scheme == IMPLICIT
     system = engine.SystemContainer().AddSystem()
-    sensor = _jointed(system, body) if implicit else _under_a_couple(system, body)
+    add_body = _jointed if scheme == IMPLICIT else _under_a_couple
+    matrix = engine.OutputVariableType.RotationMatrix
+    sensor = system.AddSensor(
+        add.SensorBody(
+            bodyNumber=add_body(system, body), storeInternal=True, outputVariableType=matrix
+        )
+    )
     system.Assemble()
     settings = engine.SimulationSettings()
     time = settings.timeIntegration
@@ -188,7 +194,7 @@ def exudyn(body: Body, scheme: str, steps: float) -> Simulate:
 
 
 def _under_a_couple(system: Any, body: Body) -> Any:
-    """Add the body at its pivot, pulled down at the mass centre and up at the pivot.
+    """Add the body at its pivot, pulled down at the mass centre and up at the pivot; return it.
 
     Such a couple keeps the pivot fixed without a joint, which explicit schemes do not support.  The
     moments of this body are about the pivot.
@@ -211,11 +217,11 @@ def _under_a_couple(system: Any, body: Body) -> Any:
         marker = add.MarkerBodyPosition(bodyNumber=number, localPosition=[0, 0, height])
         load = add.Force(markerNumber=system.AddMarker(marker), loadVector=[0, 0, force])
         system.AddLoad(load)
-    return _sensor(system, number)
+    return number
 
 
 def _jointed(system: Any, body: Body) -> Any:
-    """Add the body at its mass centre, with Euler parameters, on a spherical joint."""
+    """Add the body at its mass centre, with Euler parameters, on a spherical joint; return it."""
     from exudyn import utilities as add
     from scipy.spatial.transform import Rotation
 
@@ -234,18 +240,4 @@ def _jointed(system: Any, body: Body) -> Any:
     system.CreateSphericalJoint(
         bodyNumbers=[system.CreateGround(), number], position=[0, 0, 0], show=False
     )
-    return _sensor(system, number)
-
-
-def _sensor(system: Any, number: Any) -> Any:
-    """Add a sensor of the rotation matrix."""
-    import exudyn as engine
-    from exudyn import utilities as add
-
-    return system.AddSensor(
-        add.SensorBody(
-            bodyNumber=number,
-            storeInternal=True,
-            outputVariableType=engine.OutputVariableType.RotationMatrix,
-        )
-    )
+    return number
