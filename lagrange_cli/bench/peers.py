@@ -21,7 +21,7 @@ from .closed_forms import CLOSED_FORMS
 from .compare_methods import LOST, growth_of
 from .integrators import integrators
 from .method import FAILURES, Drift, FailedError, Run, failure_remark, is_out
-from .reference import ExactAngles, Reference
+from .reference import ExactAngles, Reference, quaternion
 
 SPANS, LONG_SPAN = (5.0, 100.0), 1e4
 """Spans in nutation periods for every method; the last one only with `long`."""
@@ -149,12 +149,8 @@ def turn(angles: Sequence[Any], exact: ExactAngles) -> float:
     """Return the angle of the rotation between two attitudes; infinite if one is not finite."""
     with mpmath.workdps(60):
         theta, phi, psi = (mpmath.mpf(x) for x in angles)
-        plus, minus, half = (psi + phi) / 2, (psi - phi) / 2, theta / 2
-        x, y = mpmath.cos(half), mpmath.sin(half)
-        parts = (
-            *(x * mpmath.cos(plus), y * mpmath.cos(minus)),
-            *(y * mpmath.sin(minus), x * mpmath.sin(plus)),
-        )
+        x, y = mpmath.cos(theta / 2), mpmath.sin(theta / 2)
+        parts = quaternion(x, y, (psi + phi) / 2, (psi - phi) / 2)
         pairs = list(zip(parts, exact.quaternion, strict=True))
         away = min(mpmath.sqrt(sum((a - sign * b) ** 2 for a, b in pairs)) for sign in (1, -1))
         return float(4 * mpmath.asin(away / 2)) if mpmath.isfinite(away) else math.inf

@@ -39,7 +39,7 @@ class ExactAngles(NamedTuple):
     psi_rate: Many
     tau: Many
     """Time since the nearest whole nutation period."""
-    quaternion: tuple[Many, Many, Many, Many]
+    quaternion: tuple[Many, ...]
     """Parts w, x, y, z of the rotation from body to space, continuous from t = 0."""
     turning_rate: Many
     """Bound of the rate of each part of the quaternion: half of the angular velocity."""
@@ -92,6 +92,14 @@ def quaternion_units(parts: Sequence[float], exact: ExactAngles) -> float:
     return max(
         error_in_units(part, true, exact.turning_rate, exact.tau)
         for part, true in zip(parts, exact.quaternion, strict=True)
+    )
+
+
+def quaternion(cos_half: Many, sin_half: Many, plus: Many, minus: Many) -> tuple[Many, ...]:
+    """Return the parts w, x, y, z, from theta/2 and plus or minus = (psi +- phi)/2."""
+    return (
+        *(cos_half * mpmath.cos(plus), sin_half * mpmath.cos(minus)),
+        *(sin_half * mpmath.sin(minus), cos_half * mpmath.sin(plus)),
     )
 
 
@@ -223,12 +231,7 @@ class Reference:
                 phi_rate=2 * self.drift + south - north,
                 psi_rate=psi_rate,
                 tau=time - mpmath.nint(time / self.T) * self.T,
-                quaternion=(
-                    x * mpmath.cos(plus),
-                    y * mpmath.cos(minus),
-                    y * mpmath.sin(minus),
-                    x * mpmath.sin(plus),
-                ),
+                quaternion=quaternion(x, y, plus, minus),
                 turning_rate=mpmath.sqrt(theta_rate**2 + psi_rate**2 * sine2 + self.r0**2) / 2,
             )
 

@@ -33,6 +33,7 @@ from lagrange_cli.arithmetic.arrays import ARRAYS, BLOCK
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.integrators import integrators
+from lagrange_cli.bench.measure import common_conditions
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
@@ -79,12 +80,8 @@ def judged(name: str, ratio: float) -> str:
 
 def machine() -> str:
     """Return the processor, and the widest loops that NumPy runs on it."""
-    info = Path("/proc/cpuinfo")
-    lines = info.read_text().splitlines() if info.exists() else []
-    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    found = [name for name, there in FEATURES.items() if there]
-    level = "AVX-512" if AVX512 else "AVX2" if "AVX2" in found else "less than AVX2"
-    return f"{(models or ['unknown processor'])[0]}, {os.cpu_count()} CPUs, NumPy with {level}"
+    level = "AVX-512" if AVX512 else "AVX2" if FEATURES.get("AVX2") else "less than AVX2"
+    return f"{common_conditions(0.0)['machine']}, {os.cpu_count()} CPUs, NumPy with {level}"
 
 
 def nanoseconds(work: Callable[[], object], count: int = COUNT) -> float:

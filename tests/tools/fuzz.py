@@ -44,6 +44,7 @@ from flint import arb
 
 from lagrange_cli import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.arithmetic.points import ListedPoints
+from lagrange_cli.bench.battery import HardScene
 from lagrange_cli.bench.hard_scenes import Scene
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.motion.over_time.table import rows
@@ -100,14 +101,13 @@ class Tally:
 
 def times_of(rng: random.Random, period: Fraction, decades: int = 14) -> list[float]:
     """Return times next to quarters of a period, each with its neighbours, and others."""
-    found = []
-    for _ in range(NEIGHBOURS):
-        quarters = 4 * int(10 ** rng.uniform(0, decades)) + rng.choice([0, 1, 2, 2, 3])
-        t = rng.choice([-1, 1]) * float(period * quarters / 4)
-        found += [t, math.nextafter(t, math.inf), math.nextafter(t, -math.inf)]
-    for power in (rng.uniform(-9, 1), 0, *(rng.uniform(0, decades) for _ in range(ELSEWHERE - 2))):
-        found.append(float(period) * rng.choice([-1, 1]) * rng.random() * 10**power)
-    return found
+    quarters = [
+        (4 * int(10 ** rng.uniform(0, decades)) + rng.choice([0, 1, 2, 2, 3])) * rng.choice([-1, 1])
+        for _ in range(NEIGHBOURS)
+    ]
+    powers = rng.uniform(-9, 1), 0, *(rng.uniform(0, decades) for _ in range(ELSEWHERE - 2))
+    periods = [rng.choice([-1, 1]) * rng.random() * 10**power for power in powers]
+    return HardScene({}, periods, quarters).times(period)
 
 
 def period_of(judge: Judge) -> Fraction:

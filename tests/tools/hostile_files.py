@@ -12,6 +12,7 @@ from __future__ import annotations
 import io
 import os
 import random
+import re
 import resource
 import signal
 import struct
@@ -20,7 +21,7 @@ import tempfile
 import traceback
 import zipfile
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
@@ -85,26 +86,24 @@ def patched(content: bytes, old: bytes, new: bytes) -> bytes:
     return content.replace(old, new)
 
 
+def with_headers(content: bytes, places: Sequence[int], change: Callable[[int], int]) -> bytes:
+    """Return an archive in which a number of the local and the central headers is another."""
+    found = bytearray(content)
+    for mark, place in zip((rb"PK\x03\x04", rb"PK\x01\x02"), places, strict=True):
+        for match in re.finditer(mark, content):
+            at = slice(match.start() + place, match.start() + place + 2)
+            struct.pack_into("<H", found, at.start, change(*struct.unpack("<H", found[at])))
+    return bytes(found)
+
+
 def with_method(number: int) -> bytes:
     """Return an npz file that names another method of compression."""
-    content = bytearray(good_npz(zipfile.ZIP_STORED))
-    for mark, at in ((b"PK\x03\x04", 8), (b"PK\x01\x02", 10)):
-        start = content.find(mark)
-        while start >= 0:
-            content[start + at : start + at + 2] = struct.pack("<H", number)
-            start = content.find(mark, start + 1)
-    return bytes(content)
+    return with_headers(good_npz(zipfile.ZIP_STORED), (8, 10), lambda _: number)
 
 
 def encrypted() -> bytes:
     """Return an npz file whose members are marked as encrypted."""
-    content = bytearray(good_npz())
-    for mark, at in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
-        start = content.find(mark)
-        while start >= 0:
-            content[start + at] |= 1
-            start = content.find(mark, start + 1)
-    return bytes(content)
+    return with_headers(good_npz(), (6, 8), lambda flags: flags | 1)
 
 
 def table(**columns: object) -> bytes:
