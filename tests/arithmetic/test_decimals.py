@@ -12,14 +12,26 @@ import pytest
 
 from lagrange_cli.arithmetic.decimals import decimals, pi_to
 
-FUNCTIONS: dict[str, tuple[float, float]] = {
-    "sin": (0, 6.3),
-    "cos": (0, 1.5),
-    "exp": (-300, 300),
-    "sinh": (-40, 40),
-    "cosh": (-40, 40),
+
+def between(low: float, high: float, *exponents: int) -> Callable[[random.Random], Decimal]:
+    """Return a function that draws numbers, some of them times small or large powers of 10."""
+    return lambda rng: Decimal(rng.uniform(low, high)) * Decimal(10) ** rng.choice(exponents)
+
+
+SMALL, TINY = (0, 0, 0, -3, -30), (-1, -10, -100, -1000)
+ERRORS: dict[tuple[str, Callable[[random.Random], Decimal]], tuple[int, int]] = {
+    ("sin", between(0, 3, *SMALL)): (100, 0),
+    ("sin", between(3, 6.3, 0)): (0, 200),  # the terms of its series reach 86
+    ("sin", between(7, 7, *TINY)): (10, 0),
+    ("cos", between(0, 1.5, *SMALL)): (100, 0),
+    ("exp", between(-300, 300, *SMALL)): (100, 0),
+    ("sinh", between(-40, 40, *SMALL)): (100, 0),
+    ("sinh", between(7, 7, *TINY)): (10, 0),
+    ("cosh", between(-40, 40, *SMALL)): (100, 0),
+    ("asinh", between(-1, 1, 0, 3, 30, -3, -20)): (5, 5),
+    ("asinh", between(0, 0, 0)): (10, 0),
 }
-"""Functions whose relative error is small, and where they are tried."""
+"""Largest errors in the last digit: relative to the value, and absolute."""
 
 
 def exact(value: Decimal) -> Any:
@@ -35,42 +47,19 @@ def test_pi(digits: int) -> None:
 
 
 @pytest.mark.parametrize("digits", [30, 200])
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_relative_errors(name: str, digits: int) -> None:
-    """Within a hundred units of the last digit: relatively, next to the zeros of the sine too."""
-    rng, ar = random.Random(name), decimals(digits)
-    low, high = FUNCTIONS[name]
+@pytest.mark.parametrize(("case", "units"), ERRORS.items(), ids=[name for name, _ in ERRORS])
+def test_errors(
+    case: tuple[str, Callable[[random.Random], Decimal]], units: tuple[int, int], digits: int
+) -> None:
+    (name, draw), (relative, absolute) = case, units
+    rng, ar = random.Random(5), decimals(digits)
     ours: Callable[[Decimal], Decimal] = getattr(ar, name)
     with ar.working(), mpmath.workdps(digits + 20):
         for _ in range(60):
-            x = Decimal(rng.uniform(low, high)) * Decimal(10) ** rng.choice([0, 0, 0, -3, -30])
+            x = draw(rng)
             true = getattr(mpmath, name)(exact(x))
-            assert abs(exact(ours(x)) - true) <= 100 * abs(true) * exact(ar.eps) + (
-                exact(ar.eps) if name == "sin" else 0
-            ), x
-
-
-@pytest.mark.parametrize("digits", [30, 200])
-def test_small_arguments_of_sinh_and_sin_keep_their_digits(digits: int) -> None:
-    ar = decimals(digits)
-    with ar.working(), mpmath.workdps(digits + 20):
-        for exponent in (-1, -10, -100, -1000):
-            x = Decimal(7) * Decimal(10) ** exponent
-            for name in ("sin", "sinh"):
-                true = getattr(mpmath, name)(exact(x))
-                assert abs(exact(getattr(ar, name)(x)) / true - 1) <= 10 * exact(ar.eps)
-
-
-@pytest.mark.parametrize("digits", [30, 200])
-def test_asinh(digits: int) -> None:
-    """The error is absolute: it counts digits behind the point."""
-    rng, ar = random.Random(5), decimals(digits)
-    with ar.working(), mpmath.workdps(digits + 20):
-        for _ in range(60):
-            x = Decimal(rng.uniform(-1, 1)) * Decimal(10) ** rng.choice([0, 3, 30, -3, -20])
-            true = mpmath.asinh(exact(x))
-            assert abs(exact(ar.asinh(x)) - true) <= 10 * exact(ar.eps) * max(1, abs(true))
-        assert ar.asinh(Decimal(0)) == 0
+            most = (relative * abs(true) + absolute) * exact(ar.eps)
+            assert abs(exact(ours(x)) - true) <= most, x
 
 
 @pytest.mark.parametrize("digits", [30, 200])

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from decimal import Decimal
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
-from scenes import EPS, UNIT
+from scenes import EPS, NAMED, UNIT
 
 from lagrange_cli import Top, solve
-from lagrange_cli.arithmetic.arrays import PAIRS
+from lagrange_cli.arithmetic.arrays import ARRAYS, PAIRS
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.arithmetic.double_double import DoubleDouble
 from lagrange_cli.arithmetic.numbers import DOUBLES
@@ -72,6 +72,28 @@ def test_mpmath_and_doubles_give_what_decimals_give(scene: dict[str, float]) -> 
         assert abs(float(many[key]) - nearest) <= EPS * EPS + EPS / 2 * abs(nearest), key
         if key not in CANCELLING:
             assert abs(floats[key] - nearest) <= 22 * EPS * abs(nearest), key
+
+
+@pytest.mark.parametrize("scene", NAMED.values(), ids=NAMED)
+def test_after_rest_every_key_is_good_in_doubles(scene: dict[str, float]) -> None:
+    """Floats and mpmath give what decimals give: the formulas do not depend on the digits."""
+    top = Top(**scene)
+    nearest = cast(dict[str, Any], solve(top).numbers())
+    many, floats = keys_in(ManyDigits(80), top), keys_in(DOUBLES, top)
+    for key, value in nearest.items():
+        assert float(many[key]) == value, key
+        unit: float = 1 if key in ("u1", "u2", "u_quarter") else abs(value)
+        unit = max(unit, abs(float(top.r0))) if key == "spin_rate_half" else unit
+        assert abs(floats[key] - value) <= 6 * EPS * unit, key
+
+
+def test_the_formulas_hold_on_arrays() -> None:
+    tops = [Top(**scene) for scene in NAMED.values()]
+    states = [state(DOUBLES, exact_of(top)) for top in tops]
+    together = gaps_from_rest(ARRAYS, State(*map(np.array, zip(*states, strict=True))))
+    for i, one in enumerate(states):
+        alone = gaps_from_rest(DOUBLES, one)
+        assert [float(gaps[i]) for gaps in together] == pytest.approx(list(alone), rel=4 * EPS)
 
 
 def polished(ar: Any, c2: Any, c1: Any, c0: Any, bound: Any) -> Any:

@@ -166,46 +166,46 @@ def _() -> Sides:
         yield motion.A * q_rate - gyro * p, -pull * ar.sin(phi)
 
 
-@equation("(4,2)")
-def _() -> Sides:
-    for motion, t in moments():
-        nutation, _, precession = motion.rates(t)
-        left = motion.A * (nutation**2 + precession**2 * (1 - motion.u(t) ** 2))
-        yield left, 2 * motion.mgs * (motion.u1 - motion.u(t))
+RATES: dict[str, tuple[Callable[[Motion, Any, Any], tuple[Any, Any]], int, int]] = {
+    "(4,2)": (
+        lambda top, t, rate: (
+            top.A * (top.rates(t)[0] ** 2 + rate**2 * (1 - top.u(t) ** 2)),
+            2 * top.mgs * (top.u1 - top.u(t)),
+        ),
+        *(2, 1),
+    ),
+    "(4,3)": (
+        lambda top, t, rate: (
+            top.A * (1 - top.u(t) ** 2) * rate,
+            top.C * top.r0 * (top.u1 - top.u(t)),
+        ),
+        *(2, 1),
+    ),
+    "(4,7)": (
+        lambda top, t, rate: (rate, top.b * (top.u1 - top.u(t)) / (1 - top.u(t) ** 2)),
+        *(2, 1),
+    ),
+    "(4,8)": (
+        lambda top, t, rate: (
+            rate,
+            top.r0 - top.b * top.u(t) * (top.u1 - top.u(t)) / (1 - top.u(t) ** 2),
+        ),
+        *(1, 2),
+    ),
+}
+"""Sides with a rate of spin (1) or precession (2): the right one, and the one that is printed."""
 
+for _name, (_sides, _right, _printed) in RATES.items():
 
-@as_printed("(4,2)")
-def _() -> Sides:
-    motion, t = RIGHT, PARTS[0] * RIGHT.T
-    nutation, spin, _ = motion.rates(t)
-    left = motion.A * (nutation**2 + spin**2 * (1 - motion.u(t) ** 2))
-    yield left, 2 * motion.mgs * (motion.u1 - motion.u(t))
+    @equation(_name)
+    def _(sides: Callable[..., Any] = _sides, rate: int = _right) -> Sides:
+        for motion, t in moments():
+            yield sides(motion, t, motion.rates(t)[rate])
 
-
-@equation("(4,3)")
-def _() -> Sides:
-    for motion, t in moments():
-        left = motion.A * (1 - motion.u(t) ** 2) * motion.rates(t)[2]
-        yield left, motion.C * motion.r0 * (motion.u1 - motion.u(t))
-
-
-@as_printed("(4,3)")
-def _() -> Sides:
-    motion, t = RIGHT, PARTS[0] * RIGHT.T
-    left = motion.A * (1 - motion.u(t) ** 2) * motion.rates(t)[1]
-    yield left, motion.C * motion.r0 * (motion.u1 - motion.u(t))
-
-
-@equation("(4,4)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        yield motion.a, 2 * motion.mgs / motion.A
-
-
-@equation("(4,5)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        yield motion.b, motion.C * motion.r0 / motion.A
+    @as_printed(_name)
+    def _(sides: Callable[..., Any] = _sides, rate: int = _printed) -> Sides:
+        t = PARTS[0] * RIGHT.T
+        yield sides(RIGHT, t, RIGHT.rates(t)[rate])
 
 
 @equation("section 4 d: power of the weight")
@@ -262,44 +262,10 @@ def _() -> Sides:
         yield motion.u2, motion.u(motion.T / 2)
 
 
-@equation("(4,7)")
-def _() -> Sides:
-    for motion, t in moments():
-        u = motion.u(t)
-        yield motion.rates(t)[2], motion.b * (motion.u1 - u) / (1 - u * u)
-
-
-@as_printed("(4,7)")
-def _() -> Sides:
-    motion, t = RIGHT, PARTS[0] * RIGHT.T
-    u = motion.u(t)
-    yield motion.rates(t)[1], motion.b * (motion.u1 - u) / (1 - u * u)
-
-
-@equation("(4,8)")
-def _() -> Sides:
-    for motion, t in moments():
-        u = motion.u(t)
-        yield motion.rates(t)[1], motion.r0 - motion.b * u * (motion.u1 - u) / (1 - u * u)
-
-
-@as_printed("(4,8)")
-def _() -> Sides:
-    motion, t = RIGHT, PARTS[0] * RIGHT.T
-    u = motion.u(t)
-    yield motion.rates(t)[2], motion.r0 - motion.b * u * (motion.u1 - u) / (1 - u * u)
-
-
 def _cubic(motion: Motion, u: Any) -> Any:
     """Return f(u) of (4,9)."""
     a, b, u1 = motion.a, motion.b, motion.u1
     return (1 - u * u) * (a * u1 - a * u) - (b * u1 - b * u) ** 2
-
-
-@equation("(4,9)")
-def _() -> Sides:
-    for motion, t in moments():
-        yield slope(motion.u, t) ** 2, _cubic(motion, motion.u(t))
 
 
 @equation("(4,10)")
@@ -347,6 +313,25 @@ def _() -> Sides:
         yield ar.sign(motion.u3 - 1), 1
 
 
+CONSTANTS: dict[str, Callable[[Motion], tuple[Any, Any]]] = {
+    "(4,4)": lambda top: (top.a, 2 * top.mgs / top.A),
+    "(4,5)": lambda top: (top.b, top.C * top.r0 / top.A),
+    "(4,19)": lambda top: (top.k, ar.sqrt((top.u1 - top.u2) / (top.u3 - top.u2))),
+    "(4,21)": lambda top: (top.k_prime, ar.sqrt((top.u3 - top.u1) / (top.u3 - top.u2))),
+    "section 4 j: product of the two sn": lambda top: (
+        top.kappa2 * top.at_parameter(1)[0] ** 2 * top.at_parameter(2)[0] ** 2,
+        1,
+    ),
+}
+"""Sides without time."""
+
+for _name, _constants in CONSTANTS.items():
+
+    @equation(_name)
+    def _(sides: Callable[..., Any] = _constants) -> Sides:
+        yield from map(sides, MOTIONS)
+
+
 ROOTS: dict[str, Callable[..., Any]] = {
     "(4,11)": lambda u1, u2, u3, b: (u3 + u2, b),
     "section 4 f: sum of products": lambda u1, u2, u3, b: (u1 * u2 + u1 * u3 - u2 * u3, 1),
@@ -371,13 +356,6 @@ for _name, _sides in ROOTS.items():
             yield sides(*motion.roots, motion.b**2 / motion.a)
 
 
-@equation("(4,19)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        u1, u2, u3 = motion.roots
-        yield motion.k, ar.sqrt((u1 - u2) / (u3 - u2))
-
-
 @equation("(4,20)")
 def _() -> Sides:
     for motion, t in moments():
@@ -387,32 +365,34 @@ def _() -> Sides:
         yield motion.u(t), u1 - (u1 - u2) * (u3 - u1) / (u3 - u2) * (sn / dn) ** 2
 
 
-@equation("(4,21)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        u1, u2, u3 = motion.roots
-        yield motion.k_prime, ar.sqrt((u3 - u1) / (u3 - u2))
+STATES: dict[str, Callable[[Motion, Any, Any, Any], tuple[Any, Any]]] = {
+    "(4,9)": lambda top, t, u, _: (slope(top.u, t) ** 2, _cubic(top, u)),
+    "(4,22)": lambda top, t, u, _: (top.jacobi(t)[2] ** 2, (top.u3 - top.u1) / (top.u3 - u)),
+    "(4,23)": lambda top, t, u, _: (
+        top.jacobi(t)[0] ** 2,
+        (top.u1 - u) * (top.u3 - top.u2) / ((top.u3 - u) * (top.u1 - top.u2)),
+    ),
+    "(4,24)": lambda top, t, u, _: (
+        top.jacobi(t)[1] ** 2,
+        (top.u3 - top.u1) * (u - top.u2) / ((top.u3 - u) * (top.u1 - top.u2)),
+    ),
+    "(4,25)": lambda top, t, u, xi2: (
+        1 + u,
+        (1 + top.u1) * (1 - (top.u1 - top.u2) / (1 + top.u1) * xi2),
+    ),
+    "(4,26)": lambda top, t, u, xi2: (
+        1 - u,
+        (1 - top.u1) * (1 + (top.u1 - top.u2) / (1 - top.u1) * xi2),
+    ),
+}
+"""Sides at a time, with u and xi^2."""
 
+for _name, _states in STATES.items():
 
-@equation("(4,22)")
-def _() -> Sides:
-    for motion, t in moments():
-        u1, _, u3 = motion.roots
-        yield motion.jacobi(t)[2] ** 2, (u3 - u1) / (u3 - motion.u(t))
-
-
-@equation("(4,23)")
-def _() -> Sides:
-    for motion, t in moments():
-        (u1, u2, u3), u = motion.roots, motion.u(t)
-        yield motion.jacobi(t)[0] ** 2, (u1 - u) * (u3 - u2) / ((u3 - u) * (u1 - u2))
-
-
-@equation("(4,24)")
-def _() -> Sides:
-    for motion, t in moments():
-        (u1, u2, u3), u = motion.roots, motion.u(t)
-        yield motion.jacobi(t)[1] ** 2, (u3 - u1) * (u - u2) / ((u3 - u) * (u1 - u2))
+    @equation(_name)
+    def _(sides: Callable[..., Any] = _states) -> Sides:
+        for motion, t in moments():
+            yield sides(motion, t, motion.u(t), motion.xi(t) ** 2)
 
 
 @equation("section 4 g: u by the imaginary modulus")
@@ -423,20 +403,6 @@ def _() -> Sides:
         yield u1 - u, (u1 - u2) * xi2
         yield u - u2, (u1 - u2) * (1 - xi2)
         yield u3 - u, (u3 - u1) * (1 - motion.kappa2 * xi2)
-
-
-@equation("(4,25)")
-def _() -> Sides:
-    for motion, t in moments():
-        u1, u2, _ = motion.roots
-        yield 1 + motion.u(t), (1 + u1) * (1 - (u1 - u2) / (1 + u1) * motion.xi(t) ** 2)
-
-
-@equation("(4,26)")
-def _() -> Sides:
-    for motion, t in moments():
-        u1, u2, _ = motion.roots
-        yield 1 - motion.u(t), (1 - u1) * (1 + (u1 - u2) / (1 - u1) * motion.xi(t) ** 2)
 
 
 def _precession_rate(motion: Motion, t: Any, power: int) -> Any:
@@ -499,13 +465,6 @@ def _() -> Sides:
         _, _, _, printed_sn, _, printed_dn = _printed_at_parameters(motion)
         yield sn, printed_sn
         yield dn, printed_dn
-
-
-@equation("section 4 j: product of the two sn")
-def _() -> Sides:
-    for motion in MOTIONS:
-        first, second = motion.at_parameter(1)[0], motion.at_parameter(2)[0]
-        yield motion.kappa2 * first**2 * second**2, 1
 
 
 def _quotient(motion: Motion, v: Any) -> Any:
