@@ -22,7 +22,7 @@ from lagrange_cli.errors import OutOfRangeWarning
 from lagrange_cli.motion import any_start
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
-BODY = "--m 1 --A 1 --C 1 --s 1 --g 1".split()
+BODY = "--m 1 --A 1 --C 1 --s 1 --g 1"
 MUST_PRINT = {
     "a tiny tilt with a nutation rate": (
         "--r0 1 --theta0 1e-100 --thetadot0 1 --get mean_precession_rate",
@@ -79,16 +79,13 @@ OF_THE_EXAMPLE = {
 }
 
 
-@pytest.mark.parametrize(("arguments", "text"), MUST_PRINT.values(), ids=MUST_PRINT)
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [*((f"{BODY} {x}", text) for x, text in MUST_PRINT.values()), *OF_THE_EXAMPLE.values()],
+    ids=[*MUST_PRINT, *OF_THE_EXAMPLE],
+)
 def test_numbers_once_wrong_in_two_precisions(arguments: str, text: str, lagtop: Lagtop) -> None:
     """Each value is of Arb or of mpmath in 400 digits, by other formulas."""
-    assert lagtop("solve", *BODY, *arguments.split()).stdout == f"{text}\n"
-
-
-@pytest.mark.parametrize(("arguments", "text"), OF_THE_EXAMPLE.values(), ids=OF_THE_EXAMPLE)
-def test_numbers_of_the_example_once_wrong_in_two_precisions(
-    arguments: str, text: str, lagtop: Lagtop
-) -> None:
     assert lagtop("solve", *arguments.split()).stdout == f"{text}\n"
 
 

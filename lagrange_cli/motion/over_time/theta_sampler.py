@@ -38,7 +38,6 @@ _LEAST = 5e-324
 _NEGLIGIBLE = Decimal(2) ** -60
 _SIZE = 2**16
 """The size to which the largest coefficient of a frame is scaled, within a factor of 2."""
-ARGUMENTS = ("arg_x", "arg_y")
 
 
 @dataclass(frozen=True)
@@ -107,9 +106,8 @@ class ThetaSampler(Sampler):
                 for rows, frame in pieces:
                     for side, part in zip(arguments[:, rows], frame[:2], strict=True):
                         _settle_on_the_pole(side, part, argument[rows])
-            found |= zip(
-                ARGUMENTS, unwound(arguments, self.slopes, argument, space[10]), strict=True
-            )
+            unwound(arguments, self.slopes, argument, space[10])
+            found |= {"arg_x": arguments[0], "arg_y": arguments[1]}
         if "tilt" in needs or "moduli" in needs:
             x2, y2 = moduli_of(parts)
             if "tilt" in needs:
