@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import math
 import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.animation import FFMpegWriter
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -28,44 +29,13 @@ from .page import Page, check_pixels
 from .sphere import axis_path
 from .style import points, scale, styled
 
+SUFFIXES = ".gif", ".mp4"
+"""The file types, by the extension of the file name."""
 COLOURS = 63
 """Number of colours of a GIF; they are chosen for its middle frame, which contains them all.
 
 One more index is transparent.
 """
-
-
-class SmallGifWriter(PillowWriter):
-    """A writer of GIFs whose frames share one palette, and store only the pixels that change."""
-
-    fig: Any
-    outfile: Any
-    _frames: list[Any]
-    _last: Any = None
-    """The indices of the colours of the last frame."""
-    colours: Image.Image
-    """A frame with the colours of all frames."""
-
-    def grab_frame(self, **_: Any) -> None:
-        """Store a frame, one byte per pixel; pixels that do not change are transparent."""
-        frame = self.fig.frame(self.dpi).quantize(palette=self.colours, dither=0)
-        pixels = np.asarray(frame)
-        if self._last is not None:
-            frame.frombytes(np.where(pixels == self._last, np.uint8(COLOURS), pixels).tobytes())
-            frame.info["transparency"] = COLOURS
-        self._last = pixels
-        self._frames.append(frame)
-
-    def finish(self) -> None:
-        """Write the file; Pillow's own search for equal pixels would take twice the time."""
-        first, *others = self._frames
-        options = {"duration": round(1000 / self.fps), "loop": 0, "optimize": False}
-        first.save(self.outfile, save_all=True, append_images=others, **options)
-
-
-WRITERS = {".gif": SmallGifWriter, ".mp4": FFMpegWriter}
-"""The writer for each file type, by the extension of the file name."""
-
 FRAMES_PER_SECOND, SECONDS = 25, 6.0
 """Frames per second (a GIF counts hundredths of a second), and the default duration."""
 MOST_FRAMES = 3000
@@ -134,8 +104,8 @@ def check_film(page: Page, name: str, dpi: float) -> None:
     ffmpeg raises UnavailableError.
     """
     suffix = Path(name).suffix.lower()
-    if suffix not in WRITERS:
-        wanted = " or ".join(WRITERS)
+    if suffix not in SUFFIXES:
+        wanted = " or ".join(SUFFIXES)
         raise LagtopError(f"animate must be a file that ends in {wanted}, got {name!r}", "animate")
     if suffix == ".mp4" and not shutil.which("ffmpeg"):
         raise UnavailableError(
@@ -150,16 +120,41 @@ def film_bytes(page: Page, name: str, dpi: float, pace: Pace, progress: Progress
     Raises LagtopError as `check_film` does.
     """
     check_film(page, name, dpi)
-    suffix = Path(name).suffix.lower()
-    writer = WRITERS[suffix](fps=FRAMES_PER_SECOND)
-    with styled(page.request.look), tempfile.TemporaryDirectory() as folder:
+    writer = _gif if Path(name).suffix.lower() == ".gif" else _mp4
+    with styled(page.request.look):
         film = Film(page, pace)
-        path = Path(folder) / f"film{suffix}"
+        return writer(film, dpi, progress(range(pace.frames), "frames"))
+
+
+def _gif(film: Film, dpi: float, numbers: Iterable[int]) -> bytes:
+    """Return a GIF whose frames share one palette, and store only the pixels that change."""
+    film.show(film.times.size // 2)
+    palette = film.figure.frame(dpi).quantize(COLOURS)
+    frames: list[Image.Image] = []
+    last = None
+    for i in numbers:
+        film.show(i)
+        frame = film.figure.frame(dpi).quantize(palette=palette, dither=Image.Dither.NONE)
+        pixels = np.asarray(frame)
+        if last is not None:
+            frame.frombytes(np.where(pixels == last, np.uint8(COLOURS), pixels).tobytes())
+            frame.info["transparency"] = COLOURS
+        last = pixels
+        frames.append(frame)
+    file = io.BytesIO()
+    options = {"duration": 1000 // FRAMES_PER_SECOND, "loop": 0, "save_all": True}
+    # Pillow's own search for equal pixels (`optimize`) would take twice the time
+    frames[0].save(file, "gif", append_images=frames[1:], optimize=False, **options)
+    return file.getvalue()
+
+
+def _mp4(film: Film, dpi: float, numbers: Iterable[int]) -> bytes:
+    """Return an MP4, which ffmpeg writes."""
+    writer = FFMpegWriter(fps=FRAMES_PER_SECOND)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "film.mp4"
         with writer.saving(film.figure, str(path), dpi):
-            if isinstance(writer, SmallGifWriter):
-                film.show(pace.frames // 2)
-                writer.colours = film.figure.frame(dpi).quantize(COLOURS)
-            for i in progress(range(pace.frames), "frames"):
+            for i in numbers:
                 film.show(i)
                 writer.grab_frame()
         return path.read_bytes()

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..arithmetic.types import Array, Mask
 from ..inputs.rotations import rotated
 from .kinds import PlotRequest
-from .style import Look, points, short_text
+from .style import HEIGHT, RADIUS, WEDGES, Look, points, short_text
 
 TIP, NAME = 1.24, 0.1
 """Length of the axes of space in radii of the globe, and distance of their names from the tips."""
@@ -23,8 +23,6 @@ DASH_DOTTED = {"ls": (0, (7, 2, 1, 2))}
 """Style of the circle of the greatest tilt."""
 SAME_PLACE = 0.13
 """Distance at which the names of two axes would touch, so that they are joined."""
-HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
-"""Height and radius (in radii of the sphere) and number of wedges of the cone for the top."""
 INSEPARABLE = math.radians(0.8)
 """Difference of tilt below which two circles are one line on the globe."""
 

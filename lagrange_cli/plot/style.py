@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 POINTS = 11.0
 """Size of ordinary letters on a page of the usual size."""
 
+HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
+"""Height and radius (in radii of the globe) and number of wedges of the cone for the top."""
+
 FONTS = ["DejaVu Sans", "Verdana", "Arial"]
 """The first font comes with matplotlib and has Greek; the others are for readers of an SVG."""
 

@@ -23,7 +23,7 @@ from lagrange_cli.plot.curves import turn_span
 from lagrange_cli.plot.kinds import PlotRequest
 from lagrange_cli.plot.page import Page
 from lagrange_cli.plot.sphere import axis_path
-from lagrange_cli.plot.style import LIGHT, styled
+from lagrange_cli.plot.style import LIGHT, WEDGES, styled
 
 
 def test_the_view_is_a_rotation_and_the_start_is_in_sight() -> None:
@@ -49,8 +49,8 @@ def test_the_top_of_the_film_stands_on_its_axis() -> None:
     axis = np.array([math.sin(0.5) * math.sin(2), -math.sin(0.5) * math.cos(2), math.cos(0.5)])
     assert top.axle[:, 1] == pytest.approx(np.stack(seen.project(axis)))
     assert top.lid_in_sight
-    assert (top.inks[-globe.WEDGES :] == 2).sum() == globe.WEDGES / 2
-    assert (top.corners[-globe.WEDGES :, 0] == top.axle[:, 0]).all()
+    assert (top.inks[-WEDGES:] == 2).sum() == WEDGES / 2
+    assert (top.corners[-WEDGES:, 0] == top.axle[:, 0]).all()
     away = globe.cone_at(attitude(math.pi - 0.5, 1.0, 2.0), globe.camera_at(0.3, 1.4))
     assert not away.lid_in_sight
 
@@ -58,7 +58,7 @@ def test_the_top_of_the_film_stands_on_its_axis() -> None:
 def _lid(phi: float) -> list[tuple[float, ...]]:
     """Return the corners of the light wedges of the lid at an angle of spin."""
     top = globe.cone_at(attitude(0.5, phi, 2.0), globe.camera_at(0.3, 0.4))
-    light = top.corners[-globe.WEDGES :][top.inks[-globe.WEDGES :] == 0]
+    light = top.corners[-WEDGES:][top.inks[-WEDGES:] == 0]
     return sorted(tuple(np.round(corners, 12).ravel().tolist()) for corners in light)
 
 
@@ -67,7 +67,7 @@ def test_the_spin_is_seen_on_the_lid() -> None:
     assert _lid(1.0) != _lid(1.0 + math.pi / 3)
     assert set(_lid(1.0)).isdisjoint(_lid(1.0 + math.pi / 3))
     assert np.array(_lid(1.0)) == pytest.approx(np.array(_lid(1.0 + 2 * math.pi / 3)), abs=1e-11)
-    assert len(_lid(1.0)) == globe.WEDGES / 2
+    assert len(_lid(1.0)) == WEDGES / 2
 
 
 def test_each_frame_shows_the_top_and_the_path_so_far() -> None:

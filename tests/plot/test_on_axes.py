@@ -81,5 +81,8 @@ def test_impossible_drawings_are_refused() -> None:
         draw_sphere(solve(Top()), ax, t_max=-1.0)
     with pytest.raises(LagtopError, match="x must be a range"):
         draw_map(solve(Top()), ax, x="r0=1:2")
+    for option in ({"t_max": 1.0}, {"key": "nome"}):
+        with pytest.raises(TypeError, match=r"draw_cubic\(\) got an unexpected keyword argument"):
+            lagrange_cli.draw(solve(Top()), "cubic", ax, **option)
     with pytest.raises(NothingToDrawError, match="no remainders"):
         draw_remainders(solve(Top(theta0_deg=0)), [ax, ax])

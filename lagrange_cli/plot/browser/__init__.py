@@ -25,7 +25,7 @@ from ...motion.notebook import Document
 from ...motion.record import KEYS, requested_keys
 from ...motion.solve import Motion, solve
 from ...motion.summary import PHRASES
-from ..style import DARK, LIGHT, Look
+from ..style import DARK, HEIGHT, LIGHT, RADIUS, WEDGES, Look
 
 _IMPORT = re.compile(r'^import \{[^}]*\} from "([^"]+)";\n', re.MULTILINE)
 
@@ -166,6 +166,7 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
         "INPUTS": {_key(name): _input(DECLARED[name]) for name in NINE},
         "KEYS": _keys(),
         "PHRASES": {"title": TITLES} | PHRASES,
+        "CONE": {"height": HEIGHT, "radius": RADIUS, "wedges": WEDGES},
         "LIMITS": {"least": SMALLEST, "largest": LARGEST, "tilt": LEAST_TILT},
     }
     texts = {name: json.dumps(value, ensure_ascii=False) for name, value in data.items()}

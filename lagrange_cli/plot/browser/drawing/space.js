@@ -2,12 +2,11 @@
 // and the trace of the axis, the frames and their angles, and the top, a cone whose six wedges show
 // the spin.
 
+import { CONE } from "../data.js";
 import { combined, frameOf, scaled } from "./camera.js";
 import { dot, even, fill, prepared, stroke, write } from "./canvas.js";
 
-const HEIGHT = 0.62;
-const RADIUS = 0.34;
-const WEDGES = 24;
+const { height: HEIGHT, radius: RADIUS, wedges: WEDGES } = CONE;
 const SIXTH = WEDGES / 6;  // of the same colour
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 const LENGTH = 1.2;  // of the axes in space
