@@ -46,7 +46,8 @@ class Component(NamedTuple):
 
     def at(self, S: Numeric, C: Numeric) -> tuple[Numeric, Numeric]:
         """Return the real and the imaginary part."""
-        P, Q = polynomial(self.real, S * S), polynomial(self.imag, S * S)
+        s = S * S
+        P, Q = polynomial(self.real, s), polynomial(self.imag, s)
         return (P, S * C * Q) if self.even else (C * P, S * Q)
 
 
