@@ -6,6 +6,7 @@ for nutation, spin and precession over mpmath's elliptic functions, and a quadra
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import pytest
@@ -66,11 +67,6 @@ def _() -> Sides:
         yield motion.rates(t)[0], sign * _nutation_rate(motion, t)
 
 
-@as_printed("(5,3)")
-def _() -> Sides:
-    yield RIGHT.rates(RIGHT.T * 3 / 4)[0], _nutation_rate(RIGHT, RIGHT.T * 3 / 4)
-
-
 def _quarters(motion: Motion) -> tuple[Any, Any]:
     """Return how far the tilt goes in the first and in the second quarter of a period."""
     start, middle, end = (motion.angles(part * motion.T / 4)[0] for part in (0, 1, 2))
@@ -127,24 +123,6 @@ def _() -> Sides:
         yield motion.angles(t)[1], right
 
 
-@as_printed("(6,1) as printed, in the second half of a period")
-def _() -> Sides:
-    t = RIGHT.T * 3 / 4
-    yield RIGHT.angles(t)[1], _steady_spin(RIGHT) * t + _printed_arccot(RIGHT, t)
-
-
-@as_printed("(6,1) as printed, for r0 < 0")
-def _() -> Sides:
-    t = LEFT.T / 4
-    yield LEFT.angles(t)[1], _steady_spin(LEFT) * t + _printed_arccot(LEFT, t)
-
-
-@as_printed("(6,1) as printed, after the first period")
-def _() -> Sides:
-    t = RIGHT.T * 13 / 10
-    yield RIGHT.angles(t)[1], _steady_spin(RIGHT) * t + RIGHT.spin_arccot(t)
-
-
 @equation("section 6: spin after half a period and a whole one")
 def _() -> Sides:
     for motion in MOTIONS:
@@ -152,11 +130,6 @@ def _() -> Sides:
             t = part * motion.T / 2
             right = _steady_spin(motion) * t + motion.sigma * part * ar.pi / 2
             yield motion.angles(t)[1], right
-
-
-@as_printed("section 6: spin after half a period and a whole one")
-def _() -> Sides:
-    yield LEFT.angles(LEFT.T)[1], _steady_spin(LEFT) * LEFT.T + ar.pi
 
 
 def _alike(angle: int) -> Sides:
@@ -185,11 +158,6 @@ def _() -> Sides:
     for motion in MOTIONS:
         yield motion.angles(motion.T)[1] / motion.T, motion.mean_spin_rate
         yield motion.mean_spin_rate, _steady_spin(motion) + motion.sigma * ar.pi / motion.T
-
-
-@as_printed("(6,3)")
-def _() -> Sides:
-    yield LEFT.mean_spin_rate, _steady_spin(LEFT) + ar.pi / LEFT.T
 
 
 def _since_whole_period(motion: Motion, t: Any) -> Any:
@@ -352,16 +320,6 @@ def _() -> Sides:
         yield motion.mean_precession_rate, motion.angles(motion.T)[2] / motion.T
 
 
-@as_printed("(7,3) as printed, for r0 < 0")
-def _() -> Sides:
-    yield LEFT.mean_precession_rate, _mean_precession(LEFT, 1)
-
-
-@as_printed("(7,3) as printed, the left side")
-def _() -> Sides:
-    yield RIGHT.mean_spin_rate, _mean_precession(RIGHT, 1)
-
-
 def _precession_remainder(motion: Motion, tau: Any) -> Any:
     """Return (7,4) for a time since the last whole period."""
     waves = motion.precession_arccot(tau) + motion.series(tau)
@@ -389,6 +347,37 @@ def _() -> Sides:
     for motion, t in moments(*FAR):
         remainder = _precession_remainder(motion, _since_whole_period(motion, t))
         yield motion.angles(t)[2], motion.mean_precession_rate * t + remainder
+
+
+def _spin(motion: Motion, t: Any, arccot: Callable[[Motion, Any], Any]) -> tuple[Any, Any]:
+    """Return the spin and (6,1) as printed, with an arccot."""
+    return motion.angles(t)[1], _steady_spin(motion) * t + arccot(motion, t)
+
+
+PRINTED_SIDES: dict[str, Callable[[], tuple[Any, Any]]] = {
+    "(5,3)": lambda: (RIGHT.rates(RIGHT.T * 3 / 4)[0], _nutation_rate(RIGHT, RIGHT.T * 3 / 4)),
+    "(6,1) as printed, in the second half of a period": lambda: _spin(
+        RIGHT, RIGHT.T * 3 / 4, _printed_arccot
+    ),
+    "(6,1) as printed, for r0 < 0": lambda: _spin(LEFT, LEFT.T / 4, _printed_arccot),
+    "(6,1) as printed, after the first period": lambda: _spin(
+        RIGHT, RIGHT.T * 13 / 10, Motion.spin_arccot
+    ),
+    "section 6: spin after half a period and a whole one": lambda: (
+        LEFT.angles(LEFT.T)[1],
+        _steady_spin(LEFT) * LEFT.T + ar.pi,
+    ),
+    "(6,3)": lambda: (LEFT.mean_spin_rate, _steady_spin(LEFT) + ar.pi / LEFT.T),
+    "(7,3) as printed, for r0 < 0": lambda: (LEFT.mean_precession_rate, _mean_precession(LEFT, 1)),
+    "(7,3) as printed, the left side": lambda: (RIGHT.mean_spin_rate, _mean_precession(RIGHT, 1)),
+}
+"""Equations as printed, with one pair of sides."""
+
+for _name, _sides in PRINTED_SIDES.items():
+
+    @as_printed(_name)
+    def _(sides: Callable[[], tuple[Any, Any]] = _sides) -> Sides:
+        yield sides()
 
 
 WORKED = Motion(theta0_deg=30)
