@@ -4,34 +4,18 @@ from __future__ import annotations
 
 import gc
 import os
-import re
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from .. import __version__
-from ..errors import CannotWriteError, LagtopError, SomeFailedError
+from ..errors import CannotWriteError, LagtopError
+from ..output import terminal
 from ..output.destination import opened
-from ..output.terminal import (
-    CLOSED_PIPE,
-    INTERRUPT,
-    Screen,
-    Terminated,
-    die_by,
-    has_colours,
-    interrupts,
-    one_line,
-    spelt,
-    view_of,
-)
-
-if TYPE_CHECKING:
-    from ..output.destination import Output
-    from ..output.report import Report
 
 COMMANDS = {
     "One top": ("solve", "table", "plot", "view", "explain", "scenes"),
@@ -51,9 +35,9 @@ def complain(line: str) -> None:
 
     A terminal with colours shows the first word, `Error:` or `Warning:`, in colour.
     """
-    line = one_line(line)
+    line = terminal.one_line(line)
     word, colon, rest = line.partition(":")
-    if word in _COLOURS and has_colours(sys.stderr):
+    if word in _COLOURS and terminal.has_colours(sys.stderr):
         line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
         click.echo(line, err=True)
@@ -63,25 +47,9 @@ def say(text: str) -> None:
     """Write a text of lagtop to standard output.  Raises CannotWriteError."""
     try:
         with opened("-") as stream:
-            stream.write(f"{spelt(text, view_of('-'))}\n".encode())
+            stream.write(f"{terminal.spelt(text, terminal.view_of('-'))}\n".encode())
     except BrokenPipeError:  # click would turn it into exit code 1
-        die_by(CLOSED_PIPE)
-
-
-def write_report(out: Output, find: Callable[[], Report]) -> Report:
-    """Write a report, and return it.  CSV holds only the rows: its conditions go to stderr."""
-    report = out.report(find)
-    if out.fmt in {"csv", "ndjson"}:
-        for name, text in report.conditions.items():
-            complain(f"{name}: {text}")
-    return report
-
-
-def fail_for(failures: Sequence[str], count: int, what: str, *, remedy: str = "") -> None:
-    """Raise SomeFailedError if there are failures, with their number and the first one."""
-    if failures:
-        said = f"{len(failures)} of {count} {what} failed; the first: {failures[0]}"
-        raise SomeFailedError(f"{said}; {remedy}" if remedy else said)
+        terminal.die_by(terminal.CLOSED_PIPE)
 
 
 def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:
@@ -122,25 +90,10 @@ class Command(click.Command):
         try:
             return super().invoke(ctx)
         except LagtopError as error:
-            error.args = (_naming_options(error, self.params),)
+            from .help import naming_options
+
+            error.args = (naming_options(error, self.params),)
             raise
-
-
-def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
-    """Return a message with names of options, such as `--t-max` instead of `t_max`.
-
-    The replaced words are the first word, if it is the key of the error, and words with an
-    underscore before the quoted value.
-    """
-    names = [name for param in params for name in param.opts if name.startswith("--")]
-    options = {name[2:].replace("-", "_"): name for name in names}
-    if "theta0" in options:  # the one input whose key has a unit
-        options |= dict.fromkeys(("theta0_deg", "theta0_rad"), options["theta0"])
-    said, got, value = str(error).partition(", got ")
-    if error.key in options and re.match(rf"{error.key}\b", said):
-        said = options[error.key] + said.removeprefix(error.key)
-    said = re.sub(r"(?<![-\w])[a-z]+_\w+", lambda word: options.get(word[0], word[0]), said)
-    return said + got + value
 
 
 class LagtopGroup(Command, click.Group):
@@ -200,7 +153,7 @@ class LagtopGroup(Command, click.Group):
             complain(f"Error: {error.strerror or error}{place}")
             sys.exit(CannotWriteError.exit_code)
         except click.Abort:
-            die_by(INTERRUPT)
+            terminal.die_by(terminal.INTERRUPT)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command, and end the program by a signal if the command was ended by one.
@@ -208,17 +161,18 @@ class LagtopGroup(Command, click.Group):
         Signals are caught here, before click turns them into an exit code.
         """
         try:
-            with interrupts():
+            with terminal.interrupts():
                 return super().invoke(ctx)
         except BrokenPipeError:
-            number = CLOSED_PIPE
+            number = terminal.CLOSED_PIPE
         except KeyboardInterrupt:
-            number = INTERRUPT
-        except Terminated as error:
+            number = terminal.INTERRUPT
+        except terminal.Terminated as error:
             number = error.number
         finally:
-            Screen.end_progress()
-        return die_by(number)  # here the frames of the command are gone and have cleaned up
+            terminal.Screen.end_progress()
+        # The frames of the command are gone here, and have cleaned up.
+        return terminal.die_by(number)
 
 
 @click.group(

@@ -11,7 +11,6 @@ from ..bench.hard_scenes import STRATA, stratum_lines
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..output.progress import with_progress
-from .app import fail_for, write_report
 from .options import (
     COUNT,
     NUMBER,
@@ -26,6 +25,7 @@ from .options import (
     output_options,
     plot_option,
 )
+from .tables import fail_for, write_report
 from .top import INPUT, SCENE, TopOptions, top_options
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from ..output.progress import with_progress
-from .app import complain, fail_for, write_report
+from .app import complain
 from .options import (
     FILE,
     NUMBER,
@@ -25,7 +25,14 @@ from .options import (
     output_options,
     plot_option,
 )
-from .tables import columns_option, euler_option, quaternion_option, text_options
+from .tables import (
+    columns_option,
+    euler_option,
+    fail_for,
+    quaternion_option,
+    text_options,
+    write_report,
+)
 from .top import INPUT, TopOptions, top_options, words
 
 if TYPE_CHECKING:

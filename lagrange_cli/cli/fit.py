@@ -10,7 +10,7 @@ from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
 from ..output.progress import with_progress
-from .app import complain, fail_for, write_report
+from .app import complain
 from .options import (
     FILE,
     REPORT_FORMATS,
@@ -23,7 +23,15 @@ from .options import (
     output_options,
     plot_option,
 )
-from .tables import ANY_NAMES, columns_option, euler_option, quaternion_option, text_options
+from .tables import (
+    ANY_NAMES,
+    columns_option,
+    euler_option,
+    fail_for,
+    quaternion_option,
+    text_options,
+    write_report,
+)
 from .top import UNCERTAIN, TopOptions, top_options, words
 
 if TYPE_CHECKING:
@@ -68,7 +76,7 @@ def _parse_window(text: str) -> tuple[float, bool]:
     lagtop fit recording.csv --m 1587 --g 981 -o fitted.toml
     lagtop fit recording.csv --sigma 0.3 --plot residuals.svg
     """,
-    exclusive=["--window --by", "--window --plot"],
+    exclusive=["--window: --by --plot"],
 )
 def fit_command(
     top: TopOptions = top_options(

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..errors import LagtopError
 from ..inputs.input_keys import BODY, DECLARED
 from ..inputs.names import suggestion
 from .app import COMMANDS, LagtopGroup
@@ -81,3 +83,20 @@ def usage_message(error: click.ClickException) -> str:
     else:
         text = text[:1].lower() + text[1:].rstrip(".")
     return f"{text}: see {ctx.command_path} --help" if ctx else text
+
+
+def naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
+    """Return a message with names of options, such as `--t-max` instead of `t_max`.
+
+    The replaced words are the first word, if it is the key of the error, and words with an
+    underscore before the quoted value.
+    """
+    names = [name for param in params for name in param.opts if name.startswith("--")]
+    options = {name[2:].replace("-", "_"): name for name in names}
+    if "theta0" in options:  # the one input whose key has a unit
+        options |= dict.fromkeys(("theta0_deg", "theta0_rad"), options["theta0"])
+    said, got, value = str(error).partition(", got ")
+    if error.key in options and re.match(rf"{error.key}\b", said):
+        said = options[error.key] + said.removeprefix(error.key)
+    said = re.sub(r"(?<![-\w])[a-z]+_\w+", lambda word: options.get(word[0], word[0]), said)
+    return said + got + value

@@ -19,7 +19,6 @@ from .options import (
     Parsed,
     command,
     digits_option,
-    exclude,
     late,
     names_type,
     option,
@@ -76,6 +75,12 @@ def _parse_argument(text: str) -> Multiple | ExactComplex:
     return parse_complex(text) if looks_complex(text) else parse_multiple(text)
 
 
+def _parse_parameter(text: str) -> tuple[ExactComplex, bool]:
+    """Return a complex number, and whether it is imaginary."""
+    value = parse_complex(text)
+    return value, not value.real and text.strip().endswith("i")
+
+
 def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
     """Return a range, or the arguments of a comma-separated list."""
     if ":" in text:
@@ -103,6 +108,7 @@ function_formats = output_options("table", "csv", "json", "ndjson", "markdown", 
     lagtop jacobi --modular-angle 45 --u 0:4K:101 -o sn.csv
     lagtop jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i
     """,
+    exclusive=["--phi: --u --series --functions", "--series: --digits --functions"],
 )
 def jacobi_command(
     k: ExactComplex | None = option(
@@ -122,8 +128,8 @@ def jacobi_command(
         "omega, pi (of u and --param, after Chrapan).  [default: am]",
         "--functions",
     ),
-    param: str | None = option(
-        Parsed("V", str), "Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
+    param: tuple[ExactComplex, bool] | None = option(
+        Parsed("V", _parse_parameter), "Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
     ),
     phi: Points | None = option(
         RANGE, "Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
@@ -164,11 +170,6 @@ def jacobi_command(
         for name, wanted in (("--phi", phi), ("--series", series)):
             if wanted:
                 raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")
-    others = {"--u": u, "--series": series, "--functions": families, "--param": param}
-    for name, value in others.items():
-        exclude({"--phi": phi, name: value})
-    for name, value in {"--digits": digits, "--functions": families}.items():
-        exclude({"--series": series, name: value})
     arguments, in_quarters = (None, False) if u is None else _arguments(u, real=real)
     given = k if k is not None and beyond else modulus
     if phi is not None:
@@ -249,7 +250,9 @@ def _arguments(
     return ComplexPoints(points, ListedPoints(imag) if any(imag) else None), in_quarters
 
 
-def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactComplex, bool]:
+def _parameter(
+    param: tuple[ExactComplex, bool] | None, families: tuple[str, ...]
+) -> tuple[ExactComplex, bool]:
     """Return the value of --param, 0 if it is not needed, and whether it is imaginary."""
     if not {"omega", "pi"} & set(families):
         if param is not None:
@@ -257,11 +260,7 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactCompl
         return ExactComplex(Fraction(0)), False
     if param is None:
         raise LagtopError("the functions omega and pi need --param, as 0.7, 0.7i or 0.2+0.7i")
-    try:
-        value = parse_complex(param)
-    except LagtopError as error:
-        raise LagtopError(f"--param {error}") from None
-    return value, not value.real and param.strip().endswith("i")
+    return param
 
 
 def _write_series(

@@ -113,7 +113,8 @@ def command(
 ) -> Callable[[Callable[..., None]], Command]:
     """Make a command of a function whose parameters declare options.
 
-    `exclusive` lists flags of which only one can be given, and `text` replaces the docstring.
+    An entry of `exclusive` lists flags of which only one can be given, or a flag with a colon and
+    flags that it excludes.  `text` replaces the docstring.
     """
 
     def decorate(function: Callable[..., None]) -> Command:
@@ -127,8 +128,10 @@ def command(
         names = {flag: str(param.name) for param in params for flag in param.opts}
 
         def run(**values: Any) -> None:
-            for flags in exclusive:
-                exclude({flag: values[names[flag]] for flag in flags.split()})
+            for entry in exclusive:
+                one, colon, others = entry.rpartition(": ")
+                for flags in others.split() if colon else [others]:
+                    exclude({x: values[names[x]] for x in f"{one} {flags}".split()})
             for argument, group in groups.items():
                 own = {param.name for param in group.params}
                 in_order = [name for name in values if name in own]  # of the command line

@@ -53,6 +53,32 @@ AXIS = Parsed("RANGE", str, _axis_names)
 KIND = Parsed("KIND", str, _kinds_and_scenes)
 
 
+def _pair(text: str, separator: str, fallback: tuple[float, float]) -> tuple[float, float]:
+    """Return the two numbers of a text, or the fallback if it is no pair."""
+    try:
+        first, second = (float(parse_number(part)) for part in text.split(separator))
+    except (LagtopError, ValueError):
+        return fallback
+    return first, second
+
+
+def _parse_size(text: str) -> tuple[float, float]:
+    """Return the width and height of a text such as `8x6`."""
+    parts = re.fullmatch(r"(\d+\.?\d*)[x×](\d+\.?\d*)", text)
+    width, height = map(float, parts.groups()) if parts else (0.0, 0.0)
+    if not (2 <= width <= 50 and 2 <= height <= 50):
+        raise LagtopError(f"must be WIDTHxHEIGHT, each in [2, 50] inches, got {text!r}")
+    return width, height
+
+
+def _parse_limits(text: str) -> tuple[float, float]:
+    """Return the two numbers of a text such as `0:12.5`, the lower one first."""
+    low, high = _pair(text, ":", (0.0, 0.0))
+    if not low < high:
+        raise LagtopError(f"must be LOW:HIGH with LOW < HIGH, got {text!r}")
+    return low, high
+
+
 @command(
     "plot",
     """
@@ -68,12 +94,15 @@ def plot_command(
     key: str = option(KEY, "Key of `map`.", default=MAP_KEY, show_default=True),
     x: str | None = option(AXIS, "Horizontal axis of `map`, INPUT=[log:]start:stop:count."),
     y: str | None = option(AXIS, "Vertical axis of `map`.  [default: theta0]"),
-    colour_limits: str | None = option(
-        Parsed("LOW:HIGH", str), "Colour limits of `map`.  [default: 1st and 99th percentile]"
+    colour_limits: tuple[float, float] | None = option(
+        Parsed("LOW:HIGH", _parse_limits),
+        "Colour limits of `map`.  [default: 1st and 99th percentile]",
     ),
     camera: str | None = option(Parsed("AZ,EL", str), "Azimuth and elevation of the camera."),
     dark: bool = flag("Dark background."),
-    size: str | None = option(str, "Size of the page in inches, such as 8x6.", metavar="WxH"),
+    size: tuple[float, float] | None = option(
+        Parsed("", _parse_size), "Size of the page in inches, such as 8x6.", metavar="WxH"
+    ),
     dpi: Fraction | None = option(NUMBER, "Pixels per inch, 20 to 1000.  [default: 150, film 100]"),
     animate: str | None = option(FILE, "Write a film of the top: FILE.gif or FILE.mp4."),
     duration: Fraction | None = option(NUMBER, "Length of the film in seconds.  [default: 6]"),
@@ -89,8 +118,7 @@ def plot_command(
         raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
     chosen = _kinds(top.words)
     written = _format_of(fmt, output)
-    inches = _inches(size)
-    eye, ends = _camera(camera, top.radians), _ends(colour_limits)
+    eye = None if camera is None else _camera(camera, top.radians)
     pacing = {"duration": duration, "speed": speed}
     for name, value in pacing.items():
         if value is not None and animate is None:
@@ -110,13 +138,13 @@ def plot_command(
         x=axes.get("x"),
         y=axes.get("y"),
         camera=eye,
-        limits=ends,
+        limits=colour_limits,
         progress=with_progress,
         stds=angle_stds(found, motion),
         uncertain=_first_order(found, motion),
         look=chosen_look(dark),
     )
-    page = Page(motion, chosen, request, inches)
+    page = Page(motion, chosen, request, size)
     page_dpi, film_dpi = (float(dpi or usual) for usual in (PAGE_DPI, FILM_DPI))
     if output is not None:
         page.check_dpi(page_dpi, written)
@@ -154,30 +182,8 @@ def _format_of(fmt: str | None, output: str | None) -> str:
     return suffix
 
 
-def _inches(size: str | None) -> tuple[float, float] | None:
-    """Return the width and height of a text such as `8x6`."""
-    if size is None:
-        return None
-    parts = re.fullmatch(r"(\d+\.?\d*)[x×](\d+\.?\d*)", size)
-    width, height = map(float, parts.groups()) if parts else (0.0, 0.0)
-    if not (2 <= width <= 50 and 2 <= height <= 50):
-        raise LagtopError(f"--size must be WIDTHxHEIGHT, each in [2, 50] inches, got {size!r}")
-    return width, height
-
-
-def _pair(text: str, separator: str, fallback: tuple[float, float]) -> tuple[float, float]:
-    """Return the two numbers of a text, or the fallback if it is no pair."""
-    try:
-        first, second = (float(parse_number(part)) for part in text.split(separator))
-    except (LagtopError, ValueError):
-        return fallback
-    return first, second
-
-
-def _camera(text: str | None, radians: bool) -> tuple[float, float] | None:
+def _camera(text: str, radians: bool) -> tuple[float, float]:
     """Return azimuth and elevation (radians) of a text such as `30,-15`."""
-    if text is None:
-        return None
     unit = unit_in_radians(radians=radians)
     azimuth, elevation = (x * unit for x in _pair(text, ",", (math.inf, math.inf)))
     if abs(azimuth) > 2 * math.pi or abs(elevation) > math.pi / 2:
@@ -215,16 +221,6 @@ def _given(top: TopOptions, **axes: str | None) -> tuple[Given, dict[str, InputR
         name: input_range(name, key, found.others.get(key, value.number))
         for name, (key, value) in parsed.items()
     }
-
-
-def _ends(text: str | None) -> tuple[float, float] | None:
-    """Return the two numbers of a text such as `0:12.5`, the lower one first."""
-    if text is None:
-        return None
-    low, high = _pair(text, ":", (0.0, 0.0))
-    if not low < high:
-        raise LagtopError(f"--colour-limits must be LOW:HIGH with LOW < HIGH, got {text!r}")
-    return low, high
 
 
 @command(

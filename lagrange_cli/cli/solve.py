@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..errors import AbsentError, LagtopError
+from ..errors import LagtopError
 from ..motion.numbers import Numbers, record_in_range
-from ..motion.record import all_keys, record_keys, shown_keys
+from ..motion.record import shown_keys
 from ..motion.regime import exact
-from .app import complain, write_report
+from .app import complain
 from .options import (
     COUNT,
     KEY,
@@ -24,9 +24,10 @@ from .options import (
 from .top import UNCERTAIN, TopOptions, top_options, warned
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..arithmetic.values import Key
     from ..inputs.units import System
-    from ..motion.regime import Facts
     from ..output.destination import Output
 
 
@@ -65,136 +66,76 @@ def solve_command(
     Inputs may have units ('480 rpm').  Give units for all inputs that you set, or for none; the
     tilt needs none.  An input may have an uncertainty ('1587(2)').
     """
+    radians = top.radians
+    if keys is not None or derivation:
+        from . import selected
     if keys is not None:
-        _check_keys(keys, top.radians)
+        selected.check_selected(keys, radians)
     if seed is not None and samples is None:
         raise LagtopError("--seed needs --samples")
     found = top.given()
-    on_request = any(key.endswith("_std") for key in keys or ())
-    if found.stds or on_request or budget is not None or samples is not None:
+    asked = budget is not None or samples is not None
+    if found.stds or asked or any(key.endswith("_std") for key in keys or ()):
         from . import uncertainty
 
         uncertainty.check(found, digits, derivation, certify)
     motion = warned(Numbers(exact(found.top(exact=digits is not None))), found)
-    if budget is not None or samples is not None:
-        find = uncertainty.asked_report(found, motion, budget, samples, seed, top.radians)
-        write_report(out, find)
+    if asked:
+        uncertainty.write_uncertainty(found, motion, budget, samples, seed, radians, out)
         return
-    chosen = _steps(motion, top.radians) if derivation else keys
-    wanted = list(dict.fromkeys(key.removesuffix("_std") for key in chosen)) if chosen else None
-    record = _record(motion, digits, top.radians, wanted, certify)
-    if found.system is not None and record.get("remark"):
-        record["remark"] = found.system.in_words(record["remark"])
+    names = selected.steps_of_section_8(motion, radians) if derivation else keys
+    wanted = list(dict.fromkeys(name.removesuffix("_std") for name in names)) if names else None
+    how = {"digits": digits, "radii": certify, "radians": radians, "keys": wanted}
+    record = _record(motion, found.system, **how)
     is_summed = wanted is None and out.fmt != "csv"
-    summed = _summary(record, motion.exact.facts, found.system) if is_summed else {}
-    bare = keys is not None and not out.is_named
+    named = str if found.system is None else found.system.named
+    summed = _summary(record, motion, named) if is_summed else {}
     if found.stds:
-        drawn = out.fmt in {"table", "markdown"} and not bare
+        drawn = out.fmt in {"table", "markdown"} and (keys is None or out.is_named)
         record = uncertainty.with_stds(found, motion, record, drawn)
+
+    def shown() -> dict[str, Key]:
+        return shown_keys(radians=radians, named=named, requested=names is not None)
+
     if keys is not None:
-        values = _numbers(motion, record, keys)
+        values = selected.chosen_values(motion, record, keys)
         if out.fmt == "table":
             out.values(values.values())
         else:
-            out.record(values, lambda: _with_stds(_keys(found.system, top.radians, requested=True)))
-    elif derivation:
-        more = {x: record[x] for x in record if x.endswith("_radius") or x == "remark"}
-        steps = {name: record[name] for name in chosen or ()}
-        out.record(steps | more, lambda: _chain(found.system, top.radians))
+            out.record(values, lambda: selected.with_std_keys(shown()))
+    elif names is not None:
+        out.record(
+            selected.steps_in_order(record, names), lambda: selected.keys_by_step(shown(), radians)
+        )
     else:
-        _write(record | summed, found.system, top.radians, out)
+        units = {}
+        if found.system is not None and out.fmt in {"json", "ndjson"}:
+            units = {name: x.unit for name, x in shown().items() if name in record and x.unit}
+        out.record(record | summed | ({"units": units} if units else {}), shown)
 
 
-def _check_keys(keys: list[str], radians: bool) -> None:
-    """Raise LagtopError for an unknown or repeated key."""
-    from ..inputs.names import check_names
+def _record(motion: Numbers, system: System | None, **how: Any) -> dict[str, Any]:
+    """Return the record, or some keys of it; warn of numbers beyond the range of doubles.
 
-    values = [key.removesuffix("_std") for key in keys]
-    if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
-        values = list(dict.fromkeys(values))
-    known = record_keys(radians=radians)
-    check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
-
-
-def _keys(system: System | None, radians: bool, *, requested: bool = False) -> dict[str, Key]:
-    named = str if system is None else system.named
-    return shown_keys(radians=radians, named=named, requested=requested)
-
-
-def _with_stds(keys: dict[str, Key]) -> dict[str, Key]:
-    """Return keys and those of their uncertainties."""
-    stds = {
-        f"{name}_std": key.replace(symbol="", meaning=f"uncertainty of {name}", equation="")
-        for name, key in keys.items()
-    }
-    return keys | stds
+    `how` holds the arguments of `record_in_range`.
+    """
+    record, beyond = record_in_range(motion, **how)
+    if beyond and how["keys"]:
+        raise beyond[0]
+    if beyond:
+        complain("Warning: " + "; ".join(map(str, beyond)))
+    if system is not None and record.get("remark"):
+        record["remark"] = system.in_words(record["remark"])
+    return record
 
 
-def _chain(system: System | None, radians: bool) -> dict[str, Key]:
-    """Return the keys of the steps of section 8, in order."""
-    from ..motion.paper.requested import CHAIN
-    from ..motion.quantity import unit_name
-
-    keys = _keys(system, radians, requested=True)
-    chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
-    return {name: keys[name].replace(group=step) for name, step in chain.items()}
-
-
-def _summary(record: dict[str, Any], facts: Facts, system: System | None) -> dict[str, str]:
+def _summary(
+    record: dict[str, Any], motion: Numbers, named: Callable[[str], str]
+) -> dict[str, str]:
     """Return the sentence on a motion, by its key, unless one of its numbers is out of range."""
     from ..motion.summary import summary
 
     try:
-        return {"summary": summary(record, facts, str if system is None else system.named)}
+        return {"summary": summary(record, motion.exact.facts, named)}
     except TypeError:  # a number beyond the range of doubles is None
         return {}
-
-
-def _write(record: dict[str, Any], system: System | None, radians: bool, out: Output) -> None:
-    """Write a record, with units if its inputs have any."""
-    if system is not None and out.fmt in {"json", "ndjson"}:
-        keys = _keys(system, radians).items()
-        record |= {"units": {name: key.unit for name, key in keys if name in record and key.unit}}
-    out.record(record, lambda: _keys(system, radians))
-
-
-def _record(
-    motion: Numbers, digits: int | None, radians: bool, keys: list[str] | None, certify: bool
-) -> dict[str, Any]:
-    """Return the record, or some keys of it; warn of numbers beyond the range of doubles."""
-    record, beyond = record_in_range(
-        motion, digits=digits, radii=certify, radians=radians, keys=keys
-    )
-    if beyond and keys:
-        raise beyond[0]
-    if beyond:
-        complain("Warning: " + "; ".join(map(str, beyond)))
-    return record
-
-
-def _numbers(motion: Numbers, record: dict[str, Any], keys: list[str]) -> dict[str, Any]:
-    """Return values of the record, each with its radius, if any.
-
-    Raises AbsentError if the motion has no such number, LagtopError for the uncertainty of a text.
-    """
-    for key in keys:
-        if key not in record:
-            text = key.removesuffix("_std")
-            raise LagtopError(f"{text} has no uncertainty: leave {key} out of --get")
-        if record[key] is None:
-            raise AbsentError(f"{key} is undefined {motion.absence(key)}")
-    return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
-
-
-def _steps(motion: Numbers, radians: bool) -> list[str]:
-    """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
-    from ..motion.paper.requested import derivation_keys
-
-    if motion.roots_sum is None:
-        top = motion.top
-        raise AbsentError(
-            "--derivation must be of a top that nutates after release from rest, got one of the "
-            f"regime {motion.regime.value!r}, thetadot0 = {float(top.thetadot0)}, "
-            f"psidot0 = {float(top.psidot0)}"
-        )
-    return derivation_keys(radians=radians)

@@ -1,12 +1,12 @@
-"""Tables that commands read and write: options of files and columns, headings, descriptions."""
+"""Tables and reports: options of files and columns, headings, descriptions, conditions."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import quoted
-from ..errors import LagtopError
+from ..errors import LagtopError, SomeFailedError
 from .app import complain
 from .options import Group, Parsed, choice, flag, late, names_type, option
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
     from ..output.destination import Output
+    from ..output.report import Report
 
 
 def _mark(**marks: str) -> Any:
@@ -114,3 +115,19 @@ def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     if stds.reason:
         complain(f"Warning: no uncertainty of the angles: {stds.reason}")
     return stds
+
+
+def write_report(out: Output, find: Callable[[], Report]) -> Report:
+    """Write a report, and return it.  CSV holds only the rows: its conditions go to stderr."""
+    report = out.report(find)
+    if out.fmt in {"csv", "ndjson"}:
+        for name, text in report.conditions.items():
+            complain(f"{name}: {text}")
+    return report
+
+
+def fail_for(failures: Sequence[str], count: int, what: str, *, remedy: str = "") -> None:
+    """Raise SomeFailedError if there are failures, with their number and the first one."""
+    if failures:
+        said = f"{len(failures)} of {count} {what} failed; the first: {failures[0]}"
+        raise SomeFailedError(f"{said}; {remedy}" if remedy else said)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterable, Mapping
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
@@ -19,10 +20,12 @@ from ..output.progress import with_progress
 from ..output.report import Field, Report, uncertain_text, with_unit
 from .app import complain
 from .options import exclude
+from .tables import write_report
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.numbers import Numbers
+    from ..output.destination import Output
     from ..sweeps.monte_carlo import Propagated
 
 
@@ -35,20 +38,22 @@ def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> 
         exclude({name: value, "uncertain inputs": True})
 
 
-def asked_report(
+def write_uncertainty(
     found: Given,
     motion: Numbers,
     key: str | None,
     samples: int | None,
     seed: int | None,
     radians: bool,
-) -> Callable[[], Report]:
-    """Return a function that makes the budget of a key or, without one, the Monte Carlo report."""
+    out: Output,
+) -> None:
+    """Write the budget of a key or, without a key, the report on random samples."""
     if key is None:
-        return lambda: _sampled(found, motion, samples or 0, seed, radians)
+        write_report(out, lambda: _sampled(found, motion, samples or 0, seed, radians))
+        return
     check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
     report = _budget(found, motion, key, radians)
-    return lambda: report
+    write_report(out, lambda: report)
 
 
 def with_stds(
@@ -80,24 +85,6 @@ def first_order(found: Given, motion: Numbers) -> FirstOrder:
     return FirstOrder(motion.top, found.stds, found.inputs.keys())
 
 
-class _BudgetLine(NamedTuple):
-    """A line of a budget: an input or, last of all, the result, as in EA-4/02."""
-
-    quantity: str
-    value: float
-    std: float
-    sensitivity: float | None = None
-    sensitivity_unit: str | None = None
-    contribution: float | None = None
-    elasticity: float | None = None
-    share: float | None = None
-
-    @property
-    def noise(self) -> float:
-        """The uncertainty of the value, which determines its digits."""
-        return self.std
-
-
 def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
     """Return the budget of a key: the contribution of each uncertain input, and the key itself.
 
@@ -113,14 +100,7 @@ def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
         raise AbsentError(f"no uncertainty of first order: {reason}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     units = _units(found, [key, *given])
-    lines = [
-        _BudgetLine(
-            *(line.input, line.value, line.std, line.sensitivity),
-            _over(units.get(key, "1"), units.get(line.input, "1")),
-            *(line.contribution, line.elasticity, line.share),
-        )
-        for line in uncertain.budget(key, given)
-    ]
+    lines = uncertain.budget(key, given)
     shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
     independent = sum(line.share or 0.0 for line in lines)
     relation = "inputs are taken as independent"
@@ -138,7 +118,17 @@ def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
         Field("elasticity", "elasticity", _figures),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
-    rows = [*lines, _BudgetLine(key, value, whole)]
+    values: list[dict[str, Any]] = [
+        {
+            "quantity": line.input,
+            "sensitivity_unit": _over(units.get(key, "1"), units.get(line.input, "1")),
+            **line._asdict(),
+        }
+        for line in lines
+    ]
+    values.append({"quantity": key, "value": value, "std": whole})  # last of all, as in EA-4/02
+    nothing = dict.fromkeys(field.key for field in fields)
+    rows = [SimpleNamespace(**(nothing | row), noise=row["std"]) for row in values]
     return Report({"key": key}, fields, rows, conclusions, units)
 
 
@@ -237,7 +227,7 @@ _SAMPLED = {
 
 
 class _Measured(Field):
-    """A number that is shown to one digit more than the first digit of the noise of its row."""
+    """A number that is shown to one digit more than the first digit of the `noise` of its row."""
 
     def cell(self, row: Any) -> str:
         """Return the text in a table; all such numbers of a row end at the same decimal place."""
