@@ -41,14 +41,15 @@ class Dual:
 
     def __add__(self, other: Dual | int) -> Dual:
         other = _dual(other)
-        return Dual(self.value + other.value, _total([self.partials, other.partials]))
+        return Dual(self.value + other.value, _total((self.partials, other.partials)))
 
     def __mul__(self, other: Dual | int) -> Dual:
         other = _dual(other)
+        if self.partials is None and other.partials is not None:
+            return other * self
         value = self.value * other.value
-        for x in (self, other):
-            if x.partials is None and is_zero(x.value):
-                return Dual(value)
+        if other.partials is None:
+            return Dual(value) if is_zero(other.value) else _chained(value, (self, other.value))
         return _chained(value, (self, other.value), (other, self.value))
 
     __radd__, __rmul__ = __add__, __mul__
@@ -125,7 +126,7 @@ def _total(terms: Iterable[Sequence[Plain] | None]) -> Sequence[Plain] | None:
 
 def _chained(value: Plain, *slopes: tuple[Dual, Plain]) -> Dual:
     """Return a function from its value, and from each of its arguments with the slope along it."""
-    terms = (x.partials and [slope * dx for dx in x.partials] for x, slope in slopes)
+    terms = [x.partials and [slope * dx for dx in x.partials] for x, slope in slopes]
     return Dual(value, _total(terms))
 
 
