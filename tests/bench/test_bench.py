@@ -233,7 +233,7 @@ def test_euler_angles_on_the_vertical() -> None:
         METHODS["RK45-euler"].prepare(Top(theta0_deg=0, thetadot0=1), 1e-3)
 
 
-SMALL = ["--methods", "lagtop,theta-series,DOP853-euler", "--n", 10]
+SMALL = ["--methods", "lagtop,theta-series,DOP853-euler", "--n", 10, "--timeout", 60]
 
 
 @pytest.mark.slow
