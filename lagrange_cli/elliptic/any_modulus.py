@@ -49,8 +49,9 @@ def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
 
     `ar` is an mpmath context.  Raises LagtopError for other numbers.
     """
-    check_any_modulus(k)
     real, imag = ar.convert(k.real), ar.convert(k.imag)
+    if not (real >= 0 and imag >= 0 and not (real and imag) and max(real, imag) < math.inf):
+        raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {k}", "k")
     if imag:
         root = ar.sqrt(1 + imag * imag)
         return AnyModulus(ModulusKind.IMAGINARY, Modulus(imag / root, 1 / root), root)
@@ -58,13 +59,6 @@ def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
         complement = ar.sqrt(ar.convert(Fraction(k.real) ** 2 - 1)) / real
         return AnyModulus(ModulusKind.LARGE, Modulus(1 / real, complement), real)
     return AnyModulus(ModulusKind.UNIT, exact_modulus(ar, Fraction(k.real)))
-
-
-def check_any_modulus(k: ExactComplex | complex) -> None:
-    """Raise LagtopError unless k is 0, positive, or i times a positive number."""
-    real, imag = k.real, k.imag
-    if not (real >= 0 and imag >= 0 and not (real and imag) and max(real, imag) < math.inf):
-        raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {k}", "k")
 
 
 def any_constants(ar: ManyDigits, modulus: ExactComplex | complex) -> dict[str, Numeric]:

@@ -89,8 +89,7 @@ class EtaTable(RealTable):
         if "etadot" in self.names:
             columns["etadot"] = place.rate(ar, self.quadrature)
         if not set(_CHAIN).isdisjoint(self.names):
-            found = chain(ar, (turns, rest), c, self.quadrature, self.angle)
-            columns |= zip(_CHAIN, found, strict=True)
+            columns |= chain(ar, (turns, rest), c, self.quadrature, self.angle)
         angle = f"theta_{self.angle}"
         chosen = {name: columns[name] for name in ETA_COLUMNS if name in {"tau", *self.names}}
         return {angle if name == "theta" else name: value for name, value in chosen.items()}
@@ -113,7 +112,7 @@ def chain(
     c: EtaConstants,
     quadrature: Quadrature,
     unit: str,
-) -> tuple[Numeric, Numeric, Numeric]:
+) -> dict[str, Numeric]:
     """Return h1, theta and xi' at a time given in periods since a passage of delta*.
 
         h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1) (3.2.11)
@@ -128,7 +127,7 @@ def chain(
     am, sn, cn, _ = jacobi_at(ar, x, modulus_in_use(c, quadrature))
     theta = (2 * turns + am / ar.pi - (0.5 - shift)) * half_turn
     h1 = c.sigma1 * c.period * (turns + phase - 0.25)
-    return h1, theta, (-cn if quadrature.height else sn)
+    return dict(zip(_CHAIN, (h1, theta, -cn if quadrature.height else sn), strict=True))
 
 
 class PlaceInBand(NamedTuple):

@@ -16,6 +16,7 @@ from .tables import ProvedNumbers
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
     from ..arithmetic.protocol import FunctionArithmetic, Numeric
+    from ..arithmetic.types import Array
 
 
 class Modulus(NamedTuple):
@@ -102,14 +103,27 @@ def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
     return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
 
 
+def _from_k(ar: FunctionArithmetic, k: Numeric) -> Modulus:
+    """Return k and k' = sqrt(1 - k^2), with the part of k' lost to rounding."""
+    if not ar.is_array:
+        return Modulus(k, ar.sqrt((1 - k) * (1 + k)))
+    from ..arithmetic.double_double import two_product
+
+    return Modulus(k, *_complement(*two_product(k, k)))
+
+
 def _from_m(ar: FunctionArithmetic, m: Numeric) -> Modulus:
     if not ar.is_array:
         return Modulus(ar.sqrt(m), ar.sqrt(1 - m))
-    import numpy as np
+    return Modulus(ar.sqrt(m), *_complement(m, 0.0))
 
+
+def _complement(square: Array, rest: Array | float) -> tuple[Array, Array]:
+    """Return the square root of 1 - square - rest, and the part of it lost to rounding."""
     from ..arithmetic.double_double import sqrt_pair, two_sum
 
-    return Modulus(ar.sqrt(m), *sqrt_pair(*two_sum(np.ones_like(m), -m)))
+    difference, error = two_sum(1.0, -square)
+    return sqrt_pair(difference, error - rest)
 
 
 def _from_q(ar: FunctionArithmetic, q: Numeric) -> Modulus:
@@ -135,22 +149,9 @@ def _from_q(ar: FunctionArithmetic, q: Numeric) -> Modulus:
     return Modulus(ar.where(large, other, one), ar.where(large, one, other), 0 * q)
 
 
-def _complement(ar: FunctionArithmetic, k: Numeric) -> tuple[Numeric, Numeric]:
-    """Return sqrt(1 - k^2) and the part of it lost to rounding."""
-    if not ar.is_array:
-        return ar.sqrt((1 - k) * (1 + k)), 0 * k
-    import numpy as np
-
-    from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
-
-    square, error = two_product(k, k)
-    difference, rest = two_sum(np.ones_like(k), -square)
-    return sqrt_pair(*two_sum(difference, rest - error))
-
-
 _FROM: dict[str, Callable[[FunctionArithmetic, Numeric], Modulus]] = {
-    "k": lambda ar, k: Modulus(k, *_complement(ar, k)),
-    "k_prime": lambda ar, other: Modulus(_complement(ar, other)[0], other, 0 * other),
+    "k": _from_k,
+    "k_prime": lambda ar, other: Modulus(_from_k(ar, other).k_prime, other, 0 * other),
     "m": _from_m,
     "angle": lambda ar, angle: Modulus(ar.sin(angle), ar.cos(angle), 0 * angle),
     "q": _from_q,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from decimal import Decimal
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -17,11 +18,16 @@ AR = decimals(40)
 PLACES = [("0", "1"), ("1e-60", "1"), ("0.3", "0.7"), ("2", "1e-30"), ("1", "0")]
 
 
-def place(m: Decimal, s2: str, c2: str) -> mpmath.mpf:
-    """Return pi F(phi, m)/2K(m) for the amplitude phi with sin^2 : cos^2 = s2 : c2."""
-    phi = mpmath.atan2(mpmath.sqrt(mpmath.mpf(s2)), mpmath.sqrt(mpmath.mpf(c2)))
-    m = mpmath.mpf(str(m))
-    return mpmath.pi * mpmath.ellipf(phi, m) / (2 * mpmath.ellipk(m))
+def place(modulus: Any, s2: Any, c2: Any, *, imaginary: bool = False) -> mpmath.mpf:
+    """Return pi F(phi, m)/2K(m) for the amplitude phi with sin^2 : cos^2 = s2 : c2.
+
+    An imaginary place is pi F(phi, 1 - m)/2K(m).
+    """
+    m, sine2, cosine2 = (
+        mpmath.mpf(x if isinstance(x, float) else str(x)) for x in (modulus, s2, c2)
+    )
+    phi = mpmath.atan2(mpmath.sqrt(sine2), mpmath.sqrt(cosine2))
+    return mpmath.pi * mpmath.ellipf(phi, 1 - m if imaginary else m) / (2 * mpmath.ellipk(m))
 
 
 def away(value: Decimal, exact: mpmath.mpf) -> float:
@@ -48,9 +54,7 @@ def test_places_on_the_real_axis(m: str, s2: str, c2: str) -> None:
 def test_places_on_the_imaginary_axis(m: str, s2: str, c2: str) -> None:
     with mpmath.workdps(120), AR.working():
         modulus = Decimal(m)
-        complement, both = 1 - mpmath.mpf(m), mpmath.mpf(m)
-        phi = mpmath.atan2(mpmath.sqrt(mpmath.mpf(s2)), mpmath.sqrt(mpmath.mpf(c2)))
-        y = mpmath.pi * mpmath.ellipf(phi, complement) / (2 * mpmath.ellipk(both))
+        y = place(modulus, s2, c2, imaginary=True)
         cosh, sinh = hyperbolic_cosine_and_sine(
             AR, m=modulus, k_prime=(1 - modulus).sqrt(), s2=Decimal(s2), c2=Decimal(c2)
         )
@@ -69,9 +73,7 @@ def test_pairs_of_doubles() -> None:
     )
     with mpmath.workdps(60):
         for i in range(3):
-            phi = mpmath.atan2(mpmath.sqrt(mpmath.mpf(s2[i])), mpmath.sqrt(mpmath.mpf(c2[i])))
-            parameter = mpmath.mpf(m[i])
-            x = mpmath.pi * mpmath.ellipf(phi, parameter) / (2 * mpmath.ellipk(parameter))
+            x = place(*map(float, (m[i], s2[i], c2[i])))
             for found, exact in ((cos, mpmath.cos(x)), (sin, mpmath.sin(x))):
                 value = mpmath.mpf(found.high[i]) + mpmath.mpf(found.low[i])
                 assert abs(value - exact) < 1e-30 * exact

@@ -177,12 +177,16 @@ ITERATIONS = SMOOTH | {
 }
 
 
+def theta_at_complex(ij: str, z: acb, k: Fraction) -> acb:
+    """Return theta_ij(z) by Arb."""
+    m = exact_arb(k) ** 2
+    one, two, three, four = acb.modular_theta(z, acb(0, quarter(1 - m) / quarter(m)))
+    return {"11": one, "10": two, "00": three, "01": four}[ij]
+
+
 def theta_of(ij: str, x: arb, k: Fraction) -> arb:
     """Return theta_ij(x) by Arb."""
-    m = exact_arb(k) ** 2
-    tau = acb(0, quarter(1 - m) / quarter(m))
-    one, two, three, four = acb.modular_theta(acb(x), tau)
-    return real({"11": one, "10": two, "00": three, "01": four}[ij])
+    return real(theta_at_complex(ij, acb(x), k))
 
 
 def along(function: Callable[..., arb], point: list[arb], i: int, x: arb) -> arb:
@@ -210,10 +214,7 @@ def omega_of(ij: str, x: arb, y: arb, k: Fraction) -> arb:
 
 def imaginary_omega_of(ij: str, x: arb, y: arb, k: Fraction) -> arb:
     """Return the tangent of Omega_ij/i of an imaginary parameter, in periods."""
-    m = exact_arb(k) ** 2
-    tau = acb(0, quarter(1 - m) / quarter(m))
-    which = {"11": 0, "10": 1, "00": 2, "01": 3}[ij]
-    value = acb.modular_theta(acb(x, -y), tau)[which]
+    value = theta_at_complex(ij, acb(x, -y), k)
     return value.imag / value.real
 
 
@@ -292,10 +293,7 @@ def test_what_pi_grows_by_in_a_period_holds_the_truth(k: str, ij: str, imaginary
 
 def _log_size(ij: str, y: arb, k: str) -> arb:
     """Return the logarithm of |theta_ij(iy)|, whose derivative by y is -2K Z(iy)/i."""
-    m = exact_arb(k) ** 2
-    tau = acb(0, quarter(1 - m) / quarter(m))
-    which = {"11": 0, "10": 1, "00": 2, "01": 3}[ij]
-    return abs(acb.modular_theta(acb(0, y), tau)[which]).log()
+    return abs(theta_at_complex(ij, acb(0, y), Fraction(k))).log()
 
 
 @pytest.mark.parametrize("q", ["0.01", "0.04", "0.3", "0.9"])
