@@ -48,9 +48,9 @@ def unrounded(value: Any, nearest: float) -> Number:
     return Fraction(*exact.as_integer_ratio())
 
 
-def per_radian(*, radians: bool) -> float:
-    """Return the size of one radian in the unit of angles in use, radians or degrees."""
-    return 1.0 if radians else 180 / math.pi
+def angle_unit(*, radians: bool) -> tuple[float, str]:
+    """Return the size of one radian in the unit of angles in use, and the name of this unit."""
+    return (1.0, "rad") if radians else (180 / math.pi, "deg")
 
 
 def unit_in_radians(*, radians: bool) -> float:

@@ -144,7 +144,7 @@ def fit_command(
     if scene_path and not failed:
         _write_scene(found[0], recording, system, scene_path)
     if plot:
-        _draw(found, plot, radians)
+        _draw(found, plot)
     _write(found, recording, system, out.replace(path="-") if scene_path else out)
     if failed and scene_path:
         complain(f"Warning: {scene_path} is not written: the fit has failed")
@@ -260,10 +260,10 @@ def _write_scene(outcome: Outcome, source: str, system: System | None, path: str
     write_bytes(path, lambda: scene_text(outcome, source, system).encode())
 
 
-def _draw(found: list[Outcome], path: str, radians: bool) -> None:
+def _draw(found: list[Outcome], path: str) -> None:
     from ..fits.report import curves_of
     from ..output.destination import write_bytes
     from ..plot.reports import draw_fit
 
     curves = [curve for outcome in found for curve in curves_of(outcome)]
-    write_bytes(path, partial(draw_fit, curves, "rad" if radians else "deg", path))
+    write_bytes(path, partial(draw_fit, curves, found[0].angle, path))

@@ -11,9 +11,9 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from .harmonics import frame_of, slowest_spin
-from .least_squares import LEAST_SIGMA, FittedParameters, Problem
+from .least_squares import FittedParameters, Problem, fitted_from
 from .nutation import Shown, Turns, shown_by, turns_in
-from .parameters import FIT_QUANTITIES, Parameters, parameters_of
+from .parameters import FIT_QUANTITIES, parameters_of
 from .recording import Recording
 from .starting_tops import StartingTop, starting_tops
 
@@ -37,8 +37,6 @@ class Attempt(NamedTuple):
 
     problem: Problem
     solution: FittedParameters
-    mirrored: bool
-    """Whether psi is counted in the other direction."""
     noise: Mapping[str, float]
     """Noise by channel, in radians, estimated by a fit of plain harmonics."""
     rival: Mapping[str, float] | None = None
@@ -46,13 +44,8 @@ class Attempt(NamedTuple):
 
     @property
     def recording(self) -> Recording:
-        """The recording, with psi counted in the direction of the attempt."""
+        """The recording, with psi counted in the direction that fits."""
         return self.problem.recordings[0]
-
-    @property
-    def chi2(self) -> float:
-        """The sum of the squares of the residuals, each over its standard deviation."""
-        return self.solution.chi2
 
     @property
     def body(self) -> tuple[Array, Array]:
@@ -86,31 +79,28 @@ def best_attempt(
 
     Raises LagtopError, DataError for a recording that cannot be fitted.
     """
-    parameters = parameters_of(known, stds, [recording])
-    _check(recording, parameters, where)
+    _check(recording, known, len(parameters_of(known, stds, [recording]).names), where)
     ways = _ways(recording, known, where)
     found: list[Attempt] = []
     for wide in (False, True):
         cases = _cases(ways, known, wide=wide)
-        begun = [made for case in cases if (made := _begun(*case, parameters)) is not None]
+        begun = [made for case in cases if (made := _begun(*case, known, stds)) is not None]
         found += _finished(begun)
-        if found and _least(found).explains():
+        if found and min(found, key=_chi2).explains():
             break
     if not found:
         raise DataError(f"{where}: no motion of a top matches the recording")
     return _told_apart([*map(_slowed, found)])
 
 
-def _check(recording: Recording, parameters: Parameters, where: str) -> None:
+def _check(recording: Recording, known: Mapping[str, float], unknowns: int, where: str) -> None:
     """Raise DataError for too few numbers, LagtopError if the angles do not determine a top."""
-    known = parameters.known
-    count = sum(int(np.isfinite(recording.angles[x]).sum()) for x in recording.angles)
-    if count <= len(parameters.names):
-        raise DataError(
-            f"{where} must have more numbers than there are unknowns, got {count} for "
-            f"{len(parameters.names)}"
-        )
     seen = recording.angles.keys()
+    count = sum(int(np.isfinite(x).sum()) for x in recording.angles.values())
+    if count <= unknowns:
+        raise DataError(
+            f"{where} must have more numbers than there are unknowns, got {count} for {unknowns}"
+        )
     if seen == {"theta"} and "psidot0" not in known:
         raise LagtopError(
             f"{where} has neither psi nor phi, and theta does not determine b: fix psidot0 "
@@ -123,21 +113,16 @@ def _check(recording: Recording, parameters: Parameters, where: str) -> None:
         )
 
 
-class _Way(NamedTuple):
-    """A recording with psi counted in one direction, and the nutation that it then shows."""
-
-    recording: Recording
-    mirrored: bool
-    shown: Shown | Turns
+_Way = tuple[Recording, Shown | Turns]
+"""A recording with psi counted in one direction, and the nutation that it then shows."""
 
 
 def _ways(recording: Recording, known: Mapping[str, float], where: str) -> list[_Way]:
     """Return a recording, and its mirror image too if its spin determines the direction of psi."""
     spins = recording.kind == "angles" and "psi" in recording.angles
     both = spins and ("phi" in recording.angles or "r0" in known)
-    ways = [(recording, False), (recording.mirrored, True)][: 1 + both]
     look = shown_by if "theta" in recording.angles else turns_in
-    return [_Way(one, mirrored, look(one, where)) for one, mirrored in ways]
+    return [(one, look(one, where)) for one in [recording, recording.mirrored][: 1 + both]]
 
 
 def _cases(
@@ -149,9 +134,8 @@ def _cases(
     for way in ways:
         cases = [
             (way, start)
-            for start in starting_tops(way.recording, way.shown, known.get("theta0"), wide=wide)
-            if "phi" in way.recording.angles
-            or start.state[1] * known.get("r0", start.state[1]) >= 0
+            for start in starting_tops(*way, known.get("theta0"), wide=wide)
+            if "phi" in way[0].angles or start.values["b"] * known.get("r0", start.values["b"]) >= 0
         ]
         first, others = first + cases[:1], others + cases[1:]
     nearest = min((start.misfit for _, start in first), default=0.0)
@@ -159,49 +143,33 @@ def _cases(
     return first + sorted(others, key=lambda case: case[1].misfit)[: _MOST_STARTS - len(first)]
 
 
-def _begun(way: _Way, start: StartingTop, parameters: Parameters) -> Attempt | None:
+def _begun(
+    way: _Way, start: StartingTop, known: Mapping[str, float], stds: Mapping[str, float]
+) -> Attempt | None:
     """Return the result of some steps from one start, or None if they leave the valid tops."""
-    noise = way.shown.noise
-    problem = Problem([way.recording], [sigma_of(way.recording, noise)], parameters)
-    a, b, theta, nutation, precession = start.state
-    r0 = parameters.known.get("r0", b + start.excess)
-    values = {
-        **{"a": a, "b": b, "ratio": b / r0 if r0 else 1.0, "r0": r0},
-        **{"theta0": theta, "thetadot0": nutation, "psidot0": precession},
-        **{"psi_zero": start.psi_zero, "phi_zero": start.phi_zero},
-        **{name: parameters.known[name] for name in parameters.stds},
-    }
+    recording, noise = way[0], way[1].noise
+    values = start.values | {"r0": known.get("r0", start.values["r0"])}
     try:
-        first = np.array([values[name] for name, _ in parameters.names])
-        solution = problem.solve(first, _FIRST_STEPS)
+        fit = fitted_from([values], [recording], [noise], known, stds, steps=_FIRST_STEPS)
     except LagtopError:
         return None
-    return Attempt(problem, solution, way.mirrored, noise)
-
-
-def sigma_of(recording: Recording, noise: Mapping[str, float]) -> Mapping[str, Array]:
-    """Return the standard deviations, or estimates from the noise if they are unknown."""
-    greatest = max(noise.values())
-    return recording.sigma or {
-        x: np.full(recording.t.size, max(noise.get(x, greatest), LEAST_SIGMA))
-        for x in recording.channels
-    }
+    return Attempt(*fit, noise)
 
 
 def _finished(begun: Sequence[Attempt]) -> list[Attempt]:
     """Return the best attempts at convergence, each for a different top."""
     found: list[Attempt] = []
-    nearest = sorted(begun, key=lambda attempt: attempt.chi2)
+    nearest = sorted(begun, key=_chi2)
     for one in nearest:
-        if one.chi2 > _COMPARABLE * nearest[0].chi2 or len(found) == _MOST_FINISHED:
+        if _chi2(one) > _COMPARABLE * _chi2(nearest[0]) or len(found) == _MOST_FINISHED:
             break
         if all(one.differs(other) for other in found):
             found.append(one if one.solution.converged else one.continued(one.solution.values))
     return found
 
 
-def _least(found: Sequence[Attempt]) -> Attempt:
-    return min(found, key=lambda attempt: attempt.chi2)
+def _chi2(attempt: Attempt) -> float:
+    return attempt.solution.chi2
 
 
 def _slowed(found: Attempt) -> Attempt:
@@ -220,7 +188,7 @@ def _slowed(found: Attempt) -> Attempt:
     values = found.solution.values.copy()
     values[parameters.names.index(("r0", 0))] = slowest
     other = found.continued(values)
-    return other if other.chi2 < _MUCH * found.chi2 else found
+    return other if _chi2(other) < _MUCH * _chi2(found) else found
 
 
 def _told_apart(found: Sequence[Attempt]) -> Attempt:
@@ -228,13 +196,14 @@ def _told_apart(found: Sequence[Attempt]) -> Attempt:
 
     A spin of more than half a turn per frame is dropped if a slower one fits equally well.
     """
-    best = _least(found)
-    chance = _CHANCE * best.chi2 / max(best.solution.dof, 1)
-    alike = [one for one in found if one.chi2 - best.chi2 <= chance]
+    best = min(found, key=_chi2)
+    chance = _CHANCE * _chi2(best) / max(best.solution.dof, 1)
+    alike = [one for one in found if _chi2(one) - _chi2(best) <= chance]
     alike = [one for one in alike if not _is_fast(one)] or alike
-    best = _least(alike)
+    best = min(alike, key=_chi2)
     others = [one for one in alike if one.differs(best)]
-    return best._replace(rival=_least(others).solution.named(0) if others else None)
+    rival = min(others, key=_chi2, default=None)
+    return best._replace(rival=None if rival is None else rival.solution.named(0))
 
 
 def _is_fast(found: Attempt) -> bool:

@@ -6,8 +6,7 @@ record.  The elementary formulas of fast tops are added for comparison.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -39,33 +38,17 @@ class DerivedNumber(NamedTuple):
 
     key: str
     value: float
-    gradient: Mapping[str, float]
-    """Derivatives by a, b, r0 and the start."""
+    gradient: Array
+    """Derivatives by the quantities of the fit, NaN if there is none."""
     meaning: str
-    exact: str = ""
-    """The key of the exact number that an elementary formula approximates."""
-
-    def std(self, labels: Sequence[str], covariance: Array) -> float:
-        """Return the standard deviation, from a covariance in the order of the labels.
-
-        It is NaN if the number has no derivative by an uncertain quantity.
-        """
-        uncertain = np.diag(covariance) > 0
-        change = np.array([self.gradient.get(label, 0.0) for label in labels])
-        change = np.where(uncertain, change, 0.0)
-        return math.sqrt(max(float(change @ covariance @ change), 0.0))
-
-    def less(self, other: DerivedNumber) -> DerivedNumber:
-        """Return the difference of two numbers as a derived number."""
-        names = {*self.gradient, *other.gradient}
-        gradient = {x: self.gradient.get(x, 0.0) - other.gradient.get(x, 0.0) for x in names}
-        return DerivedNumber("", self.value - other.value, gradient, "")
+    exact: str
+    """The key of the exact number that an elementary formula approximates, or empty."""
 
 
 def derived_numbers(values: Mapping[str, float], *, spins: bool) -> Iterator[DerivedNumber]:
     """Yield the numbers that follow from values of a, b and the start, and of r0 if it is known.
 
-    Keys that the motion does not have are omitted.
+    The derivatives are in the order of the values.  Keys that the motion does not have are omitted.
     """
     top = Top(**inputs_of(*(values[name] for name in STATE)))
     motion, slopes = solve(top), sensitivities(top, _DERIVED).derivatives
@@ -79,4 +62,5 @@ def derived_numbers(values: Mapping[str, float], *, spins: bool) -> Iterator[Der
         if key == _SPIN:  # the top has r0 = b: the spin of the body grows by (r0 - b) t more
             value += values["r0"] - values["b"]
             gradient |= {"r0": 1.0, "b": gradient["b"] - 1}
-        yield DerivedNumber(key, value, gradient, declared[key].meaning, _STANDS_FOR.get(key, ""))
+        in_order = np.array([gradient.get(name, 0.0) for name in values])
+        yield DerivedNumber(key, value, in_order, declared[key].meaning, _STANDS_FOR.get(key, ""))

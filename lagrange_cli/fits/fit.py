@@ -16,19 +16,15 @@ from ..inputs.given import gather
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions
 from ..inputs.value import Value, parse_value, value_of
-from .attempts import best_attempt, sigma_of
-from .least_squares import LEAST_SIGMA, FittedParameters, Problem
+from .attempts import best_attempt
+from .least_squares import fitted_from, reweighted
 from .nutation import NoNutationError
-from .parameters import Parameters, known_inputs, parameters_of
+from .parameters import known_inputs
 from .record import Fit, Outcome
 from .recording import Reading, Recording, Source, recording_of
 from .steady import SteadyOutcome, steady_fit
 
 _IN_RADIANS = Conventions("wxyz", radians=True)
-_STEADY, _REWEIGHTINGS = 0.01, 6
-"""Tolerance of chi^2/dof around 1, and largest number of rounds, when standard deviations are taken
-from the residuals.
-"""
 
 
 def fit_recordings(
@@ -66,57 +62,12 @@ def _fitted(
     names = [f"{where}, {x.name}" if x.name else where for x in recordings]
     alone = [best_attempt(x, known, stds, name) for x, name in zip(recordings, names, strict=True)]
     noise, recordings = [one.noise for one in alone], [one.recording for one in alone]
-    problem, solution, rival = alone[0].problem, alone[0].solution, alone[0].rival
     if len(alone) > 1:
-        sigma = [*map(sigma_of, recordings, noise)]
-        together = parameters_of(known, stds, recordings)
-        problem, rival = Problem(recordings, sigma, together), None
-        solution = problem.solve(joined(together, [one.solution.named(0) for one in alone]))
-    sigma_known = bool(recordings[0].sigma)
-    if not sigma_known:
-        problem, solution = reweighted(problem, solution)
-    if len(alone) == 1:
-        solution = problem.with_reach(solution)
-    return Fit(recordings, solution, sigma_known, [one.mirrored for one in alone], noise, rival)
-
-
-def reweighted(problem: Problem, solution: FittedParameters) -> tuple[Problem, FittedParameters]:
-    """Return a problem with standard deviations taken from its residuals, and its solution."""
-    for _ in range(_REWEIGHTINGS):
-        problem = Problem(problem.recordings, sigma_left(solution), problem.parameters)
-        solution = problem.solve(solution.values)
-        if abs(solution.chi2 / max(solution.dof, 1) - 1) < _STEADY:
-            break
-    return problem, solution
-
-
-def sigma_left(solution: FittedParameters) -> list[dict[str, Array]]:
-    """Return the standard deviations of residuals by recording, common to all recordings."""
-    rest = solution.residuals
-    count = sum(int(np.isfinite(values).sum()) for one in rest for values in one.values())
-    share = count / max(solution.dof, 1)
-    sigma: dict[str, float] = {}
-    for channel in {channel: None for one in rest for channel in one}:
-        joined = np.concatenate([one[channel] for one in rest if channel in one])
-        sigma[channel] = max(float(np.sqrt(np.nanmean(joined**2) * share)), LEAST_SIGMA)
-    return [{name: np.full(x.size, sigma[name]) for name, x in one.items()} for one in rest]
-
-
-def joined(together: Parameters, alone: Sequence[Mapping[str, float]]) -> Array:
-    """Return the start of a fit of several recordings, from the quantities of each."""
-    found = [
-        {
-            **one,
-            "ratio": one["b"] / one["r0"] if one["r0"] else 1.0,
-            **{name: together.known[name] for name in together.stds},
-        }
-        for one in alone
-    ]
-    values = [
-        np.median([one[name] for j, one in enumerate(found) if i in {-1, j}])
-        for name, i in together.names
-    ]
-    return np.array(values)
+        starts = [one.solution.named(0) for one in alone]
+        _, solution = reweighted(*fitted_from(starts, recordings, noise, known, stds))
+        return Fit(recordings, solution, noise)
+    problem, solution = reweighted(alone[0].problem, alone[0].solution)
+    return Fit(recordings, problem.with_reach(solution), noise, alone[0].rival)
 
 
 def fit(
@@ -182,21 +133,12 @@ def recording_from(
     if (back := np.flatnonzero(np.diff(times) < 0)).size:
         before, after = times[back[0] : back[0] + 2].tolist()
         raise LagtopError(f"t must not turn back, got {after} after {before}", "t")
-    _check_alone(arrays)
-    rows = {"t": times, **arrays}
-    columns = {name: x if x.ndim > 1 else x[:, np.newaxis] for name, x in rows.items()}
+    if len(arrays) != max(sum(name in ANGLES for name in arrays), 1):
+        shown = ", ".join(arrays) or "nothing"
+        raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
+    columns = {name: x.reshape(len(x), -1) for name, x in {"t": times, **arrays}.items()}
     source = Source("the recording", Reading(conventions=_IN_RADIANS, sigma=sigma), {}, {})
     return recording_of("", source, columns)
-
-
-def _value(name: str, given: Any) -> Value:
-    """Return a known input as a value.  Raises LagtopError."""
-    if not isinstance(given, str):
-        return value_of(name, given)
-    try:
-        return parse_value(given, uncertain=True)
-    except LagtopError as error:
-        raise LagtopError(f"{name} {error}", name) from None
 
 
 def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -208,9 +150,11 @@ def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
     return array
 
 
-def _check_alone(arrays: Mapping[str, Array]) -> None:
-    """Raise LagtopError unless the arrays are angles only, or a single other quantity."""
-    angles = sum(name in ANGLES for name in arrays)
-    if len(arrays) != max(angles, 1):
-        shown = ", ".join(arrays) or "nothing"
-        raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
+def _value(name: str, given: Any) -> Value:
+    """Return a known input as a value.  Raises LagtopError."""
+    if not isinstance(given, str):
+        return value_of(name, given)
+    try:
+        return parse_value(given, uncertain=True)
+    except LagtopError as error:
+        raise LagtopError(f"{name} {error}", name) from None

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.numbers import per_radian, unit_in_radians
+from ..arithmetic.numbers import angle_unit, unit_in_radians
 from ..arithmetic.protocol import Numeric
 from ..arithmetic.types import Array
 from ..elliptic.complete import complete_k, period_mean
@@ -62,7 +62,8 @@ class TurningPoints(NamedTuple):
         Raises LagtopError for values that no top has, with tilts in degrees or in radians.
         """
         if not 0 < self.theta_min < self.theta_max < math.pi:
-            most, unit = "pi" if radians else "180 degrees", per_radian(radians=radians)
+            most = "pi" if radians else "180 degrees"
+            unit, _ = angle_unit(radians=radians)
             raise LagtopError(
                 f"theta_min and theta_max must satisfy 0 < theta_min < theta_max < {most}, "
                 f"got {self.theta_min * unit:g} and {self.theta_max * unit:g}"

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from .model import STATE, Residuals, angles_and_slopes, residuals
-from .parameters import FIT_QUANTITIES, Coordinates, Parameters, SteadyParameters
+from .model import STATE, angles_and_slopes, residuals
+from .parameters import FIT_QUANTITIES, Coordinates, Parameters, parameters_of
 from .recording import Recording
 
 _FAR = 1e3
@@ -25,19 +25,16 @@ _REACH, _BENT = 3.0, 0.2
 """Standard deviations at which chi^2 is checked, and its permitted distance from a parabola."""
 _MOST_STRETCHES, _MOST_HELD, _HOLD = 10, 20, 100.0
 """Extensions to find three standard deviations, steps of each, and weight that holds each end."""
-_N = len(STATE)
-_BEYOND = 0.00135
-"""Probability beyond each bound of chi^2, as for three standard deviations."""
-_DEVIATIONS = 3.0
-"""Bound of the autocorrelation of noise, in standard deviations 1/sqrt(n)."""
-_ROUNDING = 1e-11
-"""Residuals of data without noise, in radians."""
+_STEADY, _REWEIGHTINGS = 0.01, 6
+"""Tolerance of chi^2/dof around 1, and largest number of rounds, when standard deviations are taken
+from the residuals.
+"""
 
 
 class FittedParameters(NamedTuple):
     """Parameters with the least sum of squares."""
 
-    parameters: Parameters | SteadyParameters
+    parameters: Parameters
     values: Array
     covariance: Array
     chi2: float
@@ -59,17 +56,17 @@ class FittedParameters(NamedTuple):
 
 
 class Problem:
-    """Recordings with their standard deviations, and the parameters to fit."""
+    """Recordings with the standard deviations of their channels, and the parameters to fit."""
 
     def __init__(
         self,
         recordings: Sequence[Recording],
-        sigma: Sequence[Mapping[str, Array]],
+        sigma: Sequence[Mapping[str, ArrayLike]],
         parameters: Parameters,
     ) -> None:
         self.recordings, self.parameters = recordings, parameters
         self.sigma = [
-            np.stack([spread[channel] for channel in recording.channels])
+            np.stack([np.broadcast_to(spread[x], recording.t.shape) for x in recording.channels])
             for recording, spread in zip(recordings, sigma, strict=True)
         ]
         self.by = Coordinates([name for name, _ in parameters.names])
@@ -125,7 +122,8 @@ class Problem:
         inverse = _Inverse(self._slopes(centre))
         spread, weakest = inverse.spread, inverse.weakest
         column, across = spread[:, weakest], inverse.measure
-        rises = [self._chi2(centre + way * column) - solution.chi2 for way in (_REACH, -_REACH)]
+        far = [self.by.parameters(centre + way * column) for way in (_REACH, -_REACH)]
+        rises = [float(np.sum(self._at(x)[0] ** 2)) - solution.chi2 for x in far]
         if all(abs(rise / _REACH**2 - 1) < _BENT for rise in rises):
             return solution
         ends = [self._followed(centre, way * column, across, solution.chi2) for way in (1, -1)]
@@ -160,9 +158,6 @@ class Problem:
             at, step = held.x, (held.x - at) * (1 if rise > 1 else 2)
         return values + off
 
-    def _chi2(self, coordinates: Array) -> float:
-        return float(np.sum(self._at(self.by.parameters(coordinates))[0] ** 2))
-
     def _slopes(self, coordinates: Array) -> Array:
         """Return the derivatives of the residuals by the coordinates."""
         slopes: Array = self._at(self.by.parameters(coordinates))[1] @ self.by.slopes(coordinates)
@@ -184,50 +179,90 @@ class Problem:
         whole, slopes, left = [], [], []
         for i, (recording, sigma) in enumerate(zip(self.recordings, self.sigma, strict=True)):
             known = np.isfinite(sigma) & recording.known
+            rows = np.full(sigma.shape, np.nan)
+            off, change = np.full(sigma.shape, _FAR), np.zeros((*sigma.shape, values.size))
             rest = _left(recording, *self.parameters.quantities(values, i))
-            if rest is None:
-                whole.append(np.full(int(known.sum()), _FAR))
-                slopes.append(np.zeros((int(known.sum()), values.size)))
-                rows = np.full(sigma.shape, np.nan)
-            else:
-                residual, change = rest
-                whole.append((residual.values / sigma)[known])
-                slopes.append(np.nan_to_num((change / sigma[..., np.newaxis])[known]))
-                rows = np.where(known, residual.values, np.nan)
+            if rest is not None:
+                rows = np.where(known, rest[0], np.nan)
+                off, change = rest[0] / sigma, rest[1] / sigma[..., np.newaxis]
+            whole.append(off[known])
+            slopes.append(np.nan_to_num(change[known]))
             left.append(dict(zip(recording.channels, rows, strict=True)))
         off, of_off = self.parameters.priors(values)
         return np.concatenate([*whole, off]), np.concatenate([*slopes, of_off]), left
 
 
-def _left(
-    recording: Recording, quantities: Array, by_parameter: Array
-) -> tuple[Residuals, Array] | None:
-    """Return residuals and their derivatives by the parameters; None if there is no such top."""
+def fitted_from(
+    starts: Sequence[Mapping[str, float]],
+    recordings: Sequence[Recording],
+    noise: Sequence[Mapping[str, float]],
+    known: Mapping[str, float],
+    stds: Mapping[str, float],
+    *,
+    steps: int = MOST_STEPS,
+) -> tuple[Problem, FittedParameters]:
+    """Return the fit of one body to recordings, and its result, from the quantities of each.
+
+    Standard deviations that are not given are estimated from the noise.  Raises LagtopError.
+    """
+    parameters = parameters_of(known, stds, recordings)
+    problem = Problem(recordings, [*map(_sigma_of, recordings, noise)], parameters)
+    return problem, problem.solve(parameters.start(starts), steps)
+
+
+def _sigma_of(recording: Recording, noise: Mapping[str, float]) -> Mapping[str, ArrayLike]:
+    """Return the standard deviations, or estimates from the noise if they are unknown."""
+    greatest = max(noise.values())
+    guessed = {x: max(noise.get(x, greatest), LEAST_SIGMA) for x in recording.channels}
+    return recording.sigma or guessed
+
+
+def reweighted(problem: Problem, solution: FittedParameters) -> tuple[Problem, FittedParameters]:
+    """Return a fit with standard deviations from its residuals, unless they are given."""
+    if problem.recordings[0].sigma:
+        return problem, solution
+    for _ in range(_REWEIGHTINGS):
+        sigma = [_sigma_left(solution)] * len(problem.recordings)
+        problem = Problem(problem.recordings, sigma, problem.parameters)
+        solution = problem.solve(solution.values)
+        if abs(solution.chi2 / max(solution.dof, 1) - 1) < _STEADY:
+            break
+    return problem, solution
+
+
+def _sigma_left(solution: FittedParameters) -> dict[str, float]:
+    """Return the standard deviations of residuals by channel, common to all recordings."""
+    rest = solution.residuals
+    count = sum(int(np.isfinite(values).sum()) for one in rest for values in one.values())
+    share = count / max(solution.dof, 1)
+    sigma: dict[str, float] = {}
+    for channel in {channel: None for one in rest for channel in one}:
+        joined = np.concatenate([one[channel] for one in rest if channel in one])
+        sigma[channel] = max(float(np.sqrt(np.nanmean(joined**2) * share)), LEAST_SIGMA)
+    return sigma
+
+
+def _left(recording: Recording, quantities: Array, slopes: Array) -> tuple[Array, Array] | None:
+    """Return residuals and their derivatives by the parameters; None if there is no such top.
+
+    The motion has the zeros and the spin rate of the recording.
+    """
+    t = recording.t
     try:
-        angles, by_state = angles_and_slopes(quantities[:_N], recording.t)
+        angles, by_state = angles_and_slopes(quantities[: len(STATE)], t)
     except LagtopError:
         return None
-    moved, by_values = _recorded_angles(recording.t, quantities, by_parameter, angles, by_state)
-    rest = residuals(recording, moved)
-    return rest, np.einsum("cta,atp->ctp", rest.slopes, by_values)
-
-
-def _recorded_angles(
-    t: Array, quantities: Array, by_parameter: Array, angles: Array, by_state: Array
-) -> tuple[Array, Array]:
-    """Return the angles with the zeros and the spin rate of a recording, and derivatives."""
     value = dict(zip(FIT_QUANTITIES, quantities, strict=True))
-    slope = dict(zip(FIT_QUANTITIES, by_parameter, strict=True))
-    by_values = by_state @ by_parameter[:_N]
-    moved = angles.copy()
-    spins = bool(value["r0"] or slope["r0"].any())
-    if spins:
-        moved[1] += (value["r0"] - value["b"]) * t
+    slope = dict(zip(FIT_QUANTITIES, slopes, strict=True))
+    angles, by_values = angles.copy(), by_state @ slopes[: len(STATE)]
+    if value["r0"] or slope["r0"].any():
+        angles[1] += (value["r0"] - value["b"]) * t
         by_values[1] += t[:, np.newaxis] * (slope["r0"] - slope["b"])
     for i, name in ((1, "phi_zero"), (2, "psi_zero")):
-        moved[i] += value[name]
+        angles[i] += value[name]
         by_values[i] += slope[name]
-    return moved, by_values
+    rest = residuals(recording, angles)
+    return rest.values, np.einsum("cta,atp->ctp", rest.slopes, by_values)
 
 
 class _Inverse:
@@ -261,38 +296,3 @@ class _Inverse:
         """Return the names of the numbers that are not determined."""
         shares = np.abs(self.rows[~self.determined]).max(axis=0, initial=0.0)
         return [*dict.fromkeys(name for name, x in zip(names, shares, strict=True) if x > 0.05)]
-
-
-class Residual(NamedTuple):
-    """The residuals of one channel."""
-
-    rows: int
-    rms: float
-    """Root of the mean square, in radians."""
-    lag1: float
-    """Correlation of each residual with the next one."""
-
-    @property
-    def is_noise(self) -> bool:
-        """Whether the correlation is within three standard deviations of 0, or due to rounding."""
-        return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
-
-
-def residual_of(values: Array) -> Residual:
-    """Return the size and the correlation of the residuals of one channel; NaN is missing."""
-    known = values[np.isfinite(values)]
-    total = float(np.sum(known * known))
-    if not total:
-        return Residual(known.size, 0.0, 0.0)
-    return Residual(
-        known.size, math.sqrt(total / known.size), float(np.sum(known[1:] * known[:-1])) / total
-    )
-
-
-def chi2_bounds(dof: int) -> tuple[float, float]:
-    """Return the bounds that chi^2/dof exceeds by chance once in 370 times."""
-    from scipy.special import gammaincinv
-
-    half = dof / 2
-    low, high = (float(gammaincinv(half, p)) / half for p in (_BEYOND, 1 - _BEYOND))
-    return low, high

@@ -8,6 +8,7 @@ meridian and across it.  The attitude also has the rotation about the axis.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,6 +36,12 @@ MEANINGS = {
     "psi_zero": "psi of the data in the first row",
     "phi_zero": "phi of the data in the first row",
 }
+_DEVIATIONS = 3.0
+"""Bound of the autocorrelation of noise, in standard deviations 1/sqrt(n)."""
+_ROUNDING = 1e-11
+"""Residuals of data without noise, in radians."""
+_BEYOND = 0.00135
+"""Probability beyond each bound of chi^2, as for three standard deviations."""
 STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
 """The state of a motion: the constants (4,4) and (4,5), and the start in radians."""
 
@@ -119,3 +126,38 @@ def _of_angles(recording: Recording, angles: Array) -> Residuals:
         slope[:, i] = -1.0
         slopes.append(slope)
     return Residuals(np.stack(values), np.stack(slopes))
+
+
+class Residual(NamedTuple):
+    """The residuals of one channel."""
+
+    rows: int
+    rms: float
+    """Root of the mean square, in radians."""
+    lag1: float
+    """Correlation of each residual with the next one."""
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether the correlation is within three standard deviations of 0, or due to rounding."""
+        return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
+
+
+def residual_of(values: Array) -> Residual:
+    """Return the size and the correlation of the residuals of one channel; NaN is missing."""
+    known = values[np.isfinite(values)]
+    total = float(np.sum(known * known))
+    if not total:
+        return Residual(known.size, 0.0, 0.0)
+    return Residual(
+        known.size, math.sqrt(total / known.size), float(np.sum(known[1:] * known[:-1])) / total
+    )
+
+
+def chi2_bounds(dof: int) -> tuple[float, float]:
+    """Return the bounds that chi^2/dof exceeds by chance once in 370 times."""
+    from scipy.special import gammaincinv
+
+    half = dof / 2
+    low, high = (float(gammaincinv(half, p)) / half for p in (_BEYOND, 1 - _BEYOND))
+    return low, high

@@ -21,8 +21,9 @@ motion has these coordinates, with the precession rate at the first row for Omeg
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -39,8 +40,6 @@ BODY_QUANTITIES = ("m", "s", "g", "C", "A", "A_cm")
 FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero", *BODY_QUANTITIES)
 """Quantities that a recording depends on: the state, then the known inputs of the body."""
 _START = ("theta0", "thetadot0", "psidot0")
-STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
-"""The parameters of a steady precession: values of lines at the first row, and their rates."""
 Name = tuple[str, int]
 """A parameter, and the number of its recording; -1 for one of the body."""
 _INSTEAD = ("A_cm", "phidot0")
@@ -53,7 +52,14 @@ _STEP = 1e-30
 """An imaginary step, for derivatives without cancellation."""
 
 
-class Parameters(NamedTuple):
+def imaginary_slopes(function: Callable[[Array], Array], at: Array) -> Array:
+    """Return the derivatives of a function, a row for each of its values, by imaginary steps."""
+    rows = [np.imag(function(at + step)) / _STEP for step in 1j * _STEP * np.eye(at.size)]
+    return np.stack(rows, axis=-1)
+
+
+@dataclass(frozen=True)
+class Parameters:
     """The parameters of a fit of some recordings, and the inputs that are known."""
 
     known: Mapping[str, float]
@@ -67,23 +73,23 @@ class Parameters(NamedTuple):
 
         The shapes are (14,) and (14, parameters), in the order of FIT_QUANTITIES; 0 if unknown.
         """
-        slopes = np.zeros((len(FIT_QUANTITIES), len(values)))
-        for column, (_, recording) in enumerate(self.names):
-            if recording in {-1, i}:
-                step = 1j * _STEP * (np.arange(len(values)) == column)
-                slopes[:, column] = np.imag(self._computed(values + step, i)) / _STEP
-        return np.real(self._computed(values, i)), slopes
+        own = [j for j, (_, recording) in enumerate(self.names) if recording in {-1, i}]
+        names = [self.names[j][0] for j in own]
 
-    def _computed(self, values: Array, i: int) -> Array:
+        def computed(numbers: Array) -> Array:
+            return self._computed(dict(zip(names, numbers, strict=True)))
+
+        slopes = np.zeros((len(FIT_QUANTITIES), len(values)))
+        slopes[:, own] = imaginary_slopes(computed, values[own])
+        return computed(values[own]), slopes
+
+    def _computed(self, free: Mapping[str, Any]) -> Array:
         """Return the quantities at real or complex parameters."""
-        given: dict[str, Any] = dict(self.known)
-        for (name, recording), value in zip(self.names, values, strict=True):
-            if recording in {-1, i}:
-                given[name] = value
+        given: dict[str, Any] = {**self.known, **free}
         if "A_cm" in given:
             given["A"] = given["A_cm"] + given["m"] * given["s"] ** 2
-        if _weighs(given) and "A" in given:
-            given["a"] = 2 * given["m"] * given["g"] * given["s"] / given["A"]
+        if (torque := known_torque(given)) is not None:
+            given["a"] = torque
         if self.tied:
             given["b"] = self._ratio(given) * given["r0"]
         return np.array([given.get(name, 0.0) for name in FIT_QUANTITIES])
@@ -96,6 +102,18 @@ class Parameters(NamedTuple):
         if "A" in given:
             return given["C"] / given["A"]
         return given["C"] * given["a"] / (2 * given["m"] * given["g"] * given["s"])
+
+    def start(self, alone: Sequence[Mapping[str, float]]) -> Array:
+        """Return the start of a fit from the quantities of each recording, by their medians."""
+        certain = {name: self.known[name] for name in self.stds}
+        found = [
+            {**one, "ratio": one["b"] / one["r0"] if one["r0"] else 1.0, **certain} for one in alone
+        ]
+        values = [
+            np.median([one[name] for j, one in enumerate(found) if i in {-1, j}])
+            for name, i in self.names
+        ]
+        return np.array(values)
 
     def priors(self, values: Array) -> tuple[Array, Array]:
         """Return deviations of uncertain inputs over their standard deviations, and slopes."""
@@ -118,48 +136,6 @@ class Parameters(NamedTuple):
     def spins(self) -> bool:
         """Whether r0 is a quantity of the fit, besides b."""
         return "r0" in self.known or ("r0", 0) in self.names
-
-
-class SteadyParameters(NamedTuple):
-    """The parameters of a steady precession, in the order of STEADY."""
-
-    known: Mapping[str, float]
-    stds: Mapping[str, float]
-    """Standard deviations of known inputs."""
-    angles: Collection[str]
-    """The angles that were recorded."""
-
-    @property
-    def spins(self) -> bool:
-        """Whether r0 is determined."""
-        return "r0" in self.labels
-
-    @property
-    def labels(self) -> list[str]:
-        """The names of the quantities, with b if a is known, else b/a."""
-        labels = ["b/a" if known_torque(self.known) is None else "b", "psidot0", "psi_zero"]
-        labels += ["theta0"] if "theta" in self.angles else []
-        if "phi" in self.angles:
-            tilted = "theta" in self.angles or "theta0" in self.known
-            labels += ["r0", "phi_zero"] if tilted else ["phi_zero"]
-        return labels
-
-    def quantities(self, values: Array, _: int) -> tuple[Array, Array]:
-        """Return the quantities, and their derivatives by the parameters."""
-        theta, rate, *_ = values.tolist()
-        torque, sine, cosine = known_torque(self.known) or 0.0, math.sin(theta), math.cos(theta)
-        r0 = values[3] + rate * cosine
-        rows = {
-            "b/a": (1 / (2 * rate), [0, -1 / (2 * rate**2), 0, 0, 0]),
-            "b": (
-                torque / (2 * rate) + rate * cosine,
-                [-rate * sine, cosine - torque / (2 * rate**2), 0, 0, 0],
-            ),
-            "r0": (r0, [-rate * sine, cosine, 0, 1, 0]),
-        }
-        rows |= {x: (values[i], np.eye(len(STEADY))[i]) for i, x in enumerate(STEADY)}
-        found, slopes = zip(*(rows[label] for label in self.labels), strict=True)
-        return np.array(found), np.array(slopes)
 
 
 def parameters_of(
@@ -189,8 +165,8 @@ def _weighs(known: Mapping[str, Any]) -> bool:
     return {"m", "g", "s"} <= known.keys()
 
 
-def known_torque(known: Mapping[str, float]) -> float | None:
-    """Return a = 2mgs/A (4,4) if all of it is known."""
+def known_torque(known: Mapping[str, Any]) -> Any:
+    """Return a = 2mgs/A (4,4), real or complex, or None if not all of it is known."""
     if not _weighs(known) or "A" not in known:
         return None
     return 2 * known["m"] * known["g"] * known["s"] / known["A"]
@@ -229,8 +205,7 @@ def _guard(known: Mapping[str, float]) -> None:
     """Raise LagtopError for inputs that no top has."""
     moment = known.get("A", known.get("A_cm", known.get("C", 1.0)))
     others = {"m": 1.0, "s": 1.0, "g": 1.0, "C": moment}
-    others |= {} if "A_cm" in known else {"A": moment}
-    Top(**others | dict(known))
+    Top(**others | ({} if "A_cm" in known else {"A": moment}) | dict(known))
 
 
 class Coordinates:
@@ -277,9 +252,7 @@ class Coordinates:
 
     def slopes(self, coordinates: Array) -> Array:
         """Return the derivatives of the parameters, a row each, by the coordinates."""
-        steps = 1j * _STEP * np.eye(len(coordinates))
-        rows = [np.imag(self.parameters(coordinates + step)) / _STEP for step in steps]
-        return np.stack(rows, axis=-1)
+        return imaginary_slopes(self.parameters, coordinates)
 
     def covariance(self, coordinates: Array, spread: Array) -> Array:
         """Return the covariance of the parameters, from coordinates with the covariance S S^T.

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import chain, combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.numbers import per_radian
+from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..motion.notebook import HasRecord
 from ..motion.quantity import unit_name
 from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
-from .least_squares import FittedParameters, chi2_bounds, residual_of
-from .model import MEANINGS, STATE, motion_angles
+from .least_squares import FittedParameters
+from .model import MEANINGS, STATE, chi2_bounds, motion_angles, residual_of
 from .parameters import BODY_QUANTITIES
 from .recording import Recording
 
@@ -40,14 +41,21 @@ class Fit(NamedTuple):
     recordings: Sequence[Recording]
     """Recordings as interpreted: psi may be counted in the other direction."""
     solution: FittedParameters
-    sigma_known: bool
-    """Whether the standard deviations were given; else they are estimated from the residuals."""
-    mirrored: Sequence[bool]
-    """Whether psi had to be counted in the other direction."""
     noise: Sequence[Mapping[str, float]]
     """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
     rival: Mapping[str, float] | None = None
     """Another top that explains a single recording as well: its quantities by name."""
+
+    @property
+    def sigma_known(self) -> bool:
+        """Whether the standard deviations were given; else the residuals give them."""
+        return bool(self.recordings[0].sigma)
+
+
+def with_stds(numbers: Iterable[tuple[str, Any, Any]]) -> dict[str, Any]:
+    """Return numbers by key, each followed by its standard deviation as KEY_std."""
+    pairs = (((key, value), (f"{key}_std", std)) for key, value, std in numbers)
+    return dict(chain.from_iterable(pairs))
 
 
 class Outcome(HasRecord):
@@ -55,14 +63,14 @@ class Outcome(HasRecord):
 
     def __init__(self, found: Fit, index: int, *, radians: bool = False) -> None:
         self.fit, self.index, self.radians = found, index, radians
+        self.per_radian, self.angle = angle_unit(radians=radians)
         self.recording = found.recordings[index]
         parameters = found.solution.parameters
         self.stds = parameters.stds
-        values, covariance = found.solution.quantities(index)
+        values, self.covariance = found.solution.quantities(index)
         self.labels = list(parameters.labels)
         self.values = dict(zip(self.labels, values.tolist(), strict=True))
-        self.covariance = covariance
-        deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
+        deviations = np.sqrt(np.maximum(np.diag(self.covariance), 0))
         self.deviations = dict(zip(self.labels, deviations.tolist(), strict=True))
         self.known = {x: self.values.get(x, y) for x, y in parameters.known.items()}
         exact = self.known.keys() - self.stds.keys()
@@ -97,25 +105,25 @@ class Outcome(HasRecord):
         remedy = "the spin may decay: try --window" if self.fit.noise[0] else "use shorter windows"
         if self.fit.sigma_known and self.chi2_dof > MUCH_CHI2:
             found.append(f"no motion fits the recording: chi2/dof = {self.chi2_dof:.3g}; {remedy}")
-        unit, scale = "rad" if self.radians else "deg", per_radian(radians=self.radians)
         for channel, noise in self.fit.noise[self.index].items():
             rms = self.residuals[channel].rms
             if rms > min(_MUCH * noise, 1.0):  # a radian: then harmonics do not fit either
+                off, noise_shown = (f"{x * self.per_radian:.3g}" for x in (rms, noise))
                 found.append(
-                    f"no motion fits the recording: {channel} is "
-                    f"{rms * scale:.3g} {unit} off, plain harmonics {noise * scale:.3g}; {remedy}"
+                    f"no motion fits the recording: {channel} is {off} {self.angle} off, "
+                    f"plain harmonics {noise_shown}; {remedy}"
                 )
-        if not self._leaves_noise:
+        if not self.leaves_noise:
             found += [f"no motion fits the recording: {x}" for x in self._impossible()]
         return found
 
     def unit(self, name: str) -> str:
         """Return the key of a quantity in the unit of angles in use."""
-        return f"{name}_{'rad' if self.radians else 'deg'}" if name in _ANGLES else name
+        return f"{name}_{self.angle}" if name in _ANGLES else name
 
     def scale(self, name: str) -> float:
         """Return the factor of a quantity from radians to the unit of angles in use."""
-        return per_radian(radians=self.radians or name not in _ANGLES)
+        return self.per_radian if name in _ANGLES else 1.0
 
     def found(self) -> Iterator[tuple[str, float, float]]:
         """Yield name, value and standard deviation of each fitted quantity of the motion."""
@@ -134,12 +142,19 @@ class Outcome(HasRecord):
         values = {**self.known, **self.values}
         for product in self.determined:
             if product.name != "r0":
-                parts = {x: float(n) / values[x] for x, n in product.shares.items()}
-                change = np.array([parts.get(label, 0.0) for label in self.labels])
-                variance = float(change @ self.covariance @ change)
-                alone = [x for x in parts if x not in self.labels and x in self.stds]
-                variance += sum((parts[x] * self.stds[x]) ** 2 for x in alone)
-                yield product, abs(product.value) * math.sqrt(max(variance, 0.0))
+                shares = {x: float(n) / values[x] for x, n in product.shares.items()}
+                gradient = np.array([shares.get(label, 0.0) for label in self.labels])
+                alone = [x for x in shares if x not in self.labels and x in self.stds]
+                others = sum((shares[x] * self.stds[x]) ** 2 for x in alone)
+                yield product, abs(product.value) * self._std(gradient, others)
+
+    def _std(self, gradient: Array, others: float = 0.0) -> float:
+        """Return the standard deviation of a number from its derivatives by the quantities.
+
+        `others` is a variance that other inputs cause.
+        """
+        change = np.where(np.diag(self.covariance) > 0, gradient, 0.0)
+        return math.sqrt(max(float(change @ self.covariance @ change) + others, 0.0))
 
     @cached_property
     def derived(self) -> list[tuple[DerivedNumber, float, float | None]]:
@@ -152,11 +167,11 @@ class Outcome(HasRecord):
         numbers = {x.key: x for x in derived_numbers(self.values, spins=spins)}
         rows: list[tuple[DerivedNumber, float, float | None]] = []
         for x in numbers.values():
-            std, off = x.std(self.labels, self.covariance), None
+            std, off = self._std(x.gradient), None
             if x.exact in numbers:
-                between = x.less(numbers[x.exact])
-                spread = between.std(self.labels, self.covariance)
-                off = between.value / spread if spread > 0 else None
+                exact = numbers[x.exact]
+                spread = self._std(x.gradient - exact.gradient)
+                off = (x.value - exact.value) / spread if spread > 0 else None
             if not math.isnan(std):
                 rows.append((x, std, off))
         return rows
@@ -172,22 +187,17 @@ class Outcome(HasRecord):
             meaning = "" if len(product.powers) == 1 else "only this product is known"
             yield product.name, product.value, deviation, meaning
         for x, deviation, off in self.derived:
-            angle = x.key.endswith("_deg")
-            scale = math.radians(1.0) if angle and self.radians else 1.0
-            meaning = x.meaning
-            if off is not None:
-                meaning += f", {off:+.{int(abs(off) < 10)}f} sigma"
             key = unit_name(x.key, radians=self.radians)
-            yield key, x.value * scale, deviation * scale, meaning
+            scale = 1.0 if key == x.key else math.radians(1.0)
+            distance = "" if off is None else f", {off:+.{int(abs(off) < 10)}f} sigma"
+            yield key, x.value * scale, deviation * scale, x.meaning + distance
 
     def correlations(self) -> Iterator[tuple[str, str, float]]:
         """Yield the correlations of a, b and r0."""
         names = [name for name in self.shown if self.deviations[name] > 0]
-        for i, first in enumerate(names):
-            for second in names[i + 1 :]:
-                both = self.covariance[self.labels.index(first), self.labels.index(second)]
-                size = self.deviations[first] * self.deviations[second]
-                yield first, second, float(both) / size
+        for first, second in combinations(names, 2):
+            both = self.covariance[self.labels.index(first), self.labels.index(second)]
+            yield first, second, float(both) / (self.deviations[first] * self.deviations[second])
 
     def undetermined(self) -> list[str]:
         """Return sentences on inputs that are not determined separately."""
@@ -215,10 +225,11 @@ class Outcome(HasRecord):
                     f"the residuals of {channel} are not noise: neighbours correlate by "
                     f"{left.lag1:.2f}, noise by at most {3 / math.sqrt(left.rows):.2f}"
                 )
-        return [*found, *self._impossible()] if self._leaves_noise else found
+        return [*found, *self._impossible()] if self.leaves_noise else found
 
     @property
-    def _leaves_noise(self) -> bool:
+    def leaves_noise(self) -> bool:
+        """Whether the residuals of all channels are noise."""
         return all(left.is_noise for left in self.residuals.values())
 
     def _impossible(self) -> Iterator[str]:
@@ -229,7 +240,7 @@ class Outcome(HasRecord):
 
     def notes(self) -> list[str]:
         """Return sentences on how the recording was interpreted."""
-        if not self.fit.mirrored[self.index]:
+        if not self.recording.is_mirrored:
             return []
         if self.verdict != "good":
             return ["psi may be counted in the other direction: this fit changed its sign"]
@@ -245,8 +256,7 @@ class Outcome(HasRecord):
         """Return everything by key, flat."""
         solution, recording = self.fit.solution, self.recording
         record: dict[str, Any] = {"name": recording.name} if recording.name else {}
-        for key, value, deviation, _ in self.numbers():
-            record[key], record[f"{key}_std"] = value, deviation
+        record |= with_stds(number[:3] for number in self.numbers())
         for x, _, off in self.derived:
             if x.exact:
                 record[f"{x.key}_off_sigma"] = off
@@ -263,38 +273,30 @@ class Outcome(HasRecord):
             "chi2_dof_low": low,
             "chi2_dof_high": high,
         }
-        degrees, suffix = per_radian(radians=self.radians), "rad" if self.radians else "deg"
         for channel, left in self.residuals.items():
-            record[f"{channel}_rms_{suffix}"] = left.rms * degrees
+            record[f"{channel}_rms_{self.angle}"] = left.rms * self.per_radian
             record[f"{channel}_lag1"] = left.lag1
         return record | {
             "verdict": self.verdict,
             "remark": "; ".join([*self.notes(), *self.undetermined(), *self.warnings()]) or None,
         }
 
-    def inputs(self) -> dict[str, float]:
-        """Return inputs of `Top` with this motion; undetermined ones as in `completed_body`."""
-        return self.inputs_at(self.values)
+    def inputs(self, other: Mapping[str, float] | None = None) -> dict[str, float]:
+        """Return inputs of `Top` with this motion, or with other values of the quantities.
 
-    def inputs_at(self, values: Mapping[str, float]) -> dict[str, float]:
-        """Return inputs for some values of the quantities."""
+        Undetermined inputs are those of `completed_body`.
+        """
+        values = self.values if other is None else other
         known = {x: values.get(x, y) for x, y in self.known.items() if x in BODY_INPUTS}
         shown = {x: values[x] for x in self.shown}
         body = completed_body(shown, known, determined_products(shown, known))
-        return {
-            **body,
-            "theta0_deg": math.degrees(values["theta0"]),
-            "thetadot0": values["thetadot0"],
-            "psidot0": values["psidot0"],
-        }
+        start = {name: values[name] for name in ("thetadot0", "psidot0")}
+        return {**body, "theta0_deg": math.degrees(values["theta0"]), **start}
 
     def angles(self, t: Array) -> dict[str, Array]:
         """Return the angles of the fitted motion, with the zeros and signs of the recording."""
         values = self.values
         theta, phi, psi = motion_angles(np.array([[values[name] for name in STATE]]), t)[:, 0]
         spin = (values["r0"] - values["b"]) * t if "phi" in self.recording.angles else 0.0
-        return {
-            "theta": theta,
-            "phi": phi + spin + values["phi_zero"],
-            "psi": psi + values["psi_zero"],
-        }
+        phi, psi = phi + spin + values["phi_zero"], psi + values["psi_zero"]
+        return {"theta": theta, "phi": phi, "psi": psi}

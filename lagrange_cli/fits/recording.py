@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
@@ -53,6 +54,8 @@ class Recording:
     """The known angles among theta, phi and psi, in radians, up to whole turns."""
     sigma: Mapping[str, Array]
     """Standard deviations in radians by channel; empty if they are not given."""
+    is_mirrored: bool = False
+    """Whether psi is counted in the direction opposite to that of the data."""
     scene: Top | None = None
     """The top that the file describes, if any."""
 
@@ -75,7 +78,19 @@ class Recording:
     def mirrored(self) -> Recording:
         """The recording with psi counted in the other direction."""
         angles = {name: -x if name == "psi" else x for name, x in self.angles.items()}
-        return Recording(self.name, self.t, self.t_start, self.kind, angles, self.sigma)
+        return replace(self, angles=angles, is_mirrored=not self.is_mirrored)
+
+    def part(self, rows: NDArray[np.intp], name: str) -> Recording:
+        """Return some rows, in this order, with times since the first of them."""
+        t = self.t[rows]
+        return replace(
+            self,
+            name=name,
+            t=t - t[0],
+            t_start=self.t_start + float(t[0]),
+            angles={key: x[rows] for key, x in self.angles.items()},
+            sigma={key: x[rows] for key, x in self.sigma.items()},
+        )
 
 
 class Reading(NamedTuple):
@@ -90,6 +105,16 @@ class Reading(NamedTuple):
     dialect: Dialect = UNDECIDED
 
 
+class Source(NamedTuple):
+    """The origin of rows, and options of reading them."""
+
+    where: str
+    reading: Reading
+    said: Said
+    spread: Mapping[str, str | None]
+    """Units of the columns NAME_std, by NAME."""
+
+
 def read_recordings(path: str, reading: Reading) -> list[Recording]:
     """Return the recordings of a file, in the order in which they begin.
 
@@ -98,14 +123,8 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
     with open_trajectory(path, reading.columns, reading.dialect) as trajectory:
         spread = _add_spreads(trajectory)
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
-        if reading.by is None:
-            parts = {"": _joined(block for block, _ in trajectory.blocks(repeats=True))}
-        else:
-            parts = _by_column(trajectory, reading.by)
-        if not parts:
-            raise DataError(f"{trajectory.name} holds no rows")
         made = []
-        for name, given in parts.items():
+        for name, given in _parts(trajectory, reading.by).items():
             where = f"{trajectory.name}{f', {reading.by} {name}' if name else ''}"
             made.append(recording_of(name, Source(where, reading, said, spread), given))
         scene = scene_in(trajectory.description, trajectory.name)
@@ -123,90 +142,70 @@ def _add_spreads(trajectory: Trajectory) -> Mapping[str, str | None]:
     return units
 
 
-def _by_column(trajectory: Trajectory, column: str) -> dict[str, dict[str, Array]]:
-    """Return the rows of each word of a column.  Raises LagtopError if the column is missing."""
-    if column not in trajectory.names:
+def _parts(trajectory: Trajectory, by: str | None) -> dict[str, dict[str, Array]]:
+    """Return the rows of each word of a column, or all rows under an empty name.
+
+    Raises LagtopError if the column is missing, DataError for a file without rows.
+    """
+    if by is not None and by not in trajectory.names:
         shown = ", ".join(trajectory.names)[:100]
-        raise LagtopError(
-            f"by must name a column of {trajectory.name} ({shown}), got {column!r}", "by"
-        )
-    word_of = trajectory.add_words("by", column)
+        raise LagtopError(f"by must name a column of {trajectory.name} ({shown}), got {by!r}", "by")
+    word_of = None if by is None else trajectory.add_words("by", by)
     parts: dict[float, list[Quantities]] = {}
     clocks: dict[float, Clock] = {}
     for block, places in trajectory.rows():
-        labels = block["by"][:, 0]
+        labels = block.get("by", np.zeros((len(places), 1)))[:, 0]
         for label in dict.fromkeys(labels.tolist()):
             rows = np.flatnonzero(labels == label)
             some = {key: x[rows] for key, x in block.items()}
             clock = clocks.setdefault(label, Clock(trajectory, repeats=True))
             clock.advance(some["t"][:, 0], [places[row] for row in rows.tolist()])
             parts.setdefault(label, []).append(some)
-    return {word_of(label): _joined(blocks) for label, blocks in parts.items()}
-
-
-def _joined(blocks: Iterable[Quantities]) -> dict[str, Array]:
-    listed = list(blocks)
-    if not listed:
-        return {"t": np.empty((0, 1))}
-    return {key: np.concatenate([block[key] for block in listed]) for key in listed[0]}
-
-
-class Source(NamedTuple):
-    """The origin of rows, and options of reading them."""
-
-    where: str
-    reading: Reading
-    said: Said
-    spread: Mapping[str, str | None]
-    """Units of the columns NAME_std, by NAME."""
+    if not parts:
+        raise DataError(f"{trajectory.name} must have {LEAST_ROWS} rows or more, got 0")
+    return {
+        word_of(label) if word_of else "": {
+            key: np.concatenate([block[key] for block in blocks]) for key in blocks[0]
+        }
+        for label, blocks in parts.items()
+    }
 
 
 def recording_of(name: str, source: Source, given: Quantities) -> Recording:
-    """Return the recording in some columns.  Raises LagtopError, DataError for a bad recording."""
-    kind, angles = _angles(given, source.said, source.reading.conventions)
-    raw = Recording(name, given["t"][:, 0], 0.0, kind, angles, {})
-    return _checked(replace(raw, sigma=_sigma(source, given, raw)), source.where)
+    """Return the recording in some columns, from its first row on, in the order of time.
 
-
-def _checked(raw: Recording, where: str) -> Recording:
-    """Return a recording from its first row on, in the order of time.
-
-    Rows and angles without a number are left out.  Raises DataError for too few rows, too few
-    angles, or tilts outside 0 to pi.
+    Rows and angles without a number are left out.  Raises LagtopError, DataError for a bad
+    recording.
     """
-    if raw.t.size < LEAST_ROWS:
-        raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {raw.t.size}")
-    raw = replace(raw, angles=_cleaned(raw.angles, where))
-    if not raw.angles:
-        raise DataError(f"{where} must have {LEAST_ROWS} rows or more with a number, got 0")
-    if raw.angles.keys() == {"phi"}:
+    where, t = source.where, given["t"][:, 0]
+    kind, measured = _angles(source, given)
+    raw = Recording(name, t, 0.0, kind, measured, {})
+    sigma = _sigma(source, given, raw)
+    if t.size < LEAST_ROWS:
+        raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {t.size}")
+    angles = _cleaned(measured, where)
+    if angles.keys() == {"phi"}:
         raise DataError(f"{where} must have theta or psi too: phi alone does not determine a top")
-    known = np.logical_or.reduce([np.isfinite(x) for x in raw.angles.values()])
-    order = np.flatnonzero(known)[np.argsort(raw.t[known], kind="stable")]
+    known = np.any([np.zeros(t.size), *map(np.isfinite, angles.values())], axis=0)
+    order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
     if order.size < LEAST_ROWS:
         raise DataError(
             f"{where} must have {LEAST_ROWS} rows or more with a number, got {order.size}"
         )
-    tilts = raw.angles.get("theta", np.zeros(1))
+    tilts = angles.get("theta", np.zeros(1))
     if (wrong := tilts[np.abs(tilts - np.pi / 2) > np.pi / 2 + _BEYOND]).size:
         raise DataError(
             f"{where}: theta must be between 0 and pi rad (180 deg), got {wrong[0]:.6g} rad"
         )
-    t = raw.t[order]
-    if not t[-1] > t[0]:
-        raise DataError(f"{where}: t must increase, got {t[0]:g} in all rows")
-    if not _SHORTEST < (span := float(t[-1]) - float(t[0])) < _LONGEST:
-        raise DataError(f"{where}: t must span {_SHORTEST:g} to {_LONGEST:g}, got {span:g}")
-    for channel, values in raw.sigma.items():
+    first, last = t[order[[0, -1]]].tolist()
+    if not last > first:
+        raise DataError(f"{where}: t must increase, got {first:g} in all rows")
+    if not _SHORTEST < last - first < _LONGEST:
+        raise DataError(f"{where}: t must span {_SHORTEST:g} to {_LONGEST:g}, got {last - first:g}")
+    for channel, values in sigma.items():
         if not np.all((values > 0) | np.isnan(values)):
             raise DataError(f"{where}: {channel}_std must be > 0, got {np.nanmin(values):g}")
-    return replace(
-        raw,
-        t=t - t[0],
-        t_start=float(t[0]),
-        angles={key: x[order] for key, x in raw.angles.items()},
-        sigma={key: x[order] for key, x in raw.sigma.items()},
-    )
+    return replace(raw, angles=angles, sigma=sigma).part(order, name)
 
 
 def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
@@ -227,15 +226,12 @@ def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
     return found
 
 
-def _angles(
-    given: Quantities, said: Said, conventions: Conventions
-) -> tuple[str, dict[str, Array]]:
+def _angles(source: Source, given: Quantities) -> tuple[str, dict[str, Array]]:
     """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
-    alone = angles_in(given, conventions, said)
-    whole = {"quaternion", "matrix", "euler", "rotvec"} & set(given)
-    if alone and not whole:
+    alone = angles_in(given, source.reading.conventions, source.said)
+    if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
         return "angles", alone
-    seen = see(given, conventions, said)
+    seen = see(given, source.reading.conventions, source.said)
     if seen.quaternion is not None:
         return "attitude", rotations.angles_of(seen.quaternion)
     if seen.axis is not None:
@@ -246,16 +242,25 @@ def _angles(
 def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array]:
     """Return the standard deviation of each channel, from columns or else from the options.
 
-    Raises LagtopError if only some channels have one.
+    Raises LagtopError for an unknown channel, or if only some channels have one.
     """
-    reading, spread = source.reading, source.spread
-    found = _spread_evenly(reading.sigma, raw)
+    sigma, spread = source.reading.sigma, source.spread
+    each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, sigma)
+    if unknown := [name for name in each if name not in raw.channels]:
+        raise LagtopError(
+            f"sigma must be for {', '.join(raw.channels)}, got {quoted(unknown[0])}", "sigma"
+        )
+    found = {
+        name: np.full(raw.t.size, checked_double("sigma", x))
+        for name, x in each.items()
+        if x is not None
+    }
     for channel in raw.channels:
         names = [channel] if raw.kind == "angles" else ["attitude", "quaternion", "axis"]
         column = next((name for name in names if name in spread), None)
         if column is not None:
             unit = spread[column]
-            radians = reading.conventions.radians if unit is None else unit == "rad"
+            radians = source.reading.conventions.radians if unit is None else unit == "rad"
             values = given[f"{column}_std"][:, 0]
             found[channel] = values if radians else np.radians(values)
     if found and (missing := [x for x in raw.channels if x not in found]):
@@ -263,18 +268,3 @@ def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array
             f"sigma must be given for all angles or for none, got none for {missing[0]}", "sigma"
         )
     return found
-
-
-def _spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> dict[str, Array]:
-    """Return standard deviations that are the same in all rows, by channel.
-
-    Raises LagtopError for an unknown channel.
-    """
-    if sigma is None:
-        return {}
-    each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, sigma)
-    if unknown := [name for name in each if name not in raw.channels]:
-        raise LagtopError(
-            f"sigma must be for {', '.join(raw.channels)}, got {quoted(unknown[0])}", "sigma"
-        )
-    return {name: np.full(raw.t.size, checked_double("sigma", x)) for name, x in each.items()}

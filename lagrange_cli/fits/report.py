@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
+from ..inputs.input_keys import TILT
 from ..inputs.rotations import within_half_turn
 from ..motion.quantity import unit_name
 from ..motion.record import shown_keys
 from ..output.report import Field, Report, uncertain_text, with_unit
 from ..output.terminal import one_line
-from .least_squares import chi2_bounds
+from .model import chi2_bounds
 from .record import MUCH_CHI2, Outcome
 from .windows import WindowedFit
 
@@ -116,9 +116,9 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         low, high = chi2_bounds(max(solution.dof, 1))
         bounds = f"{low:.3f} to {high:.3f}"
         yield f"{name}chi2/dof = {outcome.chi2_dof:.3f}, noise {bounds}; {solution.dof} dof."
-    unit, scale = "rad" if outcome.radians else "deg", per_radian(radians=outcome.radians)
+    scale = outcome.per_radian
     rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
-    yield f"{name}RMS residual ({unit}): {rest}."
+    yield f"{name}RMS residual ({outcome.angle}): {rest}."
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())
     if related:
         yield f"{name}Correlation: {related}."
@@ -141,20 +141,22 @@ def windows_report(found: WindowedFit, source: str, system: System | None) -> Re
         Field("chi2_dof", "chi2/dof", lambda x: f"{x:.3f}"),
         Field("verdict", "verdict", is_text=True),
     ]
-    rows = []
-    for window in found.windows:
-        row = window.row()
-        texts = {x: uncertain_text(row[x], row[f"{x}_std"]) for x in columns if x in row}
-        rows.append(SimpleNamespace(**{**dict.fromkeys(columns), **row, **texts}))
+    rows = [window.row() for window in found.windows]
+    shown = [dict.fromkeys(columns) | row | _uncertain_texts(row, columns) for row in rows]
     record = found.record()
-    keys = [x for x in record if f"{x}_std" in record and "decay" not in x]
-    body = [f"{x} = {uncertain_text(record[x], record[f'{x}_std'])}" for x in keys]
+    body = _uncertain_texts(record, [x for x in record if "decay" not in x])
+    conclusions = [f"Body: {', '.join(f'{x} = {y}' for x, y in body.items())}."]
     return Report(
         _conditions([x.outcome for x in found.windows], source, system),
         fields,
-        rows,
-        [f"Body: {', '.join(body)}.", *_windows_conclusions(found)],
+        [SimpleNamespace(**row) for row in shown],
+        conclusions + list(_windows_conclusions(found)),
     )
+
+
+def _uncertain_texts(record: Mapping[str, Any], keys: Iterable[str]) -> dict[str, str]:
+    """Return the numbers of a record that have a standard deviation, as texts by key."""
+    return {x: uncertain_text(record[x], record[f"{x}_std"]) for x in keys if f"{x}_std" in record}
 
 
 def _windows_conclusions(found: WindowedFit) -> Iterator[str]:
@@ -191,10 +193,10 @@ def scene_text(outcome: Outcome, source: str, system: System | None = None) -> s
     stds, correlations = _spread_of_inputs(outcome)
     units = {} if system is None else outcome_units(outcome, system)
     for name, value in outcome.inputs().items():
+        unit = "" if name.startswith(TILT) else units.get(name, "")  # the key of a tilt names it
         shown = f"{value!r} +/- {stds[name]!r}" if name in stds else repr(value)
-        is_united = name in units and not name.startswith("theta0")  # whose key names its unit
-        united = f"{shown} {units[name]}" if is_united else shown
-        lines.append(f"{name} = {shown}" if united == repr(value) else f'{name} = "{united}"')
+        is_text = unit or name in stds
+        lines.append(f'{name} = "{f"{shown} {unit}".rstrip()}"' if is_text else f"{name} = {shown}")
     lines += ["", "[correlations]"] if len(stds) > 1 else []
     for i, (name, row) in enumerate(zip(stds, correlations.tolist(), strict=True)):
         others = [f"{x} = {r!r}" for x, r in list(zip(stds, row, strict=True))[i + 1 :]]
@@ -211,7 +213,7 @@ def _spread_of_inputs(outcome: Outcome) -> tuple[dict[str, float], Array]:
     slopes = np.zeros((len(inputs), len(outcome.labels)))
     for i, (name, value) in enumerate(outcome.values.items()):
         if value and outcome.deviations[name]:
-            twice = outcome.inputs_at(outcome.values | {name: 2 * value})
+            twice = outcome.inputs(outcome.values | {name: 2 * value})
             powers = np.log2([twice[x] / y for x, y in inputs.items()])
             slopes[:, i] = powers * [*inputs.values()] / value
     covariance = slopes @ outcome.covariance @ slopes.T
@@ -227,16 +229,11 @@ def curves_of(outcome: Outcome) -> Iterator[FittedCurve]:
 
     The measured angles are shifted by whole turns to the fitted motion.
     """
-    recording, scale = outcome.recording, per_radian(radians=outcome.radians)
-    t = recording.t
-    fine = np.linspace(0, t[-1], _FINE)
+    recording, scale = outcome.recording, outcome.per_radian
+    t, fine, start = recording.t, np.linspace(0, recording.t[-1], _FINE), recording.t_start
     at_rows, at_fine = outcome.angles(t), outcome.angles(fine)
-    for name in ("theta", "psi", "phi"):
-        if name in recording.angles:
-            left = within_half_turn(recording.angles[name] - at_rows[name])
-            data = at_rows[name] + left
-            start = recording.t_start
-            label = f"{recording.name}: {name}" if recording.name else name
-            yield FittedCurve(
-                label, t + start, data * scale, fine + start, at_fine[name] * scale, left * scale
-            )
+    for name in [x for x in ("theta", "psi", "phi") if x in recording.angles]:
+        left = within_half_turn(recording.angles[name] - at_rows[name])
+        data = (at_rows[name] + left) * scale
+        label = f"{recording.name}: {name}" if recording.name else name
+        yield FittedCurve(label, t + start, data, fine + start, at_fine[name] * scale, left * scale)

@@ -20,7 +20,7 @@ from ..elliptic.jacobi_arrays import jacobi_of_arrays
 from ..elliptic.modulus import modulus
 from .harmonics import Harmonics, frame_of, slowest_spin, turning_rate
 from .invert import SIGNS, Candidates, TurningPoints, candidates, with_mean_rate
-from .model import motion_angles, residuals
+from .model import STATE, motion_angles, residuals
 from .nutation import Shown, Turns
 from .recording import Recording
 
@@ -47,12 +47,8 @@ _TILT_OFF = 0.02
 class StartingTop(NamedTuple):
     """A top to start a fit from, and its distance from the recording."""
 
-    state: Array
-    """The state, in the order of `model.STATE`."""
-    excess: float
-    """r0 - b if the spin is recorded."""
-    psi_zero: float
-    phi_zero: float
+    values: dict[str, float]
+    """The state, in the order of `model.STATE`, then the spin rate and the zeros, by name."""
     misfit: float
     """Sum of the squares of the residuals, over the noise of each channel."""
 
@@ -129,16 +125,18 @@ def _start(
 ) -> StartingTop:
     """Return a start with the best zeros of psi and phi, and the best spin rate."""
     theta, phi, psi = angles
+    values = dict(zip(STATE, state.tolist(), strict=True))
     psi_zero, excess, phi_zero = 0.0, 0.0, 0.0
     if "psi" in recording.angles:
         psi_zero = _mean_angle(recording.angles["psi"] - psi, np.sin(theta))
     if "phi" in recording.angles:
-        excess = _spin_excess(recording.t, recording.angles["phi"] - phi, float(state[1]))
+        excess = _spin_excess(recording.t, recording.angles["phi"] - phi, values["b"])
         phi_zero = _mean_angle(recording.angles["phi"] - phi - excess * recording.t, 1.0)
     moved = np.stack([theta, phi + excess * recording.t + phi_zero, psi + psi_zero])
     sizes = [[noise.get(channel, 1.0)] for channel in recording.channels]
     left = float(np.nansum((residuals(recording, moved).values / sizes) ** 2))
-    return StartingTop(state, excess, psi_zero, phi_zero, left)
+    values |= {"r0": values["b"] + excess, "psi_zero": psi_zero, "phi_zero": phi_zero}
+    return StartingTop(values, left)
 
 
 def _mean_angle(angles: Array, weights: Array | float) -> float:

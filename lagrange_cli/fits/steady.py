@@ -11,7 +11,9 @@ Omega).  This ratio is too small by the fraction cos(theta)/(4 lambda), with lam
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,9 +22,12 @@ from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from .harmonics import turning_rate
 from .least_squares import FittedParameters
-from .parameters import STEADY, SteadyParameters
+from .parameters import Parameters, known_torque
 from .record import Fit, Outcome
 from .recording import Recording
+
+STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
+"""The parameters of a steady precession: values of lines at the first row, and their rates."""
 
 
 class _Line(NamedTuple):
@@ -58,7 +63,7 @@ def steady_fit(
         raise DataError(f"{where}: psi must precess: its mean rate is 0")
     count = sum(int(np.isfinite(line.residuals).sum()) for line in lines.values())
     solution = FittedParameters(
-        SteadyParameters(known, stds, lines),
+        SteadyParameters(known, stds, [(name, 0) for name in STEADY], lines),
         values,
         covariance,
         sum(line.chi2 for line in lines.values()),
@@ -67,7 +72,7 @@ def steady_fit(
         converged=True,
         unknown=(),
     )
-    return Fit([recording], solution, bool(recording.sigma), [False], [{}])
+    return Fit([recording], solution, [{}])
 
 
 def _sigma(recording: Recording, name: str) -> Array | None:
@@ -96,6 +101,46 @@ def _line(t: Array, angle: Array, sigma: Array | None, is_line: bool) -> _Line:
     return _Line(whole, covariance, residuals, chi2)
 
 
+@dataclass(frozen=True)
+class SteadyParameters(Parameters):
+    """The parameters of a steady precession, in the order of STEADY."""
+
+    angles: Collection[str]
+    """The angles that were recorded."""
+
+    @property
+    def spins(self) -> bool:
+        """Whether r0 is determined."""
+        return "r0" in self.labels
+
+    @property
+    def labels(self) -> list[str]:
+        """The names of the quantities, with b if a is known, else b/a."""
+        labels = ["b/a" if known_torque(self.known) is None else "b", "psidot0", "psi_zero"]
+        labels += ["theta0"] if "theta" in self.angles else []
+        if "phi" in self.angles:
+            tilted = "theta" in self.angles or "theta0" in self.known
+            labels += ["r0", "phi_zero"] if tilted else ["phi_zero"]
+        return labels
+
+    def quantities(self, values: Array, _: int) -> tuple[Array, Array]:
+        """Return the quantities, and their derivatives by the parameters."""
+        theta, rate, *_ = values.tolist()
+        torque, sine, cosine = known_torque(self.known) or 0.0, math.sin(theta), math.cos(theta)
+        r0 = values[3] + rate * cosine
+        rows = {
+            "b/a": (1 / (2 * rate), [0, -1 / (2 * rate**2), 0, 0, 0]),
+            "b": (
+                torque / (2 * rate) + rate * cosine,
+                [-rate * sine, cosine - torque / (2 * rate**2), 0, 0, 0],
+            ),
+            "r0": (r0, [-rate * sine, cosine, 0, 1, 0]),
+        }
+        rows |= {x: (values[i], np.eye(len(STEADY))[i]) for i, x in enumerate(STEADY)}
+        found, slopes = zip(*(rows[label] for label in self.labels), strict=True)
+        return np.array(found), np.array(slopes)
+
+
 class SteadyOutcome(Outcome):
     """The results of a fit of a steady precession."""
 
@@ -111,7 +156,7 @@ class SteadyOutcome(Outcome):
             "elementary theory of fast tops, which is too small by cos(theta)/(4 lambda) of itself"
         ]
 
-    def inputs(self) -> dict[str, float]:
+    def inputs(self, other: Mapping[str, float] | None = None) -> dict[str, float]:
         """Raise LagtopError, because many tops have this precession."""
         raise LagtopError("a scene needs a and b, and this recording determines b/a only")
 

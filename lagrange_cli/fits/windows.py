@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -20,12 +19,11 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.solve import solve
-from .attempts import best_attempt, sigma_of
-from .fit import joined, reweighted
-from .least_squares import Problem, chi2_bounds
-from .model import STATE, inputs_of
-from .parameters import FIT_QUANTITIES, parameters_of
-from .record import FAILED, Fit, Outcome
+from .attempts import best_attempt
+from .least_squares import fitted_from, reweighted
+from .model import STATE, chi2_bounds, inputs_of
+from .parameters import FIT_QUANTITIES
+from .record import FAILED, Fit, Outcome, with_stds
 from .recording import LEAST_ROWS, Recording
 
 _STEPS = 30
@@ -64,14 +62,14 @@ class Window(NamedTuple):
     def row(self) -> dict[str, Any]:
         """Return the numbers of the window by key."""
         record = self.outcome.record()
-        names = ["r0", "b", "theta0", "thetadot0", "psidot0"]
-        names = [self.outcome.unit(x) for x in names if self.outcome.unit(x) in record]
+        names = [self.outcome.unit(x) for x in ("r0", "b", "theta0", "thetadot0", "psidot0")]
         names += ["T_nutation", "T_precession"]
-        pairs = [key for name in names for key in (name, f"{name}_std") if key in record]
+        keys = [key for name in names for key in (name, f"{name}_std") if key in record]
         return {
-            **{"t": self.middle, "t_start": record["t_start"], "rows": record["rows"]},
-            **{key: record[key] for key in pairs},
-            **{"chi2_dof": self.chi2_dof, "verdict": self.verdict},
+            "t": self.middle,
+            **{key: record[key] for key in ("t_start", "rows", *keys)},
+            "chi2_dof": self.chi2_dof,
+            "verdict": self.verdict,
         }
 
 
@@ -90,28 +88,22 @@ class WindowedFit(NamedTuple):
     @property
     def is_described(self) -> bool:
         """Whether the closed form leaves only noise in a window; sigma may be wrong."""
-        left = [x.outcome.residuals.values() for x in self.windows if x.verdict != FAILED]
-        return any(all(one.is_noise for one in channels) for channels in left)
+        return any(x.verdict != FAILED and x.outcome.leaves_noise for x in self.windows)
 
     def record(self) -> dict[str, Any]:
         """Return the body, the decay, and the windows, by key."""
-        first = self.windows[0].outcome
-        body = {x: first.values[x] for x in first.shown if x not in {"r0", "b"}}
-        record: dict[str, Any] = {}
-        for key, value in body.items():
-            record[key], record[f"{key}_std"] = value, first.deviations[key]
-        for product, std in first.products():
-            if "r0" not in product.powers:
-                record[product.name], record[f"{product.name}_std"] = product.value, std
-        time, time_std = self.decay.time or (None, None)
-        record |= {
-            **{"decay_of": self.decay.quantity, "decay_time": time, "decay_time_std": time_std},
-            **{"decay_rate": self.decay.rate, "decay_rate_std": self.decay.rate_std},
-            "decay_chi2_dof": self.decay.chi2_dof,
-        }
-        solution = first.fit.solution
-        return record | {
-            **{"dof": solution.dof, "chi2_dof": first.chi2_dof, "verdict": self.verdict},
+        first, decay = self.windows[0].outcome, self.decay
+        body = [(x, y, first.deviations[x]) for x, y in first.shown.items() if x not in {"r0", "b"}]
+        body += [(x.name, x.value, std) for x, std in first.products() if "r0" not in x.powers]
+        time = decay.time or (None, None)
+        return {
+            **with_stds(body),
+            "decay_of": decay.quantity,
+            **with_stds([("decay_time", *time), ("decay_rate", decay.rate, decay.rate_std)]),
+            "decay_chi2_dof": decay.chi2_dof,
+            "dof": first.fit.solution.dof,
+            "chi2_dof": first.chi2_dof,
+            "verdict": self.verdict,
             "windows": [window.row() for window in self.windows],
         }
 
@@ -127,25 +119,13 @@ def split(recording: Recording, window: float, *, is_time: bool, where: str) -> 
         raise LagtopError(f"window must give 2 windows or more of {where}, got {count:g}", "window")
     length = window if is_time else span / count
     index = np.minimum((recording.t / length).astype(int), int(count) - 1)
-    parts = []
-    for i in range(int(count)):
-        rows = np.flatnonzero(index == i)
-        if rows.size < LEAST_ROWS:
+    rows = [np.flatnonzero(index == i) for i in range(int(count))]
+    for i, some in enumerate(rows):
+        if some.size < LEAST_ROWS:
             raise LagtopError(
-                f"window {i + 1} must have {LEAST_ROWS} rows or more, got {rows.size}", "window"
+                f"window {i + 1} must have {LEAST_ROWS} rows or more, got {some.size}", "window"
             )
-        t = recording.t[rows]
-        parts.append(
-            replace(
-                recording,
-                name=f"window {i + 1}",
-                t=t - t[0],
-                t_start=recording.t_start + float(t[0]),
-                angles={name: x[rows] for name, x in recording.angles.items()},
-                sigma={name: x[rows] for name, x in recording.sigma.items()},
-            )
-        )
-    return parts
+    return [recording.part(some, f"window {i + 1}") for i, some in enumerate(rows)]
 
 
 def fit_windows(
@@ -165,25 +145,17 @@ def fit_windows(
         raise LagtopError("r0 is an unknown of a fit in windows: leave it out", "r0")
     with ARRAYS.working():
         first = best_attempt(parts[0], known, stds, f"{where}, {parts[0].name}")
-        if first.mirrored:
+        if first.recording.is_mirrored:
             parts = [part.mirrored for part in parts]
-        found = [first.solution.named(0)]
+        found, noise = [first.solution.named(0)], [first.noise] * len(parts)
         for before, part in pairwise(parts):
             start = _led_to(found[-1], part.t_start - before.t_start)
-            alone = parameters_of(known, stds, [part])
-            problem = Problem([part], [sigma_of(part, first.noise)], alone)
-            solution = problem.solve(joined(alone, [start]), _STEPS)
-            found.append(solution.named(0))
-        together = parameters_of(known, stds, parts)
-        problem = Problem(parts, [sigma_of(part, first.noise) for part in parts], together)
-        solution = problem.solve(joined(together, found))
-        sigma_known = bool(parts[0].sigma)
-        if not sigma_known:
-            problem, solution = reweighted(problem, solution)
-    count = len(parts)
-    no_noise: list[dict[str, float]] = [{}] * count  # harmonics of few rows underestimate it
-    fit = Fit(parts, solution, sigma_known, [first.mirrored] * count, no_noise)
-    outcomes = [Outcome(fit, i, radians=radians) for i in range(count)]
+            _, alone = fitted_from([start], [part], noise[:1], known, stds, steps=_STEPS)
+            found.append(alone.named(0))
+        problem, solution = reweighted(*fitted_from(found, parts, noise, known, stds))
+    # harmonics of few rows underestimate the noise
+    fit = Fit(parts, solution, [{}] * len(parts))
+    outcomes = [Outcome(fit, i, radians=radians) for i in range(len(parts))]
     windows = [_window(x, sigma) for x, sigma in zip(outcomes, problem.sigma, strict=True)]
     return WindowedFit(windows, _decay(windows, fit))
 
@@ -195,7 +167,9 @@ def _led_to(values: Mapping[str, float], t: float) -> dict[str, float]:
     at = {name: float(x) for name, x in solve(top).table(t, columns).items()}
     return {
         **values,
-        **{"theta0": at["theta"], "thetadot0": at["thetadot"], "psidot0": at["psidot"]},
+        "theta0": at["theta"],
+        "thetadot0": at["thetadot"],
+        "psidot0": at["psidot"],
         "psi_zero": values["psi_zero"] + at["psi"],
         "phi_zero": values["phi_zero"] + at["phi"] + (values["r0"] - values["b"]) * t,
     }
@@ -210,9 +184,9 @@ def _window(outcome: Outcome, sigma: Array) -> Window:
     freedom = max(round(int(known.sum()) * solution.dof / total), 1)
     chi2_dof = float(np.sum((rows / sigma)[known] ** 2)) / freedom
     low, high = chi2_bounds(freedom)
-    is_noise = all(one.is_noise for one in outcome.residuals.values())
     within = low <= chi2_dof <= high or not outcome.fit.sigma_known
-    verdict = FAILED if outcome.failures() else "good" if is_noise and within else "doubtful"
+    verdict = "good" if outcome.leaves_noise and within else "doubtful"
+    verdict = FAILED if outcome.failures() else verdict
     return Window(outcome, recording.t_start + float(recording.t[-1]) / 2, chi2_dof, verdict)
 
 

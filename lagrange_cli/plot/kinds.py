@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from ..arithmetic.numbers import per_radian
+from ..arithmetic.numbers import angle_unit
 from ..output.progress import Progress, silent
 from .style import DARK, LIGHT, Look
 
@@ -83,12 +83,12 @@ class PlotRequest(NamedTuple):
     @property
     def angle_unit(self) -> str:
         """The name of the unit of angles, as on an axis."""
-        return "rad" if self.radians else "deg"
+        return angle_unit(radians=self.radians)[1]
 
     @property
     def per_radian(self) -> float:
         """The size of one radian in the unit of angles."""
-        return per_radian(radians=self.radians)
+        return angle_unit(radians=self.radians)[0]
 
     def options(self) -> list[str]:
         """Return the settings that differ from the defaults, as options of the command."""

@@ -127,7 +127,7 @@ def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
 
     check_type("outcome", outcome, Outcome)
     figure = figure or new_figure()
-    draw_fit_panels(figure, list(curves_of(outcome)), "rad" if outcome.radians else "deg")
+    draw_fit_panels(figure, list(curves_of(outcome)), outcome.angle)
     return figure
 
 

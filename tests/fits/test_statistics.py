@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from test_fit import angles_of, motion_of
 
 from lagrange_cli import Top, fit
-from lagrange_cli.fits.least_squares import Residual, residual_of
+from lagrange_cli.fits.model import Residual, residual_of
 
 
 @pytest.mark.parametrize(
