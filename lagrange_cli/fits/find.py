@@ -6,7 +6,7 @@ Newton's method within their ranges, from the best points of the scan.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Integral
 from types import NoneType
 from typing import Any
@@ -97,7 +97,7 @@ def find_tops(
     Raises AbsentError if there is none; its message has the nearest point of the scan.
     """
     grid = scan_of(search, count, progress)
-    points = _roots(search, grid) if len(search.spans) == 1 else _solutions(search, grid)
+    points = _roots(grid) if len(search.spans) == 1 else _solutions(grid)
     motions, broken = [], None
     for point in points:
         motion = solve(search.top(point))
@@ -106,73 +106,64 @@ def find_tops(
         broken = broken or fault
         if fault is None:
             motions.append(motion)
-    looked = _looked(search, grid)
+    looked = _looked(grid)
     if not motions:
-        raise AbsentError(f"no top found: {_why(search, grid, len(points), broken)}; {looked}")
+        raise AbsentError(f"no top found: {_why(grid, len(points), broken)}; {looked}")
     return motions, looked
 
 
-def _roots(search: Search, grid: Scan) -> list[list[float]]:
-    target, x = float(search.targets[0]), grid.values[:, 0]
+def _roots(grid: Scan) -> list[list[float]]:
+    """Return the values of a single unknown.  Raises LagtopError as `find` does."""
+    search, x = grid.search, grid.values[:, 0]
+    target = float(search.targets[0])
 
     def off(at: float) -> float:
         return float(search.numbers([at])[0]) - target
 
     y = grid.numbers[:, 0] - target
-    _refuse_plateaus(search, x, y, off)
-    return [[root] for root in roots(off, x, y, target)]
-
-
-def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], float]) -> None:
-    """Raise LagtopError if neighbouring values of the scan all have the target value."""
-    near = np.abs(y) <= _SWEPT * np.abs(search.targets[0])
+    near = np.abs(y) <= _SWEPT * abs(target)
     for i in np.flatnonzero(near[:-2] & near[1:-1] & near[2:]).tolist():
         if not any(map(off, x[i : i + 3].tolist())):
             last = i + int(np.argmin([*near[i:], False])) - 1
-            name = next(iter(search.spans))
+            (name,) = search.spans
             raise LagtopError(
                 f"every {name} from {x[i]:g} to {x[last]:g} has {search.target_text()}, which does "
                 f"not determine {name}: use another condition, or another unknown"
             )
+    return [[root] for root in roots(off, x, y, target)]
 
 
-def _looked(search: Search, grid: Scan) -> str:
+def _looked(grid: Scan) -> str:
     """Return a sentence on the resolution of the scan, and its consequence."""
-    ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
-    each = "" if len(grid.shape) == 1 else " each"
-    caution = "solutions closer together may be missed"
+    ranges = " and ".join(f"{name} from {span}" for name, span in grid.search.spans.items())
+    each, caution = "", "solutions closer together may be missed"
     if len(grid.shape) > 1:
-        caution = "only its best points were followed"
+        each, caution = " each", "only its best points were followed"
     return f"scanned {ranges} at {grid.shape[0]} values{each}: {caution}"
 
 
-def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
+def _why(grid: Scan, count: int, broken: str | None) -> str:
     """Return why nothing was found: the nearest number, or a condition that all solutions break."""
+    search, wanted = grid.search, grid.search.target_text()
     if broken is not None:
-        return f"of {count} with {search.target_text()} none has {broken}"
+        return f"of {count} with {wanted} none has {broken}"
     known = np.isfinite(grid.numbers).all(axis=1)
     if not known.any():
-        return f"no top of the scan has {search.target_text()}{_error(search, grid)}"
+        return f"no top of the scan has {wanted}{_error(grid)}"
     size = np.maximum(np.abs(search.targets), np.ptp(grid.numbers[known], axis=0))
     off = np.abs(grid.numbers - search.targets) / np.where(size > 0, size, 1.0)
     nearest = int(np.nanargmin(np.where(known, np.linalg.norm(off, axis=1), np.nan)))
-    reached = ", ".join(
-        f"{key} = {_short(value, wanted)}"
-        for (key, wanted), value in zip(
-            search.conditions.numbers.items(), grid.numbers[nearest].tolist(), strict=True
-        )
-    )
-    where = ", ".join(
-        f"{name} = {value:.6g}"
-        for name, value in zip(search.spans, grid.values[nearest], strict=True)
-    )
-    return f"nearest to {search.target_text()} is {reached} at {where}"
+    found = zip(search.conditions.numbers.items(), grid.numbers[nearest].tolist(), strict=True)
+    reached = ", ".join(f"{key} = {_short(value, target)}" for (key, target), value in found)
+    unknowns = zip(search.spans, grid.values[nearest], strict=True)
+    where = ", ".join(f"{name} = {value:.6g}" for name, value in unknowns)
+    return f"nearest to {wanted} is {reached} at {where}"
 
 
-def _error(search: Search, grid: Scan) -> str:
+def _error(grid: Scan) -> str:
     """Return the error of the first top of a scan in brackets, if it has one."""
     try:
-        solve(search.top(grid.values[0]))
+        solve(grid.search.top(grid.values[0]))
     except LagtopError as error:
         return f" ({error})"
     return ""
@@ -184,7 +175,7 @@ def _short(value: float, wanted: float) -> str:
     return double_text(value) if text == f"{wanted:.6g}" else text
 
 
-def _solutions(search: Search, grid: Scan) -> list[list[float]]:
+def _solutions(grid: Scan) -> list[list[float]]:
     """Return the values of the unknowns at which all numbers have their target values.
 
     Raises LagtopError if the solutions are not single points.  That is the case if at _PLATEAU of
@@ -192,14 +183,15 @@ def _solutions(search: Search, grid: Scan) -> list[list[float]]:
     """
     found: list[Array] = []
     loose: list[list[str]] = []
-    width = search.ends[1] - search.ends[0]
-    for start in _starts(search, grid):
-        point = _settled(search, _descended(search, grid, start))
+    search = grid.search
+    low, high = search.ends
+    for start in _starts(grid):
+        point = _settled(search, _descended(grid, start))
         if point is not None and all(
-            np.max(np.abs(point - other) / width) > _APART for other in found
+            np.max(np.abs(point - other) / (high - low)) > _APART for other in found
         ):
             found.append(point)
-            loose += [names] if (names := _loose(search, grid, point)) else []
+            loose += [names] if (names := _loose(grid, point)) else []
             if len(loose) == _PLATEAU:
                 raise LagtopError(
                     f"the conditions do not determine {' and '.join(loose[0])}: many values give "
@@ -208,28 +200,21 @@ def _solutions(search: Search, grid: Scan) -> list[list[float]]:
     return sorted(point.tolist() for point in found)
 
 
-def _loose(search: Search, grid: Scan, point: Array) -> list[str]:
+def _loose(grid: Scan, point: Array) -> list[str]:
     """Return the unknowns that can change together without changing the numbers, to first order."""
-    width = search.ends[1] - search.ends[0]
-    slopes = number_slopes(search, point) * width / _sizes(search, grid)[:, np.newaxis]
+    low, high = grid.search.ends
+    slopes = number_slopes(grid.search, point) * (high - low) / grid.sizes[:, np.newaxis]
     if not np.isfinite(slopes).all():
         return []
     _, sizes, directions = np.linalg.svd(slopes)
     still = directions[sizes <= _STILL * sizes[0]]
     moving = np.abs(still).max(axis=0, initial=0.0) > _STILL
-    return [name for name, moves in zip(search.spans, moving.tolist(), strict=True) if moves]
+    return [name for name, moves in zip(grid.search.spans, moving.tolist(), strict=True) if moves]
 
 
-def _sizes(search: Search, grid: Scan) -> Array:
-    """Return the scale of each number: its standard deviation in the scan."""
-    spread = np.nanstd(np.where(np.isfinite(grid.numbers), grid.numbers, np.nan), axis=0)
-    return np.where(spread > 0, spread, np.maximum(np.abs(search.targets), 1e-300))
-
-
-def _starts(search: Search, grid: Scan) -> list[Array]:
+def _starts(grid: Scan) -> list[Array]:
     """Return the points of the grid that are nearer than all their neighbours, the best first."""
-    off = (grid.numbers - search.targets) / _sizes(search, grid)
-    size = np.linalg.norm(off, axis=1)
+    size = np.linalg.norm((grid.numbers - grid.search.targets) / grid.sizes, axis=1)
     size = np.where(np.isfinite(size), size, np.inf).reshape(grid.shape)
     best, padded = np.isfinite(size), np.pad(size, 1, constant_values=np.inf)
     for axis in range(size.ndim):
@@ -240,11 +225,12 @@ def _starts(search: Search, grid: Scan) -> list[Array]:
     return [grid.values[row] for row in rows[order]]
 
 
-def _descended(search: Search, grid: Scan, start: Array) -> Array:
+def _descended(grid: Scan, start: Array) -> Array:
     """Return the point that least squares of the errors reach from a point."""
     from scipy.optimize import least_squares
 
-    sizes, (low, high) = _sizes(search, grid), search.ends
+    search, sizes = grid.search, grid.sizes
+    low, high = search.ends
     width = high - low
 
     def missing(x: Array) -> Array:
@@ -256,8 +242,9 @@ def _descended(search: Search, grid: Scan, start: Array) -> Array:
         return scaled
 
     inside = np.clip((start - low) / width, 1e-9, 1 - 1e-9)
-    tight = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15, "max_nfev": 60}
-    ended = least_squares(missing, inside, slopes, bounds=(0, 1), **tight)
+    ended = least_squares(
+        missing, inside, slopes, (0, 1), xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=60
+    )
     return np.asarray(low + width * ended.x)
 
 

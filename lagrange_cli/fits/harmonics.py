@@ -62,81 +62,89 @@ class Harmonics(NamedTuple):
         return values
 
 
-def harmonics_of(
-    t: Array,
-    y: Array,
-    frequency: float,
-    *,
-    grows: bool = False,
-    fine: bool = False,
-    weights: Array | None = None,
-) -> Harmonics:
-    """Return the series of a given frequency that fits data best.
+class Signal(NamedTuple):
+    """A recorded quantity that is periodic, or periodic except for a mean rate."""
 
-    A `fine` series has the number of harmonics with the least noise.
-    """
-    series = _fitted(t, y, frequency, _harmonics(t, fine=fine), grows=grows, weights=weights)
-    while fine and 6 * series.order < t.size:
-        finer = _fitted(t, y, frequency, 2 * series.order, grows=grows, weights=weights)
-        if not finer.noise < _BETTER * series.noise:
-            break
-        series = finer
-    return series
+    t: Array
+    y: Array
+    grows: bool = False
+    rate: float = 0.0
+    """A rate that was subtracted from the values before their turns were counted."""
+
+    def series(
+        self, frequency: float, *, fine: bool = False, weights: Array | None = None
+    ) -> Harmonics:
+        """Return the series of a given frequency that fits best, with the whole mean rate.
+
+        A `fine` series has the number of harmonics with the least noise.
+        """
+        order = 2 * self._order if fine and self.t.size > _MANY else self._order
+        series = self._fitted(frequency, order, weights)
+        while fine and 6 * series.order < self.t.size:
+            finer = self._fitted(frequency, 2 * series.order, weights)
+            if not finer.noise < _BETTER * series.noise:
+                break
+            series = finer
+        if self.grows:
+            series.factors[-1] += self.rate
+        return series
+
+    @property
+    def _order(self) -> int:
+        return int(min(_HARMONICS, max((self.t.size - 3) // 4, 1)))
+
+    def _fitted(self, frequency: float, order: int, weights: Array | None = None) -> Harmonics:
+        basis, y = _basis(self.t, frequency, order, grows=self.grows), self.y
+        if weights is not None:
+            basis, y = basis * weights[:, np.newaxis], y * weights
+        factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
+        left = float(np.sum((y - basis @ factors) ** 2))
+        return Harmonics(frequency, factors, self.grows, left, self.t.size)
+
+    @property
+    def _around(self) -> Array:
+        """The values without their mean, or without a straight line."""
+        return self.y - np.polyval(np.polyfit(self.t, self.y, int(self.grows)), self.t)
+
+    def clearness(self, series: Harmonics) -> float:
+        """Return the mean variance that a harmonic explains, over the variance of the noise."""
+        explained = (float(np.sum(self._around**2)) - series.misfit) / (2 * series.order)
+        return explained / max(series.noise**2, 1e-300)
+
+    def frequency(self) -> float:
+        """Return the frequency whose harmonics fit best, near the peak of the spectrum."""
+        from scipy.optimize import minimize_scalar
+
+        t, span = self.t, float(self.t[-1] - self.t[0])
+        even = np.linspace(t[0], t[-1], min(4 * t.size, 4096))
+        values = np.interp(even, t, self._around)
+        sizes = np.abs(np.fft.rfft(values - values.mean(), 4 * even.size))
+        frequencies = np.fft.rfftfreq(4 * even.size, even[1] - even[0])
+        sizes[frequencies < 0.7 / span] = 0.0
+        peak = float(frequencies[int(np.argmax(sizes))])
+
+        def left(frequency: float) -> float:
+            return self._fitted(frequency, self._order).misfit
+
+        tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
+        sums = np.array([left(x) for x in tried.tolist()])
+        dips = np.flatnonzero((sums[1:-1] <= sums[:-2]) & (sums[1:-1] <= sums[2:])) + 1
+        deepest = dips[np.argsort(sums[dips])][:_DIPS]
+        if not deepest.size:
+            return float(tried[int(np.argmin(sums))])
+        refined = [
+            minimize_scalar(left, bounds=(tried[i - 1], tried[i + 1]), method="bounded")
+            for i in deepest.tolist()
+        ]
+        least = min(x.fun for x in refined)
+        # a half of the frequency, or a third, explains as much
+        return max(float(x.x) for x in refined if x.fun <= _AS_GOOD * least)
 
 
-def frequency_of(t: Array, y: Array, *, grows: bool = False) -> float:
-    """Return the frequency whose harmonics fit best, near the peak of the spectrum."""
-    from scipy.optimize import minimize_scalar
-
-    span = float(t[-1] - t[0])
-    even = np.linspace(t[0], t[-1], min(4 * t.size, 4096))
-    values = np.interp(even, t, y - np.polyval(np.polyfit(t, y, int(grows)), t))
-    sizes = np.abs(np.fft.rfft(values - values.mean(), 4 * even.size))
-    frequencies = np.fft.rfftfreq(4 * even.size, even[1] - even[0])
-    sizes[frequencies < 0.7 / span] = 0.0
-    peak = float(frequencies[int(np.argmax(sizes))])
-    count = _harmonics(t, fine=False)
-
-    def left(frequency: float) -> float:
-        return _fitted(t, y, frequency, count, grows=grows).misfit
-
-    tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
-    sums = np.array([left(float(x)) for x in tried])
-    dips = np.flatnonzero((sums[1:-1] <= sums[:-2]) & (sums[1:-1] <= sums[2:])) + 1
-    deepest = dips[np.argsort(sums[dips])][:_DIPS]
-    if not deepest.size:
-        return float(tried[int(np.argmin(sums))])
-    refined = [
-        minimize_scalar(left, bounds=(tried[i - 1], tried[i + 1]), method="bounded")
-        for i in deepest.tolist()
-    ]
-    least = min(x.fun for x in refined)
-    # a half of the frequency, or a third, explains as much
-    return max(float(x.x) for x in refined if x.fun <= _AS_GOOD * least)
-
-
-def _harmonics(t: Array, *, fine: bool) -> int:
-    count = int(min(_HARMONICS, max((t.size - 3) // 4, 1)))
-    return 2 * count if fine and t.size > _MANY else count
-
-
-def _basis(t: Array, frequency: float, count: int, *, grows: bool) -> Array:
-    turns = 2 * np.pi * frequency * t[:, np.newaxis] * np.arange(1, count + 1)
-    columns = [np.ones((t.size, 1)), np.cos(turns), np.sin(turns)]
-    if grows:
-        columns.append(t[:, np.newaxis])
-    return np.concatenate(columns, axis=1)
-
-
-def _fitted(
-    t: Array, y: Array, frequency: float, count: int, *, grows: bool, weights: Array | None = None
-) -> Harmonics:
-    basis = _basis(t, frequency, count, grows=grows)
-    if weights is not None:
-        basis, y = basis * weights[:, np.newaxis], y * weights
-    factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
-    left = float(np.sum((y - basis @ factors) ** 2))
-    return Harmonics(frequency, factors, grows, left, t.size)
+def _basis(t: Array, frequency: float, order: int, *, grows: bool) -> Array:
+    turns = 2 * np.pi * frequency * t[:, np.newaxis] * np.arange(1, order + 1)
+    columns = [np.ones((t.size, 1)), np.cos(turns), np.sin(turns), t[:, np.newaxis]]
+    return np.concatenate(columns if grows else columns[:3], axis=1)
 
 
 def frame_of(t: Array) -> float:
@@ -157,11 +165,7 @@ def turning_rate(t: Array, angle: Array) -> float:
     sums = np.abs(np.fft.fft(cells, 4 * cells.size))
     rates = 2 * math.pi * np.fft.fftfreq(4 * cells.size, cell)
     sums[np.abs(rates) > math.pi / frame] = 0.0
-    return _refined(t, turned, float(rates[int(np.argmax(sums))]))
-
-
-def _refined(t: Array, turned: Array, rate: float) -> float:
-    """Return a rate refined by a line through the residual angles."""
+    rate = float(rates[int(np.argmax(sums))])
     left = np.angle(turned * np.exp(-1j * rate * t))
     left = within_half_turn(left - np.angle(np.sum(np.exp(1j * left))))
     return rate + float(np.polyfit(t, left, 1)[0])
@@ -174,10 +178,5 @@ def slowest_spin(r0: float, b: float, b_std: float, frame: float) -> float:
     possible, r0 is returned.
     """
     alike = [r0 + 2 * math.pi / frame * turns for turns in _ALIASES]
-    possible = [
-        x
-        for x in alike
-        if max(b * math.copysign(1, x) + 2 * b_std, 0) > 0
-        and b * math.copysign(1, x) - 2 * b_std <= 2 * abs(x)
-    ]
+    possible = [x for x in alike if -2 * b_std < b * math.copysign(1, x) <= 2 * abs(x) + 2 * b_std]
     return min(possible, key=abs, default=r0)

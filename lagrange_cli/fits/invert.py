@@ -16,7 +16,7 @@ Chrapan's.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -127,6 +127,11 @@ class Candidates(NamedTuple):
         """Return some of the tops."""
         return Candidates(*(x[index] for x in self))
 
+    @classmethod
+    def joined(cls, parts: Iterable[Candidates]) -> Candidates:
+        """Return several groups of tops as one."""
+        return cls(*map(np.concatenate, zip(*parts, strict=True)))
+
 
 def candidates(nutation: TurningPoints, u3_above: Array, signs: tuple[int, int]) -> Candidates:
     """Return the tops with these u3 - 1; `signs` are the signs of beta + b and beta - b."""
@@ -149,7 +154,7 @@ def mean_inverse(k_prime: Array, at_u1: Numeric, at_u2: Numeric) -> Array:
     return mean
 
 
-def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> list[Candidates]:
+def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> Candidates:
     """Return the tops with a given nutation and mean precession rate, the fastest first."""
     grid, found = nutation.from_top[1] * _HEIGHTS, []
     for signs in SIGNS:
@@ -160,9 +165,9 @@ def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> list[Candidates
             middle = np.sqrt(low * high)
             below = (candidates(nutation, middle, signs).mean_rate > mean_rate) == high_at[i]
             low, high = np.where(below, middle, low), np.where(below, high, middle)
-        tops = candidates(nutation, high, signs)
-        found += [tops.at(row) for row in range(len(i))]
-    return sorted(found, key=lambda x: float(x.u3_above), reverse=True)
+        found.append(candidates(nutation, high, signs))
+    tops = Candidates.joined(found)
+    return tops.at(np.argsort(-tops.u3_above, kind="stable"))
 
 
 def top_of(nutation: TurningPoints, found: Candidates, mean_spin: float | None = None) -> Top:
@@ -209,14 +214,15 @@ def invert(
     for name, value in known.items():
         if not value:
             raise LagtopError(f"{name} must not be 0 in a top that nutates: leave it out", name)
-    spin = known.get("r0")  # has the sign of b
-    found = [x for x in with_mean_rate(nutation, rate) if spin is None or spin * float(x.b) > 0]
-    if not found:
+    spin, found = known.get("r0"), with_mean_rate(nutation, rate)
+    if spin is not None:  # r0 has the sign of b
+        found = found.at(spin * found.b > 0)
+    if not found.a.size:
         raise AbsentError(
             f"no top with this nutation precesses at a mean rate of {rate:g}"
             + ("" if spin is None else f" and has r0 = {spin:g}")
         )
-    tops = [top_of(nutation, one, numbers.get(_SPIN)) for one in found]
+    tops = [top_of(nutation, found.at(i), numbers.get(_SPIN)) for i in range(found.a.size)]
     return [solve(_of_body(top, known, _SPIN in numbers)) for top in tops]
 
 

@@ -44,14 +44,6 @@ class Inequality(NamedTuple):
     relation: str
     limit: float
 
-    def holds(self, record: Mapping[str, Any]) -> bool:
-        """Return whether a record keeps the bound; a missing number breaks it."""
-        value = record[self.key]
-        return value is not None and _BOUNDS[self.relation](value, self.limit)
-
-    def __str__(self) -> str:
-        return f"{self.key}{self.relation}{self.limit:g}"
-
 
 class Conditions(NamedTuple):
     """Conditions on the record of a top."""
@@ -67,11 +59,17 @@ class Conditions(NamedTuple):
         return list(dict.fromkeys([*self.numbers, *self.words, *(x.key for x in self.bounds)]))
 
     def broken_by(self, record: Mapping[str, Any]) -> str | None:
-        """Return the first word or bound that a record does not keep, or None."""
+        """Return the first word or bound that a record does not keep, or None.
+
+        A missing number breaks its bound.
+        """
         for key, word in self.words.items():
             if record[key] != word:
                 return f"{key}={word}"
-        return next((str(bound) for bound in self.bounds if not bound.holds(record)), None)
+        for key, relation, limit in self.bounds:
+            if record[key] is None or not _BOUNDS[relation](record[key], limit):
+                return f"{key}{relation}{limit:g}"
+        return None
 
 
 def read_conditions(
@@ -84,34 +82,27 @@ def read_conditions(
     """
     numbers: dict[str, float] = {}
     words: dict[str, str] = {}
-    bounds = []
+    bounds, known = [], all_keys(radians=radians)
     for text in texts:
         match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
         if not match:
             raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
-        key, relation, value = _known_key(match[1], radians), match[2], match[3]
+        name, relation, value = match.groups()
+        key = unit_name(f"{name}_deg", radians=radians)
+        if key not in known:
+            (key,) = check_names("a condition", [name], known)
         if key in numbers or key in words:
             raise LagtopError(f"a condition must name each key once, got {key} twice")
         if key in _WORDS:
-            words[key] = _word(key, relation, value)
+            if relation != "=" or value not in _WORDS[key]:
+                wanted, got = ", ".join(_WORDS[key]), f"{relation}{shortened(value)}"
+                raise LagtopError(f"{key}= must be one of {wanted}, got {got}")
+            words[key] = value
         elif relation == "=":
             numbers[key] = _number(key, value, radians, system)
         else:
             bounds.append(Inequality(key, relation, _number(key, value, radians, system)))
     return Conditions(numbers, words, bounds)
-
-
-def _known_key(name: str, radians: bool) -> str:
-    known = all_keys(radians=radians)
-    with_unit = unit_name(f"{name}_deg", radians=radians)
-    return with_unit if with_unit in known else check_names("a condition", [name], known)[0]
-
-
-def _word(key: str, relation: str, value: str) -> str:
-    if relation != "=" or value not in _WORDS[key]:
-        wanted = ", ".join(_WORDS[key])
-        raise LagtopError(f"{key}= must be one of {wanted}, got {relation}{shortened(value)}")
-    return value
 
 
 def _number(key: str, text: str, radians: bool, system: System | None) -> float:
@@ -142,13 +133,14 @@ def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Se
     """Return conditions as texts KEY=VALUE.  Raises LagtopError for a value of another type."""
     if not isinstance(conditions, Mapping):
         return conditions
-    given = {key: x if isinstance(x, str) else value_of(key, x) for key, x in conditions.items()}
-    return [
-        f"{key}={x}"
-        if isinstance(x, str)
-        else f"{key}={float(exact_number(key, x.number))!r} {x.unit}"
-        for key, x in given.items()
-    ]
+    texts = []
+    for key, given in conditions.items():
+        if isinstance(given, str):
+            texts.append(f"{key}={given}")
+        else:
+            value = value_of(key, given)
+            texts.append(f"{key}={float(exact_number(key, value.number))!r} {value.unit}")
+    return texts
 
 
 def read_unknown(name: str, given: Any) -> Value:
@@ -218,21 +210,6 @@ class Search(NamedTuple):
         found = sweep(keys=keys, radians=self.radians, **self.inputs(list(values.T)))
         return np.stack([np.asarray(found[key], dtype=np.float64) for key in keys], axis=-1)
 
-    def check(self) -> Search:
-        """Return the search.  Raises LagtopError if it cannot have single solutions."""
-        unknown, numbers = len(self.spans), len(self.conditions.numbers)
-        if not 1 <= unknown <= max(COUNTS):
-            raise LagtopError(
-                f"find needs 1 to {max(COUNTS)} unknown inputs, each a range from:to such as "
-                f"10:200, got {unknown}"
-            )
-        if numbers != unknown:
-            raise LagtopError(
-                f"find needs as many conditions KEY=NUMBER as unknown inputs, got {numbers} for "
-                f"{unknown}: {', '.join(self.spans)}"
-            )
-        return self
-
 
 def search_of(
     inputs: Mapping[str, Any],
@@ -243,7 +220,8 @@ def search_of(
 ) -> tuple[Search, Given]:
     """Return a search, and the given inputs of the top, from options and from a scene file.
 
-    An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError.
+    An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError, also if
+    there cannot be single solutions.
     """
     given = gather(inputs, scene, system=system_asked(conditions))
     wanted = read_conditions(conditions, radians=radians, system=given.system)
@@ -251,17 +229,35 @@ def search_of(
     known = {name: x for name, x in given.inputs.items() if name not in spans}
     shared = shared_inputs(given.replace(inputs=known), varying=spans)
     fixed = {name: x for name, x in shared.items() if name not in spans}
-    return Search(fixed, spans, wanted, radians).check(), given
+    unknown, numbers = len(spans), len(wanted.numbers)
+    if not 1 <= unknown <= max(COUNTS):
+        raise LagtopError(
+            f"find needs 1 to {max(COUNTS)} unknown inputs, each a range from:to such as "
+            f"10:200, got {unknown}"
+        )
+    if numbers != unknown:
+        raise LagtopError(
+            f"find needs as many conditions KEY=NUMBER as unknown inputs, got {numbers} for "
+            f"{unknown}: {', '.join(spans)}"
+        )
+    return Search(fixed, spans, wanted, radians), given
 
 
 class Scan(NamedTuple):
     """Tops on a grid of the unknowns."""
 
+    search: Search
     shape: tuple[int, ...]
     values: Array
     """The unknowns of each top, shape (tops, unknowns); the last unknown varies fastest."""
     numbers: Array
     """The numbers that have a target value, in the same shape; NaN if a key has none."""
+
+    @property
+    def sizes(self) -> Array:
+        """The scale of each number: its standard deviation, or else the size of its target."""
+        spread = np.nanstd(np.where(np.isfinite(self.numbers), self.numbers, np.nan), axis=0)
+        return np.where(spread > 0, spread, np.maximum(np.abs(self.search.targets), 1e-300))
 
 
 def scan_of(search: Search, count: int | None, progress: Progress) -> Scan:
@@ -282,4 +278,4 @@ def scan_of(search: Search, count: int | None, progress: Progress) -> Scan:
         values.append(at)
         numbers.append(search.swept(at))
     shape = (each,) * len(search.spans)
-    return Scan(shape, np.concatenate(values), np.concatenate(numbers))
+    return Scan(search, shape, np.concatenate(values), np.concatenate(numbers))

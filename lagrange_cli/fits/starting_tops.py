@@ -74,13 +74,13 @@ def starting_tops(
 
 
 def _states_shown(shown: Shown, *, wide: bool) -> Array:
-    tops = []
+    states = []
     for one in _near(shown) if wide else [shown]:
         if one.mean_rates:
-            tops.append(_states(one, _with_mean_rates(one)))
+            states.append(_states(one, _with_mean_rates(one)))
         if wide or not one.mean_rates:
-            tops.append(_states(one, _grid(one)))
-    return np.concatenate(tops)
+            states.append(_states(one, _grid(one)))
+    return np.concatenate(states)
 
 
 def _near(shown: Shown) -> list[Shown]:
@@ -95,21 +95,19 @@ def _near(shown: Shown) -> list[Shown]:
 def _grid(shown: Shown) -> Candidates:
     """Return tops of some moduli, with all signs."""
     tried = shown.nutation.from_top[1] * np.array(_HEIGHTS)
-    parts = [candidates(shown.nutation, tried, signs) for signs in SIGNS]
-    return Candidates(*(np.concatenate(x) for x in zip(*parts, strict=True)))
+    return Candidates.joined(candidates(shown.nutation, tried, signs) for signs in SIGNS)
 
 
 def _with_mean_rates(shown: Shown) -> Candidates:
     """Return the tops with the mean precession, or the tops nearest to it."""
-    found: list[Candidates] = []
+    found = []
     for rate in shown.mean_rates:
-        exact = with_mean_rate(shown.nutation, rate)
-        if not exact:
+        tops = with_mean_rate(shown.nutation, rate)
+        if not tops.a.size:
             grid = _grid(shown)
-            nearest = np.argsort(np.abs(grid.mean_rate - rate))[:_NEAREST]
-            exact = [grid.at(i) for i in nearest.tolist()]
-        found += exact
-    return Candidates(*(np.array(x) for x in zip(*found, strict=True)))
+            tops = grid.at(np.argsort(np.abs(grid.mean_rate - rate))[:_NEAREST])
+        found.append(tops)
+    return Candidates.joined(found)
 
 
 def _states(shown: Shown, tops: Candidates) -> Array:
@@ -124,37 +122,33 @@ def _start(
     recording: Recording, noise: Mapping[str, float], state: Array, angles: Array
 ) -> StartingTop:
     """Return a start with the best zeros of psi and phi, and the best spin rate."""
-    theta, phi, psi = angles
+    (theta, phi, psi), t = angles, recording.t
     values = dict(zip(STATE, state.tolist(), strict=True))
-    psi_zero, excess, phi_zero = 0.0, 0.0, 0.0
+    psi_zero, excess, phi_zero, b = 0.0, 0.0, 0.0, values["b"]
     if "psi" in recording.angles:
         psi_zero = _mean_angle(recording.angles["psi"] - psi, np.sin(theta))
     if "phi" in recording.angles:
-        excess = _spin_excess(recording.t, recording.angles["phi"] - phi, values["b"])
-        phi_zero = _mean_angle(recording.angles["phi"] - phi - excess * recording.t, 1.0)
-    moved = np.stack([theta, phi + excess * recording.t + phi_zero, psi + psi_zero])
+        left = recording.angles["phi"] - phi  # grows at the rate r0 - b
+        frame = frame_of(t[np.isfinite(left)])
+        excess = slowest_spin(b + turning_rate(t, left), b, 0.0, frame) - b
+        phi_zero = _mean_angle(left - excess * t, 1.0)
+    moved = np.stack([theta, phi + excess * t + phi_zero, psi + psi_zero])
     sizes = [[noise.get(channel, 1.0)] for channel in recording.channels]
-    left = float(np.nansum((residuals(recording, moved).values / sizes) ** 2))
-    values |= {"r0": values["b"] + excess, "psi_zero": psi_zero, "phi_zero": phi_zero}
-    return StartingTop(values, left)
+    misfit = float(np.nansum((residuals(recording, moved).values / sizes) ** 2))
+    return StartingTop(
+        values | {"r0": b + excess, "psi_zero": psi_zero, "phi_zero": phi_zero}, misfit
+    )
 
 
 def _mean_angle(angles: Array, weights: Array | float) -> float:
     return float(np.angle(np.nansum(weights * np.exp(1j * angles))))
 
 
-def _spin_excess(t: Array, left: Array, b: float) -> float:
-    """Return the rate r0 - b at which the residual of phi grows."""
-    rate = turning_rate(t, left)
-    return slowest_spin(b + rate, b, 0.0, frame_of(t[np.isfinite(left)])) - b
-
-
 def _states_behind(turns: Turns, tilt: float | None) -> Array:
     """Return states at the first row in the order of `model.STATE`, the likeliest first."""
     nutation, tops = _tops(1 / turns.psi.frequency, turns.psi.growth)
     theta, period = _tilts(nutation, tops), nutation.period
-    columns = tops.at((slice(None), np.newaxis))
-    rate = columns.precession_rate(theta)
+    rate = tops.precession_rate(theta)
     misfit = _misfit(_wave(rate, period), _seen(turns.psi)) / turns.noise["psi"] ** 2
     if turns.phi is not None:
         off_phi = _misfit(_wave(-np.cos(theta) * rate, period), _seen(turns.phi))
@@ -162,27 +156,26 @@ def _states_behind(turns: Turns, tilt: float | None) -> Array:
     if tilt is not None:
         misfit += ((theta - tilt) / _TILT_OFF) ** 2
     row, phase = np.arange(len(misfit)), np.argmin(misfit, axis=1)
-    ends = TurningPoints(
-        nutation.theta_min[:, np.newaxis], nutation.theta_max[:, np.newaxis], period
-    )
-    falls = np.where(_PHASES < 0.5, -1, 1) * columns.tilt_rate(ends, theta)
-    states = [tops.a, tops.b, *(x[row, phase] for x in (theta, falls, rate))]
+    falls = np.where(_PHASES < 0.5, -1, 1) * tops.tilt_rate(nutation, theta)
+    states = [tops.a[:, 0], tops.b[:, 0], *(x[row, phase] for x in (theta, falls, rate))]
     return np.stack(states, axis=-1)[np.argsort(misfit[row, phase])]
 
 
 def _tilts(nutation: TurningPoints, tops: Candidates) -> Array:
     """Return the tilts of tops over a period from their greatest tilt on, a row for each."""
     to_u1, to_u2 = (x + tops.u3_above for x in nutation.from_top)  # from u3
-    k_prime = np.sqrt(to_u1 / to_u2)[:, np.newaxis]
+    k_prime = np.sqrt(to_u1 / to_u2)
     whole = 2 * complete_k(ARRAYS, k_prime)
     sn = jacobi_of_arrays(whole * _PHASES, modulus(ARRAYS, k_prime=k_prime))[1]
-    u2 = nutation.u2[:, np.newaxis]
-    tilts: Array = np.arccos(u2 + (nutation.u1[:, np.newaxis] - u2) * sn * sn)
+    tilts: Array = np.arccos(nutation.u2 + (nutation.u1 - nutation.u2) * sn * sn)
     return tilts
 
 
 def _tops(period: float, mean_rate: float) -> tuple[TurningPoints, Candidates]:
-    """Return tops with a period and approximately a mean precession, and their turning points."""
+    """Return tops with a period and approximately a mean precession, and their turning points.
+
+    All arrays are columns, of shape (tops, 1).
+    """
     least, greatest = _turning_points()
     parts = []
     for signs in SIGNS:
@@ -194,7 +187,7 @@ def _tops(period: float, mean_rate: float) -> tuple[TurningPoints, Candidates]:
         height = tried[row, i] ** (1 - share) * tried[row, i + 1] ** share
         one = TurningPoints(least[row], greatest[row], period)
         parts.append([*one[:2], *candidates(one, height, signs)])
-    low, high, *tops = map(np.concatenate, zip(*parts, strict=True))
+    low, high, *tops = (np.concatenate(x)[:, np.newaxis] for x in zip(*parts, strict=True))
     return TurningPoints(low, high, period), Candidates(*tops)
 
 

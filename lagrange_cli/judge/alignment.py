@@ -16,6 +16,7 @@ from ..inputs import rotations
 from ..inputs.names import ANGLES
 from ..inputs.seen import Seen
 from ..motion.solve import Motion
+from .deviations import rows_of_parts
 
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 WORDS = {
@@ -101,7 +102,7 @@ def frames_of(alignment: Alignment, motion: Motion, first: Seen) -> FrameChange:
     if alignment.start:
         return _counted_from(frames, seen, {x: float(y[0]) for x, y in exact.items()})
     assert seen.quaternion is not None
-    wanted = np.array([exact[f"quaternion_{part}"][0] for part in "wxyz"])
+    (wanted,) = rows_of_parts(exact, "quaternion", "wxyz")
     given = seen.quaternion[0] / np.linalg.norm(seen.quaternion[0])
     if alignment.body:
         turn = rotations.product(rotations.conjugate(wanted), given)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -85,17 +85,16 @@ def compare(
     ('fine', '1e-04', 50)
     >>> figure, keys = judgement.plot(), judgement.to_dict().keys()
     """
-    arrays = {
-        **{"quaternion": quaternion, "matrix": matrix, "theta": theta, "phi": phi, "psi": psi},
-        **{"euler": euler, "rotvec": rotvec, "axis": axis, "position": position},
-        **{"rates": rates, "angle_rates": angle_rates},
-    }
+    angles = {"theta": theta, "phi": phi, "psi": psi}
+    attitude = {"quaternion": quaternion, "matrix": matrix, "euler": euler, "rotvec": rotvec}
+    directions = {"axis": axis, "position": position}
+    arrays = attitude | angles | directions | {"rates": rates, "angle_rates": angle_rates}
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
     block = _quantities(t, {key: x for key, x in arrays.items() if x is not None})
     given = ReadTrajectory([block], {}, conventions, alignment(align))
     check_type("top", top, Top, Motion)
     motion = top if isinstance(top, Motion) else solve(top)
-    (judgement,), _ = with_verdicts(motion, [(judge(motion, given), given)], max_error)
+    (judgement,), _ = with_verdicts(motion, [judge(motion, given)], max_error)
     return replace(judgement, step=step)
 
 
@@ -127,40 +126,29 @@ def _unmasked(array: ArrayLike) -> ArrayLike:
 
 def with_verdicts(
     motion: Motion,
-    cases: Sequence[tuple[JudgedRun, ReadTrajectory]],
+    runs: Sequence[JudgedRun],
     limit: float | None,
     step_sizes: Sequence[float] | None = None,
 ) -> tuple[list[Judgement], Convergence | None]:
     """Return the judgements of trajectories with their verdicts, and their convergence.
 
     The limit is LIMIT by default.  Mistakes are tried if a trajectory exceeds the limit.  They are
-    not tried if the error falls with the step, because then the top is right.  Raises LagtopError
-    for bad steps.
+    not tried if the error falls with the step, because then the top is right.
     """
     limit = LIMIT if limit is None else limit
-    judgements = [run.judgement for run, _ in cases]
-    found = None
+    judgements, found = [run.judgement for run in runs], None
     if step_sizes is not None:
-        check_step_sizes(step_sizes, len(cases))
         judgements = [replace(x, step=step) for x, step in zip(judgements, step_sizes, strict=True)]
         found = convergence(judgements)
         judgements = [replace(x, order=found.order if found else None) for x in judgements]
-    judgements = [
-        replace(judgement, **_mistake(motion, *case, limit, found))
-        for judgement, case in zip(judgements, cases, strict=True)
-    ]
-    return [replace(x, verdict=_verdict(x, limit, found)) for x in judgements], found
-
-
-def _mistake(
-    motion: Motion, run: JudgedRun, given: ReadTrajectory, limit: float, found: Convergence | None
-) -> dict[str, Any]:
-    """Return the keys of the mistake that explains a trajectory, if it exceeds the limit."""
-    error = run.judgement.error_max
-    if error is None or (error <= limit if found is None else found.falls):
-        return {}
-    best = explanation(motion, run, given)
-    return {} if best is None else {"explained_by": best.name, "explained_error": best.error}
+    for i, (run, judgement) in enumerate(zip(runs, judgements, strict=True)):
+        error, best = judgement.error_max, None
+        if error is not None and (error > limit if found is None else not found.falls):
+            best = explanation(motion, run)
+        name, remaining = best or (None, None)
+        explained = replace(judgement, explained_by=name, explained_error=remaining)
+        judgements[i] = replace(explained, verdict=_verdict(explained, limit, found))
+    return judgements, found
 
 
 def _verdict(judgement: Judgement, limit: float, found: Convergence | None) -> str:
@@ -217,7 +205,7 @@ def compare_files(
         raise LagtopError("standard input can be read once, got - twice")
     if request.step_sizes is not None:
         check_step_sizes(request.step_sizes, len(paths))
-    cases, warnings = [], []
+    runs, warnings = [], []
     for path in paths:
         with open_trajectory(path, request.columns, request.dialect) as trajectory:
             top = scene_in(trajectory.description, trajectory.name)
@@ -226,8 +214,8 @@ def compare_files(
             elif top is not None and (wrong := difference(top, motion.top)):
                 warnings.append(f"{trajectory.name} describes another scene: {wrong}")
             is_named = True
-            cases.append(_judged(motion, path, trajectory, request, progress))
-    found = with_verdicts(motion, cases, request.limit, request.step_sizes)
+            runs.append(_judged(motion, path, trajectory, request, progress))
+    found = with_verdicts(motion, runs, request.limit, request.step_sizes)
     return Comparison(*found, motion, warnings)
 
 
@@ -237,7 +225,7 @@ def _judged(
     trajectory: Trajectory,
     request: ComparisonRequest,
     progress: Progress,
-) -> tuple[JudgedRun, ReadTrajectory]:
+) -> JudgedRun:
     said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
     rows = (block for block, _ in trajectory.blocks())
     blocks = progress(rows, "rows", size=lambda block: len(block["t"]))
@@ -251,5 +239,4 @@ def _judged(
             raise
         kind = DataError if error.key in _OF_THE_FILE else LagtopError
         raise kind(f"{shown_path(path)}: {error}") from None
-    named = replace(run.judgement, file=utf8_path(path))
-    return run._replace(judgement=named), given
+    return run._replace(judgement=replace(run.judgement, file=utf8_path(path)))

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +21,11 @@ from ..motion.solve import Motion
 MOST_KEPT = 4096
 _SURE = 2.0
 """Largest change of a deviation from row to row, in radians, for whole turns to be counted."""
+
+
+def rows_of_parts(table: Mapping[str, Array], name: str, parts: str) -> Array:
+    """Return the columns NAME_PART of a table as one array with a row for each time."""
+    return np.stack([table[f"{name}_{part}"] for part in parts], axis=1)
 
 
 class Deviations:
@@ -68,7 +72,7 @@ class Deviations:
         if seen.axis is not None:
             names = ["axis", "theta", "psi"]
             exact = self.motion.table(seen.t, names, wrap=True)
-            axis = np.stack([exact[f"axis_{part}"] for part in "xyz"], axis=1)
+            axis = rows_of_parts(exact, "axis", "xyz")
             angles = rotations.angles_of_axis(seen.axis)
             if self.vertical:
                 del angles["psi"]
@@ -80,7 +84,7 @@ class Deviations:
 
     def _whole(self, t: Array, quaternion: Array) -> dict[str, Array]:
         exact = self.motion.table(t, [*ANGLES, "quaternion"], wrap=True)
-        q = np.stack([exact[f"quaternion_{part}"] for part in "wxyz"], axis=1)
+        q = rows_of_parts(exact, "quaternion", "wxyz")
         angles = rotations.angles_of(quaternion)
         axes = rotations.axis_of(q), rotations.axis_of(quaternion)
         found = {
@@ -103,8 +107,7 @@ class Deviations:
         given = seen.body_rates
         if given is None:
             given = seen.space_rates
-            q = np.stack([exact[f"quaternion_{part}"] for part in "wxyz"], axis=1)
-            rates = rotations.rotated(q, rates)
+            rates = rotations.rotated(rows_of_parts(exact, "quaternion", "wxyz"), rates)
         assert given is not None
         return {"rate": np.linalg.norm(given - rates, axis=1)}
 
@@ -146,15 +149,6 @@ class Extremes:
             self.last = float(known[-1])
 
 
-class FittedLine(NamedTuple):
-    """A straight line through the deviations of an angle."""
-
-    slope: float
-    """Slope per unit of time."""
-    rest: float
-    """Root mean square of the residuals."""
-
-
 class LineFit:
     """A straight line through an angle's deviations, unwrapped, by least squares."""
 
@@ -185,25 +179,15 @@ class LineFit:
         self.x += step_x * n / whole
         self.count = whole
 
-    def line(self) -> FittedLine | None:
-        """Return the line, or None for fewer than three rows or if whole turns are uncertain."""
+    def line(self) -> tuple[float, float] | None:
+        """Return the slope of the line and the root mean square of the residuals.
+
+        Returns None for fewer than three rows or if whole turns are uncertain.
+        """
         if self.count < 3 or not self.turns_are_sure:
             return None
         slope = self.tx / self.tt
-        return FittedLine(slope, math.sqrt(max(self.xx - slope * self.tx, 0.0) / self.count))
-
-
-class Passages:
-    """The first times at which a deviation exceeds some sizes."""
-
-    def __init__(self, sizes: tuple[float, ...]) -> None:
-        self.times: dict[float, float | None] = dict.fromkeys(sizes)
-
-    def add(self, t: Array, values: Array) -> None:
-        """Add the deviations of some rows."""
-        for size, time in self.times.items():
-            if time is None and (beyond := np.flatnonzero(values > size)).size:
-                self.times[size] = float(t[beyond[0]])
+        return slope, math.sqrt(max(self.xx - slope * self.tx, 0.0) / self.count)
 
 
 class Kept:

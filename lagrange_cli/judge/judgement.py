@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,7 +18,7 @@ from ..inputs.seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, 
 from ..motion.notebook import HasRecord
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
-from .deviations import Deviations, Extremes, Kept, LineFit, Passages
+from .deviations import Deviations, Extremes, Kept, LineFit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -135,16 +136,6 @@ JUDGEMENT_KEYS: dict[str, str] = {
 """The keys of a record with their meanings."""
 
 
-class JudgedRun(NamedTuple):
-    """A trajectory that has been read to its end, with its judgement."""
-
-    judgement: Judgement
-    kept: Quantities
-    """Some of its rows, as they were given."""
-    conventions: Conventions
-    """Conventions with which it was read."""
-
-
 class ReadTrajectory(NamedTuple):
     """A trajectory as it is given: blocks of quantities, and their conventions."""
 
@@ -159,6 +150,18 @@ class ReadTrajectory(NamedTuple):
         """Return the motion in a block, in its original frames."""
         seen = see(block, self.conventions, self.said)
         return seen if self.change is None else self.change(seen)
+
+    def with_order(self, quaternion: str) -> ReadTrajectory:
+        """Return the trajectory with an order of its quaternion."""
+        return self._replace(conventions=self.conventions._replace(quaternion=quaternion))
+
+
+class JudgedRun(NamedTuple):
+    """A trajectory that has been read to its end, with its judgement."""
+
+    judgement: Judgement
+    kept: ReadTrajectory
+    """Some of its rows, as they were given, with the conventions in which they were read."""
 
 
 def judge(motion: Motion, given: ReadTrajectory) -> JudgedRun:
@@ -176,7 +179,7 @@ def judge(motion: Motion, given: ReadTrajectory) -> JudgedRun:
             tally.add(block)
         if tally is None:
             raise LagtopError("t must have at least one row", "t")
-        return JudgedRun(tally.judgement(), tally.kept_rows(), tally.given.conventions)
+        return JudgedRun(tally.judgement(), tally.kept_rows())
 
 
 def errors_of(motion: Motion, given: ReadTrajectory) -> Array:
@@ -202,15 +205,14 @@ class _Tally:
         said_order = given.said.get("quaternion", ("", None))[0] or given.conventions.quaternion
         if "quaternion" in first and not said_order:
             self.proved = _proved_order(motion, given, first)
-            proved = given.conventions._replace(quaternion=self.proved)
-            given = given._replace(conventions=proved)
+            given = given.with_order(self.proved)
         self.given = given
         self.frames = frames_of(given.alignment, motion, given.see(first))
         self.deviations = Deviations(motion)
-        self.extremes: dict[str, Extremes] = {}
+        self.extremes: defaultdict[str, Extremes] = defaultdict(Extremes)
         self.fits = {name: LineFit() for name in ANGLES}
-        self.passages, self.kept = Passages(tuple(PASSED.values())), Kept()
-        self.rows, self.start = 0, math.nan
+        self.passed: dict[str, float | None] = dict.fromkeys(PASSED)
+        self.kept, self.rows, self.start = Kept(), 0, math.nan
         self.lost_at: float | None = None
 
     def add(self, block: Quantities) -> None:
@@ -218,12 +220,14 @@ class _Tally:
         seen = self.frames.aligned(self.given.see(block))
         found = self.deviations.of(seen)
         for name, values in found.items():
-            self.extremes.setdefault(name, Extremes()).add(values)
+            self.extremes[name].add(values)
         for name in ANGLES:
             if name in found:
                 self.fits[name].add(seen.t, found[name])
         error = found["error"]
-        self.passages.add(seen.t, error)
+        for key, size in PASSED.items():
+            if self.passed[key] is None and (beyond := np.flatnonzero(error > size)).size:
+                self.passed[key] = float(seen.t[beyond[0]])
         self.kept.add({**block, "error": error[:, np.newaxis]})
         if not self.rows:
             self.start = float(error[0])
@@ -232,44 +236,41 @@ class _Tally:
             self.lost_at = float(seen.t[lost[0]])
         self.rows += len(error)
 
-    def kept_rows(self) -> dict[str, Array]:
+    def kept_rows(self) -> ReadTrajectory:
         """Return some of the rows, as they were given."""
-        return {name: x for name, x in self.kept.rows().items() if name != "error"}
+        rows = {name: x for name, x in self.kept.rows().items() if name != "error"}
+        return self.given._replace(blocks=[rows])
 
     def judgement(self) -> Judgement:
         """Return the judgement, except for the verdict."""
         period = self.motion.T_nutation or self.motion.T_spin or 1.0
-        values: dict[str, Any] = {}
+        values = {"error_max": self.extremes["error"].greatest}
         for name in ("attitude", "axis", *ANGLES, "rate"):
-            values[f"{name}_error_max"] = self._extreme(name).greatest
+            values[f"{name}_error_max"] = self.extremes[name].greatest
             if name != "axis":
-                values[f"{name}_error_final"] = self._extreme(name).last
+                values[f"{name}_error_final"] = self.extremes[name].last
         for name in ("norm", "energy", "Lz"):
-            values[f"{name}_drift"] = self._extreme(name).greatest
+            values[f"{name}_drift"] = self.extremes[name].greatest
         for name, fit in self.fits.items():
             if line := fit.line():
-                values |= {f"{name}_drift": line.slope * period, f"{name}_rest": line.rest}
-        kept = self.kept.rows()
-        passages: dict[str, Any] = {x: self.passages.times[size] for x, size in PASSED.items()}
+                slope, values[f"{name}_rest"] = line
+                values[f"{name}_drift"] = slope * period
         known: dict[str, Any] = {x: None if math.isnan(y) else y for x, y in values.items()}
-        greatest = self._extreme("error").greatest
+        passed: dict[str, Any] = self.passed
+        kept = self.kept.rows()
         return Judgement(
             rows=self.rows,
             judged=self.judged,
-            error_max=None if math.isnan(greatest) else greatest,
             period=period,
             lost_at=self.lost_at,
             quaternion_order=self.proved,
             error_start=self.start,
-            rate_error_relative=self._extreme("rate").greatest / self.deviations.rate_scale,
+            rate_error_relative=self.extremes["rate"].greatest / self.deviations.rate_scale,
             t=kept["t"][:, 0] - self.frames.time,
             error=kept["error"][:, 0],
-            **passages,
             **known,
+            **passed,
         )
-
-    def _extreme(self, name: str) -> Extremes:
-        return self.extremes.get(name) or Extremes()
 
 
 def _proved_order(motion: Motion, given: ReadTrajectory, first: Mapping[str, Array]) -> str:
@@ -279,8 +280,7 @@ def _proved_order(motion: Motion, given: ReadTrajectory, first: Mapping[str, Arr
     """
     errors = {}
     for order in ORDERS:
-        conventions = given.conventions._replace(quaternion=order)
-        one = given._replace(blocks=[first], conventions=conventions)
+        one = given.with_order(order)._replace(blocks=[first])
         errors[order] = float(np.nan_to_num(errors_of(motion, one)[0], nan=math.inf))
     right, wrong = sorted(ORDERS, key=lambda order: errors[order])
     if errors[right] < PROVED and errors[wrong] > DISPROVED:

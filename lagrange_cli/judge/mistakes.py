@@ -49,28 +49,19 @@ class Mistake(NamedTuple):
         return given._replace(conventions=conventions, alignment=alignment, change=change)
 
 
-class Explanation(NamedTuple):
-    """The mistake that explains a trajectory best."""
-
-    name: str
-    error: float
-    """Greatest remaining error."""
-
-
-def explanation(motion: Motion, run: JudgedRun, given: ReadTrajectory) -> Explanation | None:
+def explanation(motion: Motion, run: JudgedRun) -> tuple[str, float] | None:
     """Return the mistake that leaves the least error in the kept rows, if it explains them.
 
-    Rows that are not finite do not count.
+    The result is its name and the greatest remaining error.  Rows that are not finite do not count.
     """
-    kept = given._replace(blocks=[run.kept], conventions=run.conventions)
     left = [
-        Explanation(mistake.name, error)
+        (mistake.name, error)
         for mistake in [*MISTAKES, *_mistakes_of_rates(motion.top)]
-        if (error := _error_without(mistake, motion, kept)) is not None
+        if (error := _error_without(mistake, motion, run.kept)) is not None
     ]
-    best = min(left, key=lambda x: x.error, default=None)
+    best = min(left, key=lambda x: x[1], default=None)
     error = run.judgement.error_max
-    return best if best and error and best.error <= EXPLAINS * error else None
+    return best if best and error and best[1] <= EXPLAINS * error else None
 
 
 def _error_without(mistake: Mistake, motion: Motion, given: ReadTrajectory) -> float | None:

@@ -12,7 +12,7 @@ import pytest
 from engines import Array
 
 from lagrange_cli import LagtopError, Top, fit, solve
-from lagrange_cli.fits.harmonics import frequency_of, harmonics_of, slowest_spin, turning_rate
+from lagrange_cli.fits.harmonics import Signal, slowest_spin, turning_rate
 from lagrange_cli.fits.least_squares import Problem
 from lagrange_cli.fits.parameters import FIT_QUANTITIES, Coordinates
 from lagrange_cli.fits.record import FAILED, Outcome
@@ -150,9 +150,9 @@ def test_harmonics_have_a_growth_and_a_noise() -> None:
     rng = np.random.default_rng(4)
     t = np.linspace(0, 7, 300)
     y = 3 * t + 0.4 * np.sin(5 * t) + 0.1 * np.cos(10 * t) + 0.01 * rng.normal(size=t.size)
-    frequency = frequency_of(t, y, grows=True)
-    assert frequency == pytest.approx(5 / (2 * math.pi), rel=1e-3)
-    series = harmonics_of(t, y, 5 / (2 * math.pi), grows=True, fine=True)
+    signal = Signal(t, y, grows=True)
+    assert signal.frequency() == pytest.approx(5 / (2 * math.pi), rel=1e-3)
+    series = signal.series(5 / (2 * math.pi), fine=True)
     assert series.noise == pytest.approx(0.01, rel=0.15)
     assert series.growth == pytest.approx(3, abs=0.002)
 

@@ -316,7 +316,7 @@ def judged(top: Top, runs: list[tuple[Array, Array]], steps: list[float]) -> lis
     for t, states in runs:
         block = {"t": t[:, np.newaxis], "quaternion": states[:, :4]}
         given = ReadTrajectory([block], {}, Conventions("wxyz", radians=True), Alignment())
-        cases.append((judge(motion, given), given))
+        cases.append(judge(motion, given))
     return with_verdicts(motion, cases, None, steps)[0]
 
 
