@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import chain, combinations
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -52,10 +52,9 @@ class Fit(NamedTuple):
         return bool(self.recordings[0].sigma)
 
 
-def with_stds(numbers: Iterable[tuple[str, Any, Any]]) -> dict[str, Any]:
+def flat_numbers(numbers: Iterable[tuple[str, Any, Any]]) -> dict[str, Any]:
     """Return numbers by key, each followed by its standard deviation as KEY_std."""
-    pairs = (((key, value), (f"{key}_std", std)) for key, value, std in numbers)
-    return dict(chain.from_iterable(pairs))
+    return dict(x for key, *two in numbers for x in zip((key, f"{key}_std"), two, strict=True))
 
 
 class Outcome(HasRecord):
@@ -117,13 +116,9 @@ class Outcome(HasRecord):
             found += [f"no motion fits the recording: {x}" for x in self._impossible()]
         return found
 
-    def unit(self, name: str) -> str:
-        """Return the key of a quantity in the unit of angles in use."""
-        return f"{name}_{self.angle}" if name in _ANGLES else name
-
-    def scale(self, name: str) -> float:
-        """Return the factor of a quantity from radians to the unit of angles in use."""
-        return self.per_radian if name in _ANGLES else 1.0
+    def shown_as(self, name: str) -> tuple[str, float]:
+        """Return the key of a quantity in the unit of angles in use, and its factor to this."""
+        return (f"{name}_{self.angle}", self.per_radian) if name in _ANGLES else (name, 1.0)
 
     def found(self) -> Iterator[tuple[str, float, float]]:
         """Yield name, value and standard deviation of each fitted quantity of the motion."""
@@ -179,8 +174,8 @@ class Outcome(HasRecord):
     def numbers(self) -> Iterator[tuple[str, float, float, str]]:
         """Yield key, value, standard deviation and meaning of every number, in the unit in use."""
         for name, value, deviation in self.found():
-            scale = self.scale(name)
-            yield self.unit(name), value * scale, deviation * scale, MEANINGS[name]
+            key, scale = self.shown_as(name)
+            yield key, value * scale, deviation * scale, MEANINGS[name]
         for name in [x for x in BODY_QUANTITIES if x in self.known and self.deviations.get(x, 0.0)]:
             yield name, self.known[name], self.deviations[name], "known, improved by the fit"
         for product, deviation in self.products():
@@ -256,12 +251,13 @@ class Outcome(HasRecord):
         """Return everything by key, flat."""
         solution, recording = self.fit.solution, self.recording
         record: dict[str, Any] = {"name": recording.name} if recording.name else {}
-        record |= with_stds(number[:3] for number in self.numbers())
+        record |= flat_numbers(number[:3] for number in self.numbers())
         for x, _, off in self.derived:
             if x.exact:
                 record[f"{x.key}_off_sigma"] = off
         for name, value in self.known.items():
-            record.setdefault(self.unit(name), value * self.scale(name))
+            key, scale = self.shown_as(name)
+            record.setdefault(key, value * scale)
         for first, second, value in self.correlations():
             record[f"{first}_{second}_correlation"] = value
         low, high = chi2_bounds(max(solution.dof, 1))

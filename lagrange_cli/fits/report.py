@@ -97,7 +97,8 @@ def _conditions(outcomes: Sequence[Outcome], source: str, system: System | None)
     rows = sum(outcome.recording.t.size for outcome in outcomes)
     channels = ", ".join(first.recording.channels)
     certain = {x: y for x, y in first.known.items() if not first.deviations.get(x)}
-    known = ", ".join(text(first.unit(x), y * first.scale(x)) for x, y in certain.items())
+    scaled = [(*first.shown_as(x), y) for x, y in certain.items()]
+    known = ", ".join(text(key, y * scale) for key, scale, y in scaled)
     if first.stds:
         known += f"{'; ' if known else ''}with uncertainty: {', '.join(first.stds)}"
     start = text("t_start", first.recording.t_start).replace("t_start", "t")

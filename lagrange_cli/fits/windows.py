@@ -23,7 +23,7 @@ from .attempts import best_attempt
 from .least_squares import fitted_from, reweighted
 from .model import STATE, chi2_bounds, inputs_of
 from .parameters import FIT_QUANTITIES
-from .record import FAILED, Fit, Outcome, with_stds
+from .record import FAILED, Fit, Outcome, flat_numbers
 from .recording import LEAST_ROWS, Recording
 
 _STEPS = 30
@@ -62,7 +62,7 @@ class Window(NamedTuple):
     def row(self) -> dict[str, Any]:
         """Return the numbers of the window by key."""
         record = self.outcome.record()
-        names = [self.outcome.unit(x) for x in ("r0", "b", "theta0", "thetadot0", "psidot0")]
+        names = ["r0", "b", self.outcome.shown_as("theta0")[0], "thetadot0", "psidot0"]
         names += ["T_nutation", "T_precession"]
         keys = [key for name in names for key in (name, f"{name}_std") if key in record]
         return {
@@ -97,9 +97,9 @@ class WindowedFit(NamedTuple):
         body += [(x.name, x.value, std) for x, std in first.products() if "r0" not in x.powers]
         time = decay.time or (None, None)
         return {
-            **with_stds(body),
+            **flat_numbers(body),
             "decay_of": decay.quantity,
-            **with_stds([("decay_time", *time), ("decay_rate", decay.rate, decay.rate_std)]),
+            **flat_numbers([("decay_time", *time), ("decay_rate", decay.rate, decay.rate_std)]),
             "decay_chi2_dof": decay.chi2_dof,
             "dof": first.fit.solution.dof,
             "chi2_dof": first.chi2_dof,
