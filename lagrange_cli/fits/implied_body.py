@@ -92,9 +92,7 @@ def _reduced(rows: list[list[Fraction]], width: int) -> list[list[Fraction]]:
     return done
 
 
-def completed_body(
-    seen: Mapping[str, float], known: Mapping[str, float], products: list[DeterminedProduct]
-) -> dict[str, float]:
+def completed_body(seen: Mapping[str, float], known: Mapping[str, float]) -> dict[str, float]:
     """Return all six inputs of a body with this motion.
 
     Undetermined inputs are A = 1, C = A and g = 1.  The first input of a determined product takes
@@ -102,7 +100,7 @@ def completed_body(
     """
     others = {"r0": seen["b"], "A": known.get("C", 1.0)}
     inputs = {name: others.get(name, 1.0) for name in BODY_INPUTS} | dict(known)
-    for x in products:
+    for x in determined_products(seen, known):
         (name, power), *rest = x.powers.items()
         assert power == 1
         inputs[name] = x.value / math.prod(inputs[other] ** float(n) for other, n in rest)

@@ -30,7 +30,7 @@ from ..errors import AbsentError, LagtopError
 from ..inputs.top import Top
 from ..motion.quantity import unit_name
 from ..motion.solve import Motion, solve
-from .implied_body import completed_body, determined_products
+from .implied_body import completed_body
 from .search import read_conditions
 
 if TYPE_CHECKING:
@@ -245,7 +245,7 @@ def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:
     """Return a top with this motion and the known inputs of the body."""
     a, b, r0 = 2 * float(top.g), float(top.C) * float(top.r0), float(top.r0)
     numbers = {"a": a, "b": b} | ({"r0": r0} if spins else {})
-    inputs = completed_body(numbers, known, determined_products(numbers, known))
+    inputs = completed_body(numbers, known)
     given = ", ".join(f"{name} = {value:g}" for name, value in known.items())
     if not _moves_so(inputs, numbers):
         raise LagtopError(f"{given} must agree with the motion: leave one of them out")

@@ -1,14 +1,18 @@
-"""The angles of a top at the times of a recording, their derivatives, and residuals.
+"""The motion of a top at the times of a recording: angles, residuals, and derived numbers.
 
 The constants a and b and the initial state determine a motion.  The body has A = C = 1, so that its
 spin rate is b.  The spin of a body with another rate r0 is phi + (r0 - b) t, as phi' = r0 - psi'
 cos(theta) (4,8).  Directions of the axis are compared in the tangent plane of the sphere, along the
 meridian and across it.  The attitude also has the rotation about the axis.
+
+The numbers that follow from a motion, such as periods, mean rates and turning points, have the
+exact derivatives of the record.  The elementary formulas of fast tops are added for comparison.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,9 +23,12 @@ from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.rotations import within_half_turn
 from ..inputs.top import Top
+from ..motion.record import KEYS, requested_keys
 from ..motion.regime import exact
 from ..motion.sensitivity.angle_sensitivities import AngleDerivatives
 from ..motion.sensitivity.neighbourhood import PARAMETERS
+from ..motion.sensitivity.sensitivities import sensitivities
+from ..motion.solve import solve
 from ..sweeps.angles import sweep_angles
 from .recording import Recording
 
@@ -44,6 +51,19 @@ _BEYOND = 0.00135
 """Probability beyond each bound of chi^2, as for three standard deviations."""
 STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
 """The state of a motion: the constants (4,4) and (4,5), and the start in radians."""
+_SPIN = "mean_spin_rate"
+_STANDS_FOR = {
+    "T_nutation_elementary": "T_nutation",
+    "precession_rate_elementary": "mean_precession_rate",
+}
+"""The exact numbers that elementary formulas stand for."""
+_DERIVED = [
+    *f"T_nutation T_precession mean_precession_rate {_SPIN} theta_min_deg theta_max_deg".split(),
+    *("stability_factor", *_STANDS_FOR),
+]
+"""Keys of the record that are derived."""
+_BY = {"a": ("g", 0.5), "b": ("r0", 1.0), "theta0": ("theta0_rad", 1.0)}
+"""The inputs of a top with A = C = m = s = 1 that stand for a, b and theta0, and their slopes."""
 
 
 def motion_angles(states: Array, t: Array) -> Array:
@@ -76,6 +96,59 @@ def inputs_of(a: Any, b: Any, theta: Any, nutation: Any, precession: Any) -> dic
     """Return the inputs of `Top` for one state, or for many."""
     start = {"theta0_rad": theta, "thetadot0": nutation, "psidot0": precession}
     return {"m": 1.0, "A": 1.0, "C": 1.0, "s": 1.0, "g": a / 2, "r0": b, **start}
+
+
+def std_of(gradient: Array, covariance: Array, others: float = 0.0) -> float:
+    """Return the standard deviation of a number from its derivatives by uncertain quantities.
+
+    `others` is a variance that has other causes.
+    """
+    change = np.where(np.diag(covariance) > 0, gradient, 0.0)
+    return math.sqrt(max(float(change @ covariance @ change) + others, 0.0))
+
+
+class DerivedNumber(NamedTuple):
+    """A number that follows from the fitted motion."""
+
+    key: str
+    value: float
+    std: float
+    meaning: str
+    exact: str
+    """The key of the exact number that an elementary formula approximates, or empty."""
+    off: float | None
+    """Distance from the exact number, over the standard deviation of this difference."""
+
+
+def derived_numbers(
+    values: Mapping[str, float], covariance: Array, *, spins: bool
+) -> Iterator[DerivedNumber]:
+    """Yield the numbers that follow from values of a, b and the start, and of r0 if it is known.
+
+    The covariance is in the order of the values.  Keys that the motion does not have are omitted,
+    and numbers without a derivative by an uncertain value.
+    """
+    top = Top(**inputs_of(*(values[name] for name in STATE)))
+    motion, slopes = solve(top), sensitivities(top, _DERIVED).derivatives
+    declared, found = KEYS | requested_keys(), {}
+    for key in _DERIVED:
+        if key not in slopes or (key == _SPIN and not spins):
+            continue
+        by = [_BY.get(name, (name, 1.0)) for name in STATE]
+        slope = {name: slopes[key][x] * n for name, (x, n) in zip(STATE, by, strict=True)}
+        value = float(getattr(motion, key))
+        if key == _SPIN:  # the top has r0 = b: the spin of the body grows by (r0 - b) t more
+            value += values["r0"] - values["b"]
+            slope |= {"r0": 1.0, "b": slope["b"] - 1}
+        gradient = np.array([slope.get(name, 0.0) for name in values])
+        found[key] = value, gradient
+        exact, off, std = _STANDS_FOR.get(key, ""), None, std_of(gradient, covariance)
+        if exact in found:
+            exact_value, exact_gradient = found[exact]
+            spread = std_of(gradient - exact_gradient, covariance)
+            off = (value - exact_value) / spread if spread > 0 else None
+        if not math.isnan(std):
+            yield DerivedNumber(key, value, std, declared[key].meaning, exact, off)
 
 
 class Residuals(NamedTuple):

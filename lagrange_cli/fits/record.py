@@ -14,10 +14,18 @@ from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..motion.notebook import HasRecord
 from ..motion.quantity import unit_name
-from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
 from .least_squares import FittedParameters
-from .model import MEANINGS, STATE, chi2_bounds, motion_angles, residual_of
+from .model import (
+    MEANINGS,
+    STATE,
+    DerivedNumber,
+    chi2_bounds,
+    derived_numbers,
+    motion_angles,
+    residual_of,
+    std_of,
+)
 from .parameters import BODY_QUANTITIES
 from .recording import Recording
 
@@ -141,35 +149,13 @@ class Outcome(HasRecord):
                 gradient = np.array([shares.get(label, 0.0) for label in self.labels])
                 alone = [x for x in shares if x not in self.labels and x in self.stds]
                 others = sum((shares[x] * self.stds[x]) ** 2 for x in alone)
-                yield product, abs(product.value) * self._std(gradient, others)
-
-    def _std(self, gradient: Array, others: float = 0.0) -> float:
-        """Return the standard deviation of a number from its derivatives by the quantities.
-
-        `others` is a variance that other inputs cause.
-        """
-        change = np.where(np.diag(self.covariance) > 0, gradient, 0.0)
-        return math.sqrt(max(float(change @ self.covariance @ change) + others, 0.0))
+                yield product, abs(product.value) * std_of(gradient, self.covariance, others)
 
     @cached_property
-    def derived(self) -> list[tuple[DerivedNumber, float, float | None]]:
-        """Numbers that follow from the motion, with their standard deviations.
-
-        For an elementary formula, the third entry is its distance from the exact number, over the
-        standard deviation of this difference.
-        """
+    def derived(self) -> Sequence[DerivedNumber]:
+        """Numbers that follow from the motion, with their standard deviations."""
         spins = self.fit.solution.parameters.spins
-        numbers = {x.key: x for x in derived_numbers(self.values, spins=spins)}
-        rows: list[tuple[DerivedNumber, float, float | None]] = []
-        for x in numbers.values():
-            std, off = self._std(x.gradient), None
-            if x.exact in numbers:
-                exact = numbers[x.exact]
-                spread = self._std(x.gradient - exact.gradient)
-                off = (x.value - exact.value) / spread if spread > 0 else None
-            if not math.isnan(std):
-                rows.append((x, std, off))
-        return rows
+        return list(derived_numbers(self.values, self.covariance, spins=spins))
 
     def numbers(self) -> Iterator[tuple[str, float, float, str]]:
         """Yield key, value, standard deviation and meaning of every number, in the unit in use."""
@@ -181,11 +167,11 @@ class Outcome(HasRecord):
         for product, deviation in self.products():
             meaning = "" if len(product.powers) == 1 else "only this product is known"
             yield product.name, product.value, deviation, meaning
-        for x, deviation, off in self.derived:
+        for x in self.derived:
             key = unit_name(x.key, radians=self.radians)
             scale = 1.0 if key == x.key else math.radians(1.0)
-            distance = "" if off is None else f", {off:+.{int(abs(off) < 10)}f} sigma"
-            yield key, x.value * scale, deviation * scale, x.meaning + distance
+            distance = "" if x.off is None else f", {x.off:+.{int(abs(x.off) < 10)}f} sigma"
+            yield key, x.value * scale, x.std * scale, x.meaning + distance
 
     def correlations(self) -> Iterator[tuple[str, str, float]]:
         """Yield the correlations of a, b and r0."""
@@ -252,9 +238,7 @@ class Outcome(HasRecord):
         solution, recording = self.fit.solution, self.recording
         record: dict[str, Any] = {"name": recording.name} if recording.name else {}
         record |= flat_numbers(number[:3] for number in self.numbers())
-        for x, _, off in self.derived:
-            if x.exact:
-                record[f"{x.key}_off_sigma"] = off
+        record |= {f"{x.key}_off_sigma": x.off for x in self.derived if x.exact}
         for name, value in self.known.items():
             key, scale = self.shown_as(name)
             record.setdefault(key, value * scale)
@@ -285,7 +269,7 @@ class Outcome(HasRecord):
         values = self.values if other is None else other
         known = {x: values.get(x, y) for x, y in self.known.items() if x in BODY_INPUTS}
         shown = {x: values[x] for x in self.shown}
-        body = completed_body(shown, known, determined_products(shown, known))
+        body = completed_body(shown, known)
         start = {name: values[name] for name in ("thetadot0", "psidot0")}
         return {**body, "theta0_deg": math.degrees(values["theta0"]), **start}
 

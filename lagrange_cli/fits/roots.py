@@ -9,8 +9,7 @@ touch it.  It touches it at a steady precession, on either side of which the axi
 from __future__ import annotations
 
 import math
-import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 
@@ -42,7 +41,9 @@ def roots(function: Function, x: Array, y: Array, target: float = 0.0) -> list[f
     points of the same sign, a pair of roots next to an extremum is found.  An extremum counts as
     touching 0 if some last bits explain its distance from 0.
     """
-    brackets, touching = list(_sign_changes(x, y)), []
+    changes = np.flatnonzero(y[:-1] * y[1:] <= 0)
+    brackets = [(float(x[i]), float(x[i + 1])) for i in changes.tolist()]
+    touching = []
     for i in _extrema(y):
         left, right, sign = float(x[i - 1]), float(x[i + 1]), math.copysign(1.0, y[i])
         at, height = _lowest(function, sign, left, right)
@@ -56,12 +57,6 @@ def roots(function: Function, x: Array, y: Array, target: float = 0.0) -> list[f
     near = float(np.max(np.diff(x)))  # an extremum between two roots does not touch 0
     apart = {at for at in touching if all(abs(at - root) > near for root in passed)}
     return sorted(passed | apart)
-
-
-def _sign_changes(x: Array, y: Array) -> Iterator[tuple[float, float]]:
-    """Yield neighbouring points between which the sign changes."""
-    for i in np.flatnonzero(y[:-1] * y[1:] <= 0).tolist():
-        yield float(x[i]), float(x[i + 1])
 
 
 def _extrema(y: Array) -> list[int]:
@@ -148,18 +143,9 @@ def _interpolated(a: Point, b: Point, c: Point) -> float:
 
 def middle(x: float, y: float) -> float:
     """Return the double with as many doubles between it and x as between it and y."""
-    return _double((_place(x) + _place(y)) // 2)
-
-
-def _place(x: float) -> int:
-    """Return how many doubles lie between 0 and x, with the sign of x."""
-    place: int = struct.unpack("<q", struct.pack("<d", abs(x)))[0]
-    return -place if x < 0 else place
-
-
-def _double(place: int) -> float:
-    x: float = struct.unpack("<d", struct.pack("<q", abs(place)))[0]
-    return -x if place < 0 else x
+    bits = np.abs([x, y]).view(np.int64)  # of doubles > 0, they count the doubles below
+    place = sum(np.where(np.signbit([x, y]), -bits, bits).tolist()) // 2
+    return math.copysign(float(np.int64(abs(place)).view(np.float64)), place)
 
 
 def _last_bit(function: Function, x: float, rising: float) -> float:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -144,7 +144,7 @@ class SteadyParameters(Parameters):
 class SteadyOutcome(Outcome):
     """The results of a fit of a steady precession."""
 
-    derived: Any = ()
+    derived = ()
     """Empty, because only b/a or b follows from the precession rate."""
 
     def notes(self) -> list[str]:

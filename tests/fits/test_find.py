@@ -390,7 +390,7 @@ def test_the_body_that_is_made_moves_as_seen(known: tuple[str, ...], spins: bool
     given = {name: true[name] for name in known}
     seen = {"a": a, "b": b} | ({"r0": true["r0"]} if spins and "r0" not in known else {})
     told = determined_products(seen, given)
-    body = completed_body(seen, given, told)
+    body = completed_body(seen, given)
     assert body["C"] <= 2 * body["A"]
     assert 2 * body["m"] * body["g"] * body["s"] / body["A"] == pytest.approx(a, rel=1e-13)
     assert body["C"] * body["r0"] / body["A"] == pytest.approx(b, rel=1e-13)
