@@ -176,8 +176,8 @@ def _known(
     """
     from ..fits.parameters import known_inputs
     from ..inputs.input_keys import overridden
-    from ..inputs.measured import moment
     from ..inputs.names import check_names
+    from ..inputs.stand_ins import moment
     from ..inputs.top import Top
 
     found, given = top.given(), top.by_key()

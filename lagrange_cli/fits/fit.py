@@ -13,9 +13,10 @@ from ..arithmetic.arrays import ARRAYS, doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError, check_type
 from ..inputs.given import gather
+from ..inputs.library_values import value_of
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions
-from ..inputs.value import Value, parse_value, value_of
+from ..inputs.value import Value, parse_value
 from .attempts import best_attempt
 from .least_squares import fitted_from, reweighted
 from .nutation import NoNutationError

@@ -14,7 +14,7 @@ from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..inputs import rotations
 from ..inputs.descriptions import scene_in
-from ..inputs.given import checked_double
+from ..inputs.input_keys import checked_double
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions, Quantities, Said, angles_in, see
 from ..inputs.text_lines import UNDECIDED, Dialect
@@ -122,7 +122,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
     """
     with open_trajectory(path, reading.columns, reading.dialect) as trajectory:
         spread = _add_spreads(trajectory)
-        said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
+        said = trajectory.said
         made = []
         for name, given in _parts(trajectory, reading.by).items():
             where = f"{trajectory.name}{f', {reading.by} {name}' if name else ''}"

@@ -14,10 +14,11 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given, gather
 from ..inputs.input_keys import overridden
+from ..inputs.library_values import exact_number, value_of, values_of
 from ..inputs.names import check_names
 from ..inputs.ranges import Product, Span, parse_span
 from ..inputs.top import Top
-from ..inputs.value import Value, exact_number, parse_value, split_unit, value_of
+from ..inputs.value import Value, parse_value, split_unit
 from ..motion.quantity import unit_name
 from ..motion.record import all_keys, shown_keys
 from ..motion.regime import Regime
@@ -223,7 +224,7 @@ def search_of(
     An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError, also if
     there cannot be single solutions.
     """
-    given = gather(inputs, scene, system=system_asked(conditions))
+    given = gather(values_of(inputs), scene, system=system_asked(conditions))
     wanted = read_conditions(conditions, radians=radians, system=given.system)
     spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
     known = {name: x for name, x in given.inputs.items() if name not in spans}

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
-from types import MappingProxyType, NoneType
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.numbers import Number, is_real
-from ..arithmetic.text import quoted
+from ..arithmetic.numbers import Number
 from ..arithmetic.values import Values
-from ..errors import LagtopError, check_type
-from .input_keys import BODY, TILT, from_example, one_of_each, overridden, warn_of
+from ..errors import LagtopError
+from .input_keys import BODY, TILT, checked_double, from_example, one_of_each, overridden
 from .top import Top
-from .value import STEADY_WORDS, InputPair, Stds, Value, value_of
+from .value import STEADY_WORDS, InputPair, Stds, Value
 
 if TYPE_CHECKING:
     from .scene_file import SceneFile
@@ -60,7 +58,7 @@ class Given(Values):
 
 
 def gather(
-    given: Mapping[str, Any],
+    given: Mapping[str, Value],
     path: str | None = None,
     *,
     system: str | None = None,
@@ -69,13 +67,11 @@ def gather(
 ) -> Given:
     """Return the `given` inputs and those of a scene file, if any; given inputs override the file.
 
-    An input is a `Value`, or has its type read by `value_of`.  Inputs with units are converted to a
-    `system`, `si` (the default) or `cgs`.  So are `others`, such as times or the units of columns.
-    `varying` names inputs that are given later.  Raises SceneError for a bad file, LagtopError for
-    a bad given input.
+    Inputs with units are converted to a `system`, `si` (the default) or `cgs`.  So are `others`,
+    such as times or the units of columns.  `varying` names inputs that are given later.  Raises
+    SceneError for a bad file, LagtopError for a bad given input.
     """
-    read = {name: value_of(name, x) for name, x in given.items()}
-    inputs = {TILT if x.unit and name.startswith(TILT) else name: x for name, x in read.items()}
+    inputs = {TILT if x.unit and name.startswith(TILT) else name: x for name, x in given.items()}
     file: SceneFile | None = None
     correlations: dict[InputPair, Fraction] = {}
     if path is not None:
@@ -120,26 +116,6 @@ def _if_one(value: Any) -> Any:
     return value.bounds()[0] if getattr(value, "count", 0) == 1 else value
 
 
-def read_scene(
-    path: str | os.PathLike[str], given: Mapping[str, Number] | None = None, *, exact: bool = False
-) -> Top:
-    """Return the top of a scene file; `given` inputs override those of the file.
-
-    Numbers are rounded to doubles, or kept as `exact` decimals.  Numbers with units are converted
-    to SI.  A MixedBodyWarning names the defaults if only some of the body is given.  Raises
-    SceneError for a bad file, LagtopError for a bad given input.
-
-    >>> read_scene("hanging-top", {"r0": 20}).r0
-    20.0
-    """
-    check_type("given", given, Mapping, NoneType)
-    found = gather(given or {}, os.fsdecode(path))
-    top = found.top(exact=exact)
-    if found.missing:
-        warn_of(found.missing, stacklevel=3)
-    return top
-
-
 def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
     """Return an error about A and C, with a remedy if one of them was not given."""
     moments = [name for name in ("A", "C") if name in missing]
@@ -147,18 +123,3 @@ def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
         return error
     which = f"{' and '.join(moments)} of the worked example"
     return LagtopError(f"{error} (with {which}: give the whole body)", error.key)
-
-
-def checked_double(key: str, value: Number) -> float:
-    """Return an input rounded to the nearest double.
-
-    Raises LagtopError beyond the range of doubles, and for anything but a real number.
-    """
-    try:
-        if not is_real(value):
-            raise TypeError
-        return float(value)
-    except (TypeError, ValueError):
-        raise LagtopError(f"{key} must be a real number, got {quoted(value)}", key) from None
-    except OverflowError:
-        raise LagtopError(f"{key} must be at most 1.8e308 in size", key) from None

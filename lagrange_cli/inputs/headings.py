@@ -108,20 +108,16 @@ def heading_units(
         if one.unit and column.startswith(f"{TILT}_"):
             raise DataError(f"{name}: the column {column} must be called {TILT} [{one.unit}]")
         if one.unit:
-            _check_unit(column, one, name)
+            from .units import converted  # for few files only
+
+            try:
+                converted({column: one}, None)
+            except UnavailableError:
+                raise
+            except LagtopError as error:
+                place = f"{name}, heading {column} [{one.unit}]"
+                raise DataError(f"{place}: {error}") from None
     return found
-
-
-def _check_unit(column: str, one: Value, name: str) -> None:
-    from .units import converted
-
-    try:
-        converted({column: one}, None)
-    except UnavailableError:
-        raise
-    except LagtopError as error:
-        place = f"{name}, heading {column} [{one.unit}]"
-        raise DataError(f"{place}: {error}") from None
 
 
 def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 from ..arithmetic.text import parse_number, quoted
@@ -180,17 +180,6 @@ class InputArrays(NamedTuple):
     """Messages of the errors found so far, by row."""
 
 
-class Block(Protocol):
-    """Neighbouring tops of a grid or of a file, not read yet."""
-
-    @property
-    def size(self) -> int:
-        """The number of tops."""
-
-    def arrays(self, shared: Mapping[str, float]) -> InputArrays:
-        """Return the inputs of the tops; `shared` inputs are the defaults."""
-
-
 class Product(NamedTuple):
     """Combinations of the values of several inputs; the last input varies fastest."""
 
@@ -227,7 +216,8 @@ class Product(NamedTuple):
         """Return the inputs of the combinations; `shared` holds those that do not vary."""
         return InputArrays(self.size, {**shared, **self.values()})
 
-    def check(self) -> None:
-        """Raise LagtopError if there are more than 1e9 combinations."""
+    def checked(self) -> Product:
+        """Return the product.  Raises LagtopError for more than 1e9 combinations."""
         if self.size > MOST_POINTS:
             raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")
+        return self

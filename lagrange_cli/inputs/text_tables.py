@@ -75,8 +75,8 @@ class TextTable(NamedTuple):
         around = self.around or around
         return [(i, row) for i, x in lines if has_row(row := x.strip(around))]
 
-    def decided(self, columns: Iterable[int] | None = None) -> Dialect:
-        """Return the dialect with the decimal mark found in some columns (default: all).
+    def decided(self, columns: Iterable[int]) -> Dialect:
+        """Return the dialect with the decimal mark found in some columns.
 
         Raises DataError for thousands separators, and for ambiguous numbers.
         """
@@ -84,11 +84,11 @@ class TextTable(NamedTuple):
             return self.dialect
         if self.dialect.delimiter == ",":
             return self.dialect._replace(decimal=".")
-        wanted = None if columns is None else set(columns)
+        wanted = set(columns)
         seen: dict[str, tuple[int, str]] = {}
         for number, line in self.first:
             for i, cell in enumerate(_cells((number, line), self.dialect)):
-                if wanted is None or i in wanted:
+                if i in wanted:
                     seen.setdefault(decimal_mark(cell.strip()), (number, cell.strip()))
         commas = [seen[x] for x in (",", "perhaps") if x in seen]
         if "thousands" in seen:

@@ -12,10 +12,17 @@ from typing import TYPE_CHECKING, Any, ParamSpec, Self
 from ..arithmetic.decimals import own_context
 from ..arithmetic.exact_cosine import Cosine, Tilt, below_quarters
 from ..arithmetic.numbers import DOUBLES, Number, R, is_real, unrounded
-from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError
-from .input_keys import EXAMPLE, NINE, TILT, from_example, one_of_each, overridden, warn_of
+from .input_keys import (
+    EXAMPLE,
+    NINE,
+    TILT,
+    checked_double,
+    from_example,
+    one_of_each,
+    overridden,
+)
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
@@ -123,18 +130,20 @@ class Top(Values):
         missing = from_example(given)
         inputs = overridden(EXAMPLE, given)
         if A_cm is not None or phidot0 is not None:
-            from .measured import as_solved  # for few tops only
+            from .stand_ins import as_solved  # for few tops only
 
             inputs = as_solved(inputs)
         super().__init__(*map(inputs.get, self.fields))
         _check_ranges(self)
         if word:
-            from .steady_rate import steady_rate_of  # for few tops only
+            from .stand_ins import steady_rate_of  # for few tops only
 
             if phidot0 is not None:
                 raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
             super().__init__(**self.as_dict() | {"psidot0": steady_rate_of(self, word)})
         if missing:
+            from .mixed_body import warn_of  # for few tops only
+
             warn_of(missing, stacklevel=4)
 
     def __reduce__(self) -> tuple[Callable[[], Top], tuple[()]]:
@@ -158,21 +167,11 @@ class Top(Values):
     def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
-        return {
-            tilt if name == TILT else name: self._tilt_in(radians, ar)
-            if name == TILT
-            else getattr(self, name)
-            for name in NINE
-        }
-
-    def _tilt_in(self, radians: bool, ar: Arithmetic[Any]) -> Any:
-        wanted, other = self.theta0_deg, self.theta0_rad
-        if radians:
-            wanted, other = other, wanted
-        if wanted is not None:
-            return wanted
-        assert other is not None
-        return ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
+        values = self.as_dict()
+        if values[tilt] is None:
+            other: Any = self.theta0_deg if radians else self.theta0_rad
+            values[tilt] = ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
+        return {key: values[key] for key in (tilt if name == TILT else name for name in NINE)}
 
     def texts(self) -> dict[str, str]:
         """Return the inputs by key, as words or as decimals with all digits of a double."""
@@ -243,17 +242,12 @@ INPUTS = (*Top.fields, "A_cm", "phidot0")
 def _finite(name: str, value: Any) -> Number:
     if isinstance(value, Fraction):
         return value
-    if isinstance(value, int) and not isinstance(value, bool) and abs(value) > _LARGEST:
-        raise LagtopError(f"{name} must be within 1e100 in size, got {_shown(value)}", name)
-    is_long = is_real(value) and getattr(getattr(value, "dtype", None), "itemsize", 0) > 8
-    if is_long and abs(value) > _LARGEST:  # NumPy would warn of numbers beyond all doubles
-        raise LagtopError(f"{name} must be within 1e100 in size, got {value!r}", name)
-    try:
-        if not is_real(value):
-            raise TypeError
-        nearest = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise LagtopError(f"{name} must be a real number, got {quoted(value)}", name) from None
+    is_int, size = isinstance(value, int), getattr(getattr(value, "dtype", None), "itemsize", 0)
+    # Longer numbers than doubles are not converted, because NumPy would warn.
+    if is_real(value) and (is_int or size > 8) and abs(value) > _LARGEST:
+        shown = _shown(value) if is_int else repr(value)
+        raise LagtopError(f"{name} must be within 1e100 in size, got {shown}", name)
+    nearest = checked_double(name, value)
     if not math.isfinite(nearest):
         raise LagtopError(f"{name} must be finite, got {nearest}", name)
     if value and not nearest:

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
 from .files import decoded_file, shown_path
-from .given import Given, checked_double, gather
+from .given import Given, gather
 from .headings import check_header, check_spelling, column_of, heading_units
-from .input_keys import TILT, from_example, one_of_each, overridden
+from .input_keys import TILT, checked_double, from_example, one_of_each, overridden
 from .ranges import InputArrays
 from .text_lines import UNDECIDED, Dialect, Numbered, decoded_row, json_object, shown_json
 from .text_tables import TextTable, read_table
@@ -209,7 +209,7 @@ def open_tops(
             rows = chain(first, rows)
             file = _of_objects(name, first, computed)
         kept = stack.pop_all()
-        return file, _blocks(file, _while_open(kept, rows), size), kept.close
+        return file, _blocks(file, rows, size, kept), kept.close
 
 
 def _of_headings(table: TextTable, computed: Collection[str]) -> TopsFile:
@@ -252,14 +252,12 @@ def _known_inputs(names: Sequence[str]) -> int:
     return sum(column_of(name)[0] in {*INPUTS, TILT} for name in names)
 
 
-def _while_open(stack: ExitStack, rows: Iterator[Numbered]) -> Iterator[Numbered]:
-    with stack:
-        yield from rows
-
-
-def _blocks(file: TopsFile, rows: Iterator[Numbered], size: int) -> Iterator[Lines]:
-    while block := list(_some(file.name, rows, size)):
-        yield Lines(file, block)
+def _blocks(
+    file: TopsFile, rows: Iterator[Numbered], size: int, opened: ExitStack
+) -> Iterator[Lines]:
+    with opened:
+        while block := list(_some(file.name, rows, size)):
+            yield Lines(file, block)
 
 
 def _some(name: str, rows: Iterable[Numbered], size: int) -> Iterator[Numbered]:

@@ -6,9 +6,8 @@ text with a row per line.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..arithmetic.text import shortened
@@ -41,21 +40,21 @@ class Trajectory:
         self.name, self._table = shown_path(path), table
         self.description = table.description
         self.names = self._column_names(columns)
-        self.quantities: dict[str, FoundQuantity] = quantities_in(self.names)
-        if "t" not in self.quantities or len(self.quantities) < 2:
+        found = quantities_in(self.names)
+        if "t" not in found or len(found) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
             shown = shortened(", ".join(map(repr, self.names)), 120)
             raise DataError(
                 f"{self.name} must have columns among {wanted}, got {shown}: "
                 "name them with --columns"
             )
-        if twice := named_twice(self.names, self.quantities):
+        if twice := named_twice(self.names, found):
             raise DataError(
                 f"{self.name} must name each quantity once, got {twice[0]!r} and {twice[1]!r}: "
                 "name the columns with --columns, and one of them _"
             )
         try:
-            self.quantities, self._factors = _in_known_units(self.quantities, self.names)
+            self.quantities = {key: self._in_known_unit(key, x) for key, x in found.items()}
         except LagtopError as error:
             raise DataError(f"{self.name}: {error}") from None
 
@@ -75,25 +74,38 @@ class Trajectory:
             )
         return list(self._table.names)
 
-    def add(self, key: str, column: str) -> None:
-        """Read one more column, as a quantity named `key`."""
-        self.quantities[key] = FoundQuantity([self.names.index(column)], "", None)
+    def _in_known_unit(self, key: str, quantity: FoundQuantity) -> FoundQuantity:
+        """Return a quantity in radians, degrees or no unit, with the factor that converts it.
+
+        Times are then in seconds, and rates in radians per second.  Raises LagtopError for a unit
+        that the quantity cannot have, and for parts in different units.
+        """
+        parts = [self.names[i] for i in quantity.columns]
+        if len({plain_name(part)[1] for part in parts}) > 1:
+            shown = " and ".join(map(repr, parts[:2]))
+            raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
+        unit, factor = in_known_unit(key, quantity.unit)
+        return quantity._replace(unit=unit, factor=factor)
+
+    @property
+    def said(self) -> dict[str, tuple[str, str | None]]:
+        """The convention and the angle unit that its name implies, by quantity."""
+        return {key: (found.says, found.unit) for key, found in self.quantities.items()}
 
     def add_angle(self, key: str, column: str, unit: str | None) -> str | None:
-        """Read one more column of angles, and return their unit."""
-        self.add(key, column)
+        """Read one more column of angles, as a quantity named `key`, and return their unit."""
         try:
             known, factor = in_known_unit(ANGLES[0], unit)
         except LagtopError as error:
             raise DataError(f"{self.name}, heading {column}: {error}") from None
-        if factor is not None:
-            self._factors[key] = factor
+        self.quantities[key] = FoundQuantity([self.names.index(column)], "", None, factor)
         return known
 
     def add_words(self, key: str, column: str) -> Callable[[float], str]:
         """Read one more column, of words, as numbers; return the word of a number."""
-        self.add(key, column)
-        return self._table.word_of(self.names.index(column))
+        index = self.names.index(column)
+        self.quantities[key] = FoundQuantity([index], "", None)
+        return self._table.word_of(index)
 
     def blocks(self, *, repeats: bool = False) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
         """Yield the quantities, once, as arrays of shape (rows, parts), and the places of rows.
@@ -109,41 +121,18 @@ class Trajectory:
     def rows(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
         """Yield blocks without checking the times (for files that hold several recordings)."""
         wanted = sorted(i for found in self.quantities.values() for i in found.columns)
-        at = {
-            key: [wanted.index(i) for i in found.columns] for key, found in self.quantities.items()
-        }
         for values, places in self._table.blocks(wanted, [self.names[i] for i in wanted]):
-            found = {key: values[:, columns] for key, columns in at.items()}
-            for key, factor in self._factors.items():
-                # A division by a whole number is rounded once.
-                size = float(max(factor, 1 / factor))
-                found[key] = found[key] * size if factor > 1 else found[key] / size
-            yield found, places
+            yield (
+                {
+                    key: found.scaled(values[:, [*map(wanted.index, found.columns)]])
+                    for key, found in self.quantities.items()
+                },
+                places,
+            )
 
     def where(self, place: int) -> str:
         """Return the name of the file and the place of a row."""
         return f"{self.name}, {self._table.place} {place}"
-
-
-def _in_known_units(
-    found: Mapping[str, FoundQuantity], names: Sequence[str]
-) -> tuple[dict[str, FoundQuantity], dict[str, Fraction]]:
-    """Return quantities in radians, degrees or no unit, and the factors that convert them.
-
-    Times are then in seconds, and rates in radians per second.  Raises LagtopError for a unit that
-    a quantity cannot have, and for parts in different units.
-    """
-    plain, factors = dict(found), {}
-    for key, quantity in found.items():
-        units = {plain_name(names[i])[1] for i in quantity.columns}
-        if len(units) > 1:
-            shown = " and ".join(repr(names[i]) for i in quantity.columns[:2])
-            raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
-        unit, factor = in_known_unit(key, quantity.unit)
-        plain[key] = quantity._replace(unit=unit)
-        if factor is not None:
-            factors[key] = factor
-    return plain, factors
 
 
 class Clock:

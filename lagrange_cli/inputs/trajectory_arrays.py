@@ -66,7 +66,7 @@ class ArrayTable(Table):
                 table = next(tables, None)
             if table is None:
                 return
-            yield Block(table[:, columns], range(first, first + len(table)))
+            yield table[:, columns], range(first, first + len(table))
             first += len(table)
 
 

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .headings import name_and_unit
 from .names import ANGLES, suggestion
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
 
 ELEVATION = "elevation"
 """The convention of an angle measured from the horizontal."""
@@ -51,6 +55,15 @@ class FoundQuantity(NamedTuple):
     says: str
     unit: str | None
     """The unit in its headings."""
+    factor: Fraction | None = None
+    """The factor that converts its numbers to the units in use, if any."""
+
+    def scaled(self, values: Array) -> Array:
+        """Return the numbers of the columns, converted."""
+        if self.factor is None:
+            return values
+        size = float(max(self.factor, 1 / self.factor))
+        return values * size if self.factor > 1 else values / size  # by a whole number, if possible
 
 
 _TABLE = """

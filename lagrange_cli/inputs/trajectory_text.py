@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
 from ..errors import DataError
 from .descriptions import Description, description_in
+from .names import repeated
 from .text_lines import SWAP, Dialect, at_line, decoded_row, is_number, json_object
 from .text_tables import TextTable, read_table
 from .trajectory_columns import known_quantities, names_in_comments
@@ -25,13 +25,11 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
 
-class Block(NamedTuple):
-    """Consecutive rows and their places in the file."""
+Block = tuple["Array", Sequence[int]]
+"""Consecutive rows as an array, and their places: numbers of lines, or of rows, from 1.
 
-    values: Array
-    """Array of shape (rows, requested columns); NaN for an empty cell."""
-    places: Sequence[int]
-    """The numbers of the lines, or of the rows in a file without lines, from 1."""
+The array has the shape (rows, requested columns), with NaN for an empty cell.
+"""
 
 
 class Table:
@@ -61,19 +59,16 @@ class Table:
         return "{:.17g}".format
 
 
-class Words:
+class Words(dict[str, float]):
     """The words of a column, numbered in order of appearance."""
-
-    def __init__(self) -> None:
-        self._numbers: dict[str, float] = {}
 
     def number(self, word: str) -> float:
         """Return the number of a word; quotes and blanks around it are ignored."""
-        return self._numbers.setdefault(word.strip().strip('"'), float(len(self._numbers)))
+        return self.setdefault(word.strip().strip('"'), float(len(self)))
 
     def word(self, number: float) -> str:
         """Return the word with a number."""
-        return list(self._numbers)[int(number)]
+        return list(self)[int(number)]
 
 
 def read_text(stream: BinaryIO, name: str, dialect: Dialect, width: int | None) -> Table:
@@ -117,9 +112,9 @@ class CellTable(Table):
             places, texts = zip(*rows, strict=True)
             values = self._plain(texts)
             if values is None:
-                yield Block(np.array([self._row(*x, named) for x in rows]), places)
+                yield np.array([self._row(*x, named) for x in rows]), places
             else:
-                yield Block(values[:, columns], places)
+                yield values[:, columns], places
 
     def _plain(self, texts: Sequence[bytes]) -> Array | None:
         """Return all columns of rows, or None if NumPy cannot parse them."""
@@ -167,7 +162,11 @@ class JsonTable(Table):
         self.name, self._source = source.lines.name, source
         self.description, self._words = description_in(source.comments), dict[str, Words]()
         entries = self._object(*source.first[0])
-        _check_once(source.first[0][1], self.name)
+        # A parser keeps only the last one of equal keys.
+        keys = (key for key, _ in json.loads(source.first[0][1], object_pairs_hook=list))
+        if (twice := repeated(keys)) is not None:
+            wanted = "must name each quantity once"
+            raise DataError(f"{self.name} {wanted}, got {twice!r} and {twice!r}")
         self.sizes = {
             key: len(value) if isinstance(value, list) else 0
             for key, value in entries.items()
@@ -185,7 +184,7 @@ class JsonTable(Table):
             raise DataError(f"{self.name}, column {min(wrong)}: must be numbers, got texts")
         for rows in self._source.blocks():
             values = np.array([self._row(*x) for x in rows], dtype=np.float64)
-            yield Block(values[:, columns], [i for i, _ in rows])
+            yield values[:, columns], [i for i, _ in rows]
 
     def word_of(self, column: int) -> Callable[[float], str]:
         """Read a column as words, if it holds texts."""
@@ -205,7 +204,7 @@ class JsonTable(Table):
             value = values.get(key)
             if key in self._texts:
                 words = self._words.get(key)
-                row.append(words.number(str(value)) if words else math.nan)
+                row.append(words.number(str(value)) if words is not None else math.nan)
                 continue
             numbers = [value] if not size else [None] * size if value is None else value
             if not isinstance(numbers, list) or len(numbers) != (size or 1) or not _real(numbers):
@@ -216,13 +215,6 @@ class JsonTable(Table):
                 )
             row += [math.nan if x is None else float(x) for x in numbers]
         return row
-
-
-def _check_once(line: bytes, name: str) -> None:
-    """Raise DataError for an object with a repeated key, of which a parser keeps only the last."""
-    counts = Counter(key for key, _ in json.loads(line, object_pairs_hook=list))
-    if twice := [key for key, count in counts.items() if count > 1]:
-        raise DataError(f"{name} must name each quantity once, got {twice[0]!r} and {twice[0]!r}")
 
 
 def _real(values: Sequence[Any]) -> bool:

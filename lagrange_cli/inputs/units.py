@@ -16,8 +16,8 @@ from ..arithmetic.points import Points
 from ..arithmetic.values import Values
 from ..errors import LagtopError, UnavailableError
 from .input_keys import BODY, DECLARED, TILT
-from .measured import EXACT_DIGITS
 from .names import ANGLES, usual_spelling
+from .stand_ins import EXACT_DIGITS
 from .value import Value
 
 Dimensions = tuple[int, int, int]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -82,36 +81,6 @@ class Stds(dict[str, float]):
             for x in self
             for y in self
         }
-
-
-def value_of(name: str, given: Any) -> Value:
-    """Return a number or an array as a value; both may be of pint, and numbers of uncertainties.
-
-    A single number with a unit, and an uncertainty, become fractions.  Raises LagtopError if they
-    are not finite.
-    """
-    if isinstance(given, Value):
-        return given
-    unit = ""
-    if hasattr(given, "magnitude"):  # xarray has `units` too
-        unit, given = f"{given.units:C}", given.magnitude
-    number, std = getattr(given, "nominal_value", given), getattr(given, "std_dev", None)
-    if unit and not isinstance(number, list | tuple) and not getattr(number, "shape", ()):
-        number = exact_number(name, number)
-    spread = None if std is None else exact_number(name, std, "the uncertainty of ")
-    return Value(number, unit, spread)
-
-
-def exact_number(name: str, number: Any, what: str = "") -> Fraction:
-    """Return a real number as a fraction.  Raises LagtopError for anything else."""
-    number = number.item() if getattr(number, "shape", None) == () else number  # NumPy's overflow
-    try:
-        if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
-            float(number)
-            return Fraction(number)
-    except (ValueError, OverflowError):
-        pass
-    raise LagtopError(f"{what}{name} must be a finite number, got {quoted(number)}", name)
 
 
 def parse_value(

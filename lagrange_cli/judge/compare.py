@@ -226,10 +226,9 @@ def _judged(
     request: ComparisonRequest,
     progress: Progress,
 ) -> JudgedRun:
-    said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
     rows = (block for block, _ in trajectory.blocks())
     blocks = progress(rows, "rows", size=lambda block: len(block["t"]))
-    given = ReadTrajectory(blocks, said, request.conventions, request.align)
+    given = ReadTrajectory(blocks, trajectory.said, request.conventions, request.align)
     try:
         run = judge(motion, given)
     except DataError:

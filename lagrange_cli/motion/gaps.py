@@ -96,7 +96,7 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
     else:
         below, cos, above = ar.convert(1 + u), ar.convert(u), ar.convert(1 - u)
     if psi_rate is None:
-        from ..inputs.steady_rate import rates_of  # start-up: for few tops
+        from ..inputs.stand_ins import rates_of  # start-up: for few tops
 
         rates, word = rates_of(exact.top), str(exact.top.steady_word)
         rate = rates.rate(ar, ar.convert(a), ar.convert(b), cos, word)

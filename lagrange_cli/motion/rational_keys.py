@@ -23,7 +23,7 @@ from ..arithmetic.balls import balls
 from ..arithmetic.exact_cosine import Polynomial, U
 from ..arithmetic.numbers import polynomial
 from ..arithmetic.rounding import FIRST_DIGITS, decided
-from ..inputs.steady_rate import rational_root
+from ..inputs.stand_ins import rational_root
 from .any_start import largest_root
 from .regime import Exact
 

@@ -157,7 +157,7 @@ def exact(top: Top) -> Exact:
     )
     cosine = Cosine(degrees, radians)
     if top.steady_word:
-        from ..inputs.steady_rate import rates_of  # start-up: for few tops
+        from ..inputs.stand_ins import rates_of  # start-up: for few tops
 
         psi_rate = rates_of(top).fraction(str(top.steady_word))
     else:

@@ -18,14 +18,15 @@ from ..arithmetic.text import value_text
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.descriptions import describe
 from ..inputs.files import digested
-from ..inputs.given import Given, checked_double, gather
-from ..inputs.input_keys import overridden
-from ..inputs.ranges import Block, Product
+from ..inputs.given import Given, gather
+from ..inputs.input_keys import checked_double, overridden
+from ..inputs.library_values import values_of
+from ..inputs.ranges import Product
 from ..inputs.scene_file import is_scene_file
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
-from ..inputs.tops_file import open_tops
-from ..inputs.value import Stds, Value, steady_refused, value_of
+from ..inputs.tops_file import Lines, open_tops
+from ..inputs.value import Stds, Value, steady_refused
 from ..output.formats import Header, block_text
 from ..output.rows import Columns
 from .records import BLOCK_ROWS, check_keys, column_keys, records
@@ -35,7 +36,7 @@ from .top_arrays import top_arrays
 if TYPE_CHECKING:
     from ..inputs.units import System
 
-NumberedBlock = tuple[int, Block]
+NumberedBlock = tuple[int, Product | Lines]
 """The number of a part, and the tops that it is made of."""
 Make = Callable[[NumberedBlock], "Part"]
 """A function that computes a part; workers must be able to unpickle it."""
@@ -136,6 +137,7 @@ def plan(
     The last axis varies fastest.  If `described`, the file is read twice, for its digest, and
     standard input is kept on disk meanwhile.  Raises LagtopError.
     """
+    values = values_of(axes)
     scenes = [file for file in files if is_scene_file(file)]
     tables = [file for file in files if file not in scenes]
     if len(scenes) > 1 or len(tables) > 1:
@@ -144,13 +146,13 @@ def plan(
     chosen = list(check_keys(keys, radians=radians))
     wanted = Sweep((), {}, chosen, radians, fmt, until_error, is_described=is_described)
     if not tables:
-        return _of_grid(wanted, gather(axes, scene, system=system))
-    if ranges := ranges_of({name: value_of(name, x).number for name, x in axes.items()}):
+        return _of_grid(wanted, gather(values, scene, system=system))
+    if ranges := ranges_of({name: x.number for name, x in values.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     stream, digest = digested(tables[0]) if described else (None, "")
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
     file, lines, close = open_tops(tables[0], computed, BLOCK_ROWS, stream, dialect)
-    found, source = file.among(axes, scene, system)
+    found, source = file.among(values, scene, system)
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
     stds = found.stds.only(found.stds.keys() - {*file.named})
     wanted = wanted._replace(keys=list(dict.fromkeys([*chosen, "error"])))
@@ -163,8 +165,7 @@ def plan(
 def _of_grid(wanted: Sweep, found: Given) -> Plan:
     """Return the plan for all tops of a grid."""
     points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
-    grid = Product(points)
-    grid.check()
+    grid = Product(points).checked()
     ranges = ranges_of(points)
     shared = shared_inputs(found, varying=ranges)
     sweep = _with_inputs(wanted, found, shared, found.stds, varying=ranges)

@@ -14,7 +14,9 @@ from ..arithmetic.arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..inputs.given import gather
-from ..inputs.input_keys import EXAMPLE, overridden, warn_of
+from ..inputs.input_keys import EXAMPLE, overridden
+from ..inputs.library_values import values_of
+from ..inputs.mixed_body import warn_of
 from ..inputs.names import check_names
 from ..inputs.top import INPUTS, Top
 from ..inputs.units import System
@@ -175,7 +177,7 @@ class Together:
         if word := getattr(inputs.get("psidot0"), "word", None):
             raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
         unlabelled, self._labels = _aligned(inputs)
-        read = gather(unlabelled)
+        read = gather(values_of(unlabelled))
         if read.missing:
             warn_of(read.missing, stacklevel=4)
         self.stds, self._system = read.stds, read.system

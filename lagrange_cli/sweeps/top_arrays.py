@@ -20,7 +20,7 @@ from ..arithmetic.double_double import DoubleDouble, two_sum
 from ..arithmetic.exact_cosine import Tilt
 from ..arithmetic.numbers import R, polynomial
 from ..arithmetic.types import Array, Mask
-from ..inputs.measured import spin
+from ..inputs.stand_ins import spin
 from ..motion.gaps import State
 from ..motion.regime import FAST, Facts, Regime, regimes
 

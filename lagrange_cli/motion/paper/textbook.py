@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ...arithmetic.exact_cosine import U
 from ...arithmetic.numbers import R, absolute
 from ...arithmetic.values import Over
-from ...inputs.steady_rate import FAST, SLOW, SteadyRates, rational_root
+from ...inputs.stand_ins import FAST, SLOW, SteadyRates, rational_root
 from ..gaps import State
 from ..quantity import declared_keys, keys_of
 from ..regime import Exact

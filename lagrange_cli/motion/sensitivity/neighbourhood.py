@@ -14,7 +14,7 @@ from ...arithmetic.ball import Ball, TooFewDigitsError
 from ...arithmetic.balls import balls
 from ...arithmetic.duals import Dual, Duals, independent
 from ...arithmetic.values import Values
-from ...inputs.steady_rate import rates_of
+from ...inputs.stand_ins import rates_of
 from ..any_start import gaps_from_start, largest_root
 from ..gaps import Gaps, State, are_told_apart, state
 from ..paper.textbook import STEADY_KEYS, WITH_RATIO, Textbook

@@ -1,4 +1,4 @@
-"""The rates of steady precession at a given tilt: the roots of a quadratic equation.
+"""Inputs that stand for others: A_cm, phidot0, and the words for a steady precession rate.
 
 The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0.  With a = 2mgs/A (4,4) and b
 = C r0/A (4,5) this is cos(theta) Omega^2 - b Omega + a/2 = 0.
@@ -7,21 +7,92 @@ The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0.  With a 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.ball import Ball
 from ..arithmetic.balls import balls
 from ..arithmetic.exact_cosine import Cosine, Polynomial, U
-from ..arithmetic.numbers import DOUBLES, R
-from ..arithmetic.rounding import nearest_double, settled
+from ..arithmetic.numbers import DOUBLES, Number, R
+from ..arithmetic.rounding import nearest_double, rounding_of, settled
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError
+from .input_keys import STANDS_FOR
 from .value import STEADY_WORDS
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
+
+EXACT_DIGITS = 1100
+"""Digits of a fraction that approximates an irrational number: more than any output shows."""
+
+
+def as_solved(inputs: Mapping[str, Number]) -> dict[str, Number]:
+    """Return the inputs of a top, with A computed from A_cm and r0 from phidot0.
+
+    Each result is rounded to the nearest double, unless an input is a fraction.  Raises LagtopError
+    for a negative A_cm.
+    """
+    solved = dict(inputs)
+    for measured, formula in (("A_cm", moment), ("phidot0", spin)):
+        if measured in inputs:
+            solved[STANDS_FOR[measured]] = formula(inputs)
+            del solved[measured]
+    return solved
+
+
+def moment(inputs: Mapping[str, Number]) -> Number:
+    """Return the moment about the pivot, A = A_cm + m s^2 (Steiner's theorem)."""
+    A_cm, m, s = (inputs[name] for name in ("A_cm", "m", "s"))
+    if A_cm < 0:
+        raise LagtopError(f"A_cm must be >= 0, got {float(A_cm)}", "A_cm")
+    exact = Fraction(A_cm) + Fraction(m) * Fraction(s) ** 2
+    return exact if is_exact(A_cm, m, s) else _nearest(exact)
+
+
+def spin(inputs: Mapping[str, Number]) -> Number:
+    """Return the total rate about the figure axis, r0 = phi' + psi' cos(theta0) (4,1).
+
+    If the cosine is irrational, the fraction has `EXACT_DIGITS` digits.
+    """
+    phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
+    degrees, radians = inputs.get("theta0_deg"), inputs.get("theta0_rad")
+    keeps = is_exact(*(x for x in (inputs["phidot0"], inputs["psidot0"], degrees, radians) if x))
+    cosine = Cosine(*(None if x is None else Fraction(x) for x in (degrees, radians)))
+    if not 0 <= (degrees or 0) <= 180 or not 0 <= (radians or 0) <= 4:
+        return inputs["phidot0"]  # `Top` refuses such a tilt
+    rational = cosine.rational if psi_rate else Fraction(0)
+    if rational is not None:
+        exact = phi_rate + psi_rate * rational
+        return exact if keeps else _nearest(exact)
+
+    def enclosure(digits: int) -> Ball:
+        ar = balls(digits)
+        return ar.convert(phi_rate) + ar.convert(psi_rate) * cosine.value(ar)
+
+    if not keeps:
+        found = settled("r0", enclosure, nearest_double("r0"))
+    else:
+        found = settled("r0", enclosure, rounding_of("r0", EXACT_DIGITS), digits=EXACT_DIGITS)
+    assert found is not None
+    value: Number = found.value if not keeps else Fraction(found.value)
+    return value
+
+
+def is_exact(*inputs: Number) -> bool:
+    """Return whether any input is kept as a fraction instead of a double."""
+    return any(isinstance(x, Fraction) for x in inputs)
+
+
+def _nearest(exact: Fraction) -> float:
+    """Return a fraction rounded to the nearest double; infinite beyond all doubles."""
+    try:
+        return float(exact)
+    except OverflowError:
+        return float("inf") if exact > 0 else float("-inf")
+
 
 SLOW, FAST = STEADY_WORDS
 
@@ -85,6 +156,9 @@ class SteadyRates(Values):
         if not (self.a or self.b):
             return 0 * a
         root = 0 * b if self.cosine.vanishes(self.discriminant) else ar.sqrt(b * b - 2 * a * cos)
+        return self._from_root(a, b, cos, root, word)
+
+    def _from_root(self, a: R, b: R, cos: R, root: R, word: str) -> R:
         q = b - root if self.b < 0 else b + root
         return q / (2 * cos) if word == FAST else a / q
 
@@ -105,8 +179,7 @@ class SteadyRates(Values):
         root = None if u is None else rational_root(self.b * self.b - 2 * self.a * u)
         if u is None or root is None:
             return None
-        q = self.b - root if self.b < 0 else self.b + root
-        return q / (2 * u) if word == FAST else self.a / q
+        return self._from_root(self.a, self.b, u, root, word)
 
 
 def steady_rate_of(top: Any, word: str) -> SteadyRate:
