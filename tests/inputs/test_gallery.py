@@ -17,9 +17,7 @@ FILES = ROOT / "sample_inputs" / "files"
 TOPS = {
     "tops-excel-german.csv": [(477.5, 30.0), (954.9, 30.0), (477.5, 12.5)],
     "tops-pandas.csv": [
-        (50 * 30 / math.pi, 30.0),
-        (100 * 30 / math.pi, 30.0),
-        (1500 / math.pi, 12.5),
+        (r0 * 30 / math.pi, tilt) for r0, tilt in ((50, 30), (100, 30), (50, 12.5))
     ],
 }
 """Files of tops, with the spin in turns a minute and the tilt of each."""

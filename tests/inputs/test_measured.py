@@ -80,9 +80,8 @@ def test_the_rate_of_phi_gives_the_nearest_total_rate() -> None:
 def test_what_is_rational_is_exact() -> None:
     assert Top(phidot0=-1, psidot0=2, theta0_deg=60).r0 == 0
     assert solve(Top(phidot0=-1, psidot0=2, theta0_deg=60)).regime == "no spin"
-    assert Top(phidot0=Fraction(1, 3), psidot0=Fraction(1, 7), theta0_deg=120).r0 == Fraction(
-        11, 42
-    )
+    thirds = Top(phidot0=Fraction(1, 3), psidot0=Fraction(1, 7), theta0_deg=120)
+    assert thirds.r0 == Fraction(11, 42)
     assert Top(phidot0=0.1).r0 == 0.1
     found = sweep(keys=["r0"], phidot0=[-1.0, 1.0], psidot0=2.0, theta0_deg=[60, 120])
     assert found["r0"].tolist() == [0.0, 0.0]
@@ -103,9 +102,8 @@ def test_digits_are_those_of_the_decimals(lagtop: Lagtop) -> None:
 
 def test_one_of_each_pair(tmp_path: Path, lagtop: Lagtop) -> None:
     whole = ["--m", "1", "--C", "1", "--s", "1", "--g", "1"]
-    assert_one_line(
-        lagtop("solve", "--A", "1", "--A-cm", "2", *whole), 2, "--A-cm and A are both given"
-    )
+    both = lagtop("solve", "--A", "1", "--A-cm", "2", *whole)
+    assert_one_line(both, 2, "--A-cm and A are both given")
     for command in ("solve", "sweep", "table"):
         both = lagtop(command, "--r0", "1", "--phidot0", "2")
         assert_one_line(both, 2, "--phidot0 and r0 are both given: leave one out")
@@ -142,20 +140,14 @@ def test_sweeps_of_grids_and_files(lagtop: Lagtop) -> None:
     found = lagtop(*files, *keys, input=rows)
     assert found.stdout.splitlines()[1] == "5.0,0.0,"
     assert found.stdout.splitlines()[2].endswith('"line 3: A must be > 0, got -1.0"')
-    tables = lagtop(
-        "table", "--tops", "-", "--t-max", "1", "--columns", "r", *files[2:], input=rows
-    )
+    words = ["--t-max", "1", "--columns", "r", *files[2:]]
+    tables = lagtop("table", "--tops", "-", *words, input=rows)
     assert tables.stdout.splitlines()[1] == "2,0.0,"
     many = "phidot0\n" + "3\n" * 20
     table = lagtop("table", "--tops", "-", "--t-max", "1", "--n", "2", input=many)
-    assert (
-        table.stdout.splitlines()[2].split(",")[1:4]
-        == [
-            *lagtop("table", "--r0", "3", "--t-max", "1", "--n", "2")
-            .stdout.splitlines()[2]
-            .split(",")
-        ][:3]
-    )
+    alone = lagtop("table", "--r0", "3", "--t-max", "1", "--n", "2").stdout
+    one, other = (x.splitlines()[2].split(",") for x in (table.stdout, alone))
+    assert one[1:4] == other[:3]
 
 
 def test_angles_of_many_tops() -> None:

@@ -148,11 +148,8 @@ def test_a_comma_between_two_numbers_is_unclear(lagtop: Lagtop) -> None:
     assert_one_line(unclear, 65, "standard input, line 1: the delimiter must be clear, got '0,5'")
     assert lagtop(*words, "--decimal", "comma", input="0,5\n1,0\n").stdout == "t\n0.5\n1.0\n"
     assert lagtop(*words, "--decimal", ",", input="0,5\n1,0\n").stdout == "t\n0.5\n1.0\n"
-    assert_one_line(
-        lagtop(*words, "--decimal", ",", "--delimiter", "comma", input="0,5\n"),
-        2,
-        "use --delimiter comma or --decimal comma, not both",
-    )
+    both = lagtop(*words, "--decimal", ",", "--delimiter", "comma", input="0,5\n")
+    assert_one_line(both, 2, "use --delimiter comma or --decimal comma, not both")
 
 
 def test_the_decision_is_made_once(tmp_path: Path) -> None:

@@ -41,10 +41,7 @@ from lagrange_cli.inputs.ranges import parse_values
         ({"m": Fraction(10**400)}, "m must be within 1e100 in size, got 1e+400"),
         ({"m": -(16**3000)}, "m must be within 1e100 in size, got -"),
         ({"m": Fraction(1, 10**400)}, "m must be >= 1e-100, got 1e-400"),
-        (
-            {"A": Fraction(1, 3)},
-            "C must be <= 2 A = 0.6666666666666666666666666666666666",
-        ),
+        ({"A": Fraction(1, 3)}, "C must be <= 2 A = 0.6666666666666666666666666666666666"),
         ({"theta0_deg": 180 + Fraction(1, 10**20)}, "got 180.00000000000000000001"),
         ({"theta0_deg": 30, "theta0_rad": 1}, "are both given"),
     ],

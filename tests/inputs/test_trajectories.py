@@ -205,6 +205,9 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
         assert {len(spelling.names) for spelling in quantity.spellings} == {quantity.size}
 
 
+OPEN = "a quoted cell must end with its quote"
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [
@@ -226,18 +229,9 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
         (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column theta: must be a number"),
         (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
         (b'{"t":0,"theta":1}\n{"t":1,', "line 2: a row must be a JSON object"),
-        (
-            b't,theta\n0,1\n1,"2\n',
-            "line 3: a quoted cell must end with its quote, got '\"2' in column 2",
-        ),
-        (
-            b't,theta\n"0,1\n1,2\n',
-            "line 2: a quoted cell must end with its quote, got '\"0' in column 1",
-        ),
-        (
-            b't,"theta\n0,1\n',
-            "line 1: a quoted cell must end with its quote, got '\"theta' in column 2",
-        ),
+        (b't,theta\n0,1\n1,"2\n', f"line 3: {OPEN}, got '\"2' in column 2"),
+        (b't,theta\n"0,1\n1,2\n', f"line 2: {OPEN}, got '\"0' in column 1"),
+        (b't,"theta\n0,1\n', f"line 1: {OPEN}, got '\"theta' in column 2"),
         (b"t,theta\n0,1\n1,\xa02\n", "line 3: a row must be UTF-8 text"),
         (b"t,theta,note\n0,1,a\n1,2,caf\xe9\n", "line 3: a row must be UTF-8 text"),
         (b"t,theta\x00\n0,1\n", "line 1: a row must be text, got the character NUL"),

@@ -32,11 +32,7 @@ def read(inputs: dict[str, str]) -> dict[str, Value]:
     ("key", "text", "size"),
     [
         ("m", "1 lb", Fraction(45359237, 100000)),
-        (
-            "m",
-            "1 slug",
-            Fraction(45359237, 100000) * Fraction(980665, 100000) / Fraction(3048, 10000),
-        ),
+        ("m", "1 slug", Fraction(45359237, 10**5) * Fraction(980665, 10**5) / Fraction("0.3048")),
         ("s", "1 in", Fraction(254, 10000)),
         ("A", "1 lb*in^2", Fraction(45359237, 100000) * Fraction(254, 10000) ** 2),
         ("A", "1 N·m·s²", Fraction(1000)),
@@ -126,11 +122,8 @@ def test_the_worked_example_in_si(solved: Any, lagtop: Lagtop) -> None:
     words = cgs.pop("summary"), plain.pop("summary")
     assert words[0] == words[1].replace("rad per time unit", "rad/s").replace("time units", "s")
     assert cgs == plain
-    assert (units["A"], units["mean_spin_rate"], units["theta_max_deg"]) == (
-        "g cm²",
-        "rad/s",
-        "deg",
-    )
+    named = [units[key] for key in ("A", "mean_spin_rate", "theta_max_deg")]
+    assert named == ["g cm²", "rad/s", "deg"]
     assert set(units) <= set(cgs)
     example = solved("--units", "si")
     assert (example["m"], example["units"]["m"]) == (1.587, "kg")
@@ -144,12 +137,10 @@ def test_units_are_named_in_tables_and_remarks(lagtop: Lagtop) -> None:
     assert "time" not in shown
     plain = lagtop("solve").stdout
     assert "mass len²" in plain
-    table = lagtop(
-        "table", *WORDS, "--t-max", "1ms", "--n", "2", "--format", "table", "--columns", "t,r,Lz"
-    )
-    assert table.stdout.split("\n")[0].split("  ") != []
+    words = ["table", *WORDS, "--t-max", "1ms", "--n", "2"]
+    table = lagtop(*words, "--format", "table", "--columns", "t,r,Lz")
     assert all(unit in table.stdout for unit in ("t [s]", "r [rad/s]", "Lz [kg m²/s]"))
-    rows = lagtop("table", *WORDS, "--t-max", "1ms", "--n", "2").stdout.splitlines()
+    rows = lagtop(*words).stdout.splitlines()
     assert rows[0] == "t,theta_deg,phi_deg,psi_deg"
     assert rows[2].startswith("0.001,")
 
@@ -228,35 +219,21 @@ def test_what_is_missing_of_a_body_is_typed_with_units(lagtop: Lagtop) -> None:
 
 
 def test_moments_about_the_mass_centre_and_rates_of_phi(lagtop: Lagtop) -> None:
-    body = [
-        "--m",
-        "350g",
-        "--A-cm",
-        "5350g*cm^2",
-        "--C",
-        "4000g*cm^2",
-        "--s",
-        "30mm",
-        "--g",
-        "1g_0",
-    ]
+    body = "--m 350g --A-cm 5350g*cm^2 --C 4000g*cm^2 --s 30mm --g 1g_0".split()
     assert lagtop("solve", *body, "--get", "A").stdout == "0.00085\n"
     found = lagtop("solve", *body, "--phidot0", "10turn/s", "--get", "r0").stdout
     assert float(found) == 20 * math.pi
 
 
+ONCE = "must have its unit once, at the end, as in"
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        (
-            "sweep --r0 60rpm:80rpm:3",
-            "must have its unit once, at the end, as in '60:80:3 rpm', got",
-        ),
-        ("sweep --r0 60rpm,80rpm", "must have its unit once, at the end, as in '60:80:3 rpm', got"),
-        (
-            "find K=2 --r0 60rpm:80rpm",
-            "must have its unit once, at the end, as in '60:80 rpm', got",
-        ),
+        ("sweep --r0 60rpm:80rpm:3", f"{ONCE} '60:80:3 rpm', got"),
+        ("sweep --r0 60rpm,80rpm", f"{ONCE} '60:80:3 rpm', got"),
+        ("find K=2 --r0 60rpm:80rpm", f"{ONCE} '60:80 rpm', got"),
         ("sweep --r0 1e3:2e3", "must be a range [log:]start:stop:count, got '1e3:2e3'"),
     ],
 )
@@ -288,9 +265,8 @@ def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     rows = lagtop("sweep", path, *WORDS[2:], "--keys", "m,r0,theta0_rad", "--rad")
     assert rows.stdout.splitlines()[1] == "a,0.35,50.26548245743669,0.5,"
     assert "line 3: m must be a finite decimal number, got '5O'" in rows.stdout
-    table = lagtop(
-        "table", "--tops", path, *WORDS[2:], "--t-max", "1s", "--n", "2", "--columns", "r"
-    )
+    words = ["--t-max", "1s", "--n", "2", "--columns", "r"]
+    table = lagtop("table", "--tops", path, *WORDS[2:], *words)
     assert table.stdout.splitlines()[1] == "a,50.26548245743669,"
 
 
@@ -305,11 +281,7 @@ def test_units_with_fractional_powers_are_refused(unit: str, lagtop: Lagtop) -> 
 @pytest.mark.parametrize(
     ("header", "options", "message"),
     [
-        (
-            "m,r0 [rpm]",
-            WORDS,
-            "standard input, heading m: m must have a unit such as 350g, as",
-        ),
+        ("m,r0 [rpm]", WORDS, "standard input, heading m: m must have a unit such as 350g, as"),
         ("m [g],r0", WORDS, "standard input, heading r0: r0 must have a unit"),
         ("m [g]", ["--r0", "50"], "--r0 must have a unit"),
         ("m [rpm]", WORDS, "standard input, heading m [rpm]: m must have a unit as in 350g"),
@@ -317,11 +289,7 @@ def test_units_with_fractional_powers_are_refused(unit: str, lagtop: Lagtop) -> 
         ("theta0", [], "standard input: the column theta0 must be spelt theta0_deg"),
         ('{"R0": 1}', [], "standard input: the column R0 must be spelt r0"),
         ('{"theta0_Deg": 1}', [], "standard input: the column theta0_Deg must be spelt theta0_deg"),
-        (
-            "theta0_deg [rad]",
-            [],
-            "standard input: the column theta0_deg must be called theta0 [rad]",
-        ),
+        ("theta0_deg [rad]", [], "standard input: the column theta0_deg must be called theta0 [r"),
         ('{"m": 1}', WORDS, "standard input: JSON lines have no units"),
     ],
 )
@@ -354,10 +322,21 @@ def test_wrong_headings(header: str, options: list[str], message: str, lagtop: L
         ("--m 350g --r0 50", "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
         ("--r0 60rpm:80rpm:3", "--r0 must be a finite decimal number"),
         ("--units cgs --m 1", "--m must have a unit such as 350g, as a time, a condition or"),
+        # common mistakes, with a hint
+        ("--r0 480RPM", "got the unit 'RPM' (no such unit; did you mean rpm?)"),
+        ("--m 1.8Kg", "got the unit 'Kg' (no such unit; did you mean kg?)"),
+        ("--A 0.1kg*M2", "did you mean kg*m^2?"),
+        ("--A 0.1kg*m2", "did you mean kg*m^2?"),
+        ("--m 1800gr", "got the unit 'gr' (grain or gram? write grain or g)"),
+        ("--r0 3Hz", "'Hz' (turns or radians per second? write rpm, turn/s or rad/s)"),
+        ("--m 1kg --g 9.81", "--g must have a unit such as '9.81 m/s^2', as m has, got none"),
+        ("--m 1kg --C 2", "--C must have a unit such as '2 kg*m^2', as m has, got none"),
     ],
 )  # fmt: skip
 def test_bad_units(options: str, message: str, lagtop: Lagtop) -> None:
-    assert_one_line(lagtop("solve", *options.split()), 2, message)
+    result = lagtop("solve", *options.split())
+    assert_one_line(result, 2, message if message.startswith("--") else "--")
+    assert message in result.stderr
 
 
 def test_times_with_units_ask_for_units_of_all(lagtop: Lagtop) -> None:
@@ -375,12 +354,8 @@ def test_without_pint_the_remedy_is_named(monkeypatch: Any, lagtop: Lagtop) -> N
     unit_by_pint.cache_clear()
     monkeypatch.setattr(units, "_registry", units._registry.__wrapped__)
     assert lagtop("solve", *WORDS, "--r0", "480rpm", "--get", "m").stdout == "0.35\n"
-    result = lagtop("solve", "--m", "1slug")
-    assert_one_line(
-        result,
-        69,
-        "--m must be a finite decimal number (units need pint: pip install 'lagtop[units]')",
-    )
+    said = "--m must be a finite decimal number (units need pint: pip install 'lagtop[units]')"
+    assert_one_line(lagtop("solve", "--m", "1slug"), 69, said)
     with pytest.raises(LagtopError, match="need pint"):
         gather(read({"theta0": "3gon"}))
     unit_by_pint.cache_clear()
@@ -404,29 +379,6 @@ def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, sol
     assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: theta0 must have a unit between")
 
 
-def test_json_has_units_only_where_inputs_have(lagtop: Lagtop) -> None:
-    assert "units" not in json.loads(lagtop("solve", "--format", "json").stdout)
-
-
-@pytest.mark.parametrize(
-    ("option", "hint"),
-    [
-        ("--r0 480RPM", "got the unit 'RPM' (no such unit; did you mean rpm?)"),
-        ("--m 1.8Kg", "got the unit 'Kg' (no such unit; did you mean kg?)"),
-        ("--A 0.1kg*M2", "did you mean kg*m^2?"),
-        ("--A 0.1kg*m2", "did you mean kg*m^2?"),
-        ("--m 1800gr", "got the unit 'gr' (grain or gram? write grain or g)"),
-        ("--r0 3Hz", "'Hz' (turns or radians per second? write rpm, turn/s or rad/s)"),
-        ("--m 1kg --g 9.81", "--g must have a unit such as '9.81 m/s^2', as m has, got none"),
-        ("--m 1kg --C 2", "--C must have a unit such as '2 kg*m^2', as m has, got none"),
-    ],
-)
-def test_common_mistakes_in_units_get_a_hint(option: str, hint: str, lagtop: Lagtop) -> None:
-    result = lagtop("solve", *option.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert hint in result.stderr
-
-
 def test_a_tilt_between_quotes_means_degrees_as_an_option_does(
     lagtop: Lagtop, tmp_path: Path
 ) -> None:
@@ -436,9 +388,3 @@ def test_a_tilt_between_quotes_means_degrees_as_an_option_does(
     by_option = lagtop("solve", "--theta0", "90(1)", *keys)
     assert lagtop("solve", scene, *keys).stdout == by_option.stdout
     assert by_option.stdout.startswith("90.0\n1.0\n")
-
-
-def test_a_key_that_is_there_twice_is_named_as_such(lagtop: Lagtop, tmp_path: Path) -> None:
-    scene = tmp_path / "twice.toml"
-    scene.write_text("m = 1\nm = 2\n")
-    assert "(a key is repeated: delete one line)" in lagtop("solve", scene).stderr

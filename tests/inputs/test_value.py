@@ -124,10 +124,7 @@ UNIT: Any = pint.UnitRegistry()
         (UNIT.Quantity(350, "g"), Value(Fraction(350), "gram")),
         (UNIT.Quantity(np.int64(3), "kg m^2"), Value(Fraction(3), "kilogram*meter**2")),
         (UNIT.Quantity(np.array(0.25), "m"), Value(Fraction(1, 4), "meter")),
-        (
-            UNIT.Quantity(ufloat(50, 0.5), "rpm"),
-            Value(50, "revolutions_per_minute", Fraction(1, 2)),
-        ),
+        (UNIT.Quantity(ufloat(50, 0.5), "degree"), Value(50, "degree", Fraction(1, 2))),
         (UNIT.Quantity(4.0, "cm").plus_minus(0.25), Value(4, "centimeter", Fraction(1, 4))),
     ],
 )
