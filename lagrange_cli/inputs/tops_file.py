@@ -110,20 +110,15 @@ class TopsFile(NamedTuple):
             if column is not None and not column.unit:
                 raise DataError(f"{self.name}, heading {error.key}: {error}") from None
             raise
-        if self.columns is not None:
-            return found, self._in_units(found)
-        if found.system is not None:
+        if self.columns is None and found.system is not None:
             raise LagtopError(
                 f"{self.name}: JSON lines have no units: use CSV with headings such as m [g], or "
                 "inputs without units"
             )
-        return found, self
-
-    def _in_units(self, found: Given) -> TopsFile:
-        assert self.columns is not None
         keys = dict(zip(self.units, found.others, strict=True))
         factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
-        return self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
+        columns = None if self.columns is None else [keys.get(x, x) for x in self.columns]
+        return found, self._replace(columns=columns, factors=factors)
 
     def row(self, number: int, raw: bytes) -> TopRow:
         """Return the top of a row, or its error message."""
