@@ -123,7 +123,7 @@ def _complement(square: Array, rest: Array | float) -> tuple[Array, Array]:
     from ..arithmetic.double_double import sqrt_pair, two_sum
 
     difference, error = two_sum(1.0, -square)
-    return sqrt_pair(difference, error - rest)
+    return sqrt_pair(*two_sum(difference, error - rest))
 
 
 def _from_q(ar: FunctionArithmetic, q: Numeric) -> Modulus:

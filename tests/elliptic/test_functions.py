@@ -93,6 +93,7 @@ def test_jacobi() -> None:
         ("k_prime", 1e-6, 40.0),
         ("k_prime", 1e-8, 123.4),
         ("m", 0.5, 1e6),
+        ("k", 0.9999999992240866, -3.079849288428686),  # 1 - k^2 is the sum of two doubles
         ("k", 0.2738929647185465, 512232610885.36005),  # the period is known to 30 digits
     ],
 )
