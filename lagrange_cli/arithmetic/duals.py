@@ -40,19 +40,28 @@ class Dual:
         return Dual(self.value.middle, partials)
 
     def __add__(self, other: Dual | int) -> Dual:
-        other = _dual(other)
-        return Dual(self.value + other.value, _total((self.partials, other.partials)))
+        if isinstance(other, int) or other.partials is None:
+            return Dual(self.value + _value(other), self.partials)
+        if self.partials is None:
+            return Dual(self.value + other.value, other.partials)
+        sums = [x + y for x, y in zip(self.partials, other.partials, strict=True)]
+        return Dual(self.value + other.value, sums)
 
     def __mul__(self, other: Dual | int) -> Dual:
-        other = _dual(other)
-        if self.partials is None and other.partials is not None:
-            return other * self
-        value = self.value * other.value
-        if other.partials is None:
-            return Dual(value) if is_zero(other.value) else _chained(value, (self, other.value))
-        return _chained(value, (self, other.value), (other, self.value))
+        if isinstance(other, int) or other.partials is None:
+            return self._times(_value(other))
+        if self.partials is None:
+            return other._times(self.value)
+        v, w = self.value, other.value
+        pairs = zip(self.partials, other.partials, strict=True)
+        return Dual(v * w, [x * w + v * y for x, y in pairs])
 
     __radd__, __rmul__ = __add__, __mul__
+
+    def _times(self, factor: Plain) -> Dual:
+        """Return the product with a constant."""
+        value = self.value * factor
+        return Dual(value) if is_zero(factor) else _chained(self, value, factor)
 
     def __neg__(self) -> Dual:
         return Dual(-self.value, None if self.partials is None else [-x for x in self.partials])
@@ -73,39 +82,43 @@ class Dual:
         return -self + other
 
     def __truediv__(self, other: Dual | int) -> Dual:
-        other = _dual(other)
-        value = self.value / other.value
-        if other.partials is None:
-            return Dual(value, self.partials and [x / other.value for x in self.partials])
-        if self.partials is None and is_zero(value):
-            return Dual(value)
+        if isinstance(other, int) or other.partials is None:
+            divisor = _value(other)
+            partials = None if self.partials is None else [x / divisor for x in self.partials]
+            return Dual(self.value / divisor, partials)
         inverse = 1 / other.value
-        return _chained(value, (self, inverse), (other, -value * inverse))
+        value = self.value / other.value
+        if self.partials is None:
+            factor = -value * inverse
+            return Dual(value, None if is_zero(value) else [factor * y for y in other.partials])
+        pairs = zip(self.partials, other.partials, strict=True)
+        return Dual(value, [(x - value * y) * inverse for x, y in pairs])
 
     def __rtruediv__(self, other: int) -> Dual:
-        return Dual(other) / self
+        inverse = 1 / self.value
+        return _chained(self, other * inverse, -other * inverse * inverse)
 
     def __bool__(self) -> bool:
         return bool(self.value)
 
     def __lt__(self, other: Dual | int) -> Any:
-        return self.value < _dual(other).value
+        return self.value < _value(other)
 
     def __le__(self, other: Dual | int) -> Any:
-        return self.value <= _dual(other).value
+        return self.value <= _value(other)
 
     def __gt__(self, other: Dual | int) -> Any:
-        return self.value > _dual(other).value
+        return self.value > _value(other)
 
     def __ge__(self, other: Dual | int) -> Any:
-        return self.value >= _dual(other).value
+        return self.value >= _value(other)
 
     def __repr__(self) -> str:
         return f"Dual({self.value}, {self.partials})"
 
 
-def _dual(x: Dual | int) -> Dual:
-    return x if isinstance(x, Dual) else Dual(x)
+def _value(x: Dual | int) -> Plain:
+    return x if isinstance(x, int) else x.value
 
 
 def is_zero(x: Plain) -> bool:
@@ -115,26 +128,16 @@ def is_zero(x: Plain) -> bool:
     return not x
 
 
-def _total(terms: Iterable[Sequence[Plain] | None]) -> Sequence[Plain] | None:
-    """Return sums of derivatives; None if all numbers are constants."""
-    total = None
-    for row in terms:
-        if row is not None:
-            total = row if total is None else [x + y for x, y in zip(total, row, strict=True)]
-    return total
-
-
-def _chained(value: Plain, *slopes: tuple[Dual, Plain]) -> Dual:
-    """Return a function from its value, and from each of its arguments with the slope along it."""
-    terms = [x.partials and [slope * dx for dx in x.partials] for x, slope in slopes]
-    return Dual(value, _total(terms))
+def _chained(x: Dual, value: Plain, slope: Plain) -> Dual:
+    """Return a function of x from its value and its slope at x."""
+    return Dual(value, None if x.partials is None else [slope * dx for dx in x.partials])
 
 
 def _function(name: str, slope: Callable[[Any, Plain], Plain]) -> Callable[[Duals, Dual], Dual]:
     """Return the function `name` of dual numbers, with its slope."""
 
     def function(ar: Duals, x: Dual) -> Dual:
-        return _chained(getattr(ar.plain, name)(x.value), (x, slope(ar.plain, x.value)))
+        return _chained(x, getattr(ar.plain, name)(x.value), slope(ar.plain, x.value))
 
     return function
 
@@ -172,9 +175,10 @@ class Duals(Scalars):
 
     def sqrt(self, x: Dual | int) -> Dual:
         """Return the square root of x >= 0."""
-        x = _dual(x)
-        root = self.plain.sqrt(x.value)
-        return _chained(root, (x, self.plain.nan if is_zero(root) else 1 / (2 * root)))
+        root = self.plain.sqrt(_value(x))
+        if isinstance(x, int) or x.partials is None:
+            return Dual(root)
+        return _chained(x, root, self.plain.nan if is_zero(root) else 1 / (2 * root))
 
     sin = _function("sin", lambda ar, x: ar.cos(x))
     cos = _function("cos", lambda ar, x: -ar.sin(x))
@@ -186,7 +190,9 @@ class Duals(Scalars):
         """Return the angle of the point (x, y), in (-pi, pi]."""
         angle = self.plain.atan2(y.value, x.value)
         square = x.value * x.value + y.value * y.value
-        return _chained(angle, (y, x.value / square), (x, -y.value / square))
+        along, across = x.value / square, -y.value / square
+        none = self.plain.convert(0)
+        return Dual(angle) + (_chained(y, none, along) + _chained(x, none, across))
 
     def nint(self, x: Dual) -> int:
         """Return the integer nearest to x."""
@@ -208,6 +214,8 @@ class Duals(Scalars):
             return x
         if values_only:
             raise NotImplementedError("this bound does not hold for derivatives")
+        if x.value.is_nan:  # the motion has no such number
+            return x
         away = bound(*(_sizes(self.plain, number) for number in small()))
         if (away.value >= 0) is not True:  # the series behind the bound diverges
             unbounded = self.plain.unbounded

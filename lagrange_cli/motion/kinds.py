@@ -9,8 +9,8 @@ from typing import Any, TypeAlias
 
 from ..arithmetic.numbers import R
 from .quantity import quantity
+from .regime import Regime
 from .spin_precession import Nutating, SpinPrecession
-from .summary import vertical_remark
 
 
 class Constant(SpinPrecession[R]):
@@ -67,6 +67,14 @@ class Vertical(Constant[R]):
     def remark(self, *, radians: bool = False) -> str | None:
         """Return a line on the defined combination of angles and on stability."""
         return vertical_remark(self.facts.regime, bool(self.facts.stable))
+
+
+def vertical_remark(regime: Regime, stable: bool) -> str:
+    """Return the remark on an upright or hanging top."""
+    if regime is Regime.HANGING:
+        return "only phi - psi is defined; stable"
+    word, sign = ("stable", ">=") if stable else ("unstable", "<")
+    return f"only phi + psi is defined; {word} (lambda = b^2/2a {sign} 1)"
 
 
 class Separatrix(SpinPrecession[R]):

@@ -11,6 +11,8 @@ Equation numbers in parentheses are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from decimal import Decimal
+from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,11 +21,12 @@ from ..arithmetic.numbers import R, absolute
 from ..elliptic.complete import period_mean
 from .nutation import Nutation, period_key
 from .quantity import key, quantity
-from .summary import fast_remark
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
+
+_Known = float | Decimal
 
 mean_rate_key = partial(key, "Mean rates", unit="rad/time")
 rate_key = partial(key, "Rates", unit="rad/time")
@@ -245,3 +248,21 @@ def turn_time(ar: Arithmetic[R], rate: R) -> R | None:
     if ar.everywhere(stands):
         return None
     return 2 * ar.pi / ar.where(stands, ar.nan, absolute(rate))
+
+
+def fast_remark(
+    nodding: _Known, period: _Known, elementary: _Known, excess: _Known, *, radians: bool
+) -> str:
+    """Return the remark on a pseudo-regular precession.
+
+    `nodding` is the amplitude theta_max - theta_min in degrees or radians, `excess` the relative
+    excess of the mean precession rate over the elementary rate.
+    """
+    parts = round(Fraction(excess) * 10**6)
+    where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
+    angle = "rad" if radians else "deg"
+    tilt, time, rate = (f"{float(f'{x:.3g}'):.3g}" for x in (nodding, period, elementary))
+    return (
+        f"pseudo-regular precession: nutates by {tilt} {angle} in {time} time; "
+        f"its mean is {where} mgs/(C r0) = {rate} rad/time"
+    )

@@ -1,16 +1,12 @@
-"""Sentences on a motion, from the numbers of its record: the summary and the remarks."""
+"""The summary of a motion in one sentence, from the numbers of its record."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from decimal import Decimal
-from fractions import Fraction
 from typing import Any
 
-from .regime import Facts, Regime
-
-_Known = float | Decimal
+from .regime import Facts
 
 _ENDS = "between {least} and {most} {angle}"
 
@@ -94,29 +90,3 @@ def _apart(low: float, high: float) -> tuple[str, str]:
     """Return two numbers with four digits, or with as many as distinguish them."""
     texts = [(_figures(low, n), _figures(high, n)) for n in range(4, _MOST_DIGITS + 1)]
     return next(((a, b) for a, b in texts if a != b), texts[0])
-
-
-def vertical_remark(regime: Regime, stable: bool) -> str:
-    """Return the remark on an upright or hanging top."""
-    if regime is Regime.HANGING:
-        return "only phi - psi is defined; stable"
-    word, sign = ("stable", ">=") if stable else ("unstable", "<")
-    return f"only phi + psi is defined; {word} (lambda = b^2/2a {sign} 1)"
-
-
-def fast_remark(
-    nodding: _Known, period: _Known, elementary: _Known, excess: _Known, *, radians: bool
-) -> str:
-    """Return the remark on a pseudo-regular precession.
-
-    `nodding` is the amplitude theta_max - theta_min in degrees or radians, `excess` the relative
-    excess of the mean precession rate over the elementary rate.
-    """
-    parts = round(Fraction(excess) * 10**6)
-    where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
-    angle = "rad" if radians else "deg"
-    tilt, time, rate = (f"{float(f'{x:.3g}'):.3g}" for x in (nodding, period, elementary))
-    return (
-        f"pseudo-regular precession: nutates by {tilt} {angle} in {time} time; "
-        f"its mean is {where} mgs/(C r0) = {rate} rad/time"
-    )

@@ -16,9 +16,9 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.value import Stds
+from ..motion.kinds import vertical_remark
 from ..motion.quantity import unit_name
 from ..motion.regime import Regime
-from ..motion.summary import vertical_remark
 from ..output.progress import Progress, silent
 from .records import sweep
 

@@ -20,11 +20,12 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.top import Top
 from ..motion import record as motion_record
+from ..motion.kinds import vertical_remark
 from ..motion.numbers import gaps_of, kind_of, record_in_range
 from ..motion.quantity import degree_name
 from ..motion.regime import FAST, Regime
 from ..motion.solve import solve
-from ..motion.summary import fast_remark, vertical_remark
+from ..motion.spin_precession import fast_remark
 from .results import TEXTS, ResultColumn, Results, Together
 from .start_arrays import StartArrays
 from .top_arrays import TopArrays, facts_at_rest

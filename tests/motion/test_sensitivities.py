@@ -116,6 +116,13 @@ def test_a_top_without_torque_that_stands_still_has_no_means() -> None:
     assert found.derivatives["a"]["s"] == 2.0
 
 
+def test_without_torque_and_spin_over_the_poles_the_means_have_no_derivatives() -> None:
+    top = Top(**UNIT | {"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 2})
+    found = sensitivities(top).derivatives
+    assert math.isnan(found["mean_spin_rate"]["r0"])
+    assert found["T_nutation"]["thetadot0"] == -math.pi / 2  # T = 2 pi/theta'
+
+
 @pytest.mark.parametrize("tilt", [0, 180])
 @pytest.mark.parametrize("r0", [0, 3])
 def test_without_torque_on_the_vertical_a_depends_on_gravity(tilt: float, r0: float) -> None:
