@@ -222,13 +222,9 @@ def record_in_range(
 ) -> tuple[dict[str, Any], list[OutOfRangeError]]:
     """Return `Motion.record`, and an error for each number beyond the range of doubles."""
     names, numbers = record_keys(radians=radians), NUMBER_KEYS
-    chosen = names if keys is None else list(keys)
-    wanted = set(chosen)
+    wanted = set(names if keys is None else keys)
     if not wanted <= set(names):
-        from ..inputs.names import check_names  # start-up: for keys on request
-
         names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
-        check_names("keys", list(dict.fromkeys(chosen)), names)
     found, beyond = _inputs(motion.top, digits, radians=radians), []
     for name in numbers:
         shown = unit_name(name, radians=radians)

@@ -10,7 +10,7 @@ from ..arithmetic.rounding import rounded
 from ..errors import LagtopError, OutOfRangeWarning
 from ..inputs.top import Top
 from .numbers import Numbers, record_in_range
-from .record import NUMBER_KEYS, requested_keys
+from .record import NUMBER_KEYS, all_keys, requested_keys
 from .regime import Regime, exact
 from .spin_precession import Nutating
 
@@ -130,9 +130,13 @@ class Motion(Numbers):
         are then taken as decimals.  `radii` adds KEY_radius, a bound of the distance from the
         number under KEY to its exact value.  A number beyond the range of doubles is None, and an
         OutOfRangeWarning names it.  `keys` selects some keys; such a number then raises
-        OutOfRangeError.  Raises LagtopError for an unknown key, and if no precision distinguishes a
-        number from 0.
+        OutOfRangeError.  Raises LagtopError for an unknown or repeated key or for no key, and if no
+        precision distinguishes a number from 0.
         """
+        if keys is not None:
+            from ..inputs.names import check_names  # start-up: not for the whole record
+
+            keys = check_names("keys", list(keys), all_keys(radians=radians))
         record, beyond = record_in_range(
             self, digits=digits, radii=radii, radians=radians, keys=keys
         )

@@ -200,6 +200,20 @@ def test_sweeps_take_them_from_solve(lagtop: Lagtop) -> None:
         sweep(r0=[1.0], keys=["L_z"])
 
 
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ([], "keys must be among .*, got ''"),
+        (["a", "a"], "keys must not repeat a name, got 'a' twice"),
+        (["Lz", "Lz"], "keys must not repeat a name, got 'Lz' twice"),
+        ([["a"]], r"keys must be among .*, got \['a'\]"),
+    ],
+)
+def test_keys_of_a_record_are_checked(keys: Any, message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
+        solve(Top()).record(keys=keys)
+
+
 def test_explain_lists_them(lagtop: Lagtop) -> None:
     shown = lagtop("explain", "--format", "csv").stdout
     assert all(f"\n{key}," in shown for key in requested_keys())
