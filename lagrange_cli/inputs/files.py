@@ -23,7 +23,7 @@ _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 def reading(path: str) -> Iterator[BufferedIOBase]:
     """Open a file for reading bytes, or standard input for `-`.
 
-    Raises DataError if the file cannot be decoded_file, or if reading fails inside the block.
+    Raises DataError if the file cannot be opened, or if reading fails inside the block.
     """
     try:
         if path == "-":
