@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
+from inspect import signature
 from os.path import splitext
 from typing import TYPE_CHECKING, Any
 
@@ -118,8 +119,7 @@ def command(
     """
 
     def decorate(function: Callable[..., None]) -> Command:
-        code, defaults = function.__code__, function.__defaults__ or ()
-        declared = dict(zip(code.co_varnames[: code.co_argcount], defaults, strict=True))
+        declared = {name: x.default for name, x in signature(function).parameters.items()}
         groups = {argument: x for argument, x in declared.items() if isinstance(x, Group)}
         params: list[click.Parameter] = []
         for argument, declaration in declared.items():

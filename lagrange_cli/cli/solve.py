@@ -85,8 +85,7 @@ def solve_command(
         return
     names = selected.steps_of_section_8(motion, radians) if derivation else keys
     wanted = list(dict.fromkeys(name.removesuffix("_std") for name in names)) if names else None
-    how = {"digits": digits, "radii": certify, "radians": radians, "keys": wanted}
-    record = _record(motion, found.system, **how)
+    record = _record(motion, found.system, wanted, digits=digits, radii=certify, radians=radians)
     is_summed = wanted is None and out.fmt != "csv"
     named = str if found.system is None else found.system.named
     summed = _summary(record, motion, named) if is_summed else {}
@@ -114,13 +113,15 @@ def solve_command(
         out.record(record | summed | ({"units": units} if units else {}), shown)
 
 
-def _record(motion: Numbers, system: System | None, **how: Any) -> dict[str, Any]:
+def _record(
+    motion: Numbers, system: System | None, keys: list[str] | None, **how: Any
+) -> dict[str, Any]:
     """Return the record, or some keys of it; warn of numbers beyond the range of doubles.
 
-    `how` holds the arguments of `record_in_range`.
+    `how` holds the other arguments of `record_in_range`.
     """
-    record, beyond = record_in_range(motion, **how)
-    if beyond and how["keys"]:
+    record, beyond = record_in_range(motion, keys=keys, **how)
+    if beyond and keys:
         raise beyond[0]
     if beyond:
         complain("Warning: " + "; ".join(map(str, beyond)))

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from ..output.destination import Output
     from ..sweeps.plan import Make
 
+_FORMATS = ("csv", "ndjson", "json", "parquet", "table", "markdown")
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
 
@@ -72,9 +73,7 @@ def sweep_command(
     ),
     dialect: Dialect = text_options,
     header_comments: bool = header_comments_option,
-    out: Output = output_options(
-        *("csv", "ndjson", "json", "parquet", "table", "markdown"), on_terminal="table"
-    ),
+    out: Output = output_options(*_FORMATS, on_terminal="table"),
 ) -> None:
     """Solve each top of a grid or of a file.
 
