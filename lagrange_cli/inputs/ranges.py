@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
+from .value import LOG
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-
-_LOG = "log:"
-"""Prefix of a range with equal ratios."""
 
 
 class Span(NamedTuple):
@@ -54,10 +52,10 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
     `parse` reads the two ends.  Raises LagtopError for anything else, for a count of 1 between
     different ends, and for a logarithmic range over 0.
     """
-    parts = text.removeprefix(_LOG).split(":")
+    parts = text.removeprefix(LOG).split(":")
     if len(parts) != 3:
         raise LagtopError(f"must be a range [log:]start:stop:count, got {text!r}")
-    span = Span(parse(parts[0]), parse(parts[1]), text.startswith(_LOG))
+    span = Span(parse(parts[0]), parse(parts[1]), text.startswith(LOG))
     count = parse_number(parts[2])
     if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {text!r}")
@@ -87,10 +85,10 @@ def parse_span(text: str) -> Span:
     Raises LagtopError for anything else, and unless the second end is the larger one.
     """
     refuse_units_inside(text, "60:80 rpm")
-    ends = text.removeprefix(_LOG).split(":")
+    ends = text.removeprefix(LOG).split(":")
     if len(ends) != 2:
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
-    span = Span(parse_number(ends[0]), parse_number(ends[1]), text.startswith(_LOG))
+    span = Span(parse_number(ends[0]), parse_number(ends[1]), text.startswith(LOG))
     if not span.first < span.last:
         raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
     return span.refuse_zero(text)

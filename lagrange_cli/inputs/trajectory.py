@@ -122,13 +122,11 @@ class Trajectory:
         """Yield blocks without checking the times (for files that hold several recordings)."""
         wanted = sorted(i for found in self.quantities.values() for i in found.columns)
         for values, places in self._table.blocks(wanted, [self.names[i] for i in wanted]):
-            yield (
-                {
-                    key: found.scaled(values[:, [*map(wanted.index, found.columns)]])
-                    for key, found in self.quantities.items()
-                },
-                places,
-            )
+            block = {
+                key: found.scaled(values[:, [*map(wanted.index, found.columns)]])
+                for key, found in self.quantities.items()
+            }
+            yield block, places
 
     def where(self, place: int) -> str:
         """Return the name of the file and the place of a row."""

@@ -14,7 +14,7 @@ from ..errors import LagtopError
 
 _UNIT = r"(?s)(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*"
 """Pattern of a unit: any text from its first letter, which begins no exponent; `1/` may precede."""
-_LOG = "log:"
+LOG = "log:"
 """Prefix of a range with equal ratios."""
 STEADY_WORDS = ("steady", "steady-fast")
 """Words accepted as a precession rate: the steady rate of smaller or of larger size."""
@@ -129,7 +129,7 @@ def split_unit(text: str) -> tuple[str, str]:
     no colon and no comma follows or precedes it.
     """
     text = text.strip()
-    found = re.compile(_UNIT).search(text, len(_LOG) if text.startswith(_LOG) else 0)
+    found = re.compile(_UNIT).search(text, len(LOG) if text.startswith(LOG) else 0)
     if found is None:
         return text, ""
     number, unit = text[: found.start()].rstrip(), found[0]
