@@ -129,7 +129,8 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
     every = np.concatenate(grids)
     bounds = [*zip(every.tolist(), _conditions(top, every * period), strict=True)]
     for name in PEERS:
-        method, points, run, remark = known[name], list[tuple[float, float]](), Run([]), None
+        method, run, remark = known[name], Run([]), None
+        points: list[tuple[float, float]] = []
         try:
             with np.errstate(all="ignore"):
                 sample, _ = method.start(top, method.settings[-1])  # the tightest setting

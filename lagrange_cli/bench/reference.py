@@ -98,8 +98,10 @@ def quaternion_units(parts: Sequence[float], exact: ExactAngles) -> float:
 def quaternion(cos_half: Many, sin_half: Many, plus: Many, minus: Many) -> tuple[Many, ...]:
     """Return the parts w, x, y, z, from theta/2 and plus or minus = (psi +- phi)/2."""
     return (
-        *(cos_half * mpmath.cos(plus), sin_half * mpmath.cos(minus)),
-        *(sin_half * mpmath.sin(minus), cos_half * mpmath.sin(plus)),
+        cos_half * mpmath.cos(plus),
+        sin_half * mpmath.cos(minus),
+        sin_half * mpmath.sin(minus),
+        cos_half * mpmath.sin(plus),
     )
 
 

@@ -199,9 +199,9 @@ def _of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Numeri
 
     All numbers that are subtracted in kappa^2 are exact.
     """
-    lower, upper, (p, *_), *others = quadrature
+    lower, upper, (p, *_) = quadrature.lower, quadrature.upper, quadrature.outer
     above, below = upper - p, lower - p
-    width, g, height = (ar.convert(x) for x in (upper - lower, *others))
+    g, width, height = (ar.convert(x) for x in (quadrature.g, upper - lower, quadrature.height))
     m1, m2 = (ar.sqrt(ar.convert(square)) for square in quadrature.squares)
     product, crossed = m1 * m2, ar.convert(above * below)
     if above * below > 0:

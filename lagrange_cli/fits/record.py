@@ -62,7 +62,10 @@ class Fit(NamedTuple):
 
 def flat_numbers(numbers: Iterable[tuple[str, Any, Any]]) -> dict[str, Any]:
     """Return numbers by key, each followed by its standard deviation as KEY_std."""
-    return dict(x for key, *two in numbers for x in zip((key, f"{key}_std"), two, strict=True))
+    found: dict[str, Any] = {}
+    for key, value, std in numbers:
+        found |= {key: value, f"{key}_std": std}
+    return found
 
 
 class Outcome(HasRecord):

@@ -196,8 +196,8 @@ def scene_text(outcome: Outcome, source: str, system: System | None = None) -> s
     for name, value in outcome.inputs().items():
         unit = "" if name.startswith(TILT) else units.get(name, "")  # the key of a tilt names it
         shown = f"{value!r} +/- {stds[name]!r}" if name in stds else repr(value)
-        is_text = unit or name in stds
-        lines.append(f'{name} = "{f"{shown} {unit}".rstrip()}"' if is_text else f"{name} = {shown}")
+        text = f"{shown} {unit}".rstrip()
+        lines.append(f"{name} = {text}" if text == repr(value) else f'{name} = "{text}"')
     lines += ["", "[correlations]"] if len(stds) > 1 else []
     for i, (name, row) in enumerate(zip(stds, correlations.tolist(), strict=True)):
         others = [f"{x} = {r!r}" for x, r in list(zip(stds, row, strict=True))[i + 1 :]]

@@ -143,12 +143,14 @@ _ROWS = [
     ),
     PictureKind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, _OVER_TIME, 3),
     PictureKind(
-        *("remainders", "periodic parts of spin and precession", (7, 5), True, _OVER_TIME),
-        *(2, "angles"),
+        "remainders", "periodic parts of spin and precession", (7, 5), True, _OVER_TIME, 2, "angles"
     ),
     PictureKind("cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
     PictureKind(
-        *("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False, ("radians",)),
+        "phase",
+        "tilt rate against tilt, and the separatrix",
+        (6.8, 5.0),
+        options=("radians",),
         file="cubic",
     ),
     PictureKind("map", "a key of the record over two inputs", (6.8, 5.0), False, ("key", "x", "y")),

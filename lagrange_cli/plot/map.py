@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -270,11 +270,8 @@ def _draw_threshold(axes: Axes, chart: KeyMap, look: Look) -> None:
     """Draw the line at which an upright top becomes stable, if it crosses the map."""
     if not chart.sleeping.min() < 1.0 < chart.sleeping.max():
         return
-    line = axes.contour(
-        *(chart.x.values, chart.y.values, chart.sleeping, [1.0]),
-        colors=look.ink,
-        linewidths=points(1.6),
-    )
+    how: dict[str, Any] = {"colors": look.ink, "linewidths": points(1.6)}
+    line = axes.contour(chart.x.values, chart.y.values, chart.sleeping, [1.0], **how)
     line.set_path_effects([withStroke(linewidth=points(3.2), foreground=look.paper)])
     label = "sleeping threshold, C²r₀² = 4Amgs: faster, an upright top is stable"
     axes.plot([], [], color=look.ink, lw=points(1.6), label=label)

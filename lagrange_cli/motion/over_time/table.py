@@ -30,7 +30,8 @@ class Sample(ColumnFormulas[Array]):
     def __init__(
         self, attitude: Attitude, constants: ColumnConstants[Array], rises: int, wrap: bool
     ) -> None:
-        self.growths, self.times, self.spinor = self.attitude = attitude
+        self.attitude = attitude
+        self.growths, self.times, self.spinor = attitude
         self.t, self.constants, self.rises, self.wrap = self.times.t, constants, rises, wrap
 
     @property
