@@ -94,8 +94,16 @@ def best_attempt(
 
 
 def _check(recording: Recording, known: Mapping[str, float], unknowns: int, where: str) -> None:
-    """Raise DataError for too few numbers, LagtopError if the angles do not determine a top."""
+    """Raise DataError for too few numbers, LagtopError if the angles do not determine a top.
+
+    LagtopError is raised too if there is no unknown.
+    """
     seen = recording.angles.keys()
+    if not unknowns:
+        raise LagtopError(
+            f"{where}: fit needs an unknown input, but all are known: leave one out, or use "
+            "lagtop compare"
+        )
     count = sum(int(np.isfinite(x).sum()) for x in recording.angles.values())
     if count <= unknowns:
         raise DataError(

@@ -443,6 +443,13 @@ def test_theta_alone_needs_a_start(lagtop: Lagtop, tmp_path: Path) -> None:
     assert_one_line(lagtop("fit", path), 2, f"{path} has neither psi nor phi, and theta does not")
 
 
+def test_a_fit_needs_an_unknown(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = written(tmp_path / "data.csv", "t,theta", [T, 40 + 5 * np.sin(20 * T)])
+    start = ["--theta0", "40", "--thetadot0", "0", "--psidot0", "0"]
+    result = lagtop("fit", "chrapan-1952", path, "--fix", "m,A,C,s,g,r0", *start)
+    assert_one_line(result, 2, f"{path}: fit needs an unknown input, but all are known: leave one")
+
+
 @pytest.mark.slow
 def test_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
     path = tmp_path / "fit.svg"
