@@ -5,10 +5,10 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
-from typing import Any
+from typing import Any, ClassVar
 
 import click
 
@@ -72,6 +72,9 @@ class Command(click.Command):
     That would take 2 % of the run time of `lagtop solve`.
     """
 
+    listed: ClassVar[Mapping[str, Sequence[str]]] = {}
+    """The commands of a group, by heading."""
+
     def __init__(self, *args: Any, examples: str = "", **kwargs: Any) -> None:
         super().__init__(*args, **(kwargs | {"add_help_option": False}))
         self.params.append(
@@ -83,7 +86,7 @@ class Command(click.Command):
         """Write the usage, the text, the examples, and the options in groups."""
         from .help import write_help  # start-up
 
-        write_help(self, ctx, formatter)
+        write_help(self, ctx, formatter, self.examples, self.listed)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; an error about an argument names its option."""
@@ -98,6 +101,8 @@ class Command(click.Command):
 
 class LagtopGroup(Command, click.Group):
     """The group of commands, with one-line errors, exit codes and deaths by signal."""
+
+    listed = COMMANDS
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names, in the order of the help."""

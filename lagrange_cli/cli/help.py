@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import click
 
 from ..errors import LagtopError
 from ..inputs.input_keys import BODY, DECLARED
 from ..inputs.names import suggestion
-from .app import COMMANDS, LagtopGroup
-
-if TYPE_CHECKING:
-    from .app import Command
 
 _BODY = {"A_cm", *BODY}
 _GROUPS = {
@@ -31,17 +27,23 @@ _WIDTH, _TERM = 80, 26
 """Width of the help, and the column at which the texts of options begin."""
 
 
-def write_help(command: Command, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-    """Write the usage, the description, examples, and options in groups."""
+def write_help(
+    command: click.Command,
+    ctx: click.Context,
+    formatter: click.HelpFormatter,
+    examples: Sequence[str],
+    listed: Mapping[str, Sequence[str]],
+) -> None:
+    """Write the usage, the description, examples, listed commands, and options in groups."""
     formatter.width = _WIDTH
     command.format_usage(ctx, formatter)
     command.format_help_text(ctx, formatter)
     with formatter.section("Examples"):
-        formatter.write("".join(f"  {line}\n" for line in command.examples))
-    if isinstance(command, LagtopGroup):
-        for heading, names in COMMANDS.items():
-            with formatter.section(heading):
-                formatter.write_dl([(name, _first_sentence(command, ctx, name)) for name in names])
+        formatter.write("".join(f"  {line}\n" for line in examples))
+    for heading, names in listed.items():
+        assert isinstance(command, click.Group)
+        with formatter.section(heading):
+            formatter.write_dl([(name, _first_sentence(command, ctx, name)) for name in names])
     groups: dict[str, list[tuple[str, str]]] = {}
     for param in command.params:
         record = param.get_help_record(ctx)
@@ -57,7 +59,7 @@ def _group_of(param: click.Parameter) -> str:
     return next((heading for heading, names in _GROUPS.items() if param.name in names), _OWN)
 
 
-def _first_sentence(group: LagtopGroup, ctx: click.Context, name: str) -> str:
+def _first_sentence(group: click.Group, ctx: click.Context, name: str) -> str:
     """Return the first sentence on a command, without its full stop."""
     found = group.get_command(ctx, name)
     assert found is not None

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ..inputs.value import Value
     from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
-    from ..plot.map import InputRange
+    from ..plot.map_axes import InputRange
 
 _FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
@@ -209,7 +209,7 @@ def _given(top: TopOptions, **axes: str | None) -> tuple[Given, dict[str, InputR
     texts = {name: text for name, text in axes.items() if text is not None}
     if not texts:
         return top.given(), {}
-    from ..plot.map import input_range, parse_axis  # with the colour bars, which others do not need
+    from ..plot.map_axes import input_range, parse_axis  # start-up: loads NumPy
 
     parsed = {name: parse_axis(name, text, radians=top.radians) for name, text in texts.items()}
     try:

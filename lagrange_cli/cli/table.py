@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from ..inputs.text_lines import Dialect
     from ..inputs.units import System
     from ..inputs.value import Value
-    from ..motion.over_time.columns import TableRequest
+    from ..motion.over_time.table_request import TableRequest
     from ..motion.solve import Motion
     from ..output.destination import Output
     from ..output.formats import Header
@@ -83,7 +83,8 @@ def table_command(
     max(1 rad, |angle|), or more if the axis passes near the vertical.  If inputs are uncertain, the
     last columns are the uncertainties of the angles.
     """
-    from ..motion.over_time.columns import DEFAULT_COLUMNS, DEFAULT_ROWS, TableRequest
+    from ..motion.over_time.columns import DEFAULT_COLUMNS
+    from ..motion.over_time.table_request import DEFAULT_ROWS, TableRequest
 
     top, interval = top.in_seconds(t_min=t_min, t_max=t_max, dt=dt)
     if jobs is not None and tops is None:
@@ -160,7 +161,7 @@ def _same(times: Points, _: Motion) -> Points:
 
 
 def _grid(motion: Motion, **interval: Any) -> Points:
-    from ..motion.over_time.columns import grid
+    from ..motion.over_time.table_request import grid
 
     return grid(motion, **interval)
 

@@ -63,9 +63,7 @@ class Report(NamedTuple):
         CSV and ndjson hold only the rows.  JSON is one object, in which infinite numbers are null.
         """
         if fmt == "table":
-            from .tables import drawn_report
-
-            return drawn_report(self, view)
+            return self._table(view)
         if fmt == "markdown":
             return self._markdown()
         if fmt == "csv":
@@ -83,6 +81,17 @@ class Report(NamedTuple):
         if self.units:
             whole["units"] = self.units
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
+
+    def _table(self, view: View) -> bytes:
+        from .tables import DrawnColumn, drawn_report
+
+        columns: dict[bool, list[DrawnColumn]] = {True: [], False: []}
+        for field in self.fields:
+            if field.heading:
+                cells = [spelt(field.cell(row), view) for row in self.rows]
+                column = DrawnColumn(spelt(field.heading, view), cells, not field.is_text)
+                columns[field.names_the_row].append(column)
+        return drawn_report(self.conditions, columns[True], columns[False], self.conclusions, view)
 
     def _markdown(self) -> bytes:
         shown = [field for field in self.fields if field.heading]
@@ -113,7 +122,7 @@ def record_text(record: Mapping[str, Any], keys: Keys, fmt: str, view: View) -> 
     if fmt == "table":
         from .tables import drawn_record
 
-        return drawn_record(record, groups, view)
+        return drawn_record(record, RECORD_HEADINGS, groups, view)
     rows = []
     for group, lines in groups.items():
         rows += [["", f"**{group}**", "", "", ""], *lines]

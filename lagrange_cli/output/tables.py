@@ -17,11 +17,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .report import RECORD_HEADINGS
 from .terminal import spelt
 
 if TYPE_CHECKING:
-    from .report import Report
     from .terminal import View
 
 _GAP = 3
@@ -64,10 +62,13 @@ class DrawnColumn(NamedTuple):
 
 
 def drawn_record(
-    record: Mapping[str, Any], groups: Mapping[str, list[list[str]]], view: View
+    record: Mapping[str, Any],
+    headings: Sequence[str],
+    groups: Mapping[str, list[list[str]]],
+    view: View,
 ) -> bytes:
     """Return the summary of a record, its cells by group, a line per key, and its remark."""
-    text = _drawn(_record(groups), view)
+    text = _drawn(_record(headings, groups), view)
     if view.width and _width(text) > view.width:
         text = _drawn(_narrow_record(groups, view.width), view)
     if summary := record.get("summary"):
@@ -77,16 +78,14 @@ def drawn_record(
     return _encoded(text, view)
 
 
-def _record(groups: Mapping[str, list[list[str]]]) -> Table:
+def _record(headings: Sequence[str], groups: Mapping[str, list[list[str]]]) -> Table:
     """Return five columns; a group is one row of many lines, as rich is slow for many cells."""
     texts = {
         group: ["\n".join(cells) for cells in zip(*lines, strict=True)]
         for group, lines in groups.items()
     }
-    heading, *numbers = _flush_right(
-        [RECORD_HEADINGS[2], *(columns[2] for columns in texts.values())]
-    )
-    table = _empty([*RECORD_HEADINGS[:2], heading, *RECORD_HEADINGS[3:]])
+    heading, *numbers = _flush_right([headings[2], *(columns[2] for columns in texts.values())])
+    table = _empty([*headings[:2], heading, *headings[3:]])
     for (group, (symbols, names, _, *rest)), values in zip(texts.items(), numbers, strict=True):
         name_cell = Text.assemble((f"{group}\n", _HEADING), names)
         value_cell = Text(f"\n{values}", _style(group))
@@ -121,24 +120,19 @@ def drawn_rows(names: Sequence[str], rows: Sequence[Sequence[str]], view: View) 
     return _encoded(_folded(columns[:1], columns[1:], view), view)
 
 
-def drawn_report(report: Report, view: View) -> bytes:
-    """Return the conditions as lines, the rows as a table of short numbers, and the conclusions."""
-    shown = [field for field in report.fields if field.heading]
-    columns = [
-        DrawnColumn(
-            spelt(field.heading, view),
-            [spelt(field.cell(row), view) for row in report.rows],
-            not field.is_text,
-        )
-        for field in shown
-    ]
-    keys = [column for column, field in zip(columns, shown, strict=True) if field.names_the_row]
-    others = [column for column in columns if column not in keys]
-    heads = (_condition(name, text, view) for name, text in report.conditions.items())
-    above = "".join(f"{spelt(head, view)}\n" for head in heads) + "\n" * bool(report.conditions)
-    below = "".join(f"\n{_filled(line, view)}" for line in report.conclusions)
+def drawn_report(
+    conditions: Mapping[str, str],
+    keys: Sequence[DrawnColumn],
+    columns: Sequence[DrawnColumn],
+    conclusions: Sequence[str],
+    view: View,
+) -> bytes:
+    """Return conditions as lines, a table whose blocks all begin with the keys, and conclusions."""
+    heads = (_condition(name, text, view) for name, text in conditions.items())
+    above = "".join(f"{spelt(head, view)}\n" for head in heads) + "\n" * bool(conditions)
+    below = "".join(f"\n{_filled(line, view)}" for line in conclusions)
     below = f"{spelt(below, view)}\n" if below else ""
-    return above.encode() + _encoded(_folded(keys, others, view), view) + below.encode()
+    return above.encode() + _encoded(_folded(keys, columns, view), view) + below.encode()
 
 
 def _folded(keys: Sequence[DrawnColumn], columns: Sequence[DrawnColumn], view: View) -> str:

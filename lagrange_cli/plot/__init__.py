@@ -104,7 +104,7 @@ def draw(
     from .curves import checked_span
 
     if "key" in picture.options:
-        from .map import parse_input_range
+        from .map_axes import parse_input_range
 
         ranges = {name: shown.get(name) for name in ("x", "y")}
         shown |= {name: parse_input_range(name, text) for name, text in ranges.items() if text}

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
-    from .map import InputRange
+    from .map_axes import InputRange
 
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows by default."""

@@ -15,7 +15,8 @@ from ..inputs.given import Given
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
-from ..motion.over_time.columns import DEFAULT_COLUMNS, TableRequest
+from ..motion.over_time.columns import DEFAULT_COLUMNS
+from ..motion.over_time.table_request import TableRequest
 from ..motion.solve import solve
 from ..output.formats import block_text
 from .angles import angles_of_tops

@@ -27,7 +27,7 @@ from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
 from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest
-from lagrange_cli.plot.map import parse_input_range
+from lagrange_cli.plot.map_axes import parse_input_range
 from lagrange_cli.plot.page import (
     LEAST_LETTERS,
     MOST_PIXELS,

@@ -23,7 +23,8 @@ from lagrange_cli.plot.cubic import cubic_curve, phase_portrait, separatrix_orbi
 from lagrange_cli.plot.curves import sampled_columns, span, sphere_span, tilt_period, turn_span
 from lagrange_cli.plot.globe import best_camera
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest, help_lines
-from lagrange_cli.plot.map import colour_limits, jumps, key_map, parse_input_range
+from lagrange_cli.plot.map import colour_limits, jumps, key_map
+from lagrange_cli.plot.map_axes import parse_input_range
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import number_text
 
