@@ -107,7 +107,7 @@ def process(*args: str, check: bool = True, **extra: Any) -> subprocess.Complete
 
 
 def wait_until(is_so: Callable[[], object], running: subprocess.Popen[Any]) -> None:
-    """Wait until something is so, while a process runs."""
+    """Wait until a condition holds, while a process runs."""
     while not is_so():
         assert running.poll() is None
         time.sleep(0.01)

@@ -208,7 +208,7 @@ class ComplexJudge:
 
 
 STEPS = {"am": 2 * math.pi, "omega": 1j * math.pi, "pi": 1j * math.pi}
-"""What a function is known up to multiples of, by its name without indices."""
+"""The number up to whose multiples a function is known, by its name without indices."""
 
 
 def complex_units(name: str, computed: complex, exact: Exact) -> float:

@@ -32,7 +32,7 @@ class Scene(NamedTuple):
 
 
 class Top(NamedTuple):
-    """What (4,4) to (5,1) make of a scene, once and for all times."""
+    """The constants of a scene by (4,4) to (5,1), computed once for all times."""
 
     a: mpf
     b: mpf

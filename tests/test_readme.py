@@ -29,7 +29,7 @@ READMES = sorted(
     for path in ROOT.rglob("README.md")
     if not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
 )
-"""Every README of the project, also those of the rooms."""
+"""Every README of the project, also of the subpackages."""
 PAGES = [*READMES, *sorted((ROOT / "sample_inputs" / "tutorials").glob("*.md"))]
 
 NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?")

@@ -78,7 +78,7 @@ class Period(NamedTuple):
 def period_of(length: Pair, rate: float | Array) -> Period:
     """Return a period, or one per top, from its length and rate = 1/length.
 
-    A rate of 0 means that it never ends.
+    The period is infinite if the rate is 0.
     """
     long, low = (np.where(np.isfinite(length.high), part, 0.0)[()] for part in length)
     mantissa, exponent = np.frexp(long)

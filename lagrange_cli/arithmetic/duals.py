@@ -214,7 +214,7 @@ class Duals(Scalars):
             return x
         if values_only:
             raise NotImplementedError("this bound does not hold for derivatives")
-        if x.value.is_nan:  # the motion has no such number
+        if x.value.is_nan:  # a number that the motion does not have
             return x
         away = bound(*(_sizes(self.plain, number) for number in small()))
         if (away.value >= 0) is not True:  # the series behind the bound diverges

@@ -1,6 +1,6 @@
 """The numbers that formulas take from any arithmetic, and the arithmetic of plain floats.
 
-The numbers and operations of an arithmetic are declared in `protocol`.  A record does not load it.
+`protocol` declares the numbers and operations of an arithmetic.  A record does not load `protocol`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The worst errors of one scene of the battery: of its record, angles and quaternion.
 
 Errors of numbers are in gaps between doubles, errors of angles in units (see `reference`).  They
-are found with a reference in many digits.  Or they are proved upper bounds, from the enclosures of
+are found with a reference in many digits, or they are upper bounds, proved by the enclosures of
 `solve` and of `table --certify`.  These balls contain the exact numbers, angles and rates, and
 include all errors of rounding and truncation.  Each error is bounded from above, and its unit from
 below.

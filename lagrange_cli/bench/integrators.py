@@ -83,7 +83,7 @@ class Form(NamedTuple):
     drift: Callable[[TopProblem, Array], Drift] = lambda *_: (None, None)
 
     def run(self, p: TopProblem, rows: Array, *work: int) -> Run:
-        """Return the run that gave some rows, a row for each variable."""
+        """Return the run with these rows, one for each variable of the form."""
         drift = self.drift(p, rows) if np.isfinite(rows).all() else (None, None)
         return Run(self.angles(rows), Work(*work), drift)
 

@@ -173,7 +173,7 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
 
 
 def _timed(sample: AngleFunction, times: Array) -> tuple[Run, list[float]]:
-    """Return the last run, and the seconds of warm runs; one that takes long is not repeated."""
+    """Return the last run, and the seconds of warm runs; a long run is not repeated."""
     seconds: list[float] = []
     while True:
         begun = time.perf_counter()

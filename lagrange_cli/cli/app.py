@@ -176,7 +176,7 @@ class LagtopGroup(Command, click.Group):
             number = error.number
         finally:
             terminal.Screen.end_progress()
-        # The frames of the command are gone here, and have cleaned up.
+        # By now the command has been unwound and has cleaned up.
         return terminal.die_by(number)
 
 

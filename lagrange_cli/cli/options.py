@@ -100,12 +100,12 @@ def flag(text: str, name: str = "") -> Any:
 
 
 def choice(names: Sequence[str], text: str, metavar: str, **how: Any) -> Any:
-    """Declare an option whose value is one of some words."""
+    """Declare an option whose value is one of the given names."""
     return option(click.Choice(names), text, metavar=metavar, **how)
 
 
 def arguments(kind: Parsed, metavar: str) -> Any:
-    """Declare any number of words that are not options."""
+    """Declare any number of positional arguments."""
     return lambda name: click.Argument([name], type=kind, metavar=metavar, nargs=-1)
 
 
@@ -205,8 +205,8 @@ def extension(path: str) -> str:
 def output_options(*formats: str, extensions: Iterable[str] = (), on_terminal: str = "") -> Any:
     """Declare --output and --format, which become an `Output`.
 
-    The default format is the extension of the file.  Without an extension it is the first of the
-    formats, or `on_terminal` if standard output is a terminal.
+    The extension of the file sets the default format.  Without an extension, the default is the
+    first format, or `on_terminal` if standard output is a terminal.
     """
     default = f"{formats[0]}; on a terminal {on_terminal}" if on_terminal else formats[0]
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _mark(**marks: str) -> Any:
-    """Declare a mark, given by name or as a character."""
+    """Declare a delimiter or decimal mark, given by name or as the character."""
 
     def parse(text: str) -> str:
         if text not in {*marks, *marks.values()}:

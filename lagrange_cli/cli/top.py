@@ -95,7 +95,7 @@ class TopOptions(Values):
 
 
 def words(metavar: str, kind: Parsed, *, required: bool = False) -> click.Argument:
-    """Return the argument of words among which a scene may be."""
+    """Return the positional argument for words, one of which may be a scene."""
     return click.Argument(["words"], nargs=-1, type=kind, metavar=metavar, required=required)
 
 

@@ -74,7 +74,7 @@ class Signal(NamedTuple):
     def series(
         self, frequency: float, *, fine: bool = False, weights: Array | None = None
     ) -> Harmonics:
-        """Return the series of a given frequency that fits best, with the whole mean rate.
+        """Return the series of a frequency that fits best, with `rate` added to its mean rate.
 
         A `fine` series has the number of harmonics with the least noise.
         """
@@ -103,7 +103,7 @@ class Signal(NamedTuple):
 
     @property
     def _around(self) -> Array:
-        """The values without their mean, or without a straight line."""
+        """The values less their mean or, if they grow, less a straight line."""
         return self.y - np.polyval(np.polyfit(self.t, self.y, int(self.grows)), self.t)
 
     def clearness(self, series: Harmonics) -> float:

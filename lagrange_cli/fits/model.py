@@ -125,8 +125,8 @@ def derived_numbers(
 ) -> Iterator[DerivedNumber]:
     """Yield the numbers that follow from values of a, b and the start, and of r0 if it is known.
 
-    The covariance is in the order of the values.  Keys that the motion does not have are omitted,
-    and numbers without a derivative by an uncertain value.
+    The covariance is in the order of the values.  The result omits keys that the motion
+    does not have, and numbers without a derivative by an uncertain value.
     """
     top = Top(**inputs_of(*(values[name] for name in STATE)))
     motion, slopes = solve(top), sensitivities(top, _DERIVED).derivatives

@@ -166,7 +166,7 @@ def _weighs(known: Mapping[str, Any]) -> bool:
 
 
 def known_torque(known: Mapping[str, Any]) -> Any:
-    """Return a = 2mgs/A (4,4), real or complex, or None if not all of it is known."""
+    """Return a = 2mgs/A (4,4), real or complex, or None if one of these inputs is unknown."""
     if not _weighs(known) or "A" not in known:
         return None
     return 2 * known["m"] * known["g"] * known["s"] / known["A"]

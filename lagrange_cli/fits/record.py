@@ -56,7 +56,7 @@ class Fit(NamedTuple):
 
     @property
     def sigma_known(self) -> bool:
-        """Whether the standard deviations were given; else the residuals give them."""
+        """Whether the standard deviations were given; otherwise they come from the residuals."""
         return bool(self.recordings[0].sigma)
 
 

@@ -143,7 +143,7 @@ def _interpolated(a: Point, b: Point, c: Point) -> float:
 
 def middle(x: float, y: float) -> float:
     """Return the double with as many doubles between it and x as between it and y."""
-    bits = np.abs([x, y]).view(np.int64)  # of doubles > 0, they count the doubles below
+    bits = np.abs([x, y]).view(np.int64)  # the bits of a double > 0 count the smaller doubles
     place = sum(np.where(np.signbit([x, y]), -bits, bits).tolist()) // 2
     return math.copysign(float(np.int64(abs(place)).view(np.float64)), place)
 

@@ -60,9 +60,9 @@ class Conditions(NamedTuple):
         return list(dict.fromkeys([*self.numbers, *self.words, *(x.key for x in self.bounds)]))
 
     def broken_by(self, record: Mapping[str, Any]) -> str | None:
-        """Return the first word or bound that a record does not keep, or None.
+        """Return the first word or bound that a record does not meet, or None.
 
-        A missing number breaks its bound.
+        A missing number does not meet its bound.
         """
         for key, word in self.words.items():
             if record[key] != word:
@@ -221,8 +221,8 @@ def search_of(
 ) -> tuple[Search, Given]:
     """Return a search, and the given inputs of the top, from options and from a scene file.
 
-    An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError, also if
-    there cannot be single solutions.
+    An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError for
+    bad options, and for conditions that cannot have isolated solutions.
     """
     given = gather(values_of(inputs), scene, system=system_asked(conditions))
     wanted = read_conditions(conditions, radians=radians, system=given.system)

@@ -1,4 +1,4 @@
-"""Warnings of an incomplete body, whose missing inputs come from the worked example."""
+"""Warnings about an incomplete body, whose missing inputs come from the worked example."""
 
 from __future__ import annotations
 

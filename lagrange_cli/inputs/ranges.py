@@ -36,7 +36,7 @@ class Span(NamedTuple):
         return self._replace(first=self.first * factor, last=self.last * factor)
 
     def refuse_zero(self, text: str) -> Span:
-        """Return the interval.  Raises LagtopError for equal ratios to, from or over 0."""
+        """Return the interval.  Raises LagtopError if a logarithmic one contains 0."""
         if self.logarithmic and not self.first * self.last > 0:
             wanted = "must have two ends of one sign, not 0, in a log: range"
             raise LagtopError(f"{wanted}, got {text!r}")
@@ -156,7 +156,7 @@ def listed_multiples(single: Sequence[Multiple]) -> Multiples:
 
 
 def _in_quarters(multiples: Sequence[Multiple], mixed: LagtopError) -> bool:
-    """Return whether numbers are factors of K; 0 fits both kinds.  Raises `mixed` for both."""
+    """Return whether numbers are in units of K; 0 fits both kinds.  Raises `mixed` for both."""
     kinds = {multiple.in_quarters for multiple in multiples if multiple.factor}
     if len(kinds) > 1:
         raise mixed
@@ -186,7 +186,7 @@ class Product(NamedTuple):
     first: int = 0
     """The number of the first combination."""
     stop: int | None = None
-    """The number after that of the last combination; None for all combinations."""
+    """One more than the number of the last combination; None for all combinations."""
 
     @property
     def size(self) -> int:

@@ -51,7 +51,7 @@ class ArrayTable(Table):
         width: int,
         tables: Callable[[int], Iterator[Array]],
     ) -> None:
-        """Take a function of the most rows of a block; it yields blocks with all columns.
+        """Take a function that yields blocks of all columns, given the most rows of a block.
 
         `form` is the format with its article, for errors.
         """
@@ -71,7 +71,7 @@ class ArrayTable(Table):
 
 
 def read_arrays(stream: BinaryIO, name: str, kind: str) -> Table:
-    """Return the rows of a file of some kind: npy, npz or parquet.  Raises DataError."""
+    """Return the rows of an npy, npz or Parquet file.  Raises DataError."""
     readers = {"npy": _read_npy, "npz": _read_npz, "parquet": _read_parquet}
     form = "a Parquet" if kind == "parquet" else f"an {kind}"
     with _sound(name, form):
@@ -196,7 +196,7 @@ def _read_npz(stream: BinaryIO, name: str, form: str) -> Table:
 
 
 def _read_parquet(stream: BinaryIO, name: str, form: str) -> Table:
-    """Return the rows of columns of numbers, or of lists of a fixed size."""
+    """Return the rows of the numeric columns: numbers, or lists of a fixed size."""
     try:
         from pyarrow import parquet
     except ImportError:

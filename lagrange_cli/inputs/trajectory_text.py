@@ -52,9 +52,9 @@ class Table:
         raise NotImplementedError
 
     def word_of(self, column: int) -> Callable[[float], str]:
-        """Read a column as the numbers of its words from now on; return the word of a number.
+        """Read a column as numbered words from now on; return a function from number to word.
 
-        A number of a column of numbers is its own word, without a fraction if it is whole.
+        In a column of numbers, each number is its own word.
         """
         return "{:.17g}".format
 
@@ -162,7 +162,7 @@ class JsonTable(Table):
         self.name, self._source = source.lines.name, source
         self.description, self._words = description_in(source.comments), dict[str, Words]()
         entries = self._object(*source.first[0])
-        # A parser keeps only the last one of equal keys.
+        # A parser keeps only the last of several equal keys.
         keys = (key for key, _ in json.loads(source.first[0][1], object_pairs_hook=list))
         if (twice := repeated(keys)) is not None:
             wanted = "must name each quantity once"

@@ -27,7 +27,7 @@ _TOLERANCE = 1e-6
 """Largest error of a correlation, because files have rounded ones."""
 
 Correlations = Mapping[tuple[str, str], Fraction]
-"""The matrix of correlations by pair of inputs, in both orders and with a 1 for equal ones."""
+"""The correlation matrix by pair of inputs, in both orders; 1 for an input with itself."""
 
 
 def split_uncertainty(text: str) -> tuple[str, Fraction]:
@@ -69,8 +69,8 @@ def independent_sources(
 ) -> list[tuple[Fraction, Mapping[str, Fraction]]]:
     """Return the variances of the independent sources of uncertainty, and their shares by input.
 
-    A source changes each input by its share of the standard uncertainty.  The shares are the
-    columns of L in the factors L D L^T of the matrix of correlations, the variances are D.
+    A source changes each input by its share of the standard uncertainty.  The matrix
+    of correlations is L D L^T: the shares are the columns of L, the variances the diagonal of D.
     """
     left, names = dict(correlations), [x for x, y in correlations if x == y]
     sources: list[tuple[Fraction, Mapping[str, Fraction]]] = []

@@ -52,9 +52,9 @@ def declared_keys(
 ) -> Callable[..., quantity[Any]]:
     """Return a function that declares a key of a group by its formula, without a method.
 
-    It takes the texts that `key` takes, the `value` as a function of the object, and perhaps other
-    keywords in place of those given here.  The value is None unless the key `exists`; by default it
-    always does, since every object is true.
+    The returned function takes the texts of `key`, the `value` as a function of the object, and
+    keywords that override those given here.  The value is None unless `exists` is true of the
+    object.  By default it always is, because every object is true.
     """
     usual: dict[str, Any] = {"exists": exists, "unit": unit, "absent": absent}
 

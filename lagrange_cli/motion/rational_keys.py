@@ -68,7 +68,7 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
     if facts.steady:
         return _known(keys | {"mean_precession_rate": psi_rate, "mean_spin_rate": spin})
     if facts.free or (facts.upper_root == 1 and facts.over_bottom):  # half turns about both poles
-        # without torque a turn has the rate of the angular momentum over A
+        # without torque the rate of one turn is the angular momentum over A
         square = exact.cosine.fraction(exact.energy + b * b) if facts.free else None
         turn = None if square is None else rational_root(square)
         means = {"mean_precession_rate": (Fraction(0), 1), "mean_spin_rate": (r0 - b, -1)}

@@ -43,13 +43,13 @@ class Format(NamedTuple):
     block: Callable[[Columns, Names], bytes]
     """Makes the bytes of rows of numbers and JSON values, from their columns."""
     texts: Callable[[Texts, Names], bytes] | None = None
-    """Makes the bytes of numbers as text; a format without it holds doubles."""
+    """Makes the bytes of numbers as text.  A format without this function holds doubles."""
     opening: Callable[..., bytes] = lambda names, count=0: b""
     """Makes the bytes before the rows, whose number is 0 if it is unknown."""
     between: bytes = b""
     closing: bytes = b""
     whole: Callable[[Names, Iterable[bytes], View, BinaryIO], None] | None = None
-    """Writes one document of all blocks, if that is not the blocks one after the other."""
+    """Writes all blocks as one document, if this is not the mere sequence of the blocks."""
 
     def rows(self, block: Array | Texts, names: Names) -> bytes:
         """Return the bytes of an array, or of numbers as text."""
@@ -73,7 +73,7 @@ class Format(NamedTuple):
 
 
 def _of_rows(function: str, **how: Any) -> Callable[..., Any]:
-    """Return a function of `rows`, which is imported with NumPy and orjson when it is called."""
+    """Return a function of the module `rows`, which a call imports with NumPy and orjson."""
 
     def call(*args: Any) -> Any:
         from . import rows

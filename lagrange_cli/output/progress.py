@@ -2,7 +2,7 @@
 
 The line of standard error vanishes at the end.  It appears after a second, from a separate thread,
 even if the first part is still being computed.  Rich is loaded only then.  Nothing is shown if
-standard error is no terminal.
+standard error is not a terminal.
 """
 
 from __future__ import annotations

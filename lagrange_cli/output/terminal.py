@@ -1,11 +1,11 @@
 """The terminal and the signals of the process.
 
-A terminal has a width, letters and colours, and it must not obey a text that is shown.
+A terminal has a width, a character set and colours.  A text that is shown must not control it.
 
-Signals end the program: ignored signals stay ignored, others kill as a signal.  A shell loop stops
-only if the command inside it dies by the signal itself, not with an exit code that looks like one.
-It is unknown whether SIGPIPE was ignored at the start, because Python ignores it before this code
-runs.
+A signal ends the program as if nothing caught it, unless it was ignored at the start.  A shell
+loop stops only if the command inside it dies by the signal itself, not with an exit code that
+looks like one.  It is unknown whether SIGPIPE was ignored at the start, because Python ignores
+it before this code runs.
 """
 
 from __future__ import annotations

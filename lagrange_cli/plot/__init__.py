@@ -6,7 +6,7 @@ matplotlib, or a sequence with as many axes as the kind has; by default a new fi
 functions raise LagtopError for a time out of range, if there is nothing to draw, and without
 matplotlib.
 
-matplotlib and NumPy are imported when a function is called, as help does without them.
+matplotlib and NumPy are imported when a function is called, because help does not need them.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def draw(
         raise LagtopError(f"ax must be {picture.axes} axes, got {len(axes)}", "ax")
 
     def places(heights: Sequence[float]) -> list[Axes]:
-        """Return the axes in use; the others are left empty."""
+        """Return one axes for each height, and hide the others."""
         for empty in axes[len(heights) :]:
             empty.set_axis_off()
         return axes[: len(heights)]

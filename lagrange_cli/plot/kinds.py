@@ -106,7 +106,7 @@ class PlotRequest(NamedTuple):
 
 
 Places: TypeAlias = "Callable[[Sequence[float]], Sequence[Axes]]"
-"""Returns axes, one below the other, for relative heights; axes of a user may be fewer."""
+"""Returns axes, one below the other, for relative heights; a user may pass fewer axes."""
 
 
 class PictureKind(NamedTuple):

@@ -76,7 +76,7 @@ class Page(NamedTuple):
     def about(self) -> About:
         """Return a description of the page in words, and the command that draws it again.
 
-        The command does without the name of a scene file.
+        The command has inputs in place of the name of a scene file.
         """
         motion, request = self.motion, self.request
         inputs = motion.top.inputs(radians=request.radians)
@@ -213,7 +213,7 @@ def _settle_layout(figure: Figure) -> None:
 
 
 def _panels(part: FigureBase) -> Iterator[SubFigure]:
-    """Yield the panels of a figure, and theirs."""
+    """Yield the panels of a figure, and the panels inside them."""
     for panel in part.subfigs:
         yield panel
         yield from _panels(panel)

@@ -72,7 +72,7 @@ def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float
     shades = scale(LIGHT)([i / max(len(curves) - 1, 1) for i in range(len(curves))])
     colors = {curve.name: shade for curve, shade in zip(curves, shades, strict=True)}
     for curve, dashes in zip(curves, cycle(("-", "--", "-.", ":"))):
-        positive = np.where(curve.error > 0, curve.error, np.nan)  # others have no logarithm
+        positive = np.where(curve.error > 0, curve.error, np.nan)  # 0 and NaN have no logarithm
         colour = colors[curve.name]
         over_time.plot(curve.t, positive, lw=1.2, label=curve.name, color=colour, ls=dashes)
     over_time.axhline(limit, color=LIGHT.quiet, lw=0.8)

@@ -62,7 +62,7 @@ def axis_path(motion: Motion, t_max: float) -> AxisPath:
 def sphere_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
     """Draw the globe with the path on it, and the colour bar.
 
-    On a page, a narrow path has a second axes with a magnified piece.
+    On a page, a narrow path has a second `Axes` with a magnified piece.
     """
     path = axis_path(motion, request.t_max or sphere_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW

@@ -73,7 +73,7 @@ _COLOURED = {
     "ink": ("axes.labelcolor", "text.color", "xtick.labelcolor", "ytick.labelcolor"),
     "quiet": ("axes.edgecolor", "hatch.color", "xtick.color", "ytick.color"),
 }
-"""Settings of matplotlib, by the colour of a look that they have."""
+"""Settings of matplotlib that take each colour of a look."""
 _SCALED = {
     "axes.labelpad": 4.0,
     "axes.titlepad": 6.0,
@@ -86,7 +86,7 @@ _SCALED = {
     **dict.fromkeys(("xtick.major.pad", "xtick.major.size"), 3.5),
     **dict.fromkeys(("ytick.major.pad", "ytick.major.size"), 3.5),
 }
-"""Settings that grow with the letters, by their value on a page of the usual size."""
+"""Settings that scale with the letters, and their values on a page of the usual size."""
 _FIXED = {
     "axes.axisbelow": True,
     "axes.formatter.limits": (-4, 5),

@@ -83,9 +83,9 @@ class Folder:
     def made_by_workers(self) -> Iterator[Make]:
         """Yield the function that computes a part, and writes it on workers that see this folder.
 
-        Workers recognise the folder by a file with a random name, which exists during the block,
-        because others may have the same path.  At the end the temporary files of killed workers of
-        this machine are removed.
+        A file with a random name exists during the block.  Workers recognise the folder by it,
+        because another machine may have a folder with the same path.  At the end, the temporary
+        files of killed workers of this machine are removed.
         """
         there = copy(self)
         there.path, there._token = self.path.absolute(), f"{_TEMPORARY}{_mark()}{token_hex(8)}"

@@ -147,7 +147,7 @@ class Child:
 
 
 class _Worker(Child):
-    """A process that shares work, and its tasks: numbers, and files for items and results."""
+    """A process that shares the work; a task is a number, and a file for its item and result."""
 
     def __init__(self, work: Callable[[Any], Any]) -> None:
         super().__init__(_serve, work)

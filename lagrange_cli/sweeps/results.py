@@ -1,4 +1,4 @@
-"""Inputs and results of many tops: from and to arrays, and objects of other libraries."""
+"""Many tops: inputs from objects of other libraries as arrays, and results for these libraries."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ def scene_from(inputs: Mapping[str, Number | None]) -> Scene:
 
 
 class Facts(NamedTuple):
-    """What is exactly true of a scene."""
+    """The exact facts of a scene."""
 
     pole: int
     """1 where the axis starts upright, -1 where it hangs, else 0."""

@@ -1,4 +1,4 @@
-"""What only a process of its own can show: modules loaded, streams, signals, files."""
+"""Behaviour that only a separate process can show: modules loaded, streams, signals, files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a terminal shows: one line of progress that vanishes, and tables that fit."""
+"""Output on a terminal: one line of progress that vanishes, and tables that fit."""
 
 from __future__ import annotations
 

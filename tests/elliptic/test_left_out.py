@@ -1,4 +1,4 @@
-"""What iterations and series leave out: cut short on purpose, balls still hold the truth.
+"""Truncated iterations and series: cut short on purpose, their balls still hold the truth.
 
 The truth is Arb's own: agm, Carlson's and Legendre's integrals, Jacobi's theta functions.
 """

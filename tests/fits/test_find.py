@@ -1,4 +1,4 @@
-"""`find`: the inputs for wanted numbers, judged by Chrapan's formulas in mpmath."""
+"""`find`: inputs that give target values, checked by Chrapan's formulas in mpmath."""
 
 from __future__ import annotations
 

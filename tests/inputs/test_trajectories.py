@@ -1,4 +1,4 @@
-"""Trajectories in every form in which engines write them, and what is said of bad ones."""
+"""Trajectories in every form in which engines write them, and the errors for bad ones."""
 
 from __future__ import annotations
 

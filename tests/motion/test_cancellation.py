@@ -75,7 +75,7 @@ OF_UNIT: list[tuple[dict[str, float], str, float]] = [
         *((UNIT | inputs, key, value) for inputs, key, value in OF_UNIT),
     ],
 )
-def test_what_cancels_is_exact_and_zeros_and_ties_are_known(
+def test_cancelled_numbers_are_exact_and_zeros_and_ties_are_known(
     scene: dict[str, float], key: str, value: float
 ) -> None:
     motion = solve(Top(**scene))
@@ -178,7 +178,7 @@ def test_no_zero_is_false_in_the_command(lagtop: Lagtop) -> None:
 def test_tiny_tilts_take_few_digits(
     theta0_deg: float, thetadot0: float, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What an upright start costs is counted in digits, not in seconds."""
+    """The cost of an upright start is counted in digits, not in seconds."""
     used = []
     motion = solve(Top(**UNIT | {"r0": 2, "theta0_deg": theta0_deg, "thetadot0": thetadot0}))
     kind = motion.kind

@@ -193,7 +193,7 @@ RATES: dict[str, tuple[Callable[[Motion, Any, Any], tuple[Any, Any]], int, int]]
         *(1, 2),
     ),
 }
-"""Sides with a rate of spin (1) or precession (2): the right one, and the one that is printed."""
+"""Sides with a rate of spin (1) or precession (2): the right side, and the printed one."""
 
 for _name, (_sides, _right, _printed) in RATES.items():
 

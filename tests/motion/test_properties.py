@@ -1,4 +1,4 @@
-"""What holds for every input, searched by hypothesis."""
+"""Properties that hold for every input, searched by hypothesis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is asked for decides what is computed, and blocks share their arrays without harm."""
+"""Tables compute only the requested columns, and blocks share their arrays without harm."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def test_regimes_at_the_edge(inputs: dict[str, float], regime: Regime) -> None:
     assert angles.psi[1] == 0
 
 
-def test_without_torque_the_period_is_that_of_the_momentum() -> None:
+def test_without_torque_the_period_follows_from_the_momentum() -> None:
     assert solve(Top(g=0.0)).T_nutation == pytest.approx(
         2 * math.pi * 39032 / (17458 * 50), rel=1e-15
     )

@@ -173,7 +173,7 @@ BAD_WORKERS = {
 
 
 def assert_lost(running: subprocess.Popen[bytes], message: bytes, *codes: int) -> None:
-    """Check that a sweep ends with one line, and says nothing else."""
+    """Check that a sweep ends with one line of error, and prints nothing else."""
     stdout, stderr = running.communicate(timeout=60)
     assert running.returncode in (codes or {69})
     assert stdout in {None, b""}
@@ -182,7 +182,7 @@ def assert_lost(running: subprocess.Popen[bytes], message: bytes, *codes: int) -
 
 
 def assert_refused(address: str, message: bytes, *codes: int, cwd: Path | None = None) -> None:
-    """Check that a sweep on a cluster ends so."""
+    """Check that a sweep on a cluster ends with one line of error."""
     options = ["-m", "lagrange_cli", "sweep", "--dask", address, "--parts", "out"]
     options = options if cwd else options[:-2]
     with ended(*options, cwd=cwd, stdout=subprocess.PIPE) as running:

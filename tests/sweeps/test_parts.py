@@ -170,7 +170,7 @@ def test_a_killed_run_is_resumed(tmp_path: Path, lagtop: Lagtop) -> None:
 
 
 def test_leftovers_of_this_machine_alone_are_removed(tmp_path: Path, lagtop: Lagtop) -> None:
-    """Files of a running process stay, and those of other machines, whose processes are unknown."""
+    """Files of running processes stay, and all files of other machines, which may be in use."""
     ended = subprocess.Popen(["true"])
     ended.wait()
     host = os.uname().nodename

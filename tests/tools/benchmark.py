@@ -48,7 +48,7 @@ from lagrange_cli.sweeps.results import ResultColumn
 
 NUMPY: Any = np._core._multiarray_umath  # type: ignore[attr-defined]
 FEATURES: Mapping[str, bool] = NUMPY.__cpu_features__
-"""What of the processor NumPy found and was not told to leave alone."""
+"""Features of the processor that NumPy found and may use."""
 WIDE = [name for name in NUMPY.__cpu_dispatch__ if name.startswith(("AVX512", "X86_V4"))]
 """The levels of AVX-512 for which NumPy has loops of their own."""
 AVX512 = any(FEATURES[name] for name in WIDE)

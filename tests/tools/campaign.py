@@ -1,4 +1,4 @@
-"""The frame of the scripts that look for faults: options, the end of a command, the exit code."""
+"""The shared parts of scripts that search for faults: options, exit codes and reports."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def options(doc: str | None, **counts: int) -> argparse.ArgumentParser:
 
 
 def fault_of(code: int, stderr: str, codes: Iterable[int] = (0, 1, 2, 65, 69, 74)) -> str:
-    """Return what is wrong with the end of a command, or an empty text.
+    """Return the fault in the end of a command, or an empty text.
 
-    It must have a documented exit code, the last line must say why a command failed, and no line
-    may have a traceback, a warning of a library or control characters.
+    A command must end with a documented exit code.  If it fails, the last line must say why.  No
+    line may have a traceback, a warning of a library or control characters.
     """
     said = stderr.splitlines()
     if code not in codes:
@@ -34,7 +34,7 @@ def fault_of(code: int, stderr: str, codes: Iterable[int] = (0, 1, 2, 65, 69, 74
 
 
 def finish(faults: Iterable[str], *, longest: int = 400) -> NoReturn:
-    """Print the faults as they come, their number and the seconds; the exit code is 1 for any."""
+    """Print the faults as they come, their number and the time; exit with 1 if there are any."""
     begun, count = time.perf_counter(), 0
     for fault in faults:
         count += 1

@@ -65,7 +65,7 @@ T = TypeVar("T")
 
 @dataclass
 class Tally:
-    """What the scenes of one kind have shown."""
+    """Results of the scenes of one kind."""
 
     scenes: int = 0
     times: int = 0

@@ -90,13 +90,13 @@ def period_of(top: Top) -> tuple[float, float]:
 
 
 def greatest(t: Array, theta: Array) -> Array:
-    """Return the times of the greatest tilts."""
+    """Return the times of the maxima of the tilt."""
     times: Array = t[np.flatnonzero(np.diff(np.sign(np.diff(theta))) < 0)]
     return times
 
 
 def wrap(rng: np.random.Generator, angles: dict[str, Any], names: Iterable[str]) -> None:
-    """Let some angles count from anywhere, and bring them to a turn."""
+    """Shift some angles by random zeros, and reduce them to (-pi, pi]."""
     for name in names:
         angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
 
@@ -141,7 +141,7 @@ def pulls(outcome: Outcome, case: Drawn) -> Mapping[str, float]:
 
 
 class Verdict(NamedTuple):
-    """What became of one recording."""
+    """The result of one recording."""
 
     seed: int
     names: tuple[str, ...]

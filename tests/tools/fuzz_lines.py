@@ -221,7 +221,7 @@ def script() -> None:
 
 
 def faults(lines: int, seed: int, processes: int) -> Iterator[str]:
-    """Yield the faults of so many lines, then print counts and the slowest lines."""
+    """Yield the faults of random lines, then print counts and the slowest lines."""
     jobs = [(seed * 10**9 + i, min(250, lines - i)) for i in range(0, lines, 250)]
     counts, times = Counter[Any](), list[tuple[float, str]]()
     with multiprocessing.get_context("spawn").Pool(processes, maxtasksperchild=20) as pool:

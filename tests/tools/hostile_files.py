@@ -87,7 +87,7 @@ def patched(content: bytes, old: bytes, new: bytes) -> bytes:
 
 
 def with_headers(content: bytes, places: Sequence[int], change: Callable[[int], int]) -> bytes:
-    """Return an archive in which a number of the local and the central headers is another."""
+    """Return an archive with one number changed in its local and central headers."""
     found = bytearray(content)
     for mark, place in zip((rb"PK\x03\x04", rb"PK\x01\x02"), places, strict=True):
         for match in re.finditer(mark, content):
@@ -252,7 +252,7 @@ COMMANDS = {
 }
 CODES = {0, 1, 2, 65}
 MEMORY, SECONDS = 3 << 29, 60
-"""What a run may use: bytes of address space beyond those after all imports, and processor time."""
+"""Limits of a run: bytes of address space beyond those after all imports, and processor time."""
 
 
 def files(count: int, seed: int) -> dict[str, Make]:
@@ -296,7 +296,7 @@ def fault(words: list[str]) -> tuple[int, str]:
 
 
 def faults(count: int, seed: int) -> Iterator[str]:
-    """Yield the faults of so many files, then print the exit codes."""
+    """Yield the faults of the files, then print the exit codes."""
     codes: Counter[tuple[str, int]] = Counter()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

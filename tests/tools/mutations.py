@@ -58,7 +58,7 @@ class Mutation(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What became of a mutation."""
+    """The result of a mutation."""
 
     number: int
     mutation: str
@@ -296,7 +296,7 @@ def main() -> None:
 
         @contextmanager
         def free_clone() -> Iterator[Path]:
-            """Yield a clone in which nobody else works."""
+            """Yield a clone that no other task uses."""
             clone = clones.get()
             try:
                 yield clone

@@ -229,7 +229,10 @@ def known_column(
 
 
 def _of_all_times(exact: Exact, name: str) -> Fraction | None:
-    """Return a constant of the motion, or a column that is constant for some tops, as a sphere."""
+    """Return a constant of the motion, or a column that is constant for some tops.
+
+    For example, p and q are constant for a sphere without torque.
+    """
     facts, psi = exact.facts, exact.psi_rate
     if name in {"energy", "Lz"}:  # (4,2) and (4,3)
         A, C = Fraction(exact.top.A), Fraction(exact.top.C)

@@ -35,7 +35,7 @@ def _known_fractions(exact: Exact) -> dict[str, Fraction]:
     for angle, rate in (("phi", "mean_spin_rate"), ("psi", "mean_precession_rate")):
         if known.get(rate) == 0:
             keys[f"{angle}_period_deg"] = zero
-        # in a plane this is a multiple of half turns: 0 if enclosures cannot decide
+        # in a plane this is a multiple of half turns, so 0 if enclosures cannot round it
         if facts.plane or (even and known.get(rate) == 0):
             keys[f"{angle}_half_deg"] = zero
     values = {name: exact.cosine.fraction(P) for name, P in _polynomials(exact).items()}

@@ -224,7 +224,7 @@ def rates_about_means(
     at_u1, at_u2 = plus / gaps.below_u1.value, minus / gaps.above_u2.value
     # over 1 + u and 1 - u: the changes of both parts of the precession rate from u1 and from u2
     from_u1, from_u2 = float(at_u1 * width), float(at_u2 * width)
-    # the parts themselves there, less their means
+    # the parts at u1 and at u2, less their means
     south_at_u1 = float(at_u1 - (precession + drift) / 2)
     north_at_u2 = float(at_u2 - (precession - drift) / 2)
     quarter = float(motion.K.value)

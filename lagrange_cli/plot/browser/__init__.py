@@ -156,8 +156,8 @@ def joined_script(data: str) -> str:
 def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
     """Return the constants of `data.js` for a motion; their JSON is safe inside a script.
 
-    `unit` names mass, len and time in the units of the inputs.  Raises LagtopError as `page_scene`
-    does.
+    `unit` returns the unit of `mass`, `len` and `time` in the inputs.  Raises LagtopError as
+    `page_scene` does.
     """
     data = {
         "SCENE": page_scene(motion),

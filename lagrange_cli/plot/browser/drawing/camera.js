@@ -110,7 +110,7 @@ export function followHands(canvas, camera, moved) {
   });
 }
 
-/** Do what a table has for the key of an event, and return whether it has anything. */
+/** Run the action that a table has for the key of an event; return whether it has one. */
 export function actOnKey(event, actions) {
   if (!actions[event.key]) return false;
   event.preventDefault();

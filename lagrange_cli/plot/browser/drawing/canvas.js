@@ -65,7 +65,7 @@ export function write(context, text, [x, y], colour, { size = 13, align = "cente
   context.fillText(text, x, y);
 }
 
-/** Numbers at `count` equal steps from one to another, both ends included. */
+/** The numbers from `from` to `until` in `count` equal steps, both ends included. */
 export function even(from, until, count) {
   return [...Array(count + 1).keys()].map((i) => from + (until - from) * i / count);
 }
@@ -108,7 +108,7 @@ export function ticksBetween(low, high, most) {
     { at: (first + i) * step, text: tickText((first + i) * step, step) }));
 }
 
-/** A tick as text, with as many digits as tell it from its neighbours. */
+/** A tick as text, with just enough digits to differ from its neighbours. */
 export function tickText(x, step) {
   if (x === 0) return "0";
   const digits = Math.max(1, Math.ceil(Math.log10(Math.abs(x) / step)) + 1);

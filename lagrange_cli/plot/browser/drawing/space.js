@@ -85,7 +85,7 @@ function drawAxes(context, view, look, near) {
   }
 }
 
-/** A point of the body, on the lid or at a height, at an angle from the nodes like the spin. */
+/** A point of the body at an angle from the line of nodes, on the lid or at another height. */
 export function onLid({ nodes, across, axis }, angle, radius, height = HEIGHT) {
   return combined(
     radius * Math.cos(angle), nodes, radius * Math.sin(angle), across, height, axis);

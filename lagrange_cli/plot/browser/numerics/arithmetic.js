@@ -2,8 +2,8 @@
 //
 // Everything that is computed once per scene is computed with them, so that differences of nearly
 // equal numbers, next to a pole or to the separatrix, keep more digits than the screen can show.
-// The integrals of places on the way are doubles.  Every loop adds and multiplies positive numbers
-// only, and ends at NaN as well, which no comparison finds larger.
+// The incomplete integral of a place in the period is a double.  Every loop adds and multiplies
+// positive numbers only.  It also ends at NaN, because no comparison with NaN is true.
 
 /** The exact sum of two doubles, as the nearest double and what it lacks. */
 function twoSum(x, y) {

@@ -154,7 +154,7 @@ function within(angle) {
   return +angle.minus(TURN.times(Math.round(angle.over(TURN))));
 }
 
-/** Tilt, spin and precession, as their mean growths and their periodic parts (6,4), (7,4). */
+/** Tilt, spin and precession, from uniform turns and their periodic parts (6,4), (7,4). */
 function anglesAt(theta, spin, precession, dphi = 0, dpsi = 0) {
   const [phi, psi] = [spin.plus(dphi), precession.plus(dpsi)];
   return {

@@ -1,7 +1,7 @@
 // The start of a scene of nine inputs, which scenes the page computes, the regime of a motion, and
 // the roots of its cubic.
-// Every degenerate motion is a polynomial in cos(theta0) that vanishes; it is evaluated in 32
-// digits, and counts as 0 if nothing but rounding remains.
+// In every degenerate motion a polynomial in cos(theta0) vanishes.  It is evaluated in 32 digits,
+// and counts as 0 if nothing but rounding remains.
 
 import { INPUTS, LIMITS } from "../data.js";
 import { pair, sineOfDegrees } from "./arithmetic.js";
@@ -57,7 +57,7 @@ export function startOf(scene) {
   };
 }
 
-/** The sign of a sum of terms; 0 where they cancel but for rounding. */
+/** The sign of a sum of terms; 0 if they cancel up to rounding. */
 function signOf(...terms) {
   const sum = +terms.reduce((x, y) => x.plus(y));
   const size = Math.max(...terms.map((term) => Math.abs(term)));

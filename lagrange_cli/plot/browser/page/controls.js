@@ -1,6 +1,6 @@
-// The controls.  Time: play, pause, speed, step, and any time at once, as no time is farther than
-// another in closed form.  Inputs: a slider and a number field for each; and all of them, with the
-// time, in the address of the page after the #: m=1587&A=39032 ... &t=0.5.
+// The controls of time: play, pause, speed, step, and a jump to any time.  In closed form a jump
+// costs no more than a step.  The controls of the inputs: a slider and a number field for each.
+// All inputs and the time are in the address of the page after the #: m=1587&A=39032 ... &t=0.5.
 
 import { INPUTS } from "../data.js";
 import { textOf } from "../drawing/canvas.js";
