@@ -19,8 +19,9 @@ from scenes import UNIT
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.rounding import rounding_of
+from lagrange_cli.motion.exact.rational_columns import known_column
 from lagrange_cli.motion.over_time.columns import chosen_columns, column_names
-from lagrange_cli.motion.over_time.proved_table import ProvedTable, known_column
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
 
 TIMES = [0.375, -7.25, 1e3, -1e6, 1e12]
 COLUMNS = ["theta", "phi", "psi", "quaternion"]

@@ -13,7 +13,7 @@ from scenes import UNIT
 
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic.ball import Ball
-from lagrange_cli.motion.rational_keys import known_fraction, rational_keys
+from lagrange_cli.motion.exact.rational_keys import known_fraction, rational_keys
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.regime import exact
 

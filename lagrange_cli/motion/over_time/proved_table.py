@@ -2,10 +2,6 @@
 
 The attitude is computed by `series_constants` in balls.  `theta_series` bounds the truncation error
 of its series, so that whole turns are proved too.  Equation numbers are Chrapan's.
-
-Some columns are fractions, which may be ties or exact zeros: at the start, in the constants of the
-motion and in steady motions.  For some tops, such as a sphere or a disc, further columns are 0 or
-constant at all times.
 """
 
 from __future__ import annotations
@@ -18,14 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 from ...arithmetic.ball import Ball
 from ...arithmetic.balls import Balls, balls
-from ...arithmetic.exact_cosine import Cosine, U
 from ...arithmetic.numbers import Number
 from ...arithmetic.rounding import Settled, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
+from ..exact.rational_columns import known_column
+from ..exact.rational_keys import known_fraction
 from ..kinds import Constant, Separatrix
 from ..numbers import Numbers
-from ..rational_keys import known_fraction
-from ..regime import Exact
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
 from .columns import ScalarColumn, chosen_columns, headings
 from .series_constants import Pose, pose_of
@@ -184,8 +179,9 @@ class ProvedTable:
         return header, self._lists(times, radii=radii)
 
     def _lists(self, times: Points, *, radii: bool) -> Iterator[list[list[NumberText]]]:
-        exact = times.decimals()
-        waiting: Iterator[Number] = map(float, exact) if self.digits is None else exact
+        waiting: Iterator[Number] = times.decimals()
+        if self.digits is None:
+            waiting = (float(time) for time in waiting)
         while block := list(islice(waiting, _ROWS_AT_ONCE)):
             yield [_texts(self.row(Fraction(time)), radii=radii) for time in block]
 
@@ -195,109 +191,3 @@ def _texts(row: Sequence[Settled], *, radii: bool) -> list[NumberText]:
         NumberText(double_text(x.value)) if isinstance(x.value, float) else x.value for x in row
     ]
     return [*values, *(x.radius for x in row if radii)]
-
-
-_RATES = {
-    "phi": ("mean_spin_rate", "spin_rate_start"),
-    "psi": ("mean_precession_rate", "precession_rate_start"),
-}
-"""The keys of the rates of both angles: the mean rate and the rate at the start."""
-
-
-def known_column(
-    exact: Exact, name: str, t: Fraction, *, radians: bool = False, wrap: bool = False
-) -> Fraction | None:
-    """Return a column at a time if it is known as a fraction, else None.
-
-    Angles are in degrees or `radians`.
-    """
-    facts = exact.facts
-    if name == "r":
-        return exact.r0
-    known = None if exact.psi_rate is None else _of_all_times(exact, name)
-    if known is not None:
-        return known
-    if facts.steady and name in _RATES:
-        rate = known_fraction(exact, _RATES[name][0])
-        return rate * t if rate is not None and (not rate or (radians and not wrap)) else None
-    if t and facts.free and facts.plane and not facts.steady:
-        return _of_a_great_circle(exact, name, t, radians=radians)
-    turns = exact.psi_rate != 0 and known_fraction(exact, "mean_spin_rate") != 0
-    if t and (not facts.steady or (name in {"p", "q"} and turns)):
-        return None
-    return _at_start(exact, name, radians=radians)
-
-
-def _of_all_times(exact: Exact, name: str) -> Fraction | None:
-    """Return a constant of the motion, or a column that is constant for some tops.
-
-    For example, p and q are constant for a sphere without torque.
-    """
-    facts, psi = exact.facts, exact.psi_rate
-    if name in {"energy", "Lz"}:  # (4,2) and (4,3)
-        A, C = Fraction(exact.top.A), Fraction(exact.top.C)
-        energy = A / 2 * exact.alpha + C * exact.r0 * exact.r0 / 2
-        return exact.cosine.fraction(energy if name == "energy" else A * exact.beta)
-    if name == "axis_x":
-        return Fraction(0) if facts.plane else None
-    if name in {"quaternion_y", "quaternion_z"}:
-        return Fraction(0) if _stands(exact, 1 if name == "quaternion_z" else -1) else None
-    if name not in {"p", "q"}:
-        return None
-    if facts.free and exact.r0 == exact.b:  # the angular velocity is constant in the body
-        return _at_start(exact, name, radians=False)
-    # A disc, C = 2A, has p'' = -(r0^2 - a u/2) p, and q'' likewise: a rate that starts at 0
-    # with the derivative 0 stays 0.  Without spin this holds for any top.
-    balanced = not exact.theta_rate and 2 * exact.r0 * psi == exact.a
-    at_rest = not psi and not exact.r0 * exact.theta_rate
-    zero = exact.b == 2 * exact.r0 and (balanced if name == "p" else at_rest)
-    return Fraction(0) if zero else None
-
-
-def _stands(exact: Exact, sign: int) -> bool:
-    """Return whether psi + sign phi leaps by whole turns only, at a pole, or not at all."""
-    facts, psi = exact.facts, exact.psi_rate
-    if facts.steady:
-        return exact.cosine.vanishes(sign * exact.r0 + psi - sign * psi * U)
-    passes = facts.over_bottom if sign > 0 else facts.over_top
-    return passes and exact.r0 == exact.b
-
-
-def _of_a_great_circle(exact: Exact, name: str, t: Fraction, *, radians: bool) -> Fraction | None:
-    """Return a column of an axis that moves uniformly round a great circle through both poles."""
-    rate = exact.theta_rate
-    tilt = Fraction(0) if exact.facts.pole > 0 else exact.cosine.radians
-    if tilt is None or abs(angle := tilt + rate * t) > 3:  # about half a turn, or beyond
-        return None
-    if name == "theta":
-        return abs(angle) if radians else None
-    return (rate if angle > 0 else -rate) if name == "thetadot" else None
-
-
-def _at_start(exact: Exact, name: str, *, radians: bool) -> Fraction | None:
-    """Return a column at t = 0."""
-    cosine, facts = exact.cosine, exact.facts
-    known = {
-        "theta": cosine.radians if radians else cosine.degrees,
-        "u": cosine.rational,
-        "axis_z": cosine.rational,
-        "thetadot": exact.theta_rate,
-        "p": exact.theta_rate,
-    }
-    if name in {"q", "moment"}:
-        factor = exact.psi_rate if name == "q" else Fraction(exact.top.A) * exact.a / 2
-        sine = Fraction(0) if factor == 0 else _sine(cosine)
-        return None if sine is None or factor is None else sine * factor
-    if name not in {"phidot", "psidot"}:
-        return known.get(name)
-    if facts.pole and not facts.steady:  # the axis leaves the pole
-        return exact.r0 - exact.b / 2 if name == "phidot" else facts.pole * exact.b / 2
-    mean, start = _RATES[name.removesuffix("dot")]
-    return known_fraction(exact, mean if facts.steady else start)
-
-
-def _sine(cosine: Cosine) -> Fraction | None:
-    """Return the sine of the tilt if it is rational, else None."""
-    if cosine.degrees is None:
-        return Fraction(0) if cosine.radians == 0 else None
-    return Cosine(abs(90 - cosine.degrees), None).rational
