@@ -137,7 +137,8 @@ def recording_from(
     if len(arrays) != max(sum(name in ANGLES for name in arrays), 1):
         shown = ", ".join(arrays) or "nothing"
         raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
-    columns = {name: x.reshape(len(x), -1) for name, x in {"t": times, **arrays}.items()}
+    rows = {"t": times, **arrays}
+    columns = {name: x if x.ndim > 1 else x[:, np.newaxis] for name, x in rows.items()}
     source = Source("the recording", Reading(conventions=_IN_RADIANS, sigma=sigma), {}, {})
     return recording_of("", source, columns)
 

@@ -493,6 +493,8 @@ def test_arrays_in_python() -> None:
         fit(shuffled, theta=t / 9, psi=t)
     with pytest.raises(LagtopError, match="has neither psi nor phi"):
         fit(t, theta=t / 9, psi=np.full(t.size, np.nan))
+    with pytest.raises(LagtopError, match="must have 12 rows or more, got 0"):
+        fit([], theta=[], psi=[])
 
 
 @pytest.mark.parametrize("names", ["", "r0", "A C", "m g s C", "m g s A", "m g s A C r0", "theta0"])
