@@ -124,7 +124,7 @@ def top_options(
     def made(
         rad: bool, units: str | None = None, words: Any = None, **inputs: Value | None
     ) -> TopOptions:
-        if not isinstance(words, tuple):
+        if not isinstance(words, tuple):  # the scene of ONE_SCENE, or None
             return TopOptions(inputs, rad, units, words, ())
         are_files = scene is not None and scene.type is FILE
         return TopOptions(inputs, rad, units, *_scene_among(words, are_files=are_files))

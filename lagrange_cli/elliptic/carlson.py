@@ -29,12 +29,15 @@ def blockwise(function: F) -> F:
     @in_arithmetic
     @wraps(function)
     def evaluate(ar: Any, *arguments: Any) -> Any:
-        if not ar.is_array or any(hasattr(x, "high") for x in arguments):  # numbers or pairs
+        if not ar.is_array:
             return function(ar, *arguments)
         import numpy as np
 
         from ..arithmetic.arrays import BLOCK, blocks
+        from ..arithmetic.double_double import DoubleDouble
 
+        if any(isinstance(x, DoubleDouble) for x in arguments):
+            return function(ar, *arguments)
         arrays = np.broadcast_arrays(*arguments)
         if arrays[0].size <= BLOCK:
             return function(ar, *arrays)

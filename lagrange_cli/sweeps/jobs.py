@@ -127,8 +127,7 @@ class Child:
     def __init__(self, target: Callable[..., None], *arguments: Any) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe, self._other = context.Pipe()
-        whole = self._other, *arguments
-        self.process = context.Process(target=target, args=whole, daemon=True)
+        self.process = context.Process(target=target, args=(self._other, *arguments), daemon=True)
 
     def start(self) -> None:
         """Start the process.  Raises UnavailableError."""
