@@ -1,4 +1,4 @@
-"""The house: imports point down one list, rooms are small, docstrings can be read alone."""
+"""House rules: imports point down one list, modules are small, docstrings can be read alone."""
 
 from __future__ import annotations
 
@@ -109,8 +109,8 @@ def module_of(path: Path) -> tuple[str, ...]:
     return parts[:-1] if parts[-1] == "__init__" else parts
 
 
-def test_imports_form_no_circle() -> None:
-    """Types and late imports count; the face of the package, which names every room, does not."""
+def test_imports_form_no_cycle() -> None:
+    """Types and late imports count; the package itself, which names every part, does not."""
     modules = {module_of(path) for path in FILES} - {()}
     graph: dict[tuple[str, ...], set[tuple[str, ...]]] = {}
     for path in FILES:
@@ -119,7 +119,7 @@ def test_imports_form_no_circle() -> None:
         graph[module_of(path)] = (targets & modules) - {module_of(path)}
     graph.pop(())
     assert sum(map(len, graph.values())) > 1000
-    TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
+    TopologicalSorter(graph).prepare()  # raises CycleError, which names the cycle
 
 
 def test_the_rule_was_tested_on_real_arrows() -> None:

@@ -94,9 +94,9 @@ def best_attempt(
 
 
 def _check(recording: Recording, known: Mapping[str, float], unknowns: int, where: str) -> None:
-    """Raise DataError for too few numbers, LagtopError if the angles do not determine a top.
+    """Raise DataError for too few numbers, LagtopError if no fit is possible.
 
-    LagtopError is raised too if there is no unknown.
+    No fit is possible without an unknown, or if the angles do not determine a top.
     """
     seen = recording.angles.keys()
     if not unknowns:

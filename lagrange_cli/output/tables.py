@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 _GAP = 3
 """Width of the space between two columns of a table."""
 _RECORD_WIDTH = 80
-"""The width of the summary of a record if the output is no terminal."""
+"""The width of the summary of a record if the output is not a terminal."""
 _TEXT_WIDTH = 100
-"""The width of running text if the output is no terminal."""
+"""The width of running text if the output is not a terminal."""
 
 _CODES = re.compile("\x1b\\[[0-9;]*m")
 _HEADING, _GIVEN, _FOUND, _WARNING = "bold", "cyan", "green", "yellow"

@@ -54,7 +54,7 @@ def parse_axis(name: str, text: str, *, radians: bool = False) -> tuple[str, Val
 
 
 def input_range(name: str, known: str, points: Points) -> InputRange:
-    """Return the values of an input; raise LagtopError unless 2 to 2000 increase."""
+    """Return the values of an input.  Raises LagtopError unless they are 2 to 2000 and increase."""
     if not 2 <= points.count <= MOST_VALUES:
         raise LagtopError(
             f"{name} must have a count in [2, {MOST_VALUES}], got {points.count}", name

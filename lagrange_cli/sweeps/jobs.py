@@ -146,7 +146,7 @@ class Child:
 
 
 class _Worker(Child):
-    """A process that shares the work; a task is a number, and a file for its item and result."""
+    """A process that shares the work; `tasks` has a number and the path of the result for each."""
 
     def __init__(self, work: Callable[[Any], Any]) -> None:
         super().__init__(_serve, work)
