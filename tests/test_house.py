@@ -54,6 +54,12 @@ def parsed(path: Path) -> ast.Module:
     return ast.parse(path.read_text())
 
 
+@cache
+def lines_of(path: Path) -> list[str]:
+    """Return the lines of a module."""
+    return path.read_text().splitlines()
+
+
 def imported_modules(path: Path) -> Iterator[list[str]]:
     """Yield the modules of the package that a file imports, each as its parts."""
     here = list(path.relative_to(PACKAGE).with_suffix("").parts)
@@ -120,6 +126,21 @@ def test_imports_form_no_cycle() -> None:
     graph.pop(())
     assert sum(map(len, graph.values())) > 1000
     TopologicalSorter(graph).prepare()  # raises CycleError, which names the cycle
+
+
+def test_late_imports_give_a_reason() -> None:
+    """Nearly always the reason is the start-up.  The commands share one, in `cli/__init__.py`."""
+    offenders = [
+        f"{path.relative_to(PACKAGE)}:{node.lineno}"
+        for path in FILES
+        if module_of(path)[:1] not in {("cli",), ("__main__",)}
+        for function in ast.walk(parsed(path))
+        if isinstance(function, ast.FunctionDef)
+        for node in ast.walk(function)
+        if isinstance(node, ast.ImportFrom) and node.level
+        if not any("  # " in line for line in lines_of(path)[node.lineno - 1 : node.end_lineno])
+    ]
+    assert offenders == []
 
 
 def test_the_rule_was_tested_on_real_arrows() -> None:

@@ -93,8 +93,8 @@ class EvenPoints(Points):
         """
         import numpy as np
 
-        from .double_double import two_product, two_sum
-        from .rounding import pair
+        from .double_double import two_product, two_sum  # start-up
+        from .rounding import pair  # start-up
 
         start, step = pair(self.start), pair(self.step)
         i = index.astype(np.float64)

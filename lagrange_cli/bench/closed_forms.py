@@ -30,7 +30,7 @@ def _ours(top: Top, _: str) -> AngleFunction:
 def _ours_in_digits(top: Top, digits: int) -> AngleFunction:
     import mpmath
 
-    from ..motion.over_time.proved_table import ProvedTable
+    from ..motion.over_time.proved_table import ProvedTable  # start-up
 
     def sample(t: Array) -> Run:
         table = ProvedTable(solve(top), ANGLES, digits, radians=True)

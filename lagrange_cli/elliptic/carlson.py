@@ -33,8 +33,8 @@ def blockwise(function: F) -> F:
             return function(ar, *arguments)
         import numpy as np
 
-        from ..arithmetic.arrays import BLOCK, blocks
-        from ..arithmetic.double_double import DoubleDouble
+        from ..arithmetic.arrays import BLOCK, blocks  # start-up
+        from ..arithmetic.double_double import DoubleDouble  # start-up
 
         if any(isinstance(x, DoubleDouble) for x in arguments):
             return function(ar, *arguments)
@@ -60,7 +60,7 @@ def in_pairs(function: F) -> F:
         if not ar.is_array or ar.magnitude < -20:
             return function(ar, *arguments)
         from ..arithmetic.arrays import PAIRS  # NumPy is loaded for arrays only
-        from ..arithmetic.double_double import DoubleDouble
+        from ..arithmetic.double_double import DoubleDouble  # start-up
 
         pairs = function(PAIRS, *(DoubleDouble(x.astype(float)) for x in arguments))
         return pairs.high.reshape(arguments[0].shape)[()]

@@ -161,7 +161,7 @@ def first_kind(ar: Arithmetic[R], *, m: R, k_prime: R, sn: R, cn2: R) -> R:
     would take a hundred times as many steps.
     """
     if ar.is_array:
-        from .carlson import carlson_rf
+        from .carlson import carlson_rf  # start-up
 
         integral: R = carlson_rf(ar, cn2, cn2 + k_prime * k_prime * (sn * sn), 0 * cn2 + 1)
         return sn * integral

@@ -67,7 +67,7 @@ class EtaTable(RealTable):
 
     def rounded_constants(self) -> EtaMotion:
         """Return the motion in doubles; raise LagtopError for times beyond 2^50 periods."""
-        from ..arithmetic.double_double import reduce_phase
+        from ..arithmetic.double_double import reduce_phase  # start-up
 
         def rounded(digits: int) -> tuple[EtaConstants, Pair]:
             exact = eta_constants(balls(digits), self.quadrature)

@@ -157,7 +157,7 @@ def times_quarter(ar: FunctionArithmetic, factor: Numeric, K: Numeric) -> Numeri
     """Return `factor` times K, which is a pair of doubles for arrays."""
     if not ar.is_array:
         return factor * K
-    from ..arithmetic.double_double import two_product
+    from ..arithmetic.double_double import two_product  # start-up
 
     product, error = two_product(factor, K.high)
     return product + (error + factor * K.low)

@@ -36,7 +36,7 @@ def in_radians(ar: FunctionArithmetic, phi: Numeric) -> Amplitude:
         half_turns = ar.nint(ar.re(phi) / ar.pi)
         rest = phi - half_turns * ar.pi
         return Amplitude(half_turns, ar.sin(rest), ar.cos(rest))
-    from ..arithmetic.double_double import PI, two_product, two_sum
+    from ..arithmetic.double_double import PI, two_product, two_sum  # start-up
 
     half_turns = ar.nint(phi / ar.pi)
     product, error = two_product(half_turns, PI.high)
@@ -134,8 +134,8 @@ def _quasi_periodic(
         return quarters * quarter + within
     import numpy as np
 
-    from ..arithmetic.arrays import PAIRS
-    from ..arithmetic.double_double import DoubleDouble, two_product
+    from ..arithmetic.arrays import PAIRS  # start-up
+    from ..arithmetic.double_double import DoubleDouble, two_product  # start-up
 
     pair = complete(PAIRS, DoubleDouble(np.asarray(k_prime) + 0.0, np.asarray(modulus.rest) + 0.0))
     high = ar.where(modulus.k_prime == 0, limit, pair.high)

@@ -40,7 +40,7 @@ def jacobi(ar: FunctionArithmetic, u: Numeric, modulus: Modulus) -> Jacobi:
       few eps, less the digits that |u|/K costs.
     """
     if ar.is_array:
-        from .jacobi_arrays import jacobi_of_arrays
+        from .jacobi_arrays import jacobi_of_arrays  # start-up
 
         return Jacobi(*jacobi_of_arrays(u, modulus))
     u = ar.convert(u)
@@ -66,7 +66,7 @@ def jacobi_at(
     table 2.  In many digits, pass the `series` of the modulus to use it again.
     """
     if ar.is_array:
-        from .jacobi_arrays import jacobi_of_places
+        from .jacobi_arrays import jacobi_of_places  # start-up
 
         return Jacobi(*jacobi_of_places(x, modulus))
     if not modulus.k:

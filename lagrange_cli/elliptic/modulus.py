@@ -107,7 +107,7 @@ def _from_k(ar: FunctionArithmetic, k: Numeric) -> Modulus:
     """Return k and k' = sqrt(1 - k^2), with the part of k' lost to rounding."""
     if not ar.is_array:
         return Modulus(k, ar.sqrt((1 - k) * (1 + k)))
-    from ..arithmetic.double_double import two_product
+    from ..arithmetic.double_double import two_product  # start-up
 
     return Modulus(k, *_complement(*two_product(k, k)))
 
@@ -120,7 +120,7 @@ def _from_m(ar: FunctionArithmetic, m: Numeric) -> Modulus:
 
 def _complement(square: Array, rest: Array | float) -> tuple[Array, Array]:
     """Return the square root of 1 - square - rest, and the part of it lost to rounding."""
-    from ..arithmetic.double_double import sqrt_pair, two_sum
+    from ..arithmetic.double_double import sqrt_pair, two_sum  # start-up
 
     difference, error = two_sum(1.0, -square)
     return sqrt_pair(*two_sum(difference, error - rest))

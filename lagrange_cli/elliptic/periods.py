@@ -51,7 +51,7 @@ class Periods(NamedTuple):
         forward = ar.either(self.rest < 0)
         if not ar.is_array:
             return Periods(self.turns + (not forward), self.rest + (0.5 if forward else -0.5))
-        from ..arithmetic.double_double import two_sum
+        from ..arithmetic.double_double import two_sum  # start-up
 
         rest, low = two_sum(self.rest, ar.where(forward, 0.5, -0.5))
         return Periods(self.turns + ar.where(forward, 0.0, 1.0), rest + (low + self.low))
@@ -67,7 +67,7 @@ def reduced(u: Array, rate: Triple) -> Periods:
     """Convert real arguments to periods by the rate 1/(2K), for |u| up to 1e290."""
     import numpy as np
 
-    from ..arithmetic.double_double import two_product, two_sum
+    from ..arithmetic.double_double import two_product, two_sum  # start-up
 
     u, high, middle, low = np.broadcast_arrays(np.asarray(u, dtype=float), *rate)
     product, error = two_product(u, high)
@@ -215,7 +215,7 @@ def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
             coordinate_of(ar, ar.re(u) * periods.scale),
             coordinate_of(ar, ar.im(u) * periods.across),
         )
-    from ..arithmetic.double_double import DoubleDouble
+    from ..arithmetic.double_double import DoubleDouble  # start-up
 
     parts = (reduced(ar.re(u), periods.scale), reduced(ar.im(u), periods.across))
     return Place(*(Coordinate(turns, DoubleDouble(rest, low)) for turns, rest, low in parts))
@@ -231,7 +231,7 @@ def fine(ar: FunctionArithmetic, value: Numeric) -> Fine:
     """Convert a number with many digits to the type of rests."""
     if not ar.is_array:
         return value
-    from ..arithmetic.arrays import PAIRS
+    from ..arithmetic.arrays import PAIRS  # start-up
 
     return PAIRS.convert(value)
 

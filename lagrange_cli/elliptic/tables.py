@@ -195,7 +195,7 @@ class RealTable(TableOfFunctions):
 
     def array_columns(self) -> ArrayColumns:
         """Return the columns of a block of points in doubles, and the blocks."""
-        from ..arithmetic.arrays import ARRAYS
+        from ..arithmetic.arrays import ARRAYS  # start-up
 
         self.check(doubles=True)
         constants = self.rounded_constants()

@@ -75,7 +75,7 @@ def gather(
     file: SceneFile | None = None
     correlations: dict[InputPair, Fraction] = {}
     if path is not None:
-        from .scene_file import SceneFile
+        from .scene_file import SceneFile  # start-up
 
         file = SceneFile(path)
         own = file.inputs.keys() - inputs.keys()
@@ -91,7 +91,7 @@ def gather(
     try:
         one_of_each(inputs)
         if system or any(x.unit for x in (*inputs.values(), *others.values())):
-            from .units import converted, system_of
+            from .units import converted, system_of  # start-up
 
             units = system_of(overridden(inputs, others), system)
             inputs, others = converted(inputs, units), converted(others, units)

@@ -105,7 +105,7 @@ class SceneFile:
                 both = f"{float(other)} and {float(r)} for {x} and {y}"
                 raise LagtopError(f"must be symmetric, got {both}")
         if found:
-            from .uncertain import are_possible
+            from .uncertain import are_possible  # start-up
 
             if not are_possible(Stds(uncertain, found).matrix()):
                 raise LagtopError("must be positive semidefinite: some contradict others")

@@ -178,12 +178,12 @@ def open_trajectory(
     with decoded_file(path) as stream:
         kind = _MAGIC.get(stream.peek(4)[:4])
         if kind is None:
-            from .trajectory_text import read_text
+            from .trajectory_text import read_text  # start-up
 
             width = None if names is None else len(names)
             yield Trajectory(path, read_text(stream, name, dialect, width), names)
             return
-        from .trajectory_arrays import read_arrays
+        from .trajectory_arrays import read_arrays  # start-up
 
         with nullcontext(stream) if stream.seekable() else temporary_copy(stream) as content:
             yield Trajectory(path, read_arrays(content, name, kind), names)

@@ -113,7 +113,7 @@ def parse_value(
         elif steady and not re.search(r"\d", number):
             whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
         elif not uncertain:
-            from .uncertain import uncertainty_in
+            from .uncertain import uncertainty_in  # start-up
 
             if spread := uncertainty_in(number):
                 whole = f"must have no uncertainty in this command, {got}: leave out {spread}"

@@ -151,7 +151,7 @@ class Motion(Numbers):
 
     def _repr_html_(self) -> str:
         """Return the record as a table for a notebook."""
-        from .notebook import record_html
+        from .notebook import record_html  # start-up
 
         return record_html(self.record())
 
@@ -224,6 +224,6 @@ class Motion(Numbers):
         Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
         may also be named singly.  Raises LagtopError for an unknown column or a time out of range.
         """
-        from .over_time.table import table
+        from .over_time.table import table  # start-up
 
         return table(self, t, columns, wrap=wrap)

@@ -53,7 +53,7 @@ class Output(Values):
         elif self.fmt == "csv":
             self.text(f"{','.join(record)}\n{','.join(map(_csv_cell, record.values()))}\n")
         else:
-            from .report import record_text
+            from .report import record_text  # start-up
 
             text = record_text(record, keys(), self.fmt, view_of(self.path))
             write_bytes(self.path, lambda: text)
@@ -63,14 +63,14 @@ class Output(Values):
 
         The count is 0 if it is unknown.
         """
-        from .formats import FORMATS
+        from .formats import FORMATS  # start-up
 
         made = FORMATS[self.fmt].rows
         self.blocks(names, (made(block, names) for block in blocks), count)
 
     def blocks(self, names: Sequence[str], blocks: Iterable[bytes], count: int = 0) -> None:
         """Write blocks made by `formats.block_text`, with the header and footer of the format."""
-        from .formats import FORMATS
+        from .formats import FORMATS  # start-up
 
         with opened(self.path) as stream:
             FORMATS[self.fmt].write(stream, names, blocks, view_of(self.path), count)
@@ -79,7 +79,7 @@ class Output(Values):
         self, rows: Sequence[Mapping[str, Any]], keys: Sequence[str], names: Sequence[str] = ()
     ) -> None:
         """Write some rows by key; their columns have the keys, or other names, as headings."""
-        from .formats import block_text
+        from .formats import block_text  # start-up
 
         columns = [[row.get(key) for row in rows] for key in keys]
         self.blocks(names or keys, [block_text(columns, keys, self.fmt)])

@@ -76,7 +76,7 @@ def _of_rows(function: str, **how: Any) -> Callable[..., Any]:
     """Return a function of the module `rows`, which a call imports with NumPy and orjson."""
 
     def call(*args: Any) -> Any:
-        from . import rows
+        from . import rows  # start-up
 
         return getattr(rows, function)(*args, **how)
 
@@ -126,14 +126,14 @@ def _doubles(rows: Texts) -> Array:
 
 def _write_parquet(names: Names, blocks: Iterable[bytes], view: View, stream: BinaryIO) -> None:
     """Write a row group per block, an Arrow stream."""
-    from .rows import write_parquet
+    from .rows import write_parquet  # start-up
 
     write_parquet(stream, names, blocks, description_of(names))
 
 
 def _draw(fmt: str, names: Names, blocks: Iterable[bytes], view: View, stream: BinaryIO) -> None:
     """Write a table or markdown, drawn when all rows are known, from blocks of CSV."""
-    from .report import rows_text
+    from .report import rows_text  # start-up
 
     rows = list(csv.reader(b"".join(blocks).decode().splitlines()))
     stream.write(rows_text(names, rows, fmt, view))

@@ -83,7 +83,7 @@ class Report(NamedTuple):
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
     def _table(self, view: View) -> bytes:
-        from .tables import DrawnColumn, drawn_report
+        from .tables import DrawnColumn, drawn_report  # start-up
 
         columns: dict[bool, list[DrawnColumn]] = {True: [], False: []}
         for field in self.fields:
@@ -120,7 +120,7 @@ def record_text(record: Mapping[str, Any], keys: Keys, fmt: str, view: View) -> 
     """Return a record as a `table` or as `markdown`: its summary, its groups, and its remark."""
     groups = record_cells(record, keys, view)
     if fmt == "table":
-        from .tables import drawn_record
+        from .tables import drawn_record  # start-up
 
         return drawn_record(record, RECORD_HEADINGS, groups, view)
     rows = []
@@ -133,7 +133,7 @@ def record_text(record: Mapping[str, Any], keys: Keys, fmt: str, view: View) -> 
 def rows_text(names: Sequence[str], rows: Sequence[Sequence[str]], fmt: str, view: View) -> bytes:
     """Return rows as a `table` or as `markdown`."""
     if fmt == "table":
-        from .tables import drawn_rows
+        from .tables import drawn_rows  # start-up
 
         return drawn_rows(names, rows, view)
     return markdown(names, rows).encode()

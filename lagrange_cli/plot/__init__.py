@@ -88,9 +88,9 @@ def draw(
     >>> len(draw(solve(Top()), "angles", t_max=1.0))
     3
     """
-    from ..errors import LagtopError, check_type
-    from ..inputs.names import check_names
-    from ..motion.solve import Motion
+    from ..errors import LagtopError, check_type  # start-up
+    from ..inputs.names import check_names  # start-up
+    from ..motion.solve import Motion  # start-up
 
     check_type("motion", motion, Motion)
     check_type("kind", kind, str)
@@ -101,10 +101,10 @@ def draw(
     require_matplotlib()
     from matplotlib.axes import Axes
 
-    from .curves import checked_span
+    from .curves import checked_span  # start-up
 
     if "key" in picture.options:
-        from .map_axes import parse_input_range
+        from .map_axes import parse_input_range  # start-up
 
         ranges = {name: shown.get(name) for name in ("x", "y")}
         shown |= {name: parse_input_range(name, text) for name, text in ranges.items() if text}

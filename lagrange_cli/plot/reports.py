@@ -122,8 +122,8 @@ def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
     >>> len(draw_outcome(fit(t, theta=theta, psi=psi)).axes)
     4
     """
-    from ..fits.record import Outcome
-    from ..fits.report import curves_of
+    from ..fits.record import Outcome  # start-up
+    from ..fits.report import curves_of  # start-up
 
     check_type("outcome", outcome, Outcome)
     figure = figure or new_figure()

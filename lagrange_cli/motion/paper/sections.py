@@ -265,7 +265,7 @@ class Sections(Generic[R]):
     def integral_of_amplitude(self) -> R:
         """Return the integral E(phi, k') of (7,1), as a sum of positive terms (DLMF 19.25.10)."""
         from ...elliptic.incomplete import Amplitude, e_of  # for few keys
-        from ...elliptic.modulus import Modulus
+        from ...elliptic.modulus import Modulus  # start-up
 
         ar, gaps, whole = self.ar, self.gaps, self.gaps.a_below_u3
         sine, cosine = ar.sqrt(gaps.a_u3_u2 / whole), ar.sqrt(self.state.a * gaps.below_u2 / whole)
