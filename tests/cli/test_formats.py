@@ -17,6 +17,7 @@ from pyarrow import parquet
 
 from lagrange_cli.arithmetic.text import csv_text
 from lagrange_cli.output.destination import Output
+from lagrange_cli.output.formats import FORMATS
 from lagrange_cli.output.rows import csv_lines, json_objects
 
 NAMES = ["a", "text", 'b,"', "c", "more"]
@@ -218,3 +219,12 @@ def test_a_record_in_json_holds_any_text(name: str, tmp_path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert json.loads(text) == {"name": name, "a": 1.5, "remark": None}
     assert text.encode() == orjson.dumps(json.loads(text)) + b"\n"
+
+
+def test_missing_numbers_among_texts() -> None:
+    texts = {name: form.texts for name, form in FORMATS.items() if form.texts}
+    rows, names = [["1.5", ""], ["", "2"]], ["a", "b"]
+    assert texts["csv"](rows, names) == b"1.5,\n,2\n"
+    assert texts["csv"]([[""]], ["a"]) == b'""\n'  # readers would skip an empty line
+    assert texts["json"](rows, names) == b'{"a":1.5,"b":null},\n{"a":null,"b":2}'
+    assert texts["ndjson"](rows, names) == b'{"a":1.5,"b":null}\n{"a":null,"b":2}\n'

@@ -162,3 +162,9 @@ def test_the_limits_of_inputs_are_taken_as_decimals_and_as_doubles() -> None:
     for wrong in ({"theta0_deg": Fraction(9, 10**151)}, {"m": Fraction(9, 10**101)}):
         with pytest.raises(LagtopError, match=r"at least 1e-150|>= 1e-100"):
             Top(**wrong)
+
+
+def test_a_long_double_beyond_all_doubles_is_refused_without_a_warning() -> None:
+    large: Any = np.longdouble(1e300) ** 2 if np.finfo(np.longdouble).maxexp > 2000 else 1e300
+    with pytest.raises(LagtopError, match=r"^m must be within 1e100 in size, got"):
+        Top(m=large, **dict.fromkeys(("A", "C", "s", "g"), 1.0))
