@@ -47,7 +47,7 @@ def test_examples_in_docstrings_run(name: str) -> None:
 
 INSIDE = {
     Top: {"tilt", "cosine", "texts", "pole", "steady_word", "options"},
-    Outcome: {"unit", "scale", "found", "products", "derived", "failure", "inputs_at"},
+    Outcome: {"found", "products", "derived", "failure", "shown_as", "leaves_noise"},
 }
 """Methods that other modules use: no user needs them."""
 

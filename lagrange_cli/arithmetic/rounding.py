@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from decimal import ROUND_UP, Decimal
+from decimal import ROUND_UP, Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -146,18 +146,33 @@ def nearest_double(name: str) -> Callable[[DecimalOrFraction], float]:
     """
 
     def rounding(value: DecimalOrFraction) -> float:
-        nearest = float(value)
+        try:
+            nearest = float(value)
+        except OverflowError:  # of a fraction; a decimal becomes infinite
+            nearest = math.inf
         if math.isinf(nearest):
             raise OutOfRangeError(
-                f"{name} must be within 1.8e308 in size, got {value:.3e}: change the units"
+                f"{name} must be within 1.8e308 in size, got {_short(value)}: change the units"
             )
         if value and not nearest:
             raise OutOfRangeError(
-                f"{name} must be 0 or at least 5e-324 in size, got {value:.3e}: use --digits"
+                f"{name} must be 0 or at least 5e-324 in size, got {_short(value)}: use --digits"
             )
         return nearest + 0.0  # never -0.0
 
     return rounding
+
+
+def _decimal(value: DecimalOrFraction, context: Context) -> Decimal:
+    """Return a number as a decimal, rounded in a context."""
+    if isinstance(value, Fraction):
+        return context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return context.plus(value)
+
+
+def _short(value: DecimalOrFraction) -> str:
+    """Return a number with four digits, for a message."""
+    return f"{_decimal(value, own_context(20, [])):.3e}"
 
 
 def rounding_of(name: str, digits: int | None) -> Callable[[DecimalOrFraction], Any]:
@@ -168,10 +183,7 @@ def rounding_of(name: str, digits: int | None) -> Callable[[DecimalOrFraction], 
 def text_of(value: DecimalOrFraction, digits: int) -> NumberText:
     """Return a number with `digits` significant digits, in full if its size is ordinary."""
     context = own_context(digits, [])
-    if isinstance(value, Fraction):
-        rounded = context.divide(Decimal(value.numerator), Decimal(value.denominator))
-    else:
-        rounded = context.plus(value)
+    rounded = _decimal(value, context)
     if not rounded:
         return NumberText("0.0")
     rounded = rounded.normalize(context)

@@ -68,6 +68,7 @@ def any_constants(ar: ManyDigits, modulus: ExactComplex | complex) -> dict[str, 
     on the right.  For k > 1, k' = i sqrt(k^2 - 1), and K, E and q are complex.
     """
     kind, (k, k_prime, _), s = given = any_modulus(ar, modulus)
+    assert kind is not ModulusKind.UNIT
     K, K_prime, E, E_prime, q = constants(ar, given.modulus)
     if kind is ModulusKind.IMAGINARY:
         found = s, -q, K / s, ar.mpc(K_prime, -K) / s, s * E, _e_beyond(ar, k_prime, k)

@@ -114,7 +114,8 @@ def _npy_header(names: Names, count: int) -> bytes:
 def _npy_rows(columns: Columns, names: Names) -> bytes:
     import numpy as np
 
-    return np.ascontiguousarray(columns[0], dtype="<f8").tobytes()
+    (block,) = columns
+    return np.ascontiguousarray(block, dtype="<f8").tobytes()
 
 
 def _doubles(rows: Texts) -> Array:

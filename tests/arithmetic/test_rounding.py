@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable
 from decimal import Decimal, getcontext, localcontext
 from fractions import Fraction
@@ -134,6 +135,14 @@ def test_what_does_not_exist_is_none() -> None:
 def test_a_number_beyond_the_doubles_is_an_error(value: str, word: str) -> None:
     with pytest.raises(OutOfRangeError, match=f"^x must be .*{word}"):
         settled("x", noisy(value), nearest_double("x"))
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [(10**309, "1.000e+309"), (Fraction(-1, 3 * 10**329), "-3.333e-330")]
+)
+def test_a_fraction_beyond_the_doubles_is_named(value: Fraction, shown: str) -> None:
+    with pytest.raises(OutOfRangeError, match=rf"got {re.escape(shown)}: "):
+        nearest_double("x")(Fraction(value))
 
 
 def test_a_wide_enclosure_is_not_out_of_range() -> None:

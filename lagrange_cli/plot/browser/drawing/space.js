@@ -102,8 +102,7 @@ function drawBody(context, view, look, frame, spin, blurred) {
       const wedges = even(first, first + SIXTH - 1, SIXTH - 1).filter((j) => seen[j]);
       const ink = first / SIXTH % 2 ? colour : look.paper;
       const corners = [apex, rim[wedges[0]], ...wedges.map((j) => rim[j + 1])];
-      const mixed = `color-mix(in srgb, ${look.paper}, ${colour})`;
-      if (wedges.length) fill(context, corners, blurred ? mixed : ink);
+      if (wedges.length) fill(context, corners, blurred ? mixed(look.paper, colour) : ink);
     }
   };
   drawSixths(view.project([0, 0, 0]), look.red, facesEye);
@@ -111,6 +110,13 @@ function drawBody(context, view, look, frame, spin, blurred) {
     drawSixths(view.project(onLid(frame, 0, 0)), look.blue, facesEye.map(() => true));
   }
   stroke(context, rim, { colour: look.ink, width: 0.9 });
+}
+
+/** The colour midway between two, each #rrggbb. */
+function mixed(first, second) {
+  const parts = (colour) => [1, 3, 5].map((i) => parseInt(colour.slice(i, i + 2), 16));
+  const [p, q] = [parts(first), parts(second)];
+  return `rgb(${p.map((x, i) => Math.round((x + q[i]) / 2)).join(" ")})`;
 }
 
 /** Draw the axes in the body: the figure axis out to the sphere, x' and y' on the lid. */
