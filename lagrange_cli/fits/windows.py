@@ -116,7 +116,10 @@ def split(recording: Recording, window: float, *, is_time: bool, where: str) -> 
     span = float(recording.t[-1])
     count = int(span / window * (1 + 1e-9)) if is_time and window > 0 else window
     if not 2 <= count <= recording.t.size or count != int(count):
-        raise LagtopError(f"window must give 2 windows or more of {where}, got {count:g}", "window")
+        most = recording.t.size
+        raise LagtopError(
+            f"window must give 2 to {most} windows of {where}, got {count:g}", "window"
+        )
     length = window if is_time else span / count
     index = np.minimum((recording.t / length).astype(int), int(count) - 1)
     rows = [np.flatnonzero(index == i) for i in range(int(count))]

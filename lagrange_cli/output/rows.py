@@ -229,15 +229,16 @@ def write_parquet(
     import pyarrow as pa
     from pyarrow import parquet
 
-    writer = None
-    for block in blocks:
-        table = pa.ipc.open_stream(block).read_all().replace_schema_metadata(description)
-        writer = writer or parquet.ParquetWriter(stream, table.schema)
-        writer.write_table(table)
-    writer = writer or parquet.ParquetWriter(
-        stream, pa.schema([(x, pa.null()) for x in names], description)
+    tables = (
+        pa.ipc.open_stream(block).read_all().replace_schema_metadata(description)
+        for block in blocks
     )
-    writer.close()
+    first = next(tables, None)
+    empty = pa.schema([(x, pa.null()) for x in names], description)
+    # closed in any case, because a writer that is collected later writes to a closed file
+    with parquet.ParquetWriter(stream, empty if first is None else first.schema) as writer:
+        for table in chain([] if first is None else [first], tables):
+            writer.write_table(table)
 
 
 def _text(value: Any) -> str:

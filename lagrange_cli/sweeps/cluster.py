@@ -89,7 +89,8 @@ def _client(address: str) -> Client:
     except Exception as error:  # of any kind: the peer may be no scheduler
         started = "a cluster of this machine cannot be started"
         what = started if address == "local" else f"no scheduler answers at {address}"
-        raise UnavailableError(f"{what}: {error}") from None
+        why = str(error) or f"no answer in {PATIENCE:g} s"  # wait_for has no text
+        raise UnavailableError(f"{what}: {why}") from None
 
 
 async def _greet(address: str) -> None:
