@@ -10,7 +10,7 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import partial
@@ -40,6 +40,12 @@ _HALF = "where U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
 """Definition of the cosine of the tilt half a period after the start."""
 _ON_A_POLE = "if the axis leaves the vertical at the start"
 HALF_OVER_POLE = "if the axis is vertical half a period after the start"
+
+
+def _turn_key(symbol: str, angle: str) -> Callable[..., Any]:
+    """Declare the time of one turn at the mean rate of an angle (section 8)."""
+    size, absent = f"abs(mean_{angle}_rate)", f"if the mean {angle} rate is 0"
+    return period_key(symbol, f"mean {angle} period", "§8", f"2*pi/{size}", absent=absent)
 
 
 class SpinPrecession(Nutation[R]):
@@ -101,24 +107,12 @@ class SpinPrecession(Nutation[R]):
         _, south, north = self.mean_parts
         return south + north
 
-    @period_key(
-        "Tφ",
-        "mean spin period",
-        "§8",
-        "2*pi/abs(mean_spin_rate)",
-        absent="if the mean spin rate is 0",
-    )
+    @_turn_key("Tφ", "spin")
     def T_spin(self) -> R | None:
         """The time of one turn at the mean spin rate (section 8)."""
         return turn_time(self.ar, self.mean_spin_rate)
 
-    @period_key(
-        "Tψ",
-        "mean precession period",
-        "§8",
-        "2*pi/abs(mean_precession_rate)",
-        absent="if the mean precession rate is 0",
-    )
+    @_turn_key("Tψ", "precession")
     def T_precession(self) -> R | None:
         """The time of one turn at the mean precession rate (section 8)."""
         return turn_time(self.ar, self.mean_precession_rate)

@@ -83,8 +83,6 @@ class Textbook(Over[R]):
 
 TEXTBOOK = keys_of(Textbook)
 """The keys of this module and their declarations."""
-
-
 STEADY_KEYS = frozenset({"steady_rate_slow", "steady_rate_fast"})
 WITH_RATIO = frozenset({"r0_sleeping", "r0_steady_min"})
 """The keys that have the factor A/C."""
