@@ -13,6 +13,8 @@ from scenes import UNIT
 
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic.ball import Ball
+from lagrange_cli.bench.battery import judged_inputs
+from lagrange_cli.motion.exact import rational_keys as rational_keys_module
 from lagrange_cli.motion.exact.rational_keys import known_fraction, rational_keys
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.regime import exact
@@ -139,6 +141,18 @@ def test_a_rate_that_would_vanish_with_another_root_for_u3_does_not(
     assert motion.u1 == 0.5
     assert motion.fraction(key) is None
     assert getattr(motion, key) == value
+
+
+def test_a_fraction_next_to_a_rate_is_refused_by_balls_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Euclid's algorithm took 0.5 s for the rates of one top."""
+    monkeypatch.setattr(rational_keys_module, "_shared_roots", None)
+    rng = random.Random(4)
+    for _ in range(9):
+        motion = solve(Top(**judged_inputs("near a pole", rng)))
+        for key in ("spin_rate_half", "precession_rate_half"):
+            motion.fraction(key)
 
 
 @pytest.mark.parametrize(

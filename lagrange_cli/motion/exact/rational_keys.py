@@ -208,7 +208,8 @@ def _is_half_rate(exact: Exact, name: str, value: Fraction) -> bool:
     momentum = Polynomial(exact.beta) * M + N * -exact.b  # M (beta - b u)
     rate = momentum * M if name == "precession_rate_half" else N * -1 * momentum
     constant = value if name == "precession_rate_half" else value - exact.r0
-    return _is_zero_at_u3(exact, rate - (M * M - N * N) * constant)
+    digits = 2 * FIRST_DIGITS + value.denominator.bit_length()
+    return _is_zero_at_u3(exact, rate - (M * M - N * N) * constant, digits)
 
 
 def _half_cosine(exact: Exact) -> tuple[InU3, InU3]:
@@ -220,14 +221,15 @@ def _half_cosine(exact: Exact) -> tuple[InU3, InU3]:
     return N, Polynomial(-a * U, Polynomial(a))
 
 
-def _is_zero_at_u3(exact: Exact, P: InU3) -> bool:
+def _is_zero_at_u3(exact: Exact, P: InU3, digits: int) -> bool:
     """Return whether P is exactly 0 at the greatest root of the cubic.
 
-    Balls are tried first: they are cheap, and nearly always prove that P is not 0.
+    Balls of `digits` digits are tried first: they are cheap, and nearly always prove that P is not
+    0 if the digits tell the fraction in P from its neighbours.
     """
     if exact.facts.free:
         return exact.cosine.vanishes(P.coefficients[0])
-    if not _zeros_possible(exact, P, FIRST_DIGITS)[0]:
+    if not _zeros_possible(exact, P, digits)[0]:
         return False
     shared = _shared_roots(exact, cubic(exact), P.coefficients)
     if not shared:
