@@ -225,7 +225,7 @@ def _is_zero_at_u3(exact: Exact, P: InU3, digits: int) -> bool:
     """Return whether P is exactly 0 at the greatest root of the cubic.
 
     Balls of `digits` digits are tried first: they are cheap, and nearly always prove that P is not
-    0 if the digits tell the fraction in P from its neighbours.
+    0.
     """
     if exact.facts.free:
         return exact.cosine.vanishes(P.coefficients[0])
