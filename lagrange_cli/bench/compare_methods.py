@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..motion.solve import Motion
-from ..output.progress import Progress, silent
 from ..output.report import Field, Report, fields_of, short
+from ..output.terminal import Progress, silent
 from .integrators import STEPS_PER_SECOND
 from .measure import (
     JUDGED,

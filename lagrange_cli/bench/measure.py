@@ -21,7 +21,7 @@ from ..inputs.names import ANGLES, check_names
 from ..inputs.top import Top
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from ..output.progress import Progress, silent
+from ..output.terminal import Progress, silent
 from .closed_forms import CLOSED_FORMS
 from .engines import SCHEMES, engines
 from .integrators import integrators

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 from ..arithmetic.rounding import FIRST_DIGITS
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
-from ..output.progress import Progress
 from ..output.report import Field, Report, fields_of, short
+from ..output.terminal import Progress
 from ..sweeps.jobs import in_order
 from .battery import CONTRACT, KEY_CONTRACT, Case, hard_scene, judged_case, prove
 from .hard_scenes import words_of

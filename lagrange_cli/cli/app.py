@@ -5,17 +5,21 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import click
 
 from .. import __version__
 from ..errors import CannotWriteError, LagtopError
-from ..output import terminal
-from ..output.destination import opened
+from ..output.destination import Terminated, opened
+
+if TYPE_CHECKING:
+    import signal
+else:
+    import _signal as signal  # without the enumerations of `signal`, 2 % of `lagtop solve`
 
 COMMANDS = {
     "One top": ("solve", "table", "plot", "view", "explain", "scenes"),
@@ -28,6 +32,8 @@ NAMES = [name for names in COMMANDS.values() for name in names]
 _MODULES = {"view": "plot", "scenes": "explain", "stability": "bench"}
 """Commands that share the module of another command."""
 _COLOURS = {"Error": "red", "Warning": "yellow"}
+_CLOSED_PIPE = 13
+"""The number of SIGPIPE, which not every system has."""
 
 
 def complain(line: str) -> None:
@@ -35,9 +41,11 @@ def complain(line: str) -> None:
 
     A terminal with colours shows the first word, `Error:` or `Warning:`, in colour.
     """
-    line = terminal.one_line(line)
+    from ..output.terminal import has_colours, one_line
+
+    line = one_line(line)
     word, colon, rest = line.partition(":")
-    if word in _COLOURS and terminal.has_colours(sys.stderr):
+    if word in _COLOURS and has_colours(sys.stderr):
         line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
         click.echo(line, err=True)
@@ -45,11 +53,42 @@ def complain(line: str) -> None:
 
 def say(text: str) -> None:
     """Write a text of lagtop to standard output.  Raises CannotWriteError."""
+    from ..output.terminal import spelt, view_of
+
     try:
         with opened("-") as stream:
-            stream.write(f"{terminal.spelt(text, terminal.view_of('-'))}\n".encode())
+            stream.write(f"{spelt(text, view_of('-'))}\n".encode())
     except BrokenPipeError:  # click would turn it into exit code 1
-        terminal.die_by(terminal.CLOSED_PIPE)
+        _die_by(_CLOSED_PIPE)
+
+
+@contextmanager
+def _interrupts() -> Iterator[None]:
+    """Raise KeyboardInterrupt for Ctrl-C while the block runs, so that it can clean up.
+
+    Outside the block Ctrl-C kills at once (see `__main__`), as nothing would catch the exception.
+    """
+    if signal.getsignal(signal.SIGINT) != signal.SIG_DFL:  # ignored, or handled by a host
+        yield
+        return
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def _die_by(number: int) -> NoReturn:
+    """End the program by a signal, as if nothing had caught it.
+
+    A shell loop stops only if the command inside it dies by the signal itself, not with an exit
+    code that looks like one.  A system without SIGPIPE gets the exit code.
+    """
+    if number == _CLOSED_PIPE and not hasattr(signal, "SIGPIPE"):
+        sys.exit(128 + number)
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+    raise AssertionError("unreachable")
 
 
 def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:
@@ -158,7 +197,7 @@ class LagtopGroup(Command, click.Group):
             complain(f"Error: {error.strerror or error}{place}")
             sys.exit(CannotWriteError.exit_code)
         except click.Abort:
-            terminal.die_by(terminal.INTERRUPT)
+            _die_by(signal.SIGINT)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command, and end the program by a signal if the command was ended by one.
@@ -166,18 +205,26 @@ class LagtopGroup(Command, click.Group):
         Signals are caught here, before click turns them into an exit code.
         """
         try:
-            with terminal.interrupts():
+            with _interrupts():
                 return super().invoke(ctx)
-        except BrokenPipeError:
-            number = terminal.CLOSED_PIPE
-        except KeyboardInterrupt:
-            number = terminal.INTERRUPT
-        except terminal.Terminated as error:
-            number = error.number
-        finally:
-            terminal.Screen.end_progress()
+        except BaseException as error:
+            from ..output.terminal import end_progress
+
+            end_progress()
+            number = _signal_of(error)
+            if number is None:
+                raise
         # By now the command has been unwound and has cleaned up.
-        return terminal.die_by(number)
+        return _die_by(number)
+
+
+def _signal_of(error: BaseException) -> int | None:
+    """Return the number of the signal that ended a command, or None for any other error."""
+    if isinstance(error, Terminated):
+        return error.number
+    if isinstance(error, KeyboardInterrupt):
+        return signal.SIGINT
+    return _CLOSED_PIPE if isinstance(error, BrokenPipeError) else None
 
 
 @click.group(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ..bench.hard_scenes import STRATA, stratum_lines
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from ..output.progress import with_progress
+from ..output.terminal import with_progress
 from .options import (
     COUNT,
     NUMBER,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from ..output.progress import with_progress
+from ..output.terminal import with_progress
 from .app import complain
 from .options import (
     FILE,

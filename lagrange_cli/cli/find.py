@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..errors import LagtopError
-from ..output.progress import with_progress
+from ..output.terminal import with_progress
 from .app import complain
 from .options import COUNT, Parsed, command, keys_option, option, output_options
 from .tables import key_headings

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
-from ..output.progress import with_progress
+from ..output.terminal import with_progress
 from .app import complain
 from .options import (
     FILE,

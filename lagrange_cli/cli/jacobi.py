@@ -10,7 +10,7 @@ from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
 from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from ..output.progress import with_progress
+from ..output.terminal import with_progress
 from .app import complain
 from .options import (
     COUNT,

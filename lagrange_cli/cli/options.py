@@ -18,7 +18,6 @@ import click
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
 from ..output.destination import Output
-from ..output.terminal import is_terminal
 from .app import Command
 
 if TYPE_CHECKING:
@@ -210,11 +209,15 @@ def output_options(*formats: str, extensions: Iterable[str] = (), on_terminal: s
     """
     default = f"{formats[0]}; on a terminal {on_terminal}" if on_terminal else formats[0]
 
+    def is_screen(path: str) -> bool:
+        from ..output.terminal import is_terminal
+
+        return path == "-" and is_terminal(sys.stdout)
+
     def chosen(path: str, fmt: str | None) -> str:
         ending = extension(path)
         if fmt is None and ending in {"", "txt", *extensions}:
-            at_screen = path == "-" and on_terminal and is_terminal(sys.stdout)
-            return on_terminal if at_screen else formats[0]
+            return on_terminal if on_terminal and is_screen(path) else formats[0]
         ending = "markdown" if ending == "md" else ending
         if fmt is None and (ending == "table" or ending not in formats):
             name = click.get_current_context().command.name
@@ -223,7 +226,7 @@ def output_options(*formats: str, extensions: Iterable[str] = (), on_terminal: s
                 f"got --output {quoted(path)}: change the extension, or add --format"
             )
         fmt = fmt or ending
-        if fmt in BINARY and path == "-" and is_terminal(sys.stdout):
+        if fmt in BINARY and is_screen(path):
             raise LagtopError(f"--format {fmt} is not for a terminal: use -o FILE.{fmt}")
         return fmt
 

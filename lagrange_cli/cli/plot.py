@@ -16,8 +16,7 @@ from ..errors import LagtopError
 from ..inputs.input_keys import TILT
 from ..inputs.names import check_names
 from ..output.destination import write_bytes
-from ..output.progress import with_progress
-from ..output.terminal import is_terminal
+from ..output.terminal import is_terminal, with_progress
 from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, MAP_KEY, ON_THE_SHEET, SHEET, PlotRequest, help_lines
 from ..plot.style import chosen_look

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from ..output.progress import with_progress
+from ..output.terminal import with_progress
 from .app import complain
 from .options import (
     FOLDER,

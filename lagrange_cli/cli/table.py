@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .. import __version__
 from ..arithmetic.text import value_text
 from ..errors import DataError, LagtopError
-from ..output.progress import with_progress
+from ..output.terminal import with_progress
 from .options import (
     BINARY,
     COUNT,

@@ -16,8 +16,8 @@ from ..motion.record import NUMBER_KEYS, shown_keys
 from ..motion.sensitivity.sensitivities import DIFFERENTIABLE
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
 from ..motion.solve import Motion
-from ..output.progress import with_progress
 from ..output.report import Field, Report, uncertain_text, with_unit
+from ..output.terminal import with_progress
 from .app import complain
 from .options import exclude
 from .tables import write_report

@@ -22,7 +22,7 @@ from ..inputs.top import INPUTS
 from ..motion.numbers import record_in_range
 from ..motion.record import record_keys
 from ..motion.solve import Motion, solve
-from ..output.progress import Progress, silent
+from ..output.terminal import Progress, silent
 from ..sweeps.results import TEXTS, ResultColumn, Results
 from .roots import roots
 from .search import Scan, Search, condition_texts, read_unknown, scan_of, search_of

@@ -23,7 +23,7 @@ from ..motion.quantity import unit_name
 from ..motion.record import all_keys, shown_keys
 from ..motion.regime import Regime
 from ..motion.solve import solve
-from ..output.progress import Progress
+from ..output.terminal import Progress
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import BLOCK_ROWS, sweep
 

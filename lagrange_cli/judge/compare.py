@@ -19,7 +19,7 @@ from ..inputs.top import Top
 from ..inputs.trajectory import Trajectory, open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.solve import Motion, solve
-from ..output.progress import Progress, silent
+from ..output.terminal import Progress, silent
 from .alignment import Alignment, alignment
 from .convergence import Convergence, check_step_sizes, convergence
 from .judgement import LIMIT, JudgedRun, Judgement, ReadTrajectory, judge

@@ -1,5 +1,7 @@
 """Destination of output: a file that is replaced only on success, or standard output.
 
+A signal that ends the program removes the temporary file first.
+
 `Output` is a destination with a format; it writes values, a record, rows or a report.  One record
 in CSV or JSON is formatted here, because importing orjson would cost `lagtop solve` 4 % of its
 time, and orjson only supports doubles.  Formats of rows and reports are imported when they are
@@ -15,19 +17,26 @@ import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 from ..arithmetic.text import csv_text, json_text, value_text
 from ..arithmetic.values import Values
 from ..errors import CannotWriteError
-from .terminal import ENDING, Screen, terminated_by, view_of
 
 if TYPE_CHECKING:
+    import signal
+    from types import FrameType
+
     from _typeshed import ReadableBuffer as Buffer
 
     from ..arithmetic.types import Array
     from .formats import Texts
     from .report import Keys, Report
+else:
+    import _signal as signal  # without the enumerations of `signal`, 2 % of `lagtop solve`
+
+ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
+"""Signals that end a program, besides Ctrl-C: temporary files are removed first."""
 
 
 class Output(Values):
@@ -54,6 +63,7 @@ class Output(Values):
             self.text(f"{','.join(record)}\n{','.join(map(_csv_cell, record.values()))}\n")
         else:
             from .report import record_text  # start-up
+            from .terminal import view_of  # start-up
 
             text = record_text(record, keys(), self.fmt, view_of(self.path))
             write_bytes(self.path, lambda: text)
@@ -71,6 +81,7 @@ class Output(Values):
     def blocks(self, names: Sequence[str], blocks: Iterable[bytes], count: int = 0) -> None:
         """Write blocks made by `formats.block_text`, with the header and footer of the format."""
         from .formats import FORMATS  # start-up
+        from .terminal import view_of  # start-up
 
         with opened(self.path) as stream:
             FORMATS[self.fmt].write(stream, names, blocks, view_of(self.path), count)
@@ -86,6 +97,8 @@ class Output(Values):
 
     def report(self, find: Callable[[], Report]) -> Report:
         """Write what `find` returns, and return it; the destination is opened first."""
+        from .terminal import view_of  # start-up
+
         with opened(self.path) as stream:
             report = find()
             stream.write(report.text(self.fmt, view_of(self.path)))
@@ -153,10 +166,44 @@ class _SharedScreen(io.BufferedWriter):
 
     def write(self, data: Buffer, /) -> int:
         """Write at once, with the line of progress out of the way."""
-        with Screen.without_progress():
+        from .terminal import without_progress  # start-up
+
+        with without_progress():
             count = super().write(data)
             self.flush()
         return count
+
+
+class Terminated(BaseException):
+    """A signal to end, raised so that temporary files are removed."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+def _terminate(number: int, _: FrameType | None) -> NoReturn:
+    raise Terminated(number)
+
+
+@contextmanager
+def terminated_by(names: Sequence[str]) -> Iterator[None]:
+    """Turn these signals into Terminated while the block runs.
+
+    A signal is left alone if it is ignored, already handled, or unknown to the system.
+    """
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    ours = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
+    caught = []
+    try:
+        with suppress(ValueError):  # only the main thread can set handlers
+            for number in ours:
+                signal.signal(number, _terminate)
+                caught.append(number)
+        yield
+    finally:
+        for number in caught:
+            signal.signal(number, signal.SIG_DFL)
 
 
 @contextmanager

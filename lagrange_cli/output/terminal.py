@@ -1,30 +1,29 @@
-"""The terminal and the signals of the process.
+"""The terminal: its width, its letters and colours, and a line of progress.
 
-A terminal has a width, a character set and colours.  A text that is shown must not control it.
+A text that is shown must not control the terminal.
 
-A signal ends the program as if nothing caught it, unless it was ignored at the start.  A shell
-loop stops only if the command inside it dies by the signal itself, not with an exit code that
-looks like one.  It is unknown whether SIGPIPE was ignored at the start, because Python ignores
-it before this code runs.
+Functions with progress pass on the parts of long work.  The line of standard error vanishes at the
+end.  It appears after a second, from a separate thread, even if the first part is still being
+computed.  Rich is loaded only then.  Nothing is shown if standard error is not a terminal.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from typing import TYPE_CHECKING, NoReturn
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from threading import Timer
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from ..arithmetic.values import Values
 
 if TYPE_CHECKING:
-    import signal
-    from types import FrameType
     from typing import TextIO
-else:
-    import _signal as signal  # without the enumerations of `signal`, 2 % of `lagtop solve`
 
+    from rich.progress import Progress as Display
+
+Item = TypeVar("Item")
 MOST_CHARACTERS = 1000
 """The largest length of a line; longer lines are shortened."""
 
@@ -96,75 +95,128 @@ def spelt(text: str, view: View) -> str:
     return text if view.has_greek else text.translate(_ASCII)
 
 
-class Screen:
-    """The terminal of the process, which output may share with a line of progress."""
-
-    without_progress: Callable[[], AbstractContextManager[None]] = nullcontext
-    """A context that hides the line of progress while something else is written."""
-    end_progress: Callable[[], object] = nullcontext
-    """Removes the line of progress, if there is one."""
+def one(_: Any) -> int:
+    """Return 1, the size of a part that counts as one item."""
+    return 1
 
 
-INTERRUPT = signal.SIGINT
-ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
-"""Other signals that end a program: temporary files are removed first."""
-CLOSED_PIPE = getattr(signal, "SIGPIPE", None)
-NO_SIGPIPE = 128 + 13
-"""The exit code if the reader has gone away and the system has no SIGPIPE."""
+class Progress(Protocol):
+    """A function that shows the progress of some work during iteration over its parts."""
+
+    def __call__(
+        self,
+        parts: Iterable[Item],
+        label: str,
+        total: int | None = None,
+        size: Callable[[Item], int] = one,
+    ) -> Iterator[Item]:
+        """Yield the parts as they arrive.
+
+        `size` gives the items of a part, and `total` the items of all parts.  Without a total it is
+        summed over the parts if these are a sequence, and unknown otherwise.
+        """
 
 
-class Terminated(BaseException):
-    """A signal to end, raised so that temporary files are removed."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.number = number
-
-
-def _terminate(number: int, _: FrameType | None) -> NoReturn:
-    raise Terminated(number)
+def silent(
+    parts: Iterable[Item],
+    label: str,
+    total: int | None = None,
+    size: Callable[[Item], int] = one,
+) -> Iterator[Item]:
+    """Yield the parts and show nothing."""
+    return iter(parts)
 
 
-@contextmanager
-def terminated_by(names: Sequence[str]) -> Iterator[None]:
-    """Turn these signals into Terminated while the block runs.
-
-    A signal is left alone if it is ignored, already handled, or unknown to the system.
-    """
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    ours = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
-    caught = []
-    try:
-        with suppress(ValueError):  # only the main thread can set handlers
-            for number in ours:
-                signal.signal(number, _terminate)
-                caught.append(number)
-        yield
-    finally:
-        for number in caught:
-            signal.signal(number, signal.SIG_DFL)
+DELAY = 1.0
+"""Seconds of work before the line appears."""
 
 
-@contextmanager
-def interrupts() -> Iterator[None]:
-    """Raise KeyboardInterrupt for Ctrl-C while the block runs, so that it can clean up.
-
-    Outside the block Ctrl-C kills at once (see `__main__`), as nothing would catch the exception.
-    """
-    if signal.getsignal(signal.SIGINT) != signal.SIG_DFL:  # ignored, or handled by a host
-        yield
+def with_progress(
+    parts: Iterable[Item],
+    label: str,
+    total: int | None = None,
+    size: Callable[[Item], int] = one,
+) -> Iterator[Item]:
+    """Yield the parts as they arrive, and show the progress."""
+    if not sys.stderr.isatty():
+        yield from parts
         return
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if total is None and isinstance(parts, Sequence):
+        total = sum(map(size, parts))
+    line = _Line(label, total)
     try:
-        yield
+        for part in parts:
+            yield part
+            line.advance(size(part))
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        line.stop()
 
 
-def die_by(number: int | None) -> NoReturn:
-    """End the program by a signal, or with an exit code if the system does not have the signal."""
-    if number is None:
-        sys.exit(NO_SIGPIPE)
-    signal.signal(number, signal.SIG_DFL)
-    os.kill(os.getpid(), number)
-    raise AssertionError("unreachable")
+class _Line:
+    """The line of one piece of work."""
+
+    last: ClassVar[_Line | None] = None
+    """The line that began last: output may share the terminal with it."""
+
+    def __init__(self, label: str, total: int | None) -> None:
+        self.label, self.total, self.done = label, total, 0
+        self.display: Display | None = None
+        self.timer = Timer(DELAY, self._show)
+        self.timer.daemon = True
+        self.timer.start()
+        _Line.last = self
+
+    def _show(self) -> None:
+        display = _display(counts=self.total is None)
+        display.add_task(self.label, total=self.total, completed=self.done)
+        display.start()
+        self.display = display
+
+    def advance(self, count: int) -> None:
+        """Count items that are done."""
+        self.done += count
+        if self.display:
+            self.display.update(self.display.task_ids[0], completed=self.done)
+
+    def stop(self) -> None:
+        """Remove the line, or prevent it from appearing."""
+        self.timer.cancel()
+        self.timer.join()  # it may be about to draw
+        if self.display:
+            self.display.stop()
+            self.display = None
+
+
+@contextmanager
+def without_progress() -> Iterator[None]:
+    """Hide the line of progress, if there is one, while the block writes to the terminal."""
+    display = _Line.last and _Line.last.display
+    if display:
+        display.stop()
+    yield
+    if display:
+        display.start()
+
+
+def end_progress() -> None:
+    """Remove the line of progress of a command that has failed."""
+    if _Line.last:
+        _Line.last.stop()
+
+
+def _display(*, counts: bool) -> Display:
+    """Return an empty display that fits the width of any terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import TimeRemainingColumn as Remaining
+
+    tail = ["{task.completed:,.0f} done"] if counts else ["{task.percentage:>3.0f}%"]
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None),
+        *(TextColumn(text) for text in tail),
+        TimeElapsedColumn() if counts else Remaining(elapsed_when_finished=True),
+        console=Console(stderr=True),
+        transient=True,
+        expand=True,
+    )

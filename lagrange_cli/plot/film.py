@@ -22,7 +22,7 @@ from PIL import Image
 
 from ..errors import LagtopError, UnavailableError
 from ..motion.solve import Motion
-from ..output.progress import Progress, silent
+from ..output.terminal import Progress, silent
 from .curves import MOST_PERIODS, span, tilt_period, turn_span
 from .globe import camera_at, cone_at, draw_globe, on_one_side, side_camera
 from .page import Page, check_pixels

@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from ..arithmetic.numbers import angle_unit
-from ..output.progress import Progress, silent
+from ..output.terminal import Progress, silent
 from .style import DARK, LIGHT, Look
 
 if TYPE_CHECKING:

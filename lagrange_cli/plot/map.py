@@ -20,7 +20,7 @@ from ..inputs.top import Top
 from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
-from ..output.progress import Progress, silent
+from ..output.terminal import Progress, silent
 from ..sweeps.records import BLOCK_ROWS, sweep
 from .kinds import Places, PlotRequest
 from .map_axes import InputRange

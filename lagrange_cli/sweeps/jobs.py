@@ -22,7 +22,7 @@ from typing import Any, TypeVar
 
 from ..errors import CannotWriteError, LagtopError, UnavailableError
 from ..inputs.files import temporary_files
-from ..output.terminal import ENDING, terminated_by
+from ..output.destination import ENDING, terminated_by
 
 MOST_JOBS = 1024
 _HANDED_OUT = 3

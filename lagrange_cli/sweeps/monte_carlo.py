@@ -19,7 +19,7 @@ from ..inputs.value import Stds
 from ..motion.kinds import vertical_remark
 from ..motion.quantity import unit_name
 from ..motion.regime import Regime
-from ..output.progress import Progress, silent
+from ..output.terminal import Progress, silent
 from .records import sweep
 
 QUANTILES = (2.5, 16.0, 50.0, 84.0, 97.5)

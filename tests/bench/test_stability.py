@@ -30,8 +30,8 @@ from lagrange_cli.bench.reference import EPS, Reference
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.solve import Motion
-from lagrange_cli.output.progress import silent
 from lagrange_cli.output.report import Report
+from lagrange_cli.output.terminal import silent
 
 
 @pytest.mark.slow

@@ -9,23 +9,25 @@ import struct
 import subprocess
 import sys
 import termios
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from conftest import Lagtop
 
 from lagrange_cli import Top, solve
 from lagrange_cli.motion.record import shown_keys
 from lagrange_cli.output.report import Field, Report, record_text
-from lagrange_cli.output.terminal import View, view_of
+from lagrange_cli.output.terminal import View, view_of, with_progress
 
 ESCAPE = re.compile("\x1b\\[[?]?([0-9;]*)([A-Za-z])|([\r\n])|([^\x1b\r\n]+)")
 IMPATIENT = """if True:
     import sys
     from lagrange_cli.__main__ import main
-    from lagrange_cli.output import progress
-    progress.DELAY = 0.0
+    from lagrange_cli.output import terminal
+    terminal.DELAY = 0.0
     main()
 """
 
@@ -108,6 +110,18 @@ def test_progress_is_one_line_that_vanishes(line: str, tmp_path: Path) -> None:
         assert sum(x != "" for x in lines) <= 1, lines
     assert not any(shown[-1])
     assert text.count("\x1b[?25l") == text.count("\x1b[?25h") > 0  # the cursor is back
+
+
+def test_a_command_that_fails_leaves_no_line_of_progress(
+    lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr("lagrange_cli.output.terminal.sys.stderr.isatty", lambda: True)
+        parts = with_progress([1, 2], "rows")
+        next(parts)
+    waiting = threading.active_count()
+    assert lagtop("solve", "--m", "-1").exit_code == 2
+    assert threading.active_count() == waiting - 1
 
 
 WIDE = [

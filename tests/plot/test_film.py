@@ -15,7 +15,7 @@ from pictures import sample_motion
 from scenes import SAMPLES
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import Top, solve
+from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inputs.units import SYSTEMS
 from lagrange_cli.plot import film, globe
@@ -188,6 +188,15 @@ def test_the_pace_of_a_film(asked: dict[str, float], frames: int) -> None:
         assert found.t_max == pytest.approx(1.0)
     else:
         assert found.t_max == film.film_span(motion)
+
+
+def test_a_film_shows_at_most_1000_nutations() -> None:
+    motion = solve(Top())
+    longest = 1000 * (motion.T_nutation or 0.0)
+    assert film.film_pace(motion, duration=4.0, speed=longest / 4).t_max == longest
+    with pytest.raises(LagtopError, match="speed must be at most 107"):
+        film.film_pace(motion, duration=4.0, speed=math.nextafter(longest / 4, math.inf))
+    assert film.film_pace(solve(Top(theta0_deg=0)), duration=4.0, speed=1e9).t_max == 4e9
 
 
 @pytest.mark.parametrize("inputs", [{}, {"r0": 1000.0}, {"theta0_deg": 150.0}, {"theta0_deg": 0.0}])
