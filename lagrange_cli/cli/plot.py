@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import PurePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import parse_number
@@ -33,6 +33,13 @@ if TYPE_CHECKING:
 
 _FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
+_OF_KINDS = {
+    "t_max": tuple(name for name, kind in KINDS.items() if "t_max" in kind.options),
+    **dict.fromkeys(("key", "x", "y", "colour_limits"), ("map",)),
+    "camera": ("sphere",),
+}
+"""The kinds of picture that have an option; the other options are those of every picture."""
+_OF_A_FILM = ("t_max", "camera")
 HELP = "Draw pictures of one motion.\n\n\b\n{kinds}\n"
 
 
@@ -90,7 +97,7 @@ def _parse_limits(text: str) -> tuple[float, float]:
 def plot_command(
     top: TopOptions = top_options(UNCERTAIN, words("[SCENE] [KIND]...", KIND)),
     t_max: Value | None = option(TIME, "Last time.  [default: a few nutation periods]"),
-    key: str = option(KEY, "Key of `map`.", default=MAP_KEY, show_default=True),
+    key: str | None = option(KEY, f"Key of `map`.  [default: {MAP_KEY}]"),
     x: str | None = option(AXIS, "Horizontal axis of `map`, INPUT=[log:]start:stop:count."),
     y: str | None = option(AXIS, "Vertical axis of `map`.  [default: theta0]"),
     colour_limits: tuple[float, float] | None = option(
@@ -122,9 +129,15 @@ def plot_command(
     for name, value in pacing.items():
         if value is not None and animate is None:
             raise LagtopError(f"--{name} needs --animate FILE.gif")
+    of_kinds = {"t_max": t_max, "key": key, "x": x, "y": y, "camera": eye}
+    _check_kinds(of_kinds | {"colour_limits": colour_limits}, chosen, animate is not None)
+    if not output and fmt is not None:
+        raise LagtopError(f"--format needs -o FILE.{fmt}")
+    if not (output or animate) and dpi is not None:
+        raise LagtopError("--dpi needs -o FILE.png or --animate FILE.gif")
     require_matplotlib()
     from ..plot.curves import checked_span
-    from ..plot.page import Page, page_bytes, show_page
+    from ..plot.page import Page, empty_window, page_bytes, show_page
 
     top, times = top.in_seconds(t_max=t_max)
     found, axes = _given(top, x=x, y=y)
@@ -133,7 +146,7 @@ def plot_command(
         t_max=checked_span(motion, times["t_max"]),
         radians=top.radians,
         system=found.system,
-        key=key,
+        key=key or MAP_KEY,
         x=axes.get("x"),
         y=axes.get("y"),
         camera=eye,
@@ -153,12 +166,24 @@ def plot_command(
         check_film(page, animate, film_dpi)
         paced = {name: None if x is None else float(x) for name, x in pacing.items()}
         pace = film_pace(motion, t_max=request.t_max, **paced)
+    window = empty_window(page) if show else None
     if output is not None:
         write_bytes(output, lambda: page_bytes(page, written, page_dpi))
     if animate is not None:
         write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, pace, with_progress))
-    if show:
-        show_page(page)
+    if window:
+        show_page(page, window)
+
+
+def _check_kinds(options: Mapping[str, Any], kinds: Sequence[str], films: bool) -> None:
+    """Raise LagtopError for an option that none of the pictures has, and no film."""
+    for name, value in options.items():
+        filmed = name in _OF_A_FILM
+        if value is None or set(_OF_KINDS[name]) & set(kinds) or (filmed and films):
+            continue
+        needed = " or ".join([*_OF_KINDS[name], *["--animate FILE.gif"] * filmed])
+        flag = name.replace("_", "-")
+        raise LagtopError(f"--{flag} needs {needed}, got {', '.join(kinds)}")
 
 
 def _kinds(names: Sequence[str]) -> tuple[str, ...]:

@@ -243,8 +243,8 @@ def _fit_titles(figure: Figure) -> bool:
     return changed
 
 
-def show_page(page: Page) -> None:
-    """Open the page in a window and wait until it is closed.
+def empty_window(page: Page) -> Figure:
+    """Return an empty figure of the page in a window that `show_page` opens.
 
     Raises LagtopError if there is no display.
     """
@@ -255,7 +255,15 @@ def show_page(page: Page) -> None:
             figure = pyplot.figure(figsize=page.inches(), layout="constrained")
         except ImportError as error:  # from the toolkit that MPLBACKEND names
             raise LagtopError(f"show cannot open a window: {error}", "show") from None
-        if pyplot.get_backend().lower() == "agg":
-            raise LagtopError("show needs a display and a window toolkit (or write a file)", "show")
+    if pyplot.get_backend().lower() == "agg":
+        raise LagtopError("show needs a display and a window toolkit (or write a file)", "show")
+    return figure
+
+
+def show_page(page: Page, figure: Figure) -> None:
+    """Draw the page on its figure, open the window, and wait until it is closed."""
+    from matplotlib import pyplot
+
+    with styled(page.request.look, page.lettering()):
         draw_page(figure, page)
         pyplot.show()

@@ -74,6 +74,13 @@ REFUSED = [
     ("--animate x.gif --speed 0", "--speed must be > 0, got 0"),
     ("--animate x.gif --speed 1e3", "--speed must be at most 71.5417 (1000 nutation periods)"),
     ("--animate x.gif --speed 1 --duration 1 --t-max 1", "--speed must be omitted if"),
+    ("--x r0=1:2:3 -o x.png", "--x needs map, got sphere, angles, remainders, cubic"),
+    ("sphere --key b --animate x.gif", "--key needs map, got sphere"),
+    ("cubic phase --camera 30,15 -o x.png", "needs sphere or --animate FILE.gif, got cubic, phase"),
+    ("cubic --t-max 1 -o x.png", "--t-max needs sphere or angles or remainders or --animate"),
+    ("angles --colour-limits 0:1 -o x.png", "--colour-limits needs map, got angles"),
+    ("--show --dpi 90", "--dpi needs -o FILE.png or --animate FILE.gif"),
+    ("--show --format svg", "--format needs -o FILE.svg"),
     ("--animate x.avi", "--animate must be a file that ends in .gif or .mp4, got 'x.avi'"),
 ]
 """Options, the message, and the exit code if it is not 2."""
@@ -124,13 +131,15 @@ def test_the_help_needs_no_matplotlib_and_a_picture_says_how_to_get_it(tmp_path:
 
 
 @pytest.mark.slow
-def test_no_window_without_a_display() -> None:
+def test_no_window_without_a_display(tmp_path: Path) -> None:
     bare = {key: x for key, x in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
     for backend in ({}, {"MPLBACKEND": "tkagg"}):
-        result = process("plot", "--show", check=False, env=bare | backend)
+        words = ["plot", "--show", "-o", "x.png", "--animate", "x.gif"]
+        result = process(*words, check=False, cwd=tmp_path, env=bare | backend)
         assert result.returncode == 2
         assert result.stderr.startswith(b"Error: --show")
         assert result.stderr.count(b"\n") == 1
+        assert list(tmp_path.iterdir()) == []  # no file is written first
 
 
 @pytest.mark.slow
