@@ -116,7 +116,10 @@ def sweep_command(
     sweep = todo.sweep
     if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
         sweep, out = sweep._replace(fmt="csv"), out.replace(fmt="csv")
-    tally = Tally(fail_fast=fail_fast)
+    is_shown = "error" in sweep.header
+    tally = Tally(
+        fail_fast=fail_fast, remedy="" if is_shown else "; add error to --keys to see every reason"
+    )
     blocks = shard_of(todo.blocks, shard)
     parts_folder: Folder | None = None
     with ExitStack() as stack:

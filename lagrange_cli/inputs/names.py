@@ -31,7 +31,8 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
     known, names = list(known), list(names)
     for name in names or [""]:
         if name not in known:
-            wrong = f"got {quoted(name)}{suggestion(name, known)}"
+            got = f"{quoted(name)}{suggestion(name, known)}" if names else "an empty list"
+            wrong = f"got {got}"
             if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
                 raise LagtopError(f"{key} must be among {listed}, {wrong}", key)
             some = f"{', '.join(known[:_FIRST])} and {len(known) - _FIRST} more"

@@ -254,8 +254,8 @@ def shard_of(
 class Tally:
     """A count of the tops that have an error, updated as the parts pass."""
 
-    def __init__(self, *, fail_fast: bool = False) -> None:
-        self.fail_fast = fail_fast
+    def __init__(self, *, fail_fast: bool = False, remedy: str = "") -> None:
+        self.fail_fast, self.remedy = fail_fast, remedy
         self.count = self.failed = self.shown = 0
         self.first: tuple[int, str] | None = None
         """The number of the part with the first error, and the error."""
@@ -290,6 +290,5 @@ class Tally:
         if self.first and self.fail_fast:
             raise SomeFailedError(self.first[1])
         if self.first:
-            raise SomeFailedError(
-                f"{self.failed} of {self.count} tops have an error; the first: {self.first[1]}"
-            )
+            found = f"{self.failed} of {self.count} tops have an error"
+            raise SomeFailedError(f"{found}; the first: {self.first[1]}{self.remedy}")

@@ -52,8 +52,9 @@ def sweep(
     Quantities of pint are converted to SI.  Single numbers may be ufloats, which add `KEY_std`.
     Only `keys` are computed; angles are in degrees or `radians`.  If a regime has no value for a
     key, its number is NaN and its text None.  An invalid top has an `error` and no values.  If a
-    number is beyond the range of doubles, it is NaN, and `error` says so.  Raises LagtopError for
-    an unknown input or key, for labels that differ, or if shapes do not broadcast together.
+    number is beyond the range of doubles, it is NaN, and `error` says so.  If `keys` lacks `error`,
+    the results have it only if a top has an error.  Raises LagtopError for an unknown input or key,
+    for labels that differ, or if shapes do not broadcast together.
 
     >>> sweep(r0=[[50.0], [60.0]], theta0_deg=[30.0, 90.0], keys=["T_nutation"]).to_xarray().sizes
     Frozen({'r0': 2, 'theta0_deg': 2})
@@ -65,14 +66,19 @@ def sweep(
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, first + step)
-        records(
+        part = records(
             together.part(rows),
             list(found),
             radians=radians,
             columns={key: x[rows] for key, x in found.items()},
         )
+        if part["error"].any():
+            found.setdefault("error", np.full(size, None))[rows] = part["error"]
     stds = together.stds_of(found) if together.stds else {}
-    columns = {key: found[key] for key in chosen} | stds
+    columns = {key: found[key] for key in chosen}
+    if "error" in found and found["error"].any():
+        columns["error"] = found["error"]
+    columns |= stds
     return together.results({key: x.reshape(together.shape) for key, x in columns.items()})
 
 
@@ -104,8 +110,8 @@ def records(
 ) -> dict[str, ResultColumn]:
     """Return the columns of a block of tops; rows that already have an error stay empty.
 
-    The columns are new, unless columns of `_empty_columns` are passed.  The result does not depend
-    on the `numpy.errstate` of the caller.
+    The columns are new, unless columns of `_empty_columns` are passed, and always have `error`.
+    The result does not depend on the `numpy.errstate` of the caller.
     """
     with ARRAYS.working():
         columns = _empty_columns(keys, tops.m.size) if columns is None else columns
@@ -122,7 +128,7 @@ def records(
         for row in range(tops.m.size) if block.requested else alone:
             keys_left = [*block.texts, *block.numbers] if left[row] else []
             block.solve(row, [*keys_left, *block.requested])
-        return columns
+        return block.columns
 
 
 class _Block:

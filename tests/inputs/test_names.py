@@ -25,7 +25,7 @@ def test_names_that_are_fine() -> None:
         (["gamma"], "keys must be among alpha, beta, T_nutation, got 'gamma'"),
         (["T_nutatoin"], "got 'T_nutatoin' (did you mean 'T_nutation'?)"),
         (["alpha", "alpha"], "keys must not repeat a name, got 'alpha' twice"),
-        ([], "keys must be among alpha, beta, T_nutation, got ''"),
+        ([], "keys must be among alpha, beta, T_nutation, got an empty list"),
         (["alpha", ""], "got ''"),
         ([1], "got 1"),
         (["x" * 5000], f"got '{'x' * 77}...'"),

@@ -203,7 +203,7 @@ def test_sweeps_take_them_from_solve(lagtop: Lagtop) -> None:
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ([], "keys must be among .*, got ''"),
+        ([], "keys must be among .*, got an empty list"),
         (["a", "a"], "keys must not repeat a name, got 'a' twice"),
         (["Lz", "Lz"], "keys must not repeat a name, got 'Lz' twice"),
         ([["a"]], r"keys must be among .*, got \['a'\]"),

@@ -239,6 +239,18 @@ def test_bad_tops_have_an_error_and_harm_no_other() -> None:
     assert np.isfinite(found["T_nutation"]).tolist() == [True, False, False, False]
 
 
+def test_the_reason_of_a_bad_top_is_not_lost(lagtop: Lagtop) -> None:
+    """The results have `error` if a top has one; the command names the key that shows it."""
+    bad = sweep(m=[1587, -1, 0] + 4000 * [1587], keys=["T_nutation"])
+    assert list(bad) == ["T_nutation", "error"]
+    assert bad["error"][:3].tolist() == [None, *(f"m must be > 0, got {x}" for x in (-1.0, 0.0))]
+    assert not bad["error"][3:].any()
+    assert list(sweep(m=[1587], keys=["T_nutation"])) == ["T_nutation"]
+    assert list(sweep(m=[-1], keys=["error", "a"])) == ["error", "a"]
+    shown = lagtop("sweep", "--m", "1,-1,-2", "--keys", "T_nutation,error")
+    assert shown.stderr.endswith("the first: m must be > 0, got -1.0\n")
+
+
 @pytest.mark.parametrize(
     "wrong",
     [{"keys": ["x"]}, {"keys": []}, {"keys": ["a", "a"]}, {"x": 1}, {"r0": [1, 2], "m": [1, 2, 3]}],
@@ -301,7 +313,8 @@ def test_keys_of_a_grid_are_all_that_is_printed(lagtop: Lagtop) -> None:
     assert failed.exit_code == 1
     assert failed.stdout.splitlines()[::2] == ["k", '""']
     assert failed.stderr == (
-        "Error: 1 of 2 tops have an error; the first: theta0_deg must be in [0, 180], got -1.0\n"
+        "Error: 1 of 2 tops have an error; the first: theta0_deg must be in [0, 180], got -1.0"
+        "; add error to --keys to see every reason\n"
     )
 
 
