@@ -40,7 +40,7 @@ class Cubic(NamedTuple):
     u1: float
     u2: float
     u3: float | None
-    """The third root; None without torque."""
+    """The third root; None without torque and for a vertical axis."""
 
     @property
     def u3_in_view(self) -> float | None:
@@ -52,7 +52,8 @@ class Cubic(NamedTuple):
         hump = float(self.f[self.between(self.u1)].max(initial=0.0))
         most = float(np.abs(self.f).max())
         if hump <= 1e-3 * most:  # none that could be seen
-            return -1.1 * most, 0.35 * most
+            above = bool(self.f[0] > 0)  # beside an upright top that is unstable
+            return (-0.35 * most, 1.1 * most) if above else (-1.1 * most, 0.35 * most)
         depth = -float(self.f[self.between(self.u3_in_view or self.u1)].min(initial=0.0))
         return -min(max(1.3 * depth, 0.6 * hump), 1.4 * hump), 1.3 * hump
 
@@ -73,8 +74,8 @@ def cubic_curve(motion: Motion) -> Cubic:
     width = max(right - u2, NARROWEST) if right > u2 else 0.4
     u = np.linspace(u2 - 0.4 * width, right + 0.4 * width, 801)
     f = (u - u1) * (u - u2)
-    if u3 is None:
-        f *= -(motion.energy_constant + float(motion.b) ** 2)
+    if u3 is None:  # the roots of a cubic add up to (alpha + b^2)/a
+        f *= float(motion.a) * (u + u1 + u2) - (motion.energy_constant + float(motion.b) ** 2)
     else:
         f *= float(motion.a) * (u - u3)
     return Cubic(u, f, u1, u2, u3)
