@@ -20,6 +20,7 @@ from ..elliptic.complete import complete_k
 from ..errors import LagtopError
 from ..motion.regime import Regime
 from ..motion.solve import Motion
+from .kinds import TITLES
 
 PHASES = 48
 """Samples per half period, before `refined` adds more where a curve is steep."""
@@ -43,19 +44,10 @@ def tilt_period(motion: Motion) -> float | None:
 
 
 def motion_in_words(motion: Motion) -> str:
-    """Return a few words on a motion: its path, or its regime if that is more informative.
-
-    Upright and hanging tops are called stable or unstable.
-    """
-    regime = motion.regime
-    stability = "stable" if motion.exact.facts.stable else "unstable"
-    words = {
-        Regime.SLEEPING: f"sleeping, {stability}",
-        Regime.HANGING: "hanging, stable",
-        Regime.SEPARATRIX: "separatrix, rises to upright for ever",
-        Regime.REGULAR: f"{motion.path} path",
-    }
-    return words.get(regime, regime.value)
+    """Return a few words on a motion, from `TITLES`."""
+    regime, stable = motion.regime.value, bool(motion.exact.facts.stable)
+    true = {"regime": regime, "stable": stable, "path": motion.path}.items()
+    return next(text for when, text in TITLES if when.items() <= true)
 
 
 def span(motion: Motion, periods: float) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from ..arithmetic.numbers import angle_unit
 from ..output.terminal import Progress, silent
@@ -28,6 +28,27 @@ if TYPE_CHECKING:
 
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows by default."""
+
+TITLES: list[tuple[dict[str, Any], str]] = [
+    ({"regime": "sleeping", "stable": True}, "sleeping, stable"),
+    ({"regime": "sleeping"}, "sleeping, unstable"),
+    ({"regime": "hanging"}, "hanging, stable"),
+    ({"regime": "torque-free"}, "torque-free"),
+    ({"regime": "separatrix"}, "separatrix, rises to upright for ever"),
+    ({"regime": "steady precession"}, "steady precession"),
+    ({"plane": True}, "plane pendulum"),
+    ({"regime": "no spin"}, "no spin"),
+    ({"constant": True}, "almost steady precession"),
+    ({"fast": True}, "pseudo-regular precession"),
+    ({"path": "cusped"}, "cusped path"),
+    ({"path": "looping"}, "looping path"),
+    ({}, "wavy path"),
+]
+"""A few words on each motion: its path, or its regime if that is more informative.
+
+They are chosen by the rules of `PHRASES`.  Only the browser page knows `plane`, `constant` and
+`fast`.
+"""
 
 
 class PlotRequest(NamedTuple):

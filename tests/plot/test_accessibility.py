@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from browsers import Browser
+from scenes import SAMPLES
 
 pytestmark = pytest.mark.slow
 
@@ -63,7 +64,7 @@ def test_keys_work_every_control(browser: Browser) -> None:
     browser.press("\b\b60" + ENTER, "field-r0")
     assert browser.ask("return page.scene.r0") == 60
     browser.press(DOWN, "examples")
-    assert browser.ask("return page.scene.r0") == 50
+    assert browser.ask("return [at.examples.value, page.scene.r0]") == [SAMPLES[0].stem, 150]
     browser.press(" ", "waves")
     assert browser.ask("return at.waves.checked")
     browser.press(RIGHT, "scrub")

@@ -21,7 +21,7 @@ from pictures import REGIMES, sample_motion
 from scenes import NAMED, SAMPLES, UNIT, random_scene
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Motion, Top, solve, view
+from lagrange_cli import LagtopError, Motion, Regime, Top, solve, view
 from lagrange_cli.motion.summary import summary
 from lagrange_cli.plot.browser import page_scene
 
@@ -187,7 +187,7 @@ def test_attitudes_and_records_of_scenes_that_sliders_reach(browser: Browser) ->
         *(moves, times_of(solve(Top(g=0, theta0_deg=0)))),
     )
     known = [solve(Top(**page["scene"])) for page in found]
-    assert len(known) == 300
+    assert len(known) == 20 * (1 + len(SAMPLES))
     for motion, page in zip(known, found, strict=True):
         sentence = re.sub(r"e[+]?(-?)0", r"e\1", summary(motion.record(), motion.exact.facts))
         assert page["said"].replace("−", "-") == sentence, page["scene"]
@@ -419,7 +419,7 @@ def test_the_link_carries_the_scene(browser: Browser, page_file: Path) -> None:
     browser.ask("location.hash = '#psidot0=-4'")
     browser.settle()
     assert browser.ask("return [page.scene.psidot0, document.title]") == [
-        *(-4, "Regular motion with loops · lagtop")
+        *(-4, "Looping path · lagtop")
     ]
     bad_names = (f"#{name}=1" for name in ("colour", "__proto__", "constructor", "toString"))
     for bad in (
@@ -524,27 +524,50 @@ def test_pinching_zooms_in(browser: Browser) -> None:
     assert browser.complaints() == []
 
 
-def test_every_example_is_shown(browser: Browser) -> None:
+def test_every_example_is_a_shipped_scene_and_moves(browser: Browser) -> None:
+    """Name, first line and inputs are those of the file."""
     seen = browser.ask(
-        """return [...at.examples.options].map((option) => {
+        """return [...at.examples.options].slice(1).map((option) => {
             at.examples.value = option.value;
             at.examples.dispatchEvent(new Event("change"));
-            page.clock.set(page.clock.period / 3);
             page.draw();
-            return [option.value, at.title.textContent, page.scene, page.motion.record.regime];
+            const before = at.now.textContent;
+            page.clock.play(true);
+            page.clock.pass(0.1);
+            page.draw();
+            page.clock.play(false);
+            const moves = at.now.textContent !== before;
+            const { scene, motion } = page;
+            return [option.value, at.remark.textContent, scene, motion.record.regime, moves];
         })"""
     )
-    assert len(seen) > 12
-    for name, _, scene, regime in seen:
-        assert solve(Top(**scene)).regime == regime, name
-    assert {regime for *_, regime in seen} == {
-        *("regular", "steady precession", "separatrix", "sleeping", "hanging"),
-        *("torque-free", "no spin"),
-    }
-    titles = {title for _, title, *_ in seen}
-    for word in ("cusps", "loops", "waves"):
-        assert any(word in title for title in titles)
+    assert [name for name, *_ in seen] == [path.stem for path in SAMPLES]
+    for (_, remark, scene, regime, moves), path in zip(seen, SAMPLES, strict=True):
+        assert f"# {remark}" == path.read_text().partition("\n")[0]
+        assert scene == page_scene(sample_motion(path))
+        assert (solve(Top(**scene)).regime, moves) == (regime, True), path.stem
+    assert {regime for *_, regime, _ in seen} == {regime.value for regime in Regime}
+    browser.ask("at.reset.click()")
+    assert browser.ask("return [at.remark.textContent, page.scene.r0]") == ["", 50]
     assert browser.complaints() == []
+
+
+@pytest.mark.parametrize(
+    ("inputs", "title"),
+    [
+        ({}, "Cusped path"),
+        ({"psidot0": 4}, "Wavy path"),
+        ({"r0": 400}, "Pseudo-regular precession"),
+        ({"r0": 0}, "Plane pendulum"),
+        ({"theta0_deg": 180}, "Hanging, stable"),
+        ({**LEVEL, "r0": 1, "psidot0": 1 + 2**-52}, "Almost steady precession"),
+    ],
+)
+def test_the_title_names_the_motion(browser: Browser, inputs: dict[str, float], title: str) -> None:
+    fragment = "&".join(f"{name}={value!r}" for name, value in inputs.items())
+    browser.ask("location.hash = arguments[0]", f"#{fragment}")
+    browser.settle()
+    assert browser.ask("return at.title.textContent") == title
 
 
 def test_everything_has_a_name(browser: Browser) -> None:

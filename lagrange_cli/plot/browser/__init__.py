@@ -1,6 +1,6 @@
 """The page of a top for the browser: one HTML file that needs no network and no other file.
 
-Its scripts receive inputs, keys, words, examples and limits as JSON and repeat none of them.
+Its scripts receive inputs, keys, words, scenes and limits as JSON and repeat none of them.
 """
 
 from __future__ import annotations
@@ -15,16 +15,18 @@ from collections.abc import Callable
 from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 from ...errors import LagtopError, check_type
-from ...inputs.input_keys import DECLARED, EXAMPLE, NINE, TILT, Input
+from ...inputs.input_keys import DECLARED, NINE, TILT, Input
+from ...inputs.library_values import read_scene
+from ...inputs.scene_file import scene_names, scene_remark
 from ...inputs.top import Top
 from ...motion.explanation import listed
 from ...motion.notebook import Document
 from ...motion.record import KEYS, requested_keys
 from ...motion.solve import Motion, solve
 from ...motion.summary import PHRASES
+from ..kinds import TITLES
 from ..style import DARK, HEIGHT, LIGHT, RADIUS, WEDGES, Look
 
 _IMPORT = re.compile(r'^import \{[^}]*\} from "([^"]+)";\n', re.MULTILINE)
@@ -42,45 +44,6 @@ FACTOR = "stability_factor"
 """The key on request that the page shows below a and b."""
 
 PageScene = dict[str, float]
-
-UNIT = dict.fromkeys(EXAMPLE, 0.0) | dict.fromkeys(("m", "A", "C", "s", "g", "r0"), 1.0)
-LEVEL = UNIT | {"theta0_deg": 90.0}
-GYROSCOPE = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81, "r0": 1256.6370614359172}
-
-EXAMPLES: dict[str, PageScene] = {
-    "Cusps: released at rest (Chrapan 1952)": EXAMPLE,
-    "Loops: started against its precession": EXAMPLE | {"psidot0": -4.0},
-    "Waves: started along its precession": EXAMPLE | {"psidot0": 4.0},
-    "Steady precession": LEVEL | {"psidot0": 1.0},
-    "Fast gyroscope": EXAMPLE | GYROSCOPE | {"theta0_deg": 60.0},
-    "Slow top: falls nearly to the bottom": EXAMPLE | {"r0": 5.0, "theta0_deg": 20.0},
-    "Sleeping": EXAMPLE | {"r0": 60.0, "theta0_deg": 0.0},
-    "Too slow to sleep: waits, then falls": EXAMPLE | {"theta0_deg": 1e-3},
-    "Separatrix: rises for ever": LEVEL | {"A": 2.0, "r0": 0.0, "thetadot0": -1.0},
-    "Hanging and swinging": EXAMPLE | {"r0": 10.0, "theta0_deg": 150.0},
-    "Hanging straight down": EXAMPLE | {"r0": 10.0, "theta0_deg": 180.0},
-    "Spherical pendulum": EXAMPLE | {"r0": 0.0, "theta0_deg": 120.0, "psidot0": 9.0},
-    "Plane pendulum": EXAMPLE | {"r0": 0.0, "theta0_deg": 120.0},
-    "Without torque": EXAMPLE | {"g": 0.0, "psidot0": 8.0},
-}
-"""Scenes offered as examples."""
-
-TITLES: list[tuple[dict[str, Any], str]] = [
-    ({"regime": "sleeping", "stable": True}, "Sleeping, stable"),
-    ({"regime": "sleeping"}, "Sleeping, unstable"),
-    ({"regime": "hanging"}, "Hanging"),
-    ({"regime": "torque-free"}, "Without torque"),
-    ({"regime": "separatrix"}, "Separatrix"),
-    ({"regime": "steady precession"}, "Steady precession"),
-    ({"plane": True}, "Plane pendulum"),
-    ({"regime": "no spin"}, "Spherical pendulum"),
-    ({"constant": True}, "Almost steady precession"),
-    ({"fast": True}, "Pseudo-regular precession"),
-    ({"path": "cusped"}, "Regular motion with cusps"),
-    ({"path": "looping"}, "Regular motion with loops"),
-    ({}, "Regular motion in waves"),
-]
-"""The title of each kind of motion, by the rules of `PHRASES`."""
 
 
 def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
@@ -162,7 +125,10 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
     data = {
         "SCENE": page_scene(motion),
         "UNITS": {name: unit(name) for name in ("mass", "len", "time")},
-        "EXAMPLES": EXAMPLES,
+        "EXAMPLES": {
+            name: {"remark": scene_remark(name), "inputs": page_scene(solve(read_scene(name)))}
+            for name in scene_names()
+        },
         "INPUTS": {_key(name): _input(DECLARED[name]) for name in NINE},
         "KEYS": _keys(),
         "PHRASES": {"title": TITLES} | PHRASES,

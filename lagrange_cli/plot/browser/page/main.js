@@ -52,17 +52,20 @@ class Page {
     this.complain(near ? complaint : `The link was not understood: t = ${t} is too far away`);
   }
 
+  /** Offer the scene of the file and the shipped ones; a choice shows its first line and moves. */
   offerExamples() {
-    const { examples, reset, units } = this.at;
-    const all = { "This scene": SCENE, ...EXAMPLES };
+    const { examples, reset, units, remark } = this.at;
+    const own = { remark: "", inputs: SCENE };
+    const all = { "This scene": own, ...EXAMPLES };
     examples.append(...Object.keys(all).map((name) => new Option(name)));
     const words = units.textContent;  // the units of the scene of the file
     const choose = () => {
       const scene = all[examples.value];
-      this.units = scene === SCENE ? UNITS : {};
-      units.textContent = scene === SCENE ? words : "in any consistent units";
+      this.units = scene === own ? UNITS : {};
+      units.textContent = scene === own ? words : "in any consistent units";
+      remark.textContent = scene.remark;
       this.camera.reset();
-      this.show(scene, true);
+      this.show(scene.inputs, true);
       this.clock.set(0);
     };
     examples.addEventListener("change", choose);

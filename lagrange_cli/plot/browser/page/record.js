@@ -62,7 +62,8 @@ export function wordsOf({ facts, record, scene }, units) {
     const fits = ([when]) => Object.entries(when).every(([fact, value]) => holds[fact] === value);
     return PHRASES[name].find(fits)[1].replace(/\{(\w+)\}/g, (_, inner) => part(inner));
   };
-  return [part("title"), part("sentence")];
+  const title = part("title");
+  return [title[0].toUpperCase() + title.slice(1), part("sentence")];
 }
 
 /** A number of the sentence; a rate whose digits are lost is near 0. */
