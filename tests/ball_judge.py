@@ -11,14 +11,17 @@ import math
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from arb_balls import exact_arb
+from arb_balls import exact_arb, many_digits
 from balls.angles import State
 from balls.record import Motion, Remainders
 from balls.requested import Requested
 from balls.scene import Number, Scene, Undecided, arb_bits, facts_of, scene_from
 from flint import arb
+
+from lagrange_cli import Top, solve
+from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 EPS = 2.0**-52
 FIRST_BITS, MOST_BITS = 160, 20_000
@@ -37,7 +40,7 @@ class Judge:
         self.facts = facts_of(self.scene)
         self._moments = Fraction(inputs["A"] or 0), Fraction(inputs["C"] or 0)
         self._motions: dict[int, Requested] = {}
-        self._first = FIRST_BITS
+        self._states: dict[tuple[Fraction, int], State] = {}
 
     def _raised(
         self, compute: Callable[[Requested], T], good: Callable[[T], bool], first: int
@@ -69,6 +72,10 @@ class Judge:
 
         return self._raised(Motion.record, good, FIRST_BITS)
 
+    def numbers(self) -> dict[str, Any]:
+        """Return the numbers of the record as numbers of mpmath, to 27 digits or more."""
+        return {key: many_digits(x) for key, x in self.record.items() if x is not None}
+
     @cached_property
     def requested(self) -> dict[str, arb | None]:
         """The numbers on request by key, each to 90 bits or proved to be below 2^-1100."""
@@ -96,16 +103,53 @@ class Judge:
 
         return self._raised(Motion.half_parts, good, 2 * FIRST_BITS)
 
-    def at(self, t: float | Fraction) -> State:
-        """Return the motion at a time, each angle within 2^-12 of its unit without whole turns."""
+    def at(self, t: float | Fraction, digits: int = 0) -> State:
+        """Return the motion at a time, each angle within 2^-12 of its unit without whole turns.
+
+        It is computed with about `digits` digits more than that takes.
+        """
         time = Fraction(t)
 
         def good(state: State) -> bool:
             return all(_narrow(*pair) for pair in _with_units(state, wrapped=True))
 
-        periods = abs(time) * Fraction(_size(self.scene))
-        far = max(0, math.ceil(math.log2(periods + 1)))
-        return self._raised(lambda motion: motion.at(time), good, FIRST_BITS + 64 * (far // 64))
+        if (time, digits) not in self._states:
+            first = self._bits_for(time) + 4 * digits
+            self._states[time, digits] = self._raised(lambda motion: motion.at(time), good, first)
+        return self._states[time, digits]
+
+    def _bits_for(self, time: Fraction) -> int:
+        """Return bits enough for the whole turns up to a time."""
+        turns = abs(time) * Fraction(_size(self.scene))
+        return FIRST_BITS + 64 * (max(0, math.ceil(math.log2(turns + 1))) // 64)
+
+    def columns(self, t: float | Fraction) -> dict[str, arb]:
+        """Return the columns of `lagtop table` but t, dphi and dpsi, by their definitions.
+
+        The nutation rate has the sign of the growth of the tilt right after t.
+        """
+        state, later = self.at(t), self.at(Fraction(t) + Fraction(1, 2**40))
+        with arb_bits(2 * FIRST_BITS):
+            A, C, a, r0 = map(exact_arb, (*self._moments, self.scene.a, self.scene.r0))
+            sin, cos, weight = state.theta.sin(), state.theta.cos(), a * A / 2
+            growing = 1 if later.theta > state.theta else -1
+            rise, across = growing * abs(state.theta_rate), state.psi_rate * sin
+            sin_phi, cos_phi = state.phi.sin(), state.phi.cos()
+            return {
+                **dict(zip(("theta", "phi", "psi"), state[:3], strict=True)),
+                **{"thetadot": rise, "phidot": state.phi_rate, "psidot": state.psi_rate},
+                "p": across * sin_phi + rise * cos_phi,
+                "q": across * cos_phi - rise * sin_phi,
+                "r": r0,
+                "u": cos,
+                "moment": weight * sin,
+                "axis_x": sin * state.psi.sin(),
+                "axis_y": -sin * state.psi.cos(),
+                "axis_z": cos,
+                **{f"quaternion_{x}": y for x, y in zip("wxyz", state.quaternion, strict=True)},
+                "energy": A * (rise**2 + across**2) / 2 + C * r0**2 / 2 + weight * cos,
+                "Lz": A * across * sin + C * r0 * cos,
+            }
 
     def angle_errors(self, t: float, computed: tuple[float, float, float]) -> list[float]:
         """Return the errors of theta, phi, psi (radians) in units."""
@@ -143,11 +187,10 @@ class Judge:
             ]
 
         time = Fraction(t)
-        far = max(0, math.ceil(math.log2(abs(time) * Fraction(_size(self.scene)) + 1)))
         exact = self._raised(
             lambda motion: motion.remainders(time),
             lambda found: all(_narrow(*pair) for pair in pairs(found)),
-            FIRST_BITS + 64 * (far // 64),
+            self._bits_for(time),
         )
         return _errors(computed, pairs(exact))
 
@@ -194,6 +237,17 @@ class Judge:
             if not size > 0:
                 return 0.0 if away.contains(0) else math.inf
             return float((away / (EPS * size)).abs_upper())
+
+
+def assert_nearest(scene: dict[str, Any]) -> None:
+    """Check that every key of a record is the double nearest to its value, and 0 where that is."""
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
+    for key in (*NUMBER_KEYS, *requested_keys()):
+        computed = getattr(motion, key)
+        if computed is None:
+            assert judge.exact(key) is None, key
+        else:
+            assert judge.ulps(key, computed) <= 0.5 + 1e-9, (key, scene)
 
 
 def _with_units(state: State, *, wrapped: bool = False) -> list[tuple[arb, arb]]:

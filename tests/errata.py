@@ -13,7 +13,9 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import mpmath
-import oracle
+from ball_judge import Judge
+
+from lagrange_cli import Top
 
 
 class Verdict(StrEnum):
@@ -205,7 +207,7 @@ def errata_table() -> list[str]:
 class Figure(NamedTuple):
     """A number of section 8.
 
-    `text` is printed, `true` computes it from the oracle's values, and `own` from other figures as
+    `text` is printed, `true` computes it from the judge's values, and `own` from other figures as
     printed, which it may read from its argument by name; without `own` it stands alone.
     """
 
@@ -304,9 +306,10 @@ def interpolated(integral: Callable[[Any], Any], degrees: Any) -> Any:
 
 
 def true_values() -> Any:
-    """Return the oracle's constants of the worked example, with A and C."""
-    scene = oracle.Scene()
-    return SimpleNamespace(**oracle.constants(scene), A=mpmath.mpf(scene.A), C=mpmath.mpf(scene.C))
+    """Return the judge's numbers of the worked example, with A and C."""
+    top = Top()
+    numbers = Judge(top.as_dict()).numbers()
+    return SimpleNamespace(**numbers, A=mpmath.mpf(top.A), C=mpmath.mpf(top.C))
 
 
 def judged(figure: Figure, true: Any) -> str:

@@ -16,8 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import oracle
 import pytest
+from arb_balls import many_digits
+from ball_judge import Judge
 from conftest import ROOT, Lagtop, assert_one_line
 from scipy.integrate import solve_ivp
 
@@ -93,10 +94,10 @@ def test_digits_are_judged_with_more_of_them(digits: int) -> None:
     assert 0 < error(row) < 50 * 10.0**-digits  # of angles of up to 70 rad
 
 
-def test_the_judge_is_the_paper_in_many_digits() -> None:
-    work = task(solve(Top()), 3.0, 5)
+def test_the_exact_angles_are_those_of_the_judge() -> None:
+    work, judge = task(solve(Top()), 3.0, 5), Judge(Top().as_dict())
     for t, exact in zip(work.times.tolist(), work.exact, strict=True):
-        true = oracle.angles(oracle.Scene(), t)
+        true = map(many_digits, judge.at(t, 50)[:3])
         assert max(abs(x - y) for x, y in zip(exact[:3], true, strict=True)) < 1e-45
     assert work.agreement < 1e-45
 

@@ -13,9 +13,9 @@ from typing import Any
 
 import mpmath
 import numpy as np
-import oracle
 import pint
 import pytest
+from ball_judge import Judge
 from conftest import Lagtop, assert_one_line
 from scipy.integrate import solve_ivp
 from uncertainties import ufloat
@@ -29,6 +29,11 @@ from lagrange_cli.fits.search import Search, read_conditions
 from lagrange_cli.inputs.ranges import parse_span
 
 
+def numbers_of(**scene: float) -> dict[str, Any]:
+    """Return the record of a top by the judge."""
+    return Judge(Top(**scene).as_dict()).numbers()
+
+
 @pytest.mark.parametrize(
     ("key", "wanted", "found"),
     [("T_precession", 2.0, 1), ("T_nutation", 0.45, 2), ("theta_max_deg", 90.0, 1)],
@@ -39,7 +44,7 @@ def test_no_neighbour_of_an_unknown_comes_nearer(key: str, wanted: float, found:
     for motion in motions:
         r0 = float(motion.top.r0)
         near = [r0, math.nextafter(r0, 0), math.nextafter(r0, math.inf)]
-        off = [abs(oracle.constants(oracle.Scene(r0=x), 30)[key] - wanted) for x in near]
+        off = [abs(numbers_of(r0=x)[key] - wanted) for x in near]
         # half an ulp of the number is all that a comparison of doubles can see
         assert off[0] <= min(off) + math.ulp(wanted) / 2
 
@@ -144,8 +149,7 @@ def test_several_unknowns(conditions: list[str], unknowns: dict[str, Any]) -> No
     motions = find(conditions, **unknowns).motions
     assert motions
     for motion in motions:
-        inputs = {name: float(getattr(motion.top, name)) for name in oracle.Scene._fields}
-        numbers = oracle.constants(oracle.Scene(**inputs), 30)
+        numbers = Judge(motion.top.as_dict()).numbers()
         for condition in conditions:
             key, _, wanted = condition.partition("=")
             assert float(numbers[key]) == pytest.approx(float(wanted), rel=5e-15)
@@ -301,9 +305,9 @@ def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> No
     assert_one_line(lagtop("find", *words.split()), code, message)
 
 
-def seen_of(scene: oracle.Scene) -> tuple[list[str], float, float]:
-    """Return what is seen of a top released from rest, and its a and b, by mpmath."""
-    numbers = oracle.constants(scene, 30)
+def seen_of(**scene: float) -> tuple[list[str], float, float]:
+    """Return what is seen of a top released from rest, and its a and b, by the judge."""
+    numbers = numbers_of(**scene)
     names = ("theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate")
     seen = [f"{name}={float(numbers[name])!r}" for name in names]
     return seen, float(numbers["a"]), float(numbers["b"])
@@ -313,7 +317,7 @@ def seen_of(scene: oracle.Scene) -> tuple[list[str], float, float]:
 def test_turning_points_give_a_and_b(seed: int) -> None:
     rng = random.Random(seed)
     r0 = rng.choice((-1, 1)) * rng.uniform(5, 120)
-    seen, a, b = seen_of(oracle.Scene(r0=r0, theta0_deg=rng.uniform(10, 150)))
+    seen, a, b = seen_of(r0=r0, theta0_deg=rng.uniform(10, 150))
     found = invert(seen)
     best = min(found, key=lambda x: abs(x.a - a) + abs(x.b - b))
     # the worst of 300 such tops was off by 6e-13: a small nutation says little about k
@@ -372,8 +376,7 @@ def test_turning_points_of_a_top_that_started_moving() -> None:
 
 
 def test_the_spin_gives_the_moments() -> None:
-    numbers = oracle.constants(oracle.Scene(), 30)
-    seen, _, _ = seen_of(oracle.Scene())
+    numbers, (seen, _, _) = numbers_of(), seen_of()
     known = {"m": 1587.0, "g": 981.0, "s": 4.0}
     (motion,) = invert([*seen, f"mean_spin_rate={float(numbers['mean_spin_rate'])!r}"], known=known)
     assert float(motion.top.A) == pytest.approx(39032, rel=1e-11)
@@ -510,8 +513,8 @@ def test_a_leap_at_zero_is_no_root(lagtop: Lagtop) -> None:
 
 def test_a_leap_at_zero_hides_no_root() -> None:
     (motion,) = find(["mean_precession_rate=-11.5"], r0="-60:60", theta0_deg=120).motions
-    scene = oracle.Scene(r0=float(motion.top.r0), theta0_deg=120)
-    assert float(oracle.constants(scene, 30)["mean_precession_rate"]) == pytest.approx(-11.5)
+    numbers = Judge(motion.top.as_dict()).numbers()
+    assert float(numbers["mean_precession_rate"]) == pytest.approx(-11.5)
 
 
 @pytest.mark.parametrize(("relation", "holds"), [("<", 1), ("<=", 3), (">", 4), (">=", 6)])

@@ -11,25 +11,13 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from ball_judge import Judge
+from ball_judge import Judge, assert_nearest
 from conftest import Lagtop
 from scenes import UNIT
 
 from lagrange_cli import Top, solve
-from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
-
-
-def assert_nearest(scene: dict[str, float]) -> None:
-    """Check that every key of a record is the double nearest to its value, and 0 where that is."""
-    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
-    for key in (*NUMBER_KEYS, *requested_keys()):
-        computed = getattr(motion, key)
-        if computed is None:
-            assert judge.exact(key) is None, key
-        else:
-            assert judge.ulps(key, computed) <= 0.5 + 1e-9, key
 
 
 # Doubles
