@@ -14,9 +14,11 @@ from ..output.terminal import with_progress
 from .options import (
     COUNT,
     NUMBER,
+    POSITIVE,
     REPORT_FORMATS,
     arguments,
     command,
+    count_up_to,
     flag,
     jobs_option,
     late,
@@ -71,12 +73,14 @@ def bench_command(
     scenes: Sequence[str] = arguments(SCENE, "[SCENE]..."),
     top: TopOptions = top_options(INPUT, None),
     t_max: Fraction | None = option(NUMBER, "Last time.  [default: 20.3 nutation periods]"),
-    count: int | None = option(COUNT, "Number of times.  [default: 1e4; 1e3 with --long]", "--n"),
+    count: int | None = option(
+        count_up_to(MOST_TIMES), "Number of times.  [default: 1e4; 1e3 with --long]", "--n"
+    ),
     methods: list[str] | None = option(
         names_type(_methods), "Methods, or groups such as engines.  [default: all but engines]"
     ),
     timeout: Fraction = option(
-        NUMBER, "Time limit of a run, in seconds.", default="3", show_default=True
+        POSITIVE, "Time limit of a run, in seconds.", default="3", show_default=True
     ),
     is_long: bool = flag("Compare over spans of 1 to 1e6 periods instead.", "--long"),
     plot: str | None = plot_option,
@@ -100,10 +104,6 @@ def bench_command(
 
     if t_max == 0:
         raise LagtopError("--t-max must not be 0")
-    if count is not None and not 1 <= count <= MOST_TIMES:
-        raise LagtopError(f"--n must be in [1, {MOST_TIMES}], got {count}")
-    if not timeout > 0:
-        raise LagtopError(f"--timeout must be > 0, got {float(timeout)}")
     check_plot(plot, out.path)
     chosen = chosen_methods(methods, float(timeout))
     names: Sequence[str | None] = scenes or [None]
@@ -140,7 +140,7 @@ def bench_command(
 )
 def stability_command(
     scenes: int = option(  # the help lists it among the options of the command, as `first_seed`
-        COUNT,
+        count_up_to(MOST_SCENES),
         "Scenes per stratum; 200 make a thorough test.",
         "--samples",
         default=str(SCENES),
@@ -159,8 +159,6 @@ def stability_command(
     out: Output = output_options(*REPORT_FORMATS),
 ) -> None:
     """Compare methods in random scenes; STABILITY is the help."""
-    if not 1 <= scenes <= MOST_SCENES:
-        raise LagtopError(f"--samples must be in [1, {MOST_SCENES}], got {scenes}")
     from ..bench import stability
     from ..bench.pictures import draw_stability
     from ..plot.files import check_plot

@@ -13,7 +13,7 @@ from ..output.terminal import with_progress
 from .app import complain
 from .options import (
     FILE,
-    NUMBER,
+    POSITIVE,
     REPORT_FORMATS,
     Parsed,
     choice,
@@ -76,7 +76,7 @@ def compare_command(
         "Step sizes of the trajectories, for the order of convergence.",
     ),
     max_error: Fraction | None = option(
-        NUMBER, "Largest acceptable error in rad.  [default: 0.001]"
+        POSITIVE, "Largest acceptable error in rad.  [default: 0.001]"
     ),
     exit_zero: bool = flag("Exit with 0 even if a trajectory is not fine."),
     dialect: Dialect = text_options,
@@ -97,8 +97,6 @@ def compare_command(
     from ..judge.report import comparison_report, failures
     from ..plot.files import check_plot
 
-    if max_error is not None and not max_error > 0:
-        raise LagtopError(f"--max-error must be > 0, got {float(max_error)}")
     check_plot(plot, out.path)
     if not top.words:
         raise LagtopError("no trajectory: give a file, or - for standard input")

@@ -69,7 +69,7 @@ def _parse_distance(text: str) -> ExactComplex:
     lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0:9:99 -o e.csv
     lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
     """,
-    exclusive=["--p: --gap-above --gap-below"],
+    exclusive=["--p --gap-above", "--p --gap-below"],
 )
 def eta_command(
     delta: Fraction = option(NUMBER, "Upper end of the band.", required=True),

@@ -76,7 +76,7 @@ def _parse_window(text: str) -> tuple[float, bool]:
     lagtop fit recording.csv --m 1587 --g 981 -o fitted.toml
     lagtop fit recording.csv --sigma 0.3 --plot residuals.svg
     """,
-    exclusive=["--window: --by --plot"],
+    exclusive=["--window --by", "--window --plot"],
 )
 def fit_command(
     top: TopOptions = top_options(

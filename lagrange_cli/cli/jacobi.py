@@ -13,11 +13,11 @@ from ..inputs.names import check_names
 from ..output.terminal import with_progress
 from .app import complain
 from .options import (
-    COUNT,
     MOST_TABLE_DIGITS,
     NUMBER,
     Parsed,
     command,
+    count_up_to,
     digits_option,
     late,
     names_type,
@@ -108,7 +108,10 @@ function_formats = output_options("table", "csv", "json", "ndjson", "markdown", 
     lagtop jacobi --modular-angle 45 --u 0:4K:101 -o sn.csv
     lagtop jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i
     """,
-    exclusive=["--phi: --u --series --functions", "--series: --digits --functions"],
+    exclusive=[
+        *("--phi --u", "--phi --series", "--phi --functions"),
+        *("--series --digits", "--series --functions"),
+    ],
 )
 def jacobi_command(
     k: ExactComplex | None = option(
@@ -135,7 +138,7 @@ def jacobi_command(
         RANGE, "Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
     ),
     series: int | None = option(
-        COUNT, "Print the first N partial sums of the nome series instead."
+        count_up_to(MOST_TERMS), "Print the first N partial sums of the nome series instead."
     ),
     rad: bool = rad_option,
     digits: int | None = digits_option(MOST_TABLE_DIGITS),
@@ -273,8 +276,6 @@ def _write_series(
     """Write the sums, and on standard error the sufficient number of terms."""
     from ..elliptic.nome_series import TOLERANCE, SeriesTable
 
-    if not 1 <= terms <= MOST_TERMS:
-        raise LagtopError(f"--series must be in [1, {MOST_TERMS}], got {terms}")
     if arguments is not None and arguments.real.count != 1:
         raise LagtopError(f"--series takes one --u, got {arguments.real.count}")
     u = None if arguments is None else next(arguments.real.decimals())

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from functools import partial
 from importlib import import_module
 from inspect import signature
 from os.path import splitext
@@ -113,8 +115,8 @@ def command(
 ) -> Callable[[Callable[..., None]], Command]:
     """Make a command of a function whose parameters declare options.
 
-    An entry of `exclusive` lists flags of which only one can be given, or a flag with a colon and
-    flags that it excludes.  `text` replaces the docstring.
+    An entry of `exclusive` lists flags of which only one can be given.  `text` replaces the
+    docstring.
     """
 
     def decorate(function: Callable[..., None]) -> Command:
@@ -127,10 +129,8 @@ def command(
         names = {flag: str(param.name) for param in params for flag in param.opts}
 
         def run(**values: Any) -> None:
-            for entry in exclusive:
-                one, colon, others = entry.rpartition(": ")
-                for flags in others.split() if colon else [others]:
-                    exclude({x: values[names[x]] for x in f"{one} {flags}".split()})
+            for flags in exclusive:
+                exclude({x: values[names[x]] for x in flags.split()})
             for argument, group in groups.items():
                 own = {param.name for param in group.params}
                 in_order = [name for name in values if name in own]  # of the command line
@@ -151,12 +151,21 @@ def exclude(options: dict[str, Any]) -> None:
         raise LagtopError(f"use {given[0]} or {given[1]}, not both")
 
 
-def _parse_count(text: str) -> int:
-    """Return a whole number, which may be written as 1e6."""
+def _parse_count(text: str, most: int | None = None) -> int:
+    """Return a whole number, which may be written as 1e6, from 1 to `most` if that is given."""
     exact = parse_number(text)
     if exact.denominator != 1:
         raise LagtopError(f"must be a whole number, got {text}")
+    if most is not None and not 1 <= exact <= most:
+        raise LagtopError(f"must be in [1, {most}], got {exact}")
     return int(exact)
+
+
+def _parse_positive(text: str) -> Fraction:
+    exact = parse_number(text)
+    if not exact > 0:
+        raise LagtopError(f"must be > 0, got {float(exact)}")
+    return exact
 
 
 def names_type(
@@ -168,22 +177,21 @@ def names_type(
 
 _all_keys = late("motion.record", "all_keys")
 FILE, FOLDER = Parsed("FILE", str), Parsed("DIR", str)
-NUMBER = Parsed("X", parse_number)
+NUMBER, POSITIVE = Parsed("X", parse_number), Parsed("X", _parse_positive)
 COUNT = Parsed("N", _parse_count)
 KEY_NAMES = names_type(_all_keys, "KEY,...")
 KEY = Parsed("KEY", str, _all_keys)
 
 
+def count_up_to(most: int) -> Parsed:
+    """Return the type of a whole number from 1 to `most`."""
+    return Parsed("N", partial(_parse_count, most=most))
+
+
 def digits_option(most: int) -> Any:
     """Declare --digits, from 1 to `most`."""
-
-    def check(_: click.Context, __: click.Parameter, digits: int | None) -> int | None:
-        if digits is not None and not 1 <= digits <= most:
-            raise LagtopError(f"--digits must be in [1, {most}], got {digits}")
-        return digits
-
     text = f"Print N correct digits, 1 to {most}; inputs are read as exact decimals."
-    return option(COUNT, text, callback=check)
+    return option(count_up_to(most), text)
 
 
 rad_option = flag("Use radians for all angles, in and out.", "--rad")

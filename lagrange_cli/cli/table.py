@@ -53,7 +53,10 @@ _DRAWN = ("table", "markdown")
     lagtop table fast-gyroscope --t-max 10 --dt 0.01 --columns t,axis,energy
     lagtop table --t-max 1e9 --n 3 --digits 30 --certify --format json
     """,
-    exclusive=["--n --dt", "--tops: --digits --certify", "--times: --t-max --t-min --n --dt"],
+    exclusive=[
+        *("--n --dt", "--tops --digits", "--tops --certify"),
+        *("--times --t-max", "--times --t-min", "--times --n", "--times --dt"),
+    ],
 )
 def table_command(
     top: TopOptions = top_options(UNCERTAIN),
