@@ -11,22 +11,7 @@ from ..bench.hard_scenes import STRATA, stratum_lines
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..output.terminal import with_progress
-from .options import (
-    COUNT,
-    NUMBER,
-    POSITIVE,
-    REPORT_FORMATS,
-    arguments,
-    command,
-    count_up_to,
-    flag,
-    jobs_option,
-    late,
-    names_type,
-    option,
-    output_options,
-    plot_option,
-)
+from . import options as opt
 from .tables import fail_for, write_report
 from .top import INPUT, SCENE, TopOptions, top_options
 
@@ -60,7 +45,7 @@ def _methods() -> list[str]:
     return list(dict.fromkeys([*all_methods(1.0), *groups()]))
 
 
-@command(
+@opt.command(
     "bench",
     """
     lagtop bench --methods lagtop,DOP853-quaternion --n 1000
@@ -70,21 +55,21 @@ def _methods() -> list[str]:
     exclusive=["--long --t-max"],
 )
 def bench_command(
-    scenes: Sequence[str] = arguments(SCENE, "[SCENE]..."),
+    scenes: Sequence[str] = opt.arguments(SCENE, "[SCENE]..."),
     top: TopOptions = top_options(INPUT, None),
-    t_max: Fraction | None = option(NUMBER, "Last time.  [default: 20.3 nutation periods]"),
-    count: int | None = option(
-        count_up_to(MOST_TIMES), "Number of times.  [default: 1e4; 1e3 with --long]", "--n"
+    t_max: Fraction | None = opt.number("Last time.  [default: 20.3 nutation periods]"),
+    count: int | None = opt.count(
+        "Number of times.  [default: 1e4; 1e3 with --long]", "--n", most=MOST_TIMES
     ),
-    methods: list[str] | None = option(
-        names_type(_methods), "Methods, or groups such as engines.  [default: all but engines]"
+    methods: list[str] | None = opt.names(
+        "Methods, or groups such as engines.  [default: all but engines]", offered=_methods
     ),
-    timeout: Fraction = option(
-        POSITIVE, "Time limit of a run, in seconds.", default="3", show_default=True
+    timeout: Fraction = opt.number(
+        "Time limit of a run, in seconds.", positive=True, default="3", show_default=True
     ),
-    is_long: bool = flag("Compare over spans of 1 to 1e6 periods instead.", "--long"),
-    plot: str | None = plot_option,
-    out: Output = output_options(*REPORT_FORMATS),
+    is_long: bool = opt.flag("Compare over spans of 1 to 1e6 periods instead.", "--long"),
+    plot: str | None = opt.plot,
+    out: Output = opt.output(*opt.REPORT_FORMATS),
 ) -> None:
     """Measure the error of many methods against their run time.
 
@@ -128,7 +113,7 @@ def bench_command(
     write_report(out, find)
 
 
-@command(
+@opt.command(
     "stability",
     """
     lagtop stability --strata slow,thresholds --samples 1
@@ -139,24 +124,24 @@ def bench_command(
     text=STABILITY.format(strata="\n".join(stratum_lines())),
 )
 def stability_command(
-    scenes: int = option(  # the help lists it among the options of the command, as `first_seed`
-        count_up_to(MOST_SCENES),
+    scenes: int = opt.count(  # the help lists it among the options of the command, as `first_seed`
         "Scenes per stratum; 200 make a thorough test.",
         "--samples",
+        most=MOST_SCENES,
         default=str(SCENES),
         show_default=True,
     ),
-    first_seed: int = option(
-        COUNT, "Seed of the random scenes.", "--seed", default=str(SEED), show_default=True
+    first_seed: int = opt.count(
+        "Seed of the random scenes.", "--seed", default=str(SEED), show_default=True
     ),
-    strata: list[str] | None = option(
-        names_type(late("bench.hard_scenes", "STRATA")), "Use only these strata.  [default: all]"
+    strata: list[str] | None = opt.names(
+        "Use only these strata.  [default: all]", offered=opt.late("bench.hard_scenes", "STRATA")
     ),
-    jobs: int | None = jobs_option,
-    certify: bool = flag("Print only proven bounds on the errors of lagtop."),
-    is_long: bool = flag("Compare over 1e4 periods too.", "--long"),
-    plot: str | None = plot_option,
-    out: Output = output_options(*REPORT_FORMATS),
+    jobs: int | None = opt.jobs,
+    certify: bool = opt.flag("Print only proven bounds on the errors of lagtop."),
+    is_long: bool = opt.flag("Compare over 1e4 periods too.", "--long"),
+    plot: str | None = opt.plot,
+    out: Output = opt.output(*opt.REPORT_FORMATS),
 ) -> None:
     """Compare methods in random scenes; STABILITY is the help."""
     from ..bench import stability

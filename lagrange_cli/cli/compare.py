@@ -10,21 +10,8 @@ from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from ..output.terminal import with_progress
+from . import options as opt
 from .app import complain
-from .options import (
-    FILE,
-    POSITIVE,
-    REPORT_FORMATS,
-    Parsed,
-    choice,
-    command,
-    flag,
-    late,
-    names_type,
-    option,
-    output_options,
-    plot_option,
-)
 from .tables import (
     columns_option,
     euler_option,
@@ -46,7 +33,7 @@ def _parse_step_sizes(text: str) -> list[float]:
     return [float(parse_number(name)) for name in split_names(text)]
 
 
-@command(
+@opt.command(
     "compare",
     """
     lagtop table looping-top --t-max 5 --columns t,quaternion -o run.csv
@@ -55,33 +42,34 @@ def _parse_step_sizes(text: str) -> list[float]:
     """,
 )
 def compare_command(
-    top: TopOptions = top_options(INPUT, words("[SCENE] TRAJECTORY...", FILE, required=True)),
+    top: TopOptions = top_options(INPUT, words("[SCENE] TRAJECTORY...", opt.FILE, required=True)),
     names: list[str] | None = columns_option,
     quaternion_order: str | None = quaternion_option(None),
     euler_sequence: str = euler_option,
-    rates_frame: str = choice(
+    rates_frame: str = opt.choice(
         ["body", "space"],
         "Frame of p, q, r: body or space.",
         "FRAME",
         default="body",
         show_default=True,
     ),
-    align: list[str] | None = option(
-        names_type(late("judge.alignment", "WORDS"), "WORD,..."),
+    align: list[str] | None = opt.names(
         "Other axes: axis=y, up=y.  From the first row: start (zero of spin and precession), time "
         "(zero of t), body or space (a constant rotation).",
+        offered=opt.late("judge.alignment", "WORDS"),
+        metavar="WORD,...",
     ),
-    step_sizes: list[float] | None = option(
-        Parsed("X,...", _parse_step_sizes),
+    step_sizes: list[float] | None = opt.option(
+        opt.Parsed("X,...", _parse_step_sizes),
         "Step sizes of the trajectories, for the order of convergence.",
     ),
-    max_error: Fraction | None = option(
-        POSITIVE, "Largest acceptable error in rad.  [default: 0.001]"
+    max_error: Fraction | None = opt.number(
+        "Largest acceptable error in rad.  [default: 0.001]", positive=True
     ),
-    exit_zero: bool = flag("Exit with 0 even if a trajectory is not fine."),
+    exit_zero: bool = opt.flag("Exit with 0 even if a trajectory is not fine."),
     dialect: Dialect = text_options,
-    plot: str | None = plot_option,
-    out: Output = output_options(*REPORT_FORMATS),
+    plot: str | None = opt.plot,
+    out: Output = opt.output(*opt.REPORT_FORMATS),
 ) -> None:
     """Compare computed or measured trajectories with the exact motion.
 

@@ -8,18 +8,8 @@ from typing import TYPE_CHECKING
 from ..arithmetic.points import ExactComplex, parse_complex
 from ..errors import LagtopError
 from ..inputs.names import check_names
+from . import options as opt
 from .jacobi import RANGE, function_formats, write_constants, write_functions
-from .options import (
-    MOST_TABLE_DIGITS,
-    NUMBER,
-    Parsed,
-    command,
-    digits_option,
-    late,
-    names_type,
-    option,
-    rad_option,
-)
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -62,7 +52,7 @@ def _parse_distance(text: str) -> ExactComplex:
     return value
 
 
-@command(
+@opt.command(
     "eta",
     """
     lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4
@@ -72,23 +62,25 @@ def _parse_distance(text: str) -> ExactComplex:
     exclusive=["--p --gap-above", "--p --gap-below"],
 )
 def eta_command(
-    delta: Fraction = option(NUMBER, "Upper end of the band.", required=True),
-    delta_star: Fraction = option(NUMBER, "Lower end of the band.", required=True),
-    p: Fraction | None = option(NUMBER, "Middle of the two outer roots p - q and p + q."),
-    q: ExactComplex | None = option(
-        Parsed("X", _parse_distance),
+    delta: Fraction = opt.number("Upper end of the band.", required=True),
+    delta_star: Fraction = opt.number("Lower end of the band.", required=True),
+    p: Fraction | None = opt.number("Middle of the two outer roots p - q and p + q."),
+    q: ExactComplex | None = opt.option(
+        opt.Parsed("X", _parse_distance),
         "Half the distance between the outer roots; 0.7i for the roots p +- 0.7i.",
     ),
-    gap_above: Fraction | None = option(NUMBER, "Distance from delta up to an outer root."),
-    gap_below: Fraction | None = option(NUMBER, "Distance from delta* down to an outer root."),
-    g: Fraction = option(NUMBER, "Leading coefficient.  [default: 1]", default="1"),
-    tau: Points | None = option(RANGE, "Times: a list 0,1,2 or a range [log:]start:stop:count."),
-    columns: list[str] | None = option(
-        names_type(late("elliptic.eta_table", "ETA_COLUMNS")),
-        "Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
+    gap_above: Fraction | None = opt.number("Distance from delta up to an outer root."),
+    gap_below: Fraction | None = opt.number("Distance from delta* down to an outer root."),
+    g: Fraction = opt.number("Leading coefficient.  [default: 1]", default="1"),
+    tau: Points | None = opt.option(
+        RANGE, "Times: a list 0,1,2 or a range [log:]start:stop:count."
     ),
-    rad: bool = rad_option,
-    digits: int | None = digits_option(MOST_TABLE_DIGITS),
+    columns: list[str] | None = opt.names(
+        "Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
+        offered=opt.late("elliptic.eta_table", "ETA_COLUMNS"),
+    ),
+    rad: bool = opt.rad,
+    digits: int | None = opt.digits(opt.MOST_TABLE_DIGITS),
     out: Output = function_formats,
 ) -> None:
     """Compute the coordinate eta of a satellite (Aksenov 1977, section 3.2).

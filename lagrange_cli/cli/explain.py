@@ -11,7 +11,7 @@ from ..arithmetic.text import value_text
 from ..inputs.scene_file import scene_names, scene_remark
 from ..output.report import Field, Report
 from ..output.terminal import View, spelt, view_of
-from .options import Parsed, command, output_options
+from . import options as opt
 from .top import UNCERTAIN, TopOptions, motion_of, top_options, words
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def _names() -> list[str]:
     return [*explained_names(), *scene_names()]
 
 
-@command(
+@opt.command(
     "explain",
     """
     lagtop explain
@@ -36,8 +36,10 @@ def _names() -> list[str]:
     """,
 )
 def explain_command(
-    top: TopOptions = top_options(UNCERTAIN, words("[SCENE] [KEY]...", Parsed("KEY", str, _names))),
-    out: Output = output_options(*_FORMATS),
+    top: TopOptions = top_options(
+        UNCERTAIN, words("[SCENE] [KEY]...", opt.Parsed("KEY", str, _names))
+    ),
+    out: Output = opt.output(*_FORMATS),
 ) -> None:
     """Explain keys and columns, with formulas and numbers.
 
@@ -133,7 +135,7 @@ class _Scene(NamedTuple):
     remark: str
 
 
-@command(
+@opt.command(
     "scenes",
     """
     lagtop scenes
@@ -141,7 +143,7 @@ class _Scene(NamedTuple):
     lagtop scenes --format json
     """,
 )
-def scenes_command(out: Output = output_options(*_FORMATS)) -> None:
+def scenes_command(out: Output = opt.output(*_FORMATS)) -> None:
     """List the built-in scenes.
 
     Commands that solve a top accept these names as SCENE.  You can write your own scene: a TOML

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import LagtopError
 from ..output.terminal import with_progress
+from . import options as opt
 from .app import complain
-from .options import COUNT, Parsed, command, keys_option, option, output_options
 from .tables import key_headings
 from .top import TopOptions, top_options, value_type, warn_missing, warn_unused, words
 
@@ -25,10 +25,10 @@ def _beginnings() -> list[str]:
     return [*(f"{key}=" for key in all_keys()), *scene_names()]
 
 
-CONDITION = Parsed("CONDITION", str, _beginnings)
+CONDITION = opt.Parsed("CONDITION", str, _beginnings)
 
 
-@command(
+@opt.command(
     "find",
     """
     lagtop find --r0 10:200 T_precession=2
@@ -40,12 +40,11 @@ def find_command(
     top: TopOptions = top_options(
         value_type("parse_number_or_span"), words("[SCENE] CONDITION...", CONDITION), units=False
     ),
-    scan: int | None = option(
-        COUNT,
+    scan: int | None = opt.count(
         "Number of values of each unknown.  [default: 1000, 60 or 20 for 1, 2 or 3 unknowns]",
     ),
-    keys: list[str] | None = keys_option,
-    out: Output = output_options("csv", "ndjson", "json", "table", "markdown", on_terminal="table"),
+    keys: list[str] | None = opt.keys,
+    out: Output = opt.output("csv", "ndjson", "json", "table", "markdown", on_terminal="table"),
 ) -> None:
     """Find the inputs for which results take given values.
 

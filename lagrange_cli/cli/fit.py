@@ -10,21 +10,9 @@ from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
 from ..output.terminal import with_progress
+from . import options as opt
 from .app import complain
-from .options import (
-    FILE,
-    REPORT_FORMATS,
-    Parsed,
-    command,
-    exclude,
-    extension,
-    flag,
-    option,
-    output_options,
-    plot_option,
-)
 from .tables import (
-    ANY_NAMES,
     columns_option,
     euler_option,
     fail_for,
@@ -69,7 +57,7 @@ def _parse_window(text: str) -> tuple[float, bool]:
     return number, not text.strip().isdigit()
 
 
-@command(
+@opt.command(
     "fit",
     """
     lagtop table --t-max 2 --n 200 -o recording.csv
@@ -80,27 +68,29 @@ def _parse_window(text: str) -> tuple[float, bool]:
 )
 def fit_command(
     top: TopOptions = top_options(
-        UNCERTAIN, words("[SCENE] RECORDING", FILE, required=True), whole=False
+        UNCERTAIN, words("[SCENE] RECORDING", opt.FILE, required=True), whole=False
     ),
-    fix: list[str] | None = option(ANY_NAMES, "Inputs of the scene that are known, such as m,g."),
-    sigma: float | dict[str, float] | None = option(
-        Parsed("SIGMA", _parse_sigma),
+    fix: list[str] | None = opt.names("Inputs of the scene that are known, such as m,g."),
+    sigma: float | dict[str, float] | None = opt.option(
+        opt.Parsed("SIGMA", _parse_sigma),
         "Standard deviation of all angles, or theta=0.3,psi=0.5; columns NAME_std override it.  "
         "[default: estimated from the residuals]",
     ),
-    window: tuple[float, bool] | None = option(
-        Parsed("N|TIME", _parse_window),
+    window: tuple[float, bool] | None = opt.option(
+        opt.Parsed("N|TIME", _parse_window),
         "Fit N windows, or windows of TIME, which needs a decimal point (2.0).  All share one "
         "body; the spin may decay.",
     ),
-    by: str | None = option(Parsed("COLUMN", str), "Column that names the recording of each row."),
-    together: bool = flag("Fit one body to all recordings of --by."),
+    by: str | None = opt.option(
+        opt.Parsed("COLUMN", str), "Column that names the recording of each row."
+    ),
+    together: bool = opt.flag("Fit one body to all recordings of --by."),
     names: list[str] | None = columns_option,
     quaternion_order: str = quaternion_option("wxyz"),
     euler_sequence: str = euler_option,
     dialect: Dialect = text_options,
-    plot: str | None = plot_option,
-    out: Output = output_options(*REPORT_FORMATS, extensions=["toml"]),
+    plot: str | None = opt.plot,
+    out: Output = opt.output(*opt.REPORT_FORMATS, extensions=["toml"]),
 ) -> None:
     """Fit a top to a recording, with uncertainties.
 
@@ -124,8 +114,8 @@ def fit_command(
     recording, radians = top.words[0], top.radians
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN")
-    scene_path = out.path if extension(out.path) == "toml" else None
-    exclude({"--window": window, f"--output {out.path}": scene_path})
+    scene_path = out.path if opt.extension(out.path) == "toml" else None
+    opt.exclude({"--window": window, f"--output {out.path}": scene_path})
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
     reading = Reading(names, conventions, by, _in_radians(sigma, radians), dialect)
     recordings = read_recordings(recording, reading)

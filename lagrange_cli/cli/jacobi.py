@@ -11,20 +11,8 @@ from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..output.terminal import with_progress
+from . import options as opt
 from .app import complain
-from .options import (
-    MOST_TABLE_DIGITS,
-    NUMBER,
-    Parsed,
-    command,
-    count_up_to,
-    digits_option,
-    late,
-    names_type,
-    option,
-    output_options,
-    rad_option,
-)
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -34,7 +22,7 @@ if TYPE_CHECKING:
     from ..inputs.ranges import Multiple, Multiples
     from ..output.destination import Output
 
-RANGE = Parsed("X", late("inputs.ranges", "parse_values"))
+RANGE = opt.Parsed("X", opt.late("inputs.ranges", "parse_values"))
 MOST_TERMS = 10_000
 _FAMILIES = ("am", "theta", "zeta", "omega", "pi")
 _JACOBI = """
@@ -98,10 +86,10 @@ def write_functions(table: TableOfFunctions, digits: int | None, out: Output) ->
     out.table(header, with_progress(blocks, "rows", table.count or None, len), table.count)
 
 
-function_formats = output_options("table", "csv", "json", "ndjson", "markdown", "parquet", "npy")
+function_formats = opt.output("table", "csv", "json", "ndjson", "markdown", "parquet", "npy")
 
 
-@command(
+@opt.command(
     "jacobi",
     """
     lagtop jacobi --k 0.8
@@ -114,34 +102,34 @@ function_formats = output_options("table", "csv", "json", "ndjson", "markdown", 
     ],
 )
 def jacobi_command(
-    k: ExactComplex | None = option(
-        Parsed("X", parse_complex), "Modulus, 0 to 1, above 1, or imaginary as 0.8i."
+    k: ExactComplex | None = opt.option(
+        opt.Parsed("X", parse_complex), "Modulus, 0 to 1, above 1, or imaginary as 0.8i."
     ),
-    k_prime: Fraction | None = option(NUMBER, "Complementary modulus k', for k close to 1."),
-    modular_angle: Fraction | None = option(NUMBER, "Modular angle arcsin k, 0 to 90 degrees."),
-    nome: Fraction | None = option(NUMBER, "Nome q = exp(-pi K'/K), below 1."),
-    u: Multiples | list[Multiple | ExactComplex] | None = option(
-        Parsed("X", _parse_arguments),
+    k_prime: Fraction | None = opt.number("Complementary modulus k', for k close to 1."),
+    modular_angle: Fraction | None = opt.number("Modular angle arcsin k, 0 to 90 degrees."),
+    nome: Fraction | None = opt.number("Nome q = exp(-pi K'/K), below 1."),
+    u: Multiples | list[Multiple | ExactComplex] | None = opt.option(
+        opt.Parsed("X", _parse_arguments),
         "Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
         "K such as K/2,-2.5K.",
     ),
-    families: list[str] | None = option(
-        names_type(lambda: _FAMILIES),
+    families: list[str] | None = opt.names(
         "Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
         "omega, pi (of u and --param, after Chrapan).  [default: am]",
         "--functions",
+        offered=lambda: _FAMILIES,
     ),
-    param: tuple[ExactComplex, bool] | None = option(
-        Parsed("V", _parse_parameter), "Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
+    param: tuple[ExactComplex, bool] | None = opt.option(
+        opt.Parsed("V", _parse_parameter), "Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
     ),
-    phi: Points | None = option(
+    phi: Points | None = opt.option(
         RANGE, "Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
     ),
-    series: int | None = option(
-        count_up_to(MOST_TERMS), "Print the first N partial sums of the nome series instead."
+    series: int | None = opt.count(
+        "Print the first N partial sums of the nome series instead.", most=MOST_TERMS
     ),
-    rad: bool = rad_option,
-    digits: int | None = digits_option(MOST_TABLE_DIGITS),
+    rad: bool = opt.rad,
+    digits: int | None = opt.digits(opt.MOST_TABLE_DIGITS),
     out: Output = function_formats,
 ) -> None:
     """Compute elliptic integrals, Jacobi's functions and theta functions.

@@ -1,7 +1,8 @@
 """Declarations of options, and the options and types that several commands share.
 
-Each parameter of a command declares its option by its default, which `option`, `flag`, `choice` or
-`arguments` makes.  A `Group` declares several options that become one value.
+Each parameter of a command declares its option by its default, such as `opt.number("Last time.")`
+for a module that imports this one as `opt`.  A `Group` declares several options that become one
+value.
 """
 
 from __future__ import annotations
@@ -95,6 +96,32 @@ def option(kind: Any, text: str, flag: str = "", **how: Any) -> Any:
     return declared
 
 
+def number(text: str, flag: str = "", *, positive: bool = False, **how: Any) -> Any:
+    """Declare an option whose value is a decimal number, which may have to be positive."""
+    return option(POSITIVE if positive else NUMBER, text, flag, **how)
+
+
+def count(text: str, flag: str = "", *, most: int | None = None, **how: Any) -> Any:
+    """Declare an option whose value is a whole number, from 1 to `most` if that is given."""
+    return option(Parsed("N", partial(_parse_count, most=most)), text, flag, **how)
+
+
+def file(text: str, flag: str = "", **how: Any) -> Any:
+    """Declare an option whose value is the name of a file."""
+    return option(FILE, text, flag, **how)
+
+
+def names(
+    text: str,
+    flag: str = "",
+    *,
+    offered: Callable[[], Iterable[str]] | None = None,
+    metavar: str = "NAME,...",
+) -> Any:
+    """Declare an option whose value is a list of names, of which a shell offers some."""
+    return option(Parsed(metavar, late("inputs.names", "split_names"), offered), text, flag)
+
+
 def flag(text: str, name: str = "") -> Any:
     """Declare an option without a value."""
     return option(None, text, name, is_flag=True)
@@ -108,6 +135,12 @@ def choice(names: Sequence[str], text: str, metavar: str, **how: Any) -> Any:
 def arguments(kind: Parsed, metavar: str) -> Any:
     """Declare any number of positional arguments."""
     return lambda name: click.Argument([name], type=kind, metavar=metavar, nargs=-1)
+
+
+def digits(most: int) -> Any:
+    """Declare --digits, from 1 to `most`."""
+    text = f"Print N correct digits, 1 to {most}; inputs are read as exact decimals."
+    return count(text, most=most)
 
 
 def command(
@@ -168,37 +201,17 @@ def _parse_positive(text: str) -> Fraction:
     return exact
 
 
-def names_type(
-    names: Callable[[], Iterable[str]] | None = None, metavar: str = "NAME,..."
-) -> Parsed:
-    """Return the type of a list of names; `names` returns those that a shell offers."""
-    return Parsed(metavar, late("inputs.names", "split_names"), names)
-
-
 _all_keys = late("motion.record", "all_keys")
 FILE, FOLDER = Parsed("FILE", str), Parsed("DIR", str)
-NUMBER, POSITIVE = Parsed("X", parse_number), Parsed("X", _parse_positive)
-COUNT = Parsed("N", _parse_count)
-KEY_NAMES = names_type(_all_keys, "KEY,...")
 KEY = Parsed("KEY", str, _all_keys)
-
-
-def count_up_to(most: int) -> Parsed:
-    """Return the type of a whole number from 1 to `most`."""
-    return Parsed("N", partial(_parse_count, most=most))
-
-
-def digits_option(most: int) -> Any:
-    """Declare --digits, from 1 to `most`."""
-    text = f"Print N correct digits, 1 to {most}; inputs are read as exact decimals."
-    return option(count_up_to(most), text)
-
-
-rad_option = flag("Use radians for all angles, in and out.", "--rad")
-certify_option = flag("Also print KEY_radius, a proven bound on the error.")
-keys_option = option(KEY_NAMES, "Compute and print only these keys (see lagtop explain).")
-plot_option = option(FILE, "Also draw the report: FILE.svg or FILE.png.")
-jobs_option = option(
+NUMBER, POSITIVE = Parsed("X", parse_number), Parsed("X", _parse_positive)
+key_names = partial(names, offered=_all_keys, metavar="KEY,...")
+"""Declares an option whose value is a list of keys."""
+rad = flag("Use radians for all angles, in and out.", "--rad")
+certify = flag("Also print KEY_radius, a proven bound on the error.")
+keys = key_names("Compute and print only these keys (see lagtop explain).")
+plot = file("Also draw the report: FILE.svg or FILE.png.")
+jobs = option(
     Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),
     "Number of processes; auto: one per core.  [default: 1]",
 )
@@ -209,7 +222,7 @@ def extension(path: str) -> str:
     return splitext(path)[1][1:].lower()
 
 
-def output_options(*formats: str, extensions: Iterable[str] = (), on_terminal: str = "") -> Any:
+def output(*formats: str, extensions: Iterable[str] = (), on_terminal: str = "") -> Any:
     """Declare --output and --format, which become an `Output`.
 
     The extension of the file sets the default format.  Without an extension, the default is the
@@ -238,7 +251,7 @@ def output_options(*formats: str, extensions: Iterable[str] = (), on_terminal: s
             raise LagtopError(f"--format {fmt} is not for a terminal: use -o FILE.{fmt}")
         return fmt
 
-    file = option(FILE, "Output file (replaced only on success).", "-o --output", default="-")
+    to = file("Output file (replaced only on success).", "-o --output", default="-")
     named = choice(
         formats,
         f"{', '.join(formats)}.  [default: extension of FILE, or {default}]",
@@ -247,5 +260,5 @@ def output_options(*formats: str, extensions: Iterable[str] = (), on_terminal: s
     )
     return Group(
         lambda output, fmt: Output(output, chosen(output, fmt), fmt is not None),
-        [file("output"), named("fmt")],
+        [to("output"), named("fmt")],
     )

@@ -20,7 +20,7 @@ from ..output.terminal import is_terminal, with_progress
 from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, MAP_KEY, ON_THE_SHEET, SHEET, PlotRequest, help_lines
 from ..plot.style import chosen_look
-from .options import FILE, KEY, NUMBER, Parsed, choice, command, flag, option
+from . import options as opt
 from .tables import angle_stds
 from .top import INPUT, TIME, UNCERTAIN, TopOptions, motion_of, top_options, warn_unused, words
 
@@ -55,8 +55,8 @@ def _axis_names() -> list[str]:
     return [f"{name}=" for name in NINE]
 
 
-AXIS = Parsed("RANGE", str, _axis_names)
-KIND = Parsed("KIND", str, _kinds_and_scenes)
+AXIS = opt.Parsed("RANGE", str, _axis_names)
+KIND = opt.Parsed("KIND", str, _kinds_and_scenes)
 
 
 def _pair(text: str, separator: str, fallback: tuple[float, float]) -> tuple[float, float]:
@@ -85,7 +85,7 @@ def _parse_limits(text: str) -> tuple[float, float]:
     return low, high
 
 
-@command(
+@opt.command(
     "plot",
     """
     lagtop plot looping-top sphere -o loops.svg
@@ -96,28 +96,28 @@ def _parse_limits(text: str) -> tuple[float, float]:
 )
 def plot_command(
     top: TopOptions = top_options(UNCERTAIN, words("[SCENE] [KIND]...", KIND)),
-    t_max: Value | None = option(TIME, "Last time.  [default: a few nutation periods]"),
-    key: str | None = option(KEY, f"Key of `map`.  [default: {MAP_KEY}]"),
-    x: str | None = option(AXIS, "Horizontal axis of `map`, INPUT=[log:]start:stop:count."),
-    y: str | None = option(AXIS, "Vertical axis of `map`.  [default: theta0]"),
-    colour_limits: tuple[float, float] | None = option(
-        Parsed("LOW:HIGH", _parse_limits),
+    t_max: Value | None = opt.option(TIME, "Last time.  [default: a few nutation periods]"),
+    key: str | None = opt.option(opt.KEY, f"Key of `map`.  [default: {MAP_KEY}]"),
+    x: str | None = opt.option(AXIS, "Horizontal axis of `map`, INPUT=[log:]start:stop:count."),
+    y: str | None = opt.option(AXIS, "Vertical axis of `map`.  [default: theta0]"),
+    colour_limits: tuple[float, float] | None = opt.option(
+        opt.Parsed("LOW:HIGH", _parse_limits),
         "Colour limits of `map`.  [default: 1st and 99th percentile]",
     ),
-    camera: str | None = option(Parsed("AZ,EL", str), "Azimuth and elevation of the camera."),
-    dark: bool = flag("Dark background."),
-    size: tuple[float, float] | None = option(
-        Parsed("", _parse_size), "Size of the page in inches, such as 8x6.", metavar="WxH"
+    camera: str | None = opt.option(
+        opt.Parsed("AZ,EL", str), "Azimuth and elevation of the camera."
     ),
-    dpi: Fraction | None = option(NUMBER, "Pixels per inch, 20 to 1000.  [default: 150, film 100]"),
-    animate: str | None = option(FILE, "Write a film of the top: FILE.gif or FILE.mp4."),
-    duration: Fraction | None = option(NUMBER, "Length of the film in seconds.  [default: 6]"),
-    speed: Fraction | None = option(NUMBER, "Simulated time per second of film."),
-    show: bool = flag("Open a window."),
-    fmt: str | None = choice(_FORMATS, "png, svg or pdf.", "FORMAT", flag="--format"),
-    output: str | None = option(
-        FILE, "FILE.png, .svg or .pdf (replaced on success).", "-o --output"
+    dark: bool = opt.flag("Dark background."),
+    size: tuple[float, float] | None = opt.option(
+        opt.Parsed("", _parse_size), "Size of the page in inches, such as 8x6.", metavar="WxH"
     ),
+    dpi: Fraction | None = opt.number("Pixels per inch, 20 to 1000.  [default: 150, film 100]"),
+    animate: str | None = opt.file("Write a film of the top: FILE.gif or FILE.mp4."),
+    duration: Fraction | None = opt.number("Length of the film in seconds.  [default: 6]"),
+    speed: Fraction | None = opt.number("Simulated time per second of film."),
+    show: bool = opt.flag("Open a window."),
+    fmt: str | None = opt.choice(_FORMATS, "png, svg or pdf.", "FORMAT", flag="--format"),
+    output: str | None = opt.file("FILE.png, .svg or .pdf (replaced on success).", "-o --output"),
 ) -> None:
     """Write, film and show the pictures that the options request."""
     if not (output or show or animate):
@@ -247,7 +247,7 @@ def _given(top: TopOptions, **axes: str | None) -> tuple[Given, dict[str, InputR
     }
 
 
-@command(
+@opt.command(
     "view",
     """
     lagtop view -o top.html
@@ -257,8 +257,8 @@ def _given(top: TopOptions, **axes: str | None) -> tuple[Given, dict[str, InputR
 )
 def view_command(
     top: TopOptions = top_options(INPUT),
-    opens: bool = flag("Open the page in the browser.", "--open"),
-    output: str | None = option(FILE, "FILE.html (replaced only on success).", "-o --output"),
+    opens: bool = opt.flag("Open the page in the browser.", "--open"),
+    output: str | None = opt.file("FILE.html (replaced only on success).", "-o --output"),
 ) -> None:
     """Write an interactive page for the browser.
 

@@ -8,19 +8,8 @@ from ..errors import LagtopError
 from ..motion.numbers import Numbers, record_in_range
 from ..motion.record import shown_keys
 from ..motion.regime import exact
+from . import options as opt
 from .app import complain
-from .options import (
-    COUNT,
-    KEY,
-    KEY_NAMES,
-    MOST_RECORD_DIGITS,
-    certify_option,
-    command,
-    digits_option,
-    flag,
-    option,
-    output_options,
-)
 from .top import UNCERTAIN, TopOptions, top_options, warned
 
 if TYPE_CHECKING:
@@ -31,7 +20,7 @@ if TYPE_CHECKING:
     from ..output.destination import Output
 
 
-@command(
+@opt.command(
     "solve",
     """
     lagtop solve simo-wong-1991 --r0 40
@@ -42,20 +31,20 @@ if TYPE_CHECKING:
 )
 def solve_command(
     top: TopOptions = top_options(UNCERTAIN),
-    keys: list[str] | None = option(
-        KEY_NAMES, "Print only the values of these keys, one per line.", "--get"
+    keys: list[str] | None = opt.key_names(
+        "Print only the values of these keys, one per line.", "--get"
     ),
-    derivation: bool = flag(
+    derivation: bool = opt.flag(
         "Print the steps of section 8 of the paper, for a top released from rest."
     ),
-    digits: int | None = digits_option(MOST_RECORD_DIGITS),
-    certify: bool = certify_option,
-    budget: str | None = option(
-        KEY, "Print the uncertainty budget of KEY: the share of each input."
+    digits: int | None = opt.digits(opt.MOST_RECORD_DIGITS),
+    certify: bool = opt.certify,
+    budget: str | None = opt.option(
+        opt.KEY, "Print the uncertainty budget of KEY: the share of each input."
     ),
-    samples: int | None = option(COUNT, "Check linear propagation with N random tops."),
-    seed: int | None = option(COUNT, "Seed of the random tops."),
-    out: Output = output_options("table", "json", "csv", "ndjson", "markdown"),
+    samples: int | None = opt.count("Check linear propagation with N random tops."),
+    seed: int | None = opt.count("Seed of the random tops."),
+    out: Output = opt.output("table", "json", "csv", "ndjson", "markdown"),
 ) -> None:
     """Compute the periods, turning points and mean rates of one top.
 

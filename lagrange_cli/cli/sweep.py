@@ -9,19 +9,8 @@ from typing import TYPE_CHECKING
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..output.terminal import with_progress
+from . import options as opt
 from .app import complain
-from .options import (
-    FOLDER,
-    Parsed,
-    arguments,
-    command,
-    exclude,
-    flag,
-    jobs_option,
-    keys_option,
-    option,
-    output_options,
-)
 from .tables import (
     header_comments_option,
     is_described,
@@ -49,7 +38,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
-@command(
+@opt.command(
     "sweep",
     """
     lagtop sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv
@@ -59,21 +48,23 @@ def _parse_shard(text: str) -> tuple[int, int]:
     exclusive=["--jobs --dask"],
 )
 def sweep_command(
-    files: tuple[str, ...] = arguments(SCENE, "[SCENE] [TOPS.csv|.ndjson|-]"),
+    files: tuple[str, ...] = opt.arguments(SCENE, "[SCENE] [TOPS.csv|.ndjson|-]"),
     top: TopOptions = top_options(value_type("parse_values", uncertain=True), None),
-    keys: list[str] | None = keys_option,
-    fail_fast: bool = flag("Stop at the first top that cannot be solved."),
-    jobs: int | None = jobs_option,
-    folder: str | None = option(FOLDER, "Write one file per part into this folder.", "--parts"),
-    shard: tuple[int, int] | None = option(
-        Parsed("I/N", _parse_shard), "Compute only every N-th part, starting with the I-th."
+    keys: list[str] | None = opt.keys,
+    fail_fast: bool = opt.flag("Stop at the first top that cannot be solved."),
+    jobs: int | None = opt.jobs,
+    folder: str | None = opt.option(
+        opt.FOLDER, "Write one file per part into this folder.", "--parts"
     ),
-    cluster: str | None = option(
-        Parsed("ADDRESS", str), "Use a Dask cluster, or `local` for this machine.", "--dask"
+    shard: tuple[int, int] | None = opt.option(
+        opt.Parsed("I/N", _parse_shard), "Compute only every N-th part, starting with the I-th."
+    ),
+    cluster: str | None = opt.option(
+        opt.Parsed("ADDRESS", str), "Use a Dask cluster, or `local` for this machine.", "--dask"
     ),
     dialect: Dialect = text_options,
     header_comments: bool = header_comments_option,
-    out: Output = output_options(*_FORMATS, on_terminal="table"),
+    out: Output = opt.output(*_FORMATS, on_terminal="table"),
 ) -> None:
     """Solve each top of a grid or of a file.
 
@@ -92,7 +83,7 @@ def sweep_command(
     from ..sweeps.folder import Folder
     from ..sweeps.plan import Tally, plan, shard_of
 
-    exclude({"--parts": folder, "--output": out.path != "-"})
+    opt.exclude({"--parts": folder, "--output": out.path != "-"})
     if folder is not None:
         out = out.replace(fmt="csv") if not out.is_named else out
         if out.fmt in {"json", "table", "markdown"}:

@@ -11,22 +11,7 @@ from .. import __version__
 from ..arithmetic.text import value_text
 from ..errors import DataError, LagtopError
 from ..output.terminal import with_progress
-from .options import (
-    BINARY,
-    COUNT,
-    FILE,
-    MOST_TABLE_DIGITS,
-    certify_option,
-    command,
-    digits_option,
-    exclude,
-    flag,
-    jobs_option,
-    late,
-    names_type,
-    option,
-    output_options,
-)
+from . import options as opt
 from .tables import angle_stds, header_comments_option, is_described, text_options, warn_no_tops
 from .top import TIME, UNCERTAIN, TopOptions, motion_of, top_options, warn_missing
 
@@ -46,7 +31,7 @@ MAX_DRAWN_ROWS = 10_000
 _DRAWN = ("table", "markdown")
 
 
-@command(
+@opt.command(
     "table",
     """
     lagtop table --t-max 1 -o angles.csv
@@ -60,25 +45,25 @@ _DRAWN = ("table", "markdown")
 )
 def table_command(
     top: TopOptions = top_options(UNCERTAIN),
-    t_max: Value | None = option(
+    t_max: Value | None = opt.option(
         TIME, "Last time.  [default: one nutation period; 1 without nutation]"
     ),
-    t_min: Value | None = option(TIME, "First time.  [default: 0]"),
-    count: int | None = option(COUNT, "Number of times.  [default: 101]", "--n"),
-    dt: Value | None = option(TIME, "Time step, instead of --n."),
-    times: str | None = option(FILE, "Read the times from a file, one per line."),
-    columns: list[str] | None = option(
-        names_type(late("motion.over_time.columns", "column_names")),
+    t_min: Value | None = opt.option(TIME, "First time.  [default: 0]"),
+    count: int | None = opt.count("Number of times.  [default: 101]", "--n"),
+    dt: Value | None = opt.option(TIME, "Time step, instead of --n."),
+    times: str | None = opt.file("Read the times from a file, one per line."),
+    columns: list[str] | None = opt.names(
         "Columns (see lagtop explain).  [default: t,theta,phi,psi]",
+        offered=opt.late("motion.over_time.columns", "column_names"),
     ),
-    tops: str | None = option(FILE, "Tabulate each top of a file, as in sweep."),
-    jobs: int | None = jobs_option,
-    wrap: bool = flag("Keep spin and precession in (-180, 180]."),
-    digits: int | None = digits_option(MOST_TABLE_DIGITS),
-    certify: bool = certify_option,
+    tops: str | None = opt.file("Tabulate each top of a file, as in sweep."),
+    jobs: int | None = opt.jobs,
+    wrap: bool = opt.flag("Keep spin and precession in (-180, 180]."),
+    digits: int | None = opt.digits(opt.MOST_TABLE_DIGITS),
+    certify: bool = opt.certify,
     dialect: Dialect = text_options,
     header_comments: bool = header_comments_option,
-    out: Output = output_options("csv", "json", "ndjson", "table", "markdown", "parquet", "npy"),
+    out: Output = opt.output("csv", "json", "ndjson", "table", "markdown", "parquet", "npy"),
 ) -> None:
     """Tabulate tilt, spin and precession, or other columns, over time.
 
@@ -93,7 +78,7 @@ def table_command(
     if jobs is not None and tops is None:
         raise LagtopError("--jobs needs --tops: one top is computed by one process")
     stdin = {"the scene -": top.scene, "--tops -": tops, "--times -": times}
-    exclude({name: path == "-" for name, path in stdin.items()})
+    opt.exclude({name: path == "-" for name, path in stdin.items()})
     _check_format(out.fmt, times, tops, digits, certify)
     request = TableRequest(
         _listed(times, tops, out.fmt, dialect) or partial(_grid, n=count, **interval),
@@ -110,7 +95,7 @@ def table_command(
     found = top.given()
     motion = motion_of(found, exact=digits is not None)
     for name, value in {"--digits": digits, "--certify": certify}.items():
-        exclude({name: value, "uncertain inputs": found.stds or None})
+        opt.exclude({name: value, "uncertain inputs": found.stds or None})
     described = is_described(out, header_comments)
     with blaming(times):
         at = _times(motion, request, out.fmt)
@@ -130,7 +115,7 @@ def _check_format(
     if tops is not None and fmt in {*_DRAWN, "npy"}:
         holds = "holds numbers of one top" if fmt == "npy" else "shows one top"
         raise LagtopError(f"--format {fmt} {holds}: with --tops use csv, json, ndjson or parquet")
-    if (digits is not None or certify) and fmt in BINARY:
+    if (digits is not None or certify) and fmt in opt.BINARY:
         texts = "--certify" if certify else "--digits"
         raise LagtopError(f"--format {fmt} holds doubles: with {texts} use csv, json or table")
     if times == "-" and fmt == "npy":
@@ -234,7 +219,7 @@ def _write_many(
     tables, lines, given = open_tables(
         tops, top.scene, top.by_key(), request, fmt=out.fmt, system=top.units, dialect=dialect
     )
-    exclude({"--tops": tops, "uncertain inputs": given.stds or None})
+    opt.exclude({"--tops": tops, "uncertain inputs": given.stds or None})
     warn_missing(given)
     header: Sequence[str] = tables.header
     if described:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.text import quoted
 from ..errors import LagtopError, SomeFailedError
 from .app import complain
-from .options import Group, Parsed, choice, flag, late, names_type, option
+from .options import Group, Parsed, choice, flag, late, names, option
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
@@ -51,9 +51,7 @@ text_options: Any = Group(
 header_comments_option = flag(
     "Describe scene, version, units and conventions above the CSV, in # lines."
 )
-ANY_NAMES = names_type()
-columns_option = option(
-    ANY_NAMES,
+columns_option = names(
     "Names of all columns; axis, quaternion and matrix stand for all of their parts, _ skips a "
     "column.",
     "--columns",

@@ -11,7 +11,7 @@ import click
 from ..arithmetic.values import Values
 from ..errors import LagtopError
 from .app import complain
-from .options import FILE, Group, Parsed, choice, late, option, rad_option
+from .options import FILE, Group, Parsed, choice, late, option, rad
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
@@ -133,7 +133,7 @@ def top_options(
     for name, read in kinds.items():
         text = _help_of(DECLARED[name], shows_default=whole, one_top=one_top)
         params.append(option(read, text)(name))
-    params.append(rad_option("rad"))
+    params.append(rad("rad"))
     if units:
         text = "Output in si or cgs if inputs have units.  [default: si]"
         params.append(choice(["si", "cgs"], text, "SYSTEM")("units"))
