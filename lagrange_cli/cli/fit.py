@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +22,7 @@ from .tables import (
 from .top import UNCERTAIN, TopOptions, top_options, words
 
 if TYPE_CHECKING:
+    from ..fits.parameters import KnownInputs
     from ..fits.record import Outcome
     from ..fits.recording import Recording
     from ..fits.windows import WindowedFit
@@ -119,17 +119,17 @@ def fit_command(
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
     reading = Reading(names, conventions, by, _in_radians(sigma, radians), dialect)
     recordings = read_recordings(recording, reading)
-    known, stds, system = _known(top, recordings[0].scene, fix or [])
+    known, system = _known(top, recordings[0].scene, fix or [])
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {out.path} holds one top, got {len(recordings)} recordings")
     if window:
         source = shown_path(recording)
         parts = split(recordings[0], window[0], is_time=window[1], where=source)
-        windows = fit_windows(parts, known, stds, source, radians=radians)
+        windows = fit_windows(parts, known, source, radians=radians)
         _write_windows(windows, source, system, out)
         return
     groups = [recordings] if together else [[one] for one in recordings]
-    found = _fitted(groups, known, stds, recording, radians)
+    found = _fitted(groups, known, recording, radians)
     failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
         _write_scene(found[0], recording, system, scene_path)
@@ -143,8 +143,7 @@ def fit_command(
 
 def _fitted(
     groups: list[list[Recording]],
-    known: Mapping[str, float],
-    stds: Mapping[str, float],
+    known: KnownInputs,
     source: str,
     radians: bool,
 ) -> list[Outcome]:
@@ -153,14 +152,14 @@ def _fitted(
 
     found: list[Outcome] = []
     for group in with_progress(groups, "fits"):
-        found += fit_recordings(group, known, shown_path(source), stds=stds, radians=radians)
+        found += fit_recordings(group, known, shown_path(source), radians=radians)
     return found
 
 
 def _known(
     top: TopOptions, described: Top | None, fix: list[str]
-) -> tuple[dict[str, float], dict[str, float], System | None]:
-    """Return known inputs from options or a scene, their standard deviations, and their units.
+) -> tuple[KnownInputs, System | None]:
+    """Return known inputs from options or a scene, and their units.
 
     Without a scene file, the scene is the one that the recording describes.  Raises LagtopError.
     """
@@ -186,7 +185,7 @@ def _known(
     stds = found.stds.only(names)
     if stds.correlations:
         complain("Warning: the correlations of known inputs are not used")
-    return (*known_inputs({name: present[name] for name in names}, stds), found.system)
+    return known_inputs({name: present[name] for name in names}, stds), found.system
 
 
 def _in_radians(

@@ -10,14 +10,15 @@ from numpy.typing import ArrayLike
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from .model import STATE, angles_and_slopes, residuals
-from .parameters import FIT_QUANTITIES, Coordinates, Parameters, parameters_of
+from .model import STATE, angles_and_slopes, as_recorded, residuals
+from .parameters import FIT_QUANTITIES, Coordinates, KnownInputs, Parameters, parameters_of
 from .recording import Recording
+from .starting_tops import FitStart
 
 _FAR = 1e3
 """Residuals, in standard deviations, assigned to an invalid state."""
-MOST_STEPS = 100
-LEAST_SIGMA = 1e-15
+_MOST_STEPS = 100
+_LEAST_SIGMA = 1e-15
 """Standard deviation used if all residuals are 0."""
 _DEPENDENT = 1e-7
 """Ratio to the largest singular value, below which a direction is not determined."""
@@ -26,14 +27,14 @@ _REACH, _BENT = 3.0, 0.2
 _MOST_STRETCHES, _MOST_HELD, _HOLD = 10, 20, 100.0
 """Extensions to find three standard deviations, steps of each, and weight that holds each end."""
 _STEADY, _REWEIGHTINGS = 0.01, 6
-"""Tolerance of chi^2/dof around 1, and largest number of rounds, when standard deviations are taken
-from the residuals.
-"""
+"""Tolerance of chi^2/dof around 1, and most rounds, if standard deviations are of the residuals."""
 
 
-class FittedParameters(NamedTuple):
-    """Parameters with the least sum of squares."""
+class Fit(NamedTuple):
+    """Parameters with the least sum of squares for some recordings of one body."""
 
+    recordings: Sequence[Recording]
+    """Recordings as interpreted: psi may be counted in the other direction."""
     parameters: Parameters
     values: Array
     covariance: Array
@@ -41,54 +42,68 @@ class FittedParameters(NamedTuple):
     dof: int
     residuals: Sequence[Mapping[str, Array]]
     """Residuals of each recording by channel, in radians; NaN where a number is missing."""
-    converged: bool
-    unknown: Sequence[str]
+    sigma: Sequence[Array] = ()
+    """Standard deviations of each recording in the fit, shape (channels, times)."""
+    converged: bool = True
+    unknown: Sequence[str] = ()
     """Parameters that the data do not determine."""
+    noise: Sequence[Mapping[str, float]] = ()
+    """Noise of each recording, as in its `FitStart`; empty if it is not known."""
+    rival: Mapping[str, float] | None = None
+    """Another top that explains a single recording as well: its quantities by name."""
+
+    @property
+    def sigma_known(self) -> bool:
+        """Whether the standard deviations were given; otherwise they come from the residuals."""
+        return bool(self.recordings[0].sigma)
+
+    @property
+    def problem(self) -> Problem:
+        """The least squares that this fit solves."""
+        return Problem(self.recordings, self.sigma, self.parameters)
+
+    def continued(self, start: Array) -> Fit:
+        """Return the fit of the same recordings from other parameters."""
+        return self.problem.solve(start)._replace(noise=self.noise, rival=self.rival)
 
     def quantities(self, i: int) -> tuple[Array, Array]:
         """Return the quantities of recording i, in the order of the labels, and covariance."""
         found, slopes = self.parameters.quantities(self.values, i)
         return found, slopes @ self.covariance @ slopes.T
 
-    def named(self, i: int) -> dict[str, float]:
-        """Return the quantities of recording i, by name."""
-        return dict(zip(self.parameters.labels, self.quantities(i)[0].tolist(), strict=True))
+    @property
+    def start(self) -> FitStart:
+        """The start of another fit of the first recording."""
+        values = dict(zip(self.parameters.labels, self.quantities(0)[0].tolist(), strict=True))
+        return FitStart(self.recordings[0], self.noise[0], values)
 
 
 class Problem:
     """Recordings with the standard deviations of their channels, and the parameters to fit."""
 
     def __init__(
-        self,
-        recordings: Sequence[Recording],
-        sigma: Sequence[Mapping[str, ArrayLike]],
-        parameters: Parameters,
+        self, recordings: Sequence[Recording], sigma: Sequence[Array], parameters: Parameters
     ) -> None:
-        self.recordings, self.parameters = recordings, parameters
-        self.sigma = [
-            np.stack([np.broadcast_to(spread[x], recording.t.shape) for x in recording.channels])
-            for recording, spread in zip(recordings, sigma, strict=True)
-        ]
+        self.recordings, self.sigma, self.parameters = recordings, sigma, parameters
         self.by = Coordinates([name for name, _ in parameters.names])
         self._last: tuple[Array, Array, Array, list[dict[str, Array]]] | None = None
 
-    def solve(self, start: Array, steps: int = MOST_STEPS) -> FittedParameters:
+    def solve(self, start: Array, steps: int = _MOST_STEPS) -> Fit:
         """Return the parameters with the least chi^2, after at most `steps` steps from a start.
 
         Raises LagtopError.
         """
         from scipy.optimize import least_squares
 
-        low, high = self._bounds()
-        inside = np.clip(start, low, high)
+        bounds = self._bounds()
+        inside = np.clip(start, *bounds)
         if (self._at(inside)[0] == _FAR).all():
             raise LagtopError("the fit cannot start: no motion of a top matches the recording")
-        free = self.by.apply
         ended = least_squares(
             lambda x: self._at(self.by.parameters(x))[0],
             self.by.of(inside),
             self._slopes,
-            bounds=(-np.inf, np.inf) if free else (low, high),
+            bounds=(-np.inf, np.inf) if self.by.apply else bounds,
             x_scale="jac",
             xtol=1e-9,
             ftol=1e-8,
@@ -100,37 +115,39 @@ class Problem:
         if (values == _FAR).all():
             raise LagtopError("the fit ends where no motion of a top matches the recording")
         spread = _Inverse(self._slopes(ended.x)).spread
-        return FittedParameters(
+        return Fit(
+            self.recordings,
             self.parameters,
             found,
             self.by.covariance(ended.x, spread),
             float(np.sum(values**2)),
             values.size - len(found),
             left,
+            self.sigma,
             ended.status > 0,
             _Inverse(slopes).undetermined(self.by.names),
         )
 
-    def with_reach(self, solution: FittedParameters) -> FittedParameters:
-        """Return a solution whose covariance holds for three standard deviations.
+    def with_reach(self, fit: Fit) -> Fit:
+        """Return the fit with a covariance that holds for three standard deviations.
 
         Along the direction that the data determine least, chi^2 need not be a parabola.  It is
         followed to both sides of the minimum, with the other parameters at their best values, until
         it has risen by about nine.  The longer side counts.
         """
-        centre = self.by.of(solution.values)
+        centre = self.by.of(fit.values)
         inverse = _Inverse(self._slopes(centre))
         spread, weakest = inverse.spread, inverse.weakest
         column, across = spread[:, weakest], inverse.measure
         far = [self.by.parameters(centre + way * column) for way in (_REACH, -_REACH)]
-        rises = [float(np.sum(self._at(x)[0] ** 2)) - solution.chi2 for x in far]
+        rises = [float(np.sum(self._at(x)[0] ** 2)) - fit.chi2 for x in far]
         if all(abs(rise / _REACH**2 - 1) < _BENT for rise in rises):
-            return solution
-        ends = [self._followed(centre, way * column, across, solution.chi2) for way in (1, -1)]
-        deviations = np.sqrt(np.diag(solution.covariance))
-        off = max((x - solution.values for x in ends), key=lambda x: np.linalg.norm(x / deviations))
+            return fit
+        ends = [self._followed(centre, way * column, across, fit.chi2) for way in (1, -1)]
+        deviations = np.sqrt(np.diag(fit.covariance))
+        off = max((x - fit.values for x in ends), key=lambda x: np.linalg.norm(x / deviations))
         covariance = self.by.covariance(centre, np.delete(spread, weakest, axis=1))
-        return solution._replace(covariance=covariance + np.outer(off, off))
+        return fit._replace(covariance=covariance + np.outer(off, off))
 
     def _followed(self, centre: Array, column: Array, across: Array, chi2: float) -> Array:
         """Return the parameters one standard deviation away, by the rise of chi^2 along a line."""
@@ -192,77 +209,61 @@ class Problem:
         return np.concatenate([*whole, off]), np.concatenate([*slopes, of_off]), left
 
 
-def fitted_from(
-    starts: Sequence[Mapping[str, float]],
-    recordings: Sequence[Recording],
-    noise: Sequence[Mapping[str, float]],
-    known: Mapping[str, float],
-    stds: Mapping[str, float],
-    *,
-    steps: int = MOST_STEPS,
-) -> tuple[Problem, FittedParameters]:
-    """Return the fit of one body to recordings, and its result, from the quantities of each.
+def fitted_from(starts: Sequence[FitStart], known: KnownInputs, *, steps: int = _MOST_STEPS) -> Fit:
+    """Return the fit of one body to recordings, from a start for each.
 
-    Standard deviations that are not given are estimated from the noise.  Raises LagtopError.
+    Standard deviations that are not given are those of the noise.  Raises LagtopError.
     """
-    parameters = parameters_of(known, stds, recordings)
-    problem = Problem(recordings, [*map(_sigma_of, recordings, noise)], parameters)
-    return problem, problem.solve(parameters.start(starts), steps)
+    recordings, noise, values = zip(*starts, strict=True)
+    parameters = parameters_of(known, recordings)
+    sigma = [
+        _by_row(one, one.sigma or {**dict.fromkeys(one.channels, max(x.values())), **x})
+        for one, x in zip(recordings, noise, strict=True)
+    ]
+    problem = Problem(recordings, sigma, parameters)
+    return problem.solve(parameters.start(values), steps)._replace(noise=noise)
 
 
-def _sigma_of(recording: Recording, noise: Mapping[str, float]) -> Mapping[str, ArrayLike]:
-    """Return the standard deviations, or estimates from the noise if they are unknown."""
-    greatest = max(noise.values())
-    guessed = {x: max(noise.get(x, greatest), LEAST_SIGMA) for x in recording.channels}
-    return recording.sigma or guessed
+def _by_row(recording: Recording, sigma: Mapping[str, ArrayLike]) -> Array:
+    """Return standard deviations by channel in shape (channels, times)."""
+    return np.stack([np.broadcast_to(sigma[x], recording.t.shape) for x in recording.channels])
 
 
-def reweighted(problem: Problem, solution: FittedParameters) -> tuple[Problem, FittedParameters]:
+def reweighted(fit: Fit) -> Fit:
     """Return a fit with standard deviations from its residuals, unless they are given."""
-    if problem.recordings[0].sigma:
-        return problem, solution
+    if fit.sigma_known:
+        return fit
     for _ in range(_REWEIGHTINGS):
-        sigma = [_sigma_left(solution)] * len(problem.recordings)
-        problem = Problem(problem.recordings, sigma, problem.parameters)
-        solution = problem.solve(solution.values)
-        if abs(solution.chi2 / max(solution.dof, 1) - 1) < _STEADY:
+        spread = _spread_of_residuals(fit)
+        sigma = [_by_row(recording, spread) for recording in fit.recordings]
+        fit = fit._replace(sigma=sigma).continued(fit.values)
+        if abs(fit.chi2 / max(fit.dof, 1) - 1) < _STEADY:
             break
-    return problem, solution
+    return fit
 
 
-def _sigma_left(solution: FittedParameters) -> dict[str, float]:
+def _spread_of_residuals(fit: Fit) -> dict[str, float]:
     """Return the standard deviations of residuals by channel, common to all recordings."""
-    rest = solution.residuals
-    count = sum(int(np.isfinite(values).sum()) for one in rest for values in one.values())
-    share = count / max(solution.dof, 1)
-    sigma: dict[str, float] = {}
-    for channel in {channel: None for one in rest for channel in one}:
-        joined = np.concatenate([one[channel] for one in rest if channel in one])
-        sigma[channel] = max(float(np.sqrt(np.nanmean(joined**2) * share)), LEAST_SIGMA)
-    return sigma
+    channels = dict.fromkeys(channel for one in fit.residuals for channel in one)
+    joined = {x: np.concatenate([one[x] for one in fit.residuals if x in one]) for x in channels}
+    share = sum(int(np.isfinite(x).sum()) for x in joined.values()) / max(fit.dof, 1)
+    return {
+        channel: max(float(np.sqrt(np.nanmean(x**2) * share)), _LEAST_SIGMA)
+        for channel, x in joined.items()
+    }
 
 
 def _left(recording: Recording, quantities: Array, slopes: Array) -> tuple[Array, Array] | None:
-    """Return residuals and their derivatives by the parameters; None if there is no such top.
-
-    The motion has the zeros and the spin rate of the recording.
-    """
-    t = recording.t
+    """Return residuals and their derivatives by the parameters; None if there is no such top."""
     try:
-        angles, by_state = angles_and_slopes(quantities[: len(STATE)], t)
+        angles, by_state = angles_and_slopes(quantities[: len(STATE)], recording.t)
     except LagtopError:
         return None
-    value = dict(zip(FIT_QUANTITIES, quantities, strict=True))
-    slope = dict(zip(FIT_QUANTITIES, slopes, strict=True))
-    angles, by_values = angles.copy(), by_state @ slopes[: len(STATE)]
-    if value["r0"] or slope["r0"].any():
-        angles[1] += (value["r0"] - value["b"]) * t
-        by_values[1] += t[:, np.newaxis] * (slope["r0"] - slope["b"])
-    for i, name in ((1, "phi_zero"), (2, "psi_zero")):
-        angles[i] += value[name]
-        by_values[i] += slope[name]
-    rest = residuals(recording, angles)
-    return rest.values, np.einsum("cta,atp->ctp", rest.slopes, by_values)
+    value, slope = (dict(zip(FIT_QUANTITIES, x, strict=True)) for x in (quantities, slopes))
+    rest = residuals(recording, as_recorded(angles, value, recording.t))
+    by_values = by_state @ slopes[: len(STATE)]
+    changes = as_recorded(by_values, slope, recording.t[:, np.newaxis])
+    return rest.values, np.einsum("cta,atp->ctp", rest.slopes, changes)
 
 
 class _Inverse:
@@ -277,7 +278,7 @@ class _Inverse:
     @property
     def spread(self) -> Array:
         """A matrix S with the covariance S S^T; undetermined directions are left out."""
-        inverse = np.where(self.determined, 1 / np.where(self.determined, self.values, 1.0), 0.0)
+        inverse = np.divide(1, self.values, out=0 * self.values, where=self.determined)
         spread: Array = self.rows.T * inverse / self.size[:, np.newaxis]
         return spread
 

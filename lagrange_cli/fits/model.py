@@ -92,6 +92,16 @@ def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:
     return angles, np.stack(slopes, axis=-1)
 
 
+def as_recorded(angles: Array, values: Mapping[str, Any], t: Array) -> Array:
+    """Return angles of a motion, shape (3, times), with the spin rate and zeros of a recording.
+
+    The map is linear: pass derivatives of the angles, and of the values, for those of the result.
+    """
+    theta, phi, psi = angles
+    spin = (values["r0"] - values["b"]) * t
+    return np.stack([theta, phi + spin + values["phi_zero"], psi + values["psi_zero"]])
+
+
 def inputs_of(a: Any, b: Any, theta: Any, nutation: Any, precession: Any) -> dict[str, Any]:
     """Return the inputs of `Top` for one state, or for many."""
     start = {"theta0_rad": theta, "thetadot0": nutation, "psidot0": precession}

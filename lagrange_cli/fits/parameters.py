@@ -23,6 +23,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -58,14 +59,22 @@ def imaginary_slopes(function: Callable[[Array], Array], at: Array) -> Array:
     return np.stack(rows, axis=-1)
 
 
+class KnownInputs(dict[str, float]):
+    """Known inputs by key, theta0 in radians, and the standard deviations of uncertain ones."""
+
+    def __init__(
+        self, inputs: Mapping[str, float], stds: Mapping[str, float] = MappingProxyType({})
+    ) -> None:
+        super().__init__(inputs)
+        self.stds = stds
+
+
 @dataclass(frozen=True)
 class Parameters:
     """The parameters of a fit of some recordings, and the inputs that are known."""
 
-    known: Mapping[str, float]
-    """Inputs by key, theta0 in radians."""
-    stds: Mapping[str, float]
-    """Standard deviations of uncertain known inputs, which are parameters with a prior."""
+    known: KnownInputs
+    """Inputs; uncertain ones are parameters with a prior."""
     names: Sequence[Name]
 
     def quantities(self, values: Array, i: int) -> tuple[Array, Array]:
@@ -105,7 +114,7 @@ class Parameters:
 
     def start(self, alone: Sequence[Mapping[str, float]]) -> Array:
         """Return the start of a fit from the quantities of each recording, by their medians."""
-        certain = {name: self.known[name] for name in self.stds}
+        certain = {name: self.known[name] for name in self.known.stds}
         found = [
             {**one, "ratio": one["b"] / one["r0"] if one["r0"] else 1.0, **certain} for one in alone
         ]
@@ -117,9 +126,9 @@ class Parameters:
 
     def priors(self, values: Array) -> tuple[Array, Array]:
         """Return deviations of uncertain inputs over their standard deviations, and slopes."""
-        rows = [i for i, (name, _) in enumerate(self.names) if name in self.stds]
+        rows = [i for i, (name, _) in enumerate(self.names) if name in self.known.stds]
         mean = np.array([self.known[self.names[i][0]] for i in rows])
-        std = np.array([self.stds[self.names[i][0]] for i in rows])
+        std = np.array([self.known.stds[self.names[i][0]] for i in rows])
         return (values[rows] - mean) / std, np.eye(values.size)[rows] / std[:, np.newaxis]
 
     @property
@@ -138,11 +147,9 @@ class Parameters:
         return "r0" in self.known or ("r0", 0) in self.names
 
 
-def parameters_of(
-    known: Mapping[str, float], stds: Mapping[str, float], recordings: Sequence[Recording]
-) -> Parameters:
-    """Return the parameters of a fit, from known inputs and the standard deviations of some."""
-    names: list[Name] = [(name, -1) for name in BODY_QUANTITIES if name in stds]
+def parameters_of(known: KnownInputs, recordings: Sequence[Recording]) -> Parameters:
+    """Return the parameters of a fit of some recordings."""
+    names: list[Name] = [(name, -1) for name in BODY_QUANTITIES if name in known.stds]
     if known_torque(known) is None:
         names.append(("a", -1))
     ratio_known = "C" in known and ("A" in known or _weighs(known))
@@ -151,13 +158,13 @@ def parameters_of(
     tied = spins and (ratio_known or len(recordings) > 1)
     if tied and not ratio_known:
         names.append(("ratio", -1))
-    free = [name for name in ("r0", *_START) if name not in known or name in stds]
+    free = [name for name in ("r0", *_START) if name not in known or name in known.stds]
     for i, recording in enumerate(recordings):
         if not tied:
             names.append(("b", i))
         names += [(name, i) for name in free if name != "r0" or spins]
         names += [(f"{x}_zero", i) for x in ("psi", "phi") if x in recording.angles]
-    return Parameters(known, stds, names)
+    return Parameters(known, names)
 
 
 def _weighs(known: Mapping[str, Any]) -> bool:
@@ -172,16 +179,14 @@ def known_torque(known: Mapping[str, Any]) -> Any:
     return 2 * known["m"] * known["g"] * known["s"] / known["A"]
 
 
-def known_inputs(
-    given: Mapping[str, Any], stds: Mapping[str, float] | None = None
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Return known inputs by key of `Top`, with theta0 in radians, and their standard deviations.
+def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> KnownInputs:
+    """Return known inputs from inputs of `Top`, and the standard deviations of some.
 
     A_cm is kept besides A only if it is uncertain.  Raises LagtopError for an invalid input, one
     that a fit cannot use, or one that needs others.
     """
     check_names("known", [*given] or ["m"], [*Top.fields, *_INSTEAD])
-    known, spread = {name: checked_double(name, x) for name, x in given.items()}, dict(stds or {})
+    known, spread = {name: checked_double(name, x) for name, x in given.items()}, dict(stds)
     if "phidot0" in known:
         raise LagtopError("phidot0 is no input of a fit: give r0", "phidot0")
     if "A_cm" in known and not {"m", "s"} <= known.keys():
@@ -198,7 +203,7 @@ def known_inputs(
         for values in (known, spread):
             if key in values:
                 values["theta0"] = values.pop(key) * unit
-    return known, spread
+    return KnownInputs(known, spread)
 
 
 def _guard(known: Mapping[str, float]) -> None:

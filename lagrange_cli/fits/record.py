@@ -6,20 +6,22 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
+from ..inputs.names import ANGLES
 from ..motion.notebook import HasRecord
 from ..motion.quantity import unit_name
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
-from .least_squares import FittedParameters
+from .least_squares import Fit
 from .model import (
     MEANINGS,
     STATE,
     DerivedNumber,
+    as_recorded,
     chi2_bounds,
     derived_numbers,
     motion_angles,
@@ -27,7 +29,6 @@ from .model import (
     std_of,
 )
 from .parameters import BODY_QUANTITIES
-from .recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,23 +42,6 @@ MUCH_CHI2 = 100.0
 """Chi^2 per degree of freedom beyond which a fit has failed: residuals are ten times sigma."""
 _SURE = 4.0
 """Number of standard deviations from which b counts as not 0."""
-
-
-class Fit(NamedTuple):
-    """The best motion for some recordings of one body."""
-
-    recordings: Sequence[Recording]
-    """Recordings as interpreted: psi may be counted in the other direction."""
-    solution: FittedParameters
-    noise: Sequence[Mapping[str, float]]
-    """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
-    rival: Mapping[str, float] | None = None
-    """Another top that explains a single recording as well: its quantities by name."""
-
-    @property
-    def sigma_known(self) -> bool:
-        """Whether the standard deviations were given; otherwise they come from the residuals."""
-        return bool(self.recordings[0].sigma)
 
 
 def flat_numbers(numbers: Iterable[tuple[str, Any, Any]]) -> dict[str, Any]:
@@ -75,9 +59,9 @@ class Outcome(HasRecord):
         self.fit, self.index, self.radians = found, index, radians
         self.per_radian, self.angle = angle_unit(radians=radians)
         self.recording = found.recordings[index]
-        parameters = found.solution.parameters
-        self.stds = parameters.stds
-        values, self.covariance = found.solution.quantities(index)
+        parameters = found.parameters
+        self.stds = parameters.known.stds
+        values, self.covariance = found.quantities(index)
         self.labels = list(parameters.labels)
         self.values = dict(zip(self.labels, values.tolist(), strict=True))
         deviations = np.sqrt(np.maximum(np.diag(self.covariance), 0))
@@ -87,13 +71,13 @@ class Outcome(HasRecord):
         shown = {"a", "b", "b/a", *["r0"] * parameters.spins} - exact
         self.shown = {x: y for x, y in self.values.items() if x in shown}
         self.determined = determined_products(self.shown, self.known)
-        self.residuals_by_row = found.solution.residuals[index]
+        self.residuals_by_row = found.residuals[index]
         self.residuals = {x: residual_of(values) for x, values in self.residuals_by_row.items()}
 
     @property
     def chi2_dof(self) -> float:
         """Chi^2 per degree of freedom, over all recordings of the fit."""
-        return self.fit.solution.chi2 / max(self.fit.solution.dof, 1)
+        return self.fit.chi2 / max(self.fit.dof, 1)
 
     @property
     def verdict(self) -> str:
@@ -104,18 +88,18 @@ class Outcome(HasRecord):
 
     def failures(self) -> list[str]:
         """Return the reasons why the fit has failed, if there are any."""
-        solution, found = self.fit.solution, []
-        if self.fit.rival is not None:
-            shown = ", ".join(f"{name} = {self.fit.rival[name]:.6g}" for name in self.shown)
+        fit, found = self.fit, []
+        if fit.rival is not None:
+            shown = ", ".join(f"{name} = {fit.rival[name]:.6g}" for name in self.shown)
             found.append(f"another top explains the recording as well: {shown}")
-        if solution.unknown:
-            found.append(f"the recording does not determine {' and '.join(solution.unknown)}")
-        if not solution.converged:
+        if fit.unknown:
+            found.append(f"the recording does not determine {' and '.join(fit.unknown)}")
+        if not fit.converged:
             found.append("the least squares do not converge")
-        remedy = "the spin may decay: try --window" if self.fit.noise[0] else "use shorter windows"
-        if self.fit.sigma_known and self.chi2_dof > MUCH_CHI2:
+        remedy = "the spin may decay: try --window" if fit.noise else "use shorter windows"
+        if fit.sigma_known and self.chi2_dof > MUCH_CHI2:
             found.append(f"no motion fits the recording: chi2/dof = {self.chi2_dof:.3g}; {remedy}")
-        for channel, noise in self.fit.noise[self.index].items():
+        for channel, noise in (fit.noise[self.index] if fit.noise else {}).items():
             rms = self.residuals[channel].rms
             if rms > min(_MUCH * noise, 1.0):  # a radian: then harmonics do not fit either
                 off, noise_shown = (f"{x * self.per_radian:.3g}" for x in (rms, noise))
@@ -134,7 +118,7 @@ class Outcome(HasRecord):
     def found(self) -> Iterator[tuple[str, float, float]]:
         """Yield name, value and standard deviation of each fitted quantity of the motion."""
         has = {
-            "r0": self.fit.solution.parameters.spins,
+            "r0": self.fit.parameters.spins,
             "psi_zero": "psi" in self.recording.angles,
             "phi_zero": "phi" in self.recording.angles,
         }
@@ -157,7 +141,7 @@ class Outcome(HasRecord):
     @cached_property
     def derived(self) -> Sequence[DerivedNumber]:
         """Numbers that follow from the motion, with their standard deviations."""
-        spins = self.fit.solution.parameters.spins
+        spins = self.fit.parameters.spins
         return list(derived_numbers(self.values, self.covariance, spins=spins))
 
     def numbers(self) -> Iterator[tuple[str, float, float, str]]:
@@ -195,9 +179,9 @@ class Outcome(HasRecord):
 
     def warnings(self) -> list[str]:
         """Return the reasons for doubt in the numbers; reasons of a failure come first."""
-        solution, found = self.fit.solution, self.failures()
-        if self.fit.sigma_known and solution.dof > 0:
-            low, high = chi2_bounds(solution.dof)
+        found = self.failures()
+        if self.fit.sigma_known and self.fit.dof > 0:
+            low, high = chi2_bounds(self.fit.dof)
             if not low <= self.chi2_dof <= high:
                 found.append(
                     f"chi2/dof = {self.chi2_dof:.3g} is beyond {low:.3g} to {high:.3g}: another "
@@ -238,7 +222,7 @@ class Outcome(HasRecord):
 
     def record(self) -> dict[str, Any]:
         """Return everything by key, flat."""
-        solution, recording = self.fit.solution, self.recording
+        recording = self.recording
         record: dict[str, Any] = {"name": recording.name} if recording.name else {}
         record |= flat_numbers(number[:3] for number in self.numbers())
         record |= {f"{x.key}_off_sigma": x.off for x in self.derived if x.exact}
@@ -247,11 +231,11 @@ class Outcome(HasRecord):
             record.setdefault(key, value * scale)
         for first, second, value in self.correlations():
             record[f"{first}_{second}_correlation"] = value
-        low, high = chi2_bounds(max(solution.dof, 1))
+        low, high = chi2_bounds(max(self.fit.dof, 1))
         record |= {
             "t_start": recording.t_start,
             "rows": recording.t.size,
-            "dof": solution.dof,
+            "dof": self.fit.dof,
             "chi2_dof": self.chi2_dof if self.fit.sigma_known else None,
             "chi2_dof_low": low,
             "chi2_dof_high": high,
@@ -279,7 +263,7 @@ class Outcome(HasRecord):
     def angles(self, t: Array) -> dict[str, Array]:
         """Return the angles of the fitted motion, with the zeros and signs of the recording."""
         values = self.values
-        theta, phi, psi = motion_angles(np.array([[values[name] for name in STATE]]), t)[:, 0]
-        spin = (values["r0"] - values["b"]) * t if "phi" in self.recording.angles else 0.0
-        phi, psi = phi + spin + values["phi_zero"], psi + values["psi_zero"]
-        return {"theta": theta, "phi": phi, "psi": psi}
+        found = motion_angles(np.array([[values[name] for name in STATE]]), t)[:, 0]
+        if "phi" not in self.recording.angles:
+            values = values | {"r0": values["b"]}
+        return dict(zip(ANGLES, as_recorded(found, values, t), strict=True))

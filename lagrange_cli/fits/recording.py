@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
@@ -16,7 +18,7 @@ from ..inputs import rotations
 from ..inputs.descriptions import scene_in
 from ..inputs.input_keys import checked_double
 from ..inputs.names import ANGLES
-from ..inputs.seen import Conventions, Quantities, Said, angles_in, see
+from ..inputs.seen import Conventions, Quantities, Said, angles_in, quantities_of, rows_of, see
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.trajectory import Clock, Trajectory, open_trajectory
@@ -62,17 +64,14 @@ class Recording:
     @property
     def channels(self) -> list[str]:
         """The channels that are compared with a motion."""
-        if self.kind == "angles":
-            return [name for name in ANGLES if name in self.angles]
-        return list(CHANNELS[self.kind])
+        return [x for x in CHANNELS[self.kind] if x in self.angles or self.kind != "angles"]
 
     @property
     def known(self) -> Mask:
         """Whether a number is present, shape (channels, times)."""
-        sources = self.channels
-        if self.kind != "angles":  # an axis or an attitude is complete, or missing
-            sources = ["theta"] * len(self.channels)
-        return np.stack([np.isfinite(self.angles[name]) for name in sources])
+        is_whole = self.kind != "angles"  # an axis or an attitude is complete, or missing
+        names = ["theta" if is_whole else name for name in self.channels]
+        return np.stack([np.isfinite(self.angles[name]) for name in names])
 
     @property
     def mirrored(self) -> Recording:
@@ -80,7 +79,7 @@ class Recording:
         angles = {name: -x if name == "psi" else x for name, x in self.angles.items()}
         return replace(self, angles=angles, is_mirrored=not self.is_mirrored)
 
-    def part(self, rows: NDArray[np.intp], name: str) -> Recording:
+    def part(self, rows: NDArray[np.intp], name: str = "") -> Recording:
         """Return some rows, in this order, with times since the first of them."""
         t = self.t[rows]
         return replace(
@@ -88,8 +87,8 @@ class Recording:
             name=name,
             t=t - t[0],
             t_start=self.t_start + float(t[0]),
-            angles={key: x[rows] for key, x in self.angles.items()},
-            sigma={key: x[rows] for key, x in self.sigma.items()},
+            angles=rows_of(self.angles, rows),
+            sigma=rows_of(self.sigma, rows),
         )
 
 
@@ -105,16 +104,6 @@ class Reading(NamedTuple):
     dialect: Dialect = UNDECIDED
 
 
-class Source(NamedTuple):
-    """The origin of rows, and options of reading them."""
-
-    where: str
-    reading: Reading
-    said: Said
-    spread: Mapping[str, str | None]
-    """Units of the columns NAME_std, by NAME."""
-
-
 def read_recordings(path: str, reading: Reading) -> list[Recording]:
     """Return the recordings of a file, in the order in which they begin.
 
@@ -122,13 +111,12 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
     """
     with open_trajectory(path, reading.columns, reading.dialect) as trajectory:
         spread = _add_spreads(trajectory)
-        said = trajectory.said
-        made = []
+        found = {}
         for name, given in _parts(trajectory, reading.by).items():
             where = f"{trajectory.name}{f', {reading.by} {name}' if name else ''}"
-            made.append(recording_of(name, Source(where, reading, said, spread), given))
+            found[name] = _recording_of(where, given, reading, trajectory.said, spread)
         scene = scene_in(trajectory.description, trajectory.name)
-    return [replace(one, scene=scene) for one in made]
+    return [replace(one, name=name, scene=scene) for name, one in found.items()]
 
 
 def _add_spreads(trajectory: Trajectory) -> Mapping[str, str | None]:
@@ -151,16 +139,14 @@ def _parts(trajectory: Trajectory, by: str | None) -> dict[str, dict[str, Array]
         shown = ", ".join(trajectory.names)[:100]
         raise LagtopError(f"by must name a column of {trajectory.name} ({shown}), got {by!r}", "by")
     word_of = None if by is None else trajectory.add_words("by", by)
-    parts: dict[float, list[Quantities]] = {}
-    clocks: dict[float, Clock] = {}
+    parts = defaultdict[float, list[Quantities]](list)
+    clocks = defaultdict[float, Clock](lambda: Clock(trajectory, repeats=True))
     for block, places in trajectory.rows():
         labels = block.get("by", np.zeros((len(places), 1)))[:, 0]
         for label in dict.fromkeys(labels.tolist()):
             rows = np.flatnonzero(labels == label)
-            some = {key: x[rows] for key, x in block.items()}
-            clock = clocks.setdefault(label, Clock(trajectory, repeats=True))
-            clock.advance(some["t"][:, 0], [places[row] for row in rows.tolist()])
-            parts.setdefault(label, []).append(some)
+            clocks[label].advance(block["t"][rows, 0], [places[row] for row in rows.tolist()])
+            parts[label].append(rows_of(block, rows))
     if not parts:
         raise DataError(f"{trajectory.name} must have {LEAST_ROWS} rows or more, got 0")
     return {
@@ -171,16 +157,22 @@ def _parts(trajectory: Trajectory, by: str | None) -> dict[str, dict[str, Array]
     }
 
 
-def recording_of(name: str, source: Source, given: Quantities) -> Recording:
+def _recording_of(
+    where: str,
+    given: Quantities,
+    reading: Reading,
+    said: Said = MappingProxyType({}),
+    spread: Mapping[str, str | None] = MappingProxyType({}),
+) -> Recording:
     """Return the recording in some columns, from its first row on, in the order of time.
 
-    Rows and angles without a number are left out.  Raises LagtopError, DataError for a bad
-    recording.
+    `spread` has the units of the columns NAME_std.  Rows and angles without a number are left out.
+    Raises LagtopError, DataError for a bad recording.
     """
-    where, t = source.where, given["t"][:, 0]
-    kind, measured = _angles(source, given)
-    raw = Recording(name, t, 0.0, kind, measured, {})
-    sigma = _sigma(source, given, raw)
+    t = given["t"][:, 0]
+    kind, measured = _angles(given, reading.conventions, said)
+    raw = Recording("", t, 0.0, kind, measured, {})
+    sigma = _sigma(raw, given, reading, spread)
     if t.size < LEAST_ROWS:
         raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {t.size}")
     angles = _cleaned(measured, where)
@@ -205,7 +197,7 @@ def recording_of(name: str, source: Source, given: Quantities) -> Recording:
     for channel, values in sigma.items():
         if not np.all((values > 0) | np.isnan(values)):
             raise DataError(f"{where}: {channel}_std must be > 0, got {np.nanmin(values):g}")
-    return replace(raw, angles=angles, sigma=sigma).part(order, name)
+    return replace(raw, angles=angles, sigma=sigma).part(order)
 
 
 def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
@@ -226,12 +218,14 @@ def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
     return found
 
 
-def _angles(source: Source, given: Quantities) -> tuple[str, dict[str, Array]]:
+def _angles(
+    given: Quantities, conventions: Conventions, said: Said
+) -> tuple[str, dict[str, Array]]:
     """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
-    alone = angles_in(given, source.reading.conventions, source.said)
+    alone = angles_in(given, conventions, said)
     if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
         return "angles", alone
-    seen = see(given, source.reading.conventions, source.said)
+    seen = see(given, conventions, said)
     if seen.quaternion is not None:
         return "attitude", rotations.angles_of(seen.quaternion)
     if seen.axis is not None:
@@ -239,12 +233,14 @@ def _angles(source: Source, given: Quantities) -> tuple[str, dict[str, Array]]:
     return "angles", {}
 
 
-def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array]:
+def _sigma(
+    raw: Recording, given: Quantities, reading: Reading, spread: Mapping[str, str | None]
+) -> dict[str, Array]:
     """Return the standard deviation of each channel, from columns or else from the options.
 
     Raises LagtopError for an unknown channel, or if only some channels have one.
     """
-    sigma, spread = source.reading.sigma, source.spread
+    sigma = reading.sigma
     each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, sigma)
     if unknown := [name for name in each if name not in raw.channels]:
         raise LagtopError(
@@ -260,7 +256,7 @@ def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array
         column = next((name for name in names if name in spread), None)
         if column is not None:
             unit = spread[column]
-            radians = source.reading.conventions.radians if unit is None else unit == "rad"
+            radians = reading.conventions.radians if unit is None else unit == "rad"
             values = given[f"{column}_std"][:, 0]
             found[channel] = values if radians else np.radians(values)
     if found and (missing := [x for x in raw.channels if x not in found]):
@@ -268,3 +264,25 @@ def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array
             f"sigma must be given for all angles or for none, got none for {missing[0]}", "sigma"
         )
     return found
+
+
+def recording_from(
+    t: ArrayLike,
+    *,
+    sigma: Mapping[str, float] | float | None = None,
+    **angles: ArrayLike | None,
+) -> Recording:
+    """Return the recording in the arguments of `fit`.  Raises LagtopError, DataError."""
+    given = {name: x for name, x in angles.items() if x is not None}
+    if len(given) != max(sum(name in ANGLES for name in given), 1):
+        shown = ", ".join(given) or "nothing"
+        raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
+    rows = quantities_of(t, given)
+    times = rows["t"][:, 0]
+    if not np.isfinite(times).all():
+        raise LagtopError("t must be finite numbers", "t")
+    if (back := np.flatnonzero(np.diff(times) < 0)).size:
+        before, after = times[back[0] : back[0] + 2].tolist()
+        raise LagtopError(f"t must not turn back, got {after} after {before}", "t")
+    reading = Reading(conventions=Conventions("wxyz", radians=True), sigma=sigma)
+    return _recording_of("the recording", rows, reading)

@@ -112,11 +112,10 @@ def _conditions(outcomes: Sequence[Outcome], source: str, system: System | None)
 def _conclusions(outcome: Outcome) -> Iterator[str]:
     """Yield sentences on one recording."""
     name = f"{outcome.recording.name}: " if outcome.recording.name else ""
-    solution = outcome.fit.solution
     if outcome.fit.sigma_known:
-        low, high = chi2_bounds(max(solution.dof, 1))
+        low, high = chi2_bounds(max(outcome.fit.dof, 1))
         bounds = f"{low:.3f} to {high:.3f}"
-        yield f"{name}chi2/dof = {outcome.chi2_dof:.3f}, noise {bounds}; {solution.dof} dof."
+        yield f"{name}chi2/dof = {outcome.chi2_dof:.3f}, noise {bounds}; {outcome.fit.dof} dof."
     scale = outcome.per_radian
     rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
     yield f"{name}RMS residual ({outcome.angle}): {rest}."
@@ -132,7 +131,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
 def windows_report(found: WindowedFit, source: str, system: System | None) -> Report:
     """Return the report on a fit in windows: a row for each, the body, and the decay."""
     first = found.windows[0].outcome
-    name = "r0" if first.fit.solution.parameters.spins else "b"
+    name = "r0" if first.fit.parameters.spins else "b"
     columns = [name, "theta0_deg", "T_nutation", "T_precession"]
     columns = [unit_name(x, radians=first.radians) for x in columns]
     units = outcome_units(first, system) if system else {}

@@ -146,14 +146,9 @@ def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Se
 
 def read_unknown(name: str, given: Any) -> Value:
     """Return a number, or a range as exact fractions; a unit is kept."""
-    if isinstance(given, str):
-        try:
-            return parse_value(given, parse_span, uncertain=True)
-        except LagtopError as error:
-            raise LagtopError(f"{name} {error}", name) from None
-    value = value_of(name, given)
+    value = value_of(name, given, parse_span)
     pair = value.number
-    if not isinstance(pair, tuple | list | np.ndarray):
+    if isinstance(pair, Span) or not isinstance(pair, tuple | list | np.ndarray):
         return value
     if (isinstance(pair, np.ndarray) and pair.ndim != 1) or len(pair) != 2:
         raise LagtopError(f"{name} must be a real number or a pair, got {quoted(given)}", name)

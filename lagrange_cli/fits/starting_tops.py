@@ -20,7 +20,7 @@ from ..elliptic.jacobi_arrays import jacobi_of_arrays
 from ..elliptic.modulus import modulus
 from .harmonics import Harmonics, frame_of, slowest_spin, turning_rate
 from .invert import SIGNS, Candidates, TurningPoints, candidates, with_mean_rate
-from .model import STATE, motion_angles, residuals
+from .model import STATE, as_recorded, motion_angles, residuals
 from .nutation import Shown, Turns
 from .recording import Recording
 
@@ -44,20 +44,23 @@ _TILT_OFF = 0.02
 """Largest difference of the tilt of a start from the known tilt, in radians."""
 
 
-class StartingTop(NamedTuple):
-    """A top to start a fit from, and its distance from the recording."""
+class FitStart(NamedTuple):
+    """The start of a fit of one recording."""
 
+    recording: Recording
+    """The recording, with psi counted in one direction."""
+    noise: Mapping[str, float]
+    """Noise by channel, in radians, estimated by a fit of plain harmonics."""
     values: dict[str, float]
-    """The state, in the order of `model.STATE`, then the spin rate and the zeros, by name."""
-    misfit: float
-    """Sum of the squares of the residuals, over the noise of each channel."""
+    """The state, in the order of `model.STATE`, the spin rate and the zeros, by name."""
 
 
 def starting_tops(
     recording: Recording, shown: Shown | Turns, tilt: float | None = None, *, wide: bool = False
-) -> list[StartingTop]:
-    """Return tops that move approximately as a recording shows, the nearest first.
+) -> list[tuple[float, FitStart]]:
+    """Return starts of a fit that move approximately as a recording shows, the nearest first.
 
+    Each has the sum of the squares of its residuals, over the noise of each channel.
     `tilt` is the tilt in the first row, if it is known but not recorded.  The tops have the
     nutation and the mean precession of the recording.  If the search is `wide`, or if psi is not
     given, they have nearly its nutation and any precession.
@@ -70,7 +73,7 @@ def starting_tops(
     states[:, 2] = np.clip(states[:, 2], _LEAST_TILT, math.pi - _LEAST_TILT)
     angles = motion_angles(states, recording.t)
     made = [_start(recording, shown.noise, state, angles[:, i]) for i, state in enumerate(states)]
-    return sorted(made, key=lambda x: x.misfit)
+    return sorted(made, key=lambda x: x[0])
 
 
 def _states_shown(shown: Shown, *, wide: bool) -> Array:
@@ -120,24 +123,22 @@ def _states(shown: Shown, tops: Candidates) -> Array:
 
 def _start(
     recording: Recording, noise: Mapping[str, float], state: Array, angles: Array
-) -> StartingTop:
+) -> tuple[float, FitStart]:
     """Return a start with the best zeros of psi and phi, and the best spin rate."""
     (theta, phi, psi), t = angles, recording.t
     values = dict(zip(STATE, state.tolist(), strict=True))
-    psi_zero, excess, phi_zero, b = 0.0, 0.0, 0.0, values["b"]
+    values |= {"r0": values["b"], "psi_zero": 0.0, "phi_zero": 0.0}
     if "psi" in recording.angles:
-        psi_zero = _mean_angle(recording.angles["psi"] - psi, np.sin(theta))
+        values["psi_zero"] = _mean_angle(recording.angles["psi"] - psi, np.sin(theta))
     if "phi" in recording.angles:
         left = recording.angles["phi"] - phi  # grows at the rate r0 - b
         frame = frame_of(t[np.isfinite(left)])
+        b = values["b"]
         excess = slowest_spin(b + turning_rate(t, left), b, 0.0, frame) - b
-        phi_zero = _mean_angle(left - excess * t, 1.0)
-    moved = np.stack([theta, phi + excess * t + phi_zero, psi + psi_zero])
+        values |= {"r0": b + excess, "phi_zero": _mean_angle(left - excess * t, 1.0)}
+    off = residuals(recording, as_recorded(angles, values, t)).values
     sizes = [[noise.get(channel, 1.0)] for channel in recording.channels]
-    misfit = float(np.nansum((residuals(recording, moved).values / sizes) ** 2))
-    return StartingTop(
-        values | {"r0": b + excess, "psi_zero": psi_zero, "phi_zero": phi_zero}, misfit
-    )
+    return float(np.nansum((off / sizes) ** 2)), FitStart(recording, noise, values)
 
 
 def _mean_angle(angles: Array, weights: Array | float) -> float:

@@ -21,9 +21,9 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from .harmonics import turning_rate
-from .least_squares import FittedParameters
-from .parameters import Parameters, known_torque
-from .record import Fit, Outcome
+from .least_squares import Fit
+from .parameters import KnownInputs, Parameters, known_torque
+from .record import Outcome
 from .recording import Recording
 
 STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
@@ -40,9 +40,7 @@ class _Line(NamedTuple):
     chi2: float
 
 
-def steady_fit(
-    recording: Recording, known: Mapping[str, float], stds: Mapping[str, float], where: str
-) -> Fit:
+def steady_fit(recording: Recording, known: KnownInputs, where: str) -> Fit:
     """Fit a steady precession to a recording with psi; its tilt may be known instead of recorded.
 
     Standard deviations are estimated from the residuals by default.  Raises DataError if psi is
@@ -62,17 +60,15 @@ def steady_fit(
     if not values[1]:
         raise DataError(f"{where}: psi must precess: its mean rate is 0")
     count = sum(int(np.isfinite(line.residuals).sum()) for line in lines.values())
-    solution = FittedParameters(
-        SteadyParameters(known, stds, [(name, 0) for name in STEADY], lines),
+    return Fit(
+        [recording],
+        SteadyParameters(known, [(name, 0) for name in STEADY], lines),
         values,
         covariance,
         sum(line.chi2 for line in lines.values()),
         count - sum(line.factors.size for line in lines.values()),
         [{name: line.residuals for name, line in lines.items()}],
-        converged=True,
-        unknown=(),
     )
-    return Fit([recording], solution, [{}])
 
 
 def _sigma(recording: Recording, name: str) -> Array | None:
@@ -162,5 +158,5 @@ class SteadyOutcome(Outcome):
 
     def angles(self, t: Array) -> dict[str, Array]:
         """Return the angles of the steady precession, with the zeros of the recording."""
-        theta, rate, psi_zero, spin, phi_zero = self.fit.solution.values.tolist()
+        theta, rate, psi_zero, spin, phi_zero = self.fit.values.tolist()
         return {"theta": theta + 0 * t, "psi": psi_zero + rate * t, "phi": phi_zero + spin * t}

@@ -15,15 +15,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.solve import solve
-from .attempts import best_attempt
-from .least_squares import fitted_from, reweighted
+from .fit import best_fit
+from .least_squares import Fit, fitted_from, reweighted
 from .model import STATE, chi2_bounds, inputs_of
-from .parameters import FIT_QUANTITIES
-from .record import FAILED, Fit, Outcome, flat_numbers
+from .parameters import FIT_QUANTITIES, KnownInputs
+from .record import FAILED, Outcome, flat_numbers
 from .recording import LEAST_ROWS, Recording
 
 _STEPS = 30
@@ -101,7 +100,7 @@ class WindowedFit(NamedTuple):
             "decay_of": decay.quantity,
             **flat_numbers([("decay_time", *time), ("decay_rate", decay.rate, decay.rate_std)]),
             "decay_chi2_dof": decay.chi2_dof,
-            "dof": first.fit.solution.dof,
+            "dof": first.fit.dof,
             "chi2_dof": first.chi2_dof,
             "verdict": self.verdict,
             "windows": [window.row() for window in self.windows],
@@ -133,8 +132,7 @@ def split(recording: Recording, window: float, *, is_time: bool, where: str) -> 
 
 def fit_windows(
     parts: Sequence[Recording],
-    known: Mapping[str, float],
-    stds: Mapping[str, float],
+    known: KnownInputs,
     where: str,
     *,
     radians: bool = False,
@@ -147,19 +145,16 @@ def fit_windows(
     if "r0" in known:
         raise LagtopError("r0 is an unknown of a fit in windows: leave it out", "r0")
     with ARRAYS.working():
-        first = best_attempt(parts[0], known, stds, f"{where}, {parts[0].name}")
-        if first.recording.is_mirrored:
+        starts = [best_fit(parts[0], known, f"{where}, {parts[0].name}").start]
+        if starts[0].recording.is_mirrored:
             parts = [part.mirrored for part in parts]
-        found, noise = [first.solution.named(0)], [first.noise] * len(parts)
         for before, part in pairwise(parts):
-            start = _led_to(found[-1], part.t_start - before.t_start)
-            _, alone = fitted_from([start], [part], noise[:1], known, stds, steps=_STEPS)
-            found.append(alone.named(0))
-        problem, solution = reweighted(*fitted_from(found, parts, noise, known, stds))
-    # harmonics of few rows underestimate the noise
-    fit = Fit(parts, solution, [{}] * len(parts))
-    outcomes = [Outcome(fit, i, radians=radians) for i in range(len(parts))]
-    windows = [_window(x, sigma) for x, sigma in zip(outcomes, problem.sigma, strict=True)]
+            values = _led_to(starts[-1].values, part.t_start - before.t_start)
+            start = starts[0]._replace(recording=part, values=values)
+            starts.append(fitted_from([start], known, steps=_STEPS).start)
+        fit = reweighted(fitted_from(starts, known))
+    fit = fit._replace(noise=())  # harmonics of few rows underestimate the noise
+    windows = [_window(Outcome(fit, i, radians=radians)) for i in range(len(parts))]
     return WindowedFit(windows, _decay(windows, fit))
 
 
@@ -178,16 +173,16 @@ def _led_to(values: Mapping[str, float], t: float) -> dict[str, float]:
     }
 
 
-def _window(outcome: Outcome, sigma: Array) -> Window:
+def _window(outcome: Outcome) -> Window:
     """Return a window with its own chi^2 and its share of the degrees of freedom."""
-    solution, recording = outcome.fit.solution, outcome.recording
+    fit, recording = outcome.fit, outcome.recording
     rows = np.stack(list(outcome.residuals_by_row.values()))
     known = np.isfinite(rows)
-    total = solution.dof + solution.values.size
-    freedom = max(round(int(known.sum()) * solution.dof / total), 1)
-    chi2_dof = float(np.sum((rows / sigma)[known] ** 2)) / freedom
+    total = fit.dof + fit.values.size
+    freedom = max(round(int(known.sum()) * fit.dof / total), 1)
+    chi2_dof = float(np.sum((rows / fit.sigma[outcome.index])[known] ** 2)) / freedom
     low, high = chi2_bounds(freedom)
-    within = low <= chi2_dof <= high or not outcome.fit.sigma_known
+    within = low <= chi2_dof <= high or not fit.sigma_known
     verdict = "good" if outcome.leaves_noise and within else "doubtful"
     verdict = FAILED if outcome.failures() else verdict
     return Window(outcome, recording.t_start + float(recording.t[-1]) / 2, chi2_dof, verdict)
@@ -195,17 +190,16 @@ def _window(outcome: Outcome, sigma: Array) -> Window:
 
 def _decay(windows: Sequence[Window], fit: Fit) -> Decay:
     """Return the decay, by generalised least squares through the logarithms of r0, or of b."""
-    parameters, covariance = fit.solution.parameters, fit.solution.covariance
-    name = "r0" if parameters.spins else "b"
+    name = "r0" if fit.parameters.spins else "b"
     t = np.array([window.middle for window in windows])
     rates = np.array([window.outcome.values[name] for window in windows])
     slopes = np.stack(
         [
-            parameters.quantities(fit.solution.values, i)[1][FIT_QUANTITIES.index(name)] / rate
+            fit.parameters.quantities(fit.values, i)[1][FIT_QUANTITIES.index(name)] / rate
             for i, rate in enumerate(rates.tolist())
         ]
     )
-    spread = np.linalg.cholesky(slopes @ covariance @ slopes.T)
+    spread = np.linalg.cholesky(slopes @ fit.covariance @ slopes.T)
     basis = np.linalg.solve(spread, np.vander(t - t.mean(), 2))
     y = np.linalg.solve(spread, np.log(np.abs(rates)))
     (slope, level), *_ = np.linalg.lstsq(basis, y, rcond=None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from types import NoneType
@@ -15,15 +15,21 @@ from ..errors import LagtopError, check_type
 from .given import gather
 from .mixed_body import warn_of
 from .top import Top
-from .value import Value
+from .value import Value, parse_value
 
 
-def value_of(name: str, given: Any) -> Value:
+def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -> Value:
     """Return a number or an array as a value; both may be of pint, and numbers of uncertainties.
 
-    A single number with a unit, and an uncertainty, become fractions.  Raises LagtopError if they
-    are not finite.
+    A single number with a unit, and an uncertainty, become fractions.  `parse` reads the number of
+    a text, which may be uncertain.  Raises LagtopError if it does, or for numbers that are not
+    finite.
     """
+    if parse is not None and isinstance(given, str):
+        try:
+            return parse_value(given, parse, uncertain=True)
+        except LagtopError as error:
+            raise LagtopError(f"{name} {error}", name) from None
     if isinstance(given, Value):
         return given
     unit = ""

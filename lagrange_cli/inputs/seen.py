@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, cast
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from ..arithmetic.arrays import doubles_of
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from . import rotations
 from .names import ANGLES
-from .trajectory_columns import ELEVATION
+from .trajectory_columns import ELEVATION, QUANTITIES
 
 ORDERS = ("wxyz", "xyzw")
 FRAMES = ("body", "space")
@@ -186,6 +189,29 @@ def _directed(key: str, values: Array) -> dict[str, Array]:
     return {key: rotations.directed(values), "norm": np.linalg.norm(values, axis=1) - 1.0}
 
 
-def rows_of(given: Quantities, rows: Sequence[int] | slice | Array) -> dict[str, Array]:
+def rows_of(given: Quantities, rows: slice | NDArray[np.intp]) -> dict[str, Array]:
     """Return some of the rows of all quantities."""
     return {key: values[cast(Any, rows)] for key, values in given.items()}
+
+
+def quantities_of(t: ArrayLike, arrays: Mapping[str, ArrayLike]) -> dict[str, Array]:
+    """Return times and arrays of quantities, with a row for each time; a masked element is NaN.
+
+    Raises LagtopError for an array of another shape.
+    """
+    block = {"t": doubles_of("t", t).reshape(-1, 1)}
+    for key, array in arrays.items():
+        numbers, shape = doubles_of(key, _unmasked(array)), (len(block["t"]), QUANTITIES[key].size)
+        if numbers.size != math.prod(shape):
+            wanted = f"real numbers of shape {shape}"
+            raise LagtopError(f"{key} must be {wanted}, got the shape {numbers.shape}", key)
+        block[key] = numbers.reshape(shape)
+    return block
+
+
+def _unmasked(array: ArrayLike) -> ArrayLike:
+    """Return an array with NaN for its masked elements."""
+    if isinstance(array, np.ma.MaskedArray) and array.dtype.kind in "iuf":
+        numbers: Array = np.ma.filled(array.astype(np.float64), np.nan)
+        return numbers
+    return array

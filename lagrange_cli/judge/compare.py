@@ -8,16 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.arrays import doubles_of
-from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.descriptions import difference, scene_in
 from ..inputs.files import shown_path, utf8_path
-from ..inputs.seen import Conventions, Quantities
+from ..inputs.seen import Conventions, quantities_of
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.trajectory import Trajectory, open_trajectory
-from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.solve import Motion, solve
 from ..output.terminal import Progress, silent
 from .alignment import Alignment, alignment
@@ -90,38 +87,18 @@ def compare(
     directions = {"axis": axis, "position": position}
     arrays = attitude | angles | directions | {"rates": rates, "angle_rates": angle_rates}
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
-    block = _quantities(t, {key: x for key, x in arrays.items() if x is not None})
+    block = quantities_of(t, {key: x for key, x in arrays.items() if x is not None})
+    if len(block) == 1:
+        raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
+    times = block["t"]
+    steps = times[1:], times[:-1]  # a difference may exceed the range of doubles
+    if not np.isfinite(times).all() or not (np.all(np.greater(*steps)) or np.all(np.less(*steps))):
+        raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
     given = ReadTrajectory([block], {}, conventions, alignment(align))
     check_type("top", top, Top, Motion)
     motion = top if isinstance(top, Motion) else solve(top)
     (judgement,), _ = with_verdicts(motion, [judge(motion, given)], max_error)
     return replace(judgement, step=step)
-
-
-def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
-    """Return the arrays as quantities.  Raises LagtopError for an array of another shape."""
-    times = doubles_of("t", t).reshape(-1, 1)
-    if not arrays:
-        raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
-    steps = times[1:, 0], times[:-1, 0]  # a difference may exceed the range of doubles
-    if not np.isfinite(times).all() or not (np.all(np.greater(*steps)) or np.all(np.less(*steps))):
-        raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
-    block = {"t": times}
-    for key, array in arrays.items():
-        numbers, size = doubles_of(key, _unmasked(array)), QUANTITIES[key].size
-        if numbers.size != len(times) * size:
-            wanted = f"real numbers of shape ({len(times)}, {size})"
-            raise LagtopError(f"{key} must be {wanted}, got the shape {numbers.shape}", key)
-        block[key] = numbers.reshape(len(times), size)
-    return block
-
-
-def _unmasked(array: ArrayLike) -> ArrayLike:
-    """Return an array with NaN for its masked elements."""
-    if isinstance(array, np.ma.MaskedArray) and array.dtype.kind in "iuf":
-        numbers: Array = np.ma.filled(array.astype(np.float64), np.nan)
-        return numbers
-    return array
 
 
 def with_verdicts(

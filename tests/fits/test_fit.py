@@ -24,7 +24,7 @@ from lagrange_cli.fits import fit as fits
 from lagrange_cli.fits.invert import TurningPoints, candidates, top_of
 from lagrange_cli.fits.least_squares import Problem
 from lagrange_cli.fits.model import residuals
-from lagrange_cli.fits.parameters import FIT_QUANTITIES, Parameters, parameters_of
+from lagrange_cli.fits.parameters import FIT_QUANTITIES, KnownInputs, parameters_of
 from lagrange_cli.fits.record import Outcome
 from lagrange_cli.fits.recording import Reading, Recording, read_recordings
 
@@ -49,7 +49,7 @@ def sample() -> Outcome:
     degree = math.pi / 180
     sigma = {"theta": 0.3 * degree, "psi": 0.5 * degree, "phi": degree}
     recording = read_recordings(str(SAMPLE), Reading(sigma=sigma))
-    return fits.fit_recordings(recording, {"m": 1.587, "g": 9.81, "s": 0.04})[0]
+    return fits.fit_recordings(recording, KnownInputs({"m": 1.587, "g": 9.81, "s": 0.04}))[0]
 
 
 def test_the_recording_is_what_the_script_writes() -> None:
@@ -111,11 +111,9 @@ def test_the_derivatives_are_those_of_what_is_left(sample: Outcome) -> None:
     recording = sample.recording
     for kind, names in (("angles", 3), ("axis", 2), ("attitude", 3)):
         one = Recording("", recording.t, 0.0, kind, filled(recording), {})
-        parameters = sample.fit.solution.parameters
-        assert isinstance(parameters, Parameters)
-        sigma = {channel: np.ones(recording.t.size) for channel in one.channels}
-        problem = Problem([one], [sigma], parameters)
-        at = sample.fit.solution.values
+        sigma = np.ones((names, recording.t.size))
+        problem = Problem([one], [sigma], sample.fit.parameters)
+        at = sample.fit.values
         slopes = problem._at(at)[1]
         assert slopes.shape == (names * recording.t.size, at.size)
         step = 1e-5 * np.array([3, -7, 2, 5, -4, 6, 8, -9]) * np.maximum(abs(at), 1) / 10
@@ -468,9 +466,12 @@ def test_arrays_in_python() -> None:
     assert found.record()["t_start"] == 5
     assert found.verdict == "good"
     bad: list[tuple[dict[str, Any], str]] = [
-        ({"theta": [1, 2]}, "theta must have 120 rows"),
+        (
+            {"theta": [1, 2]},
+            r"theta must be real numbers of shape \(120, 1\), got the",
+        ),
         ({"theta": "x"}, "theta must be real numbers"),
-        ({"axis": t}, r"axis must have the shape \(n, 3\)"),
+        ({"axis": t}, r"axis must be real numbers of shape \(120, 3\)"),
         ({"theta": t, "axis": turns.apply([0, 0, 1])}, "fit takes angles, or an axis"),
         ({}, "fit takes angles, or an axis, or a quaternion, got nothing"),
         ({"theta": t / 9, "psi": t, "known": {"mass": 1}}, "known must be among"),
@@ -501,10 +502,10 @@ def test_arrays_in_python() -> None:
 @pytest.mark.parametrize("seen", [("theta", "psi"), ("theta", "phi", "psi")])
 def test_what_is_known_ties_the_rest(names: str, seen: tuple[str, ...]) -> None:
     true = {"m": 1.587, "A": 3.9032e-3, "C": 1.7458e-3, "s": 0.04, "g": 9.81, "r0": 50.0}
-    known = {name: (true | {"theta0": 0.7})[name] for name in names.split()}
+    known = KnownInputs({name: (true | {"theta0": 0.7})[name] for name in names.split()})
     none = np.zeros(20)
     recording = Recording("", none, 0.0, "angles", dict.fromkeys(seen, none), {})
-    parameters = parameters_of(known, {}, [recording])
+    parameters = parameters_of(known, [recording])
     values = np.linspace(1, 2, len(parameters.names))
     found, slopes = parameters.quantities(values, 0)
     by = dict(zip(FIT_QUANTITIES, found, strict=True))
@@ -522,7 +523,7 @@ def test_what_is_known_ties_the_rest(names: str, seen: tuple[str, ...]) -> None:
 
 
 def test_a_known_polar_moment_gives_the_other(sample: Outcome) -> None:
-    known = {"m": 1.587, "g": 9.81, "s": 0.04, "C": 1.7458e-3}
+    known = KnownInputs({"m": 1.587, "g": 9.81, "s": 0.04, "C": 1.7458e-3})
     (outcome,) = fits.fit_recordings([sample.recording], known)
     record = outcome.record()
     assert abs(record["A"] - 3.9032e-3) < 3 * record["A_std"]

@@ -43,9 +43,9 @@ def test_deviations_from_residuals_count_degrees_of_freedom(rows: int) -> None:
     known = {"psidot0": -2.0}
     given = fit(t, theta=theta, sigma=0.02, known=known)
     found = fit(t, theta=theta, known=known)
-    freedom = given.fit.solution.dof
-    assert freedom == rows - given.fit.solution.values.size < rows
-    left = given.fit.solution.residuals[0]["theta"]
+    freedom = given.fit.dof
+    assert freedom == rows - given.fit.values.size < rows
+    left = given.fit.residuals[0]["theta"]
     assert given.chi2_dof == pytest.approx(float(np.sum(left**2)) / 0.02**2 / freedom, rel=1e-6)
     for name in ("a", "b", "theta0"):
         if given.deviations[name]:

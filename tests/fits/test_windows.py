@@ -12,7 +12,8 @@ import pytest
 from conftest import Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError
-from lagrange_cli.fits.fit import recording_from
+from lagrange_cli.fits.parameters import KnownInputs
+from lagrange_cli.fits.recording import recording_from
 from lagrange_cli.fits.windows import WindowedFit, fit_windows, split
 
 
@@ -52,7 +53,7 @@ def test_without_the_spin_b_decays(short: fuzz_windows.Slowed) -> None:
     sigma = {name: fuzz_windows.NOISE[name] for name in angles}
     recording = recording_from(short.t, **angles, sigma=sigma)
     parts = split(recording, 4, is_time=False, where="data")
-    found = fit_windows(parts, {}, {}, "data")
+    found = fit_windows(parts, KnownInputs({}), "data")
     assert found.decay.quantity == "b"
     assert abs(found.decay.rate - 1 / fuzz_windows.DECAY) < 4 * found.decay.rate_std
     assert "r0" not in found.record()["windows"][0]

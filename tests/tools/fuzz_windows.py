@@ -29,7 +29,8 @@ from campaign import options
 from engines import Array
 
 from lagrange_cli import LagtopError
-from lagrange_cli.fits.fit import recording_from
+from lagrange_cli.fits.parameters import KnownInputs
+from lagrange_cli.fits.recording import recording_from
 from lagrange_cli.fits.windows import WindowedFit, fit_windows, split
 
 DECAY, SECONDS, FRAMES, WINDOW = 200.0, 20.0, 60, 0.8
@@ -93,7 +94,7 @@ def fitted(case: Slowed, *, sigma: bool = True, window: float = WINDOW) -> Windo
     """Return the fit of a recording in windows."""
     recording = recording_from(case.t, **case.angles, sigma=NOISE if sigma else None)
     parts = split(recording, window, is_time=True, where="the recording")
-    return fit_windows(parts, {}, {}, "the recording")
+    return fit_windows(parts, KnownInputs({}), "the recording")
 
 
 class Judged(NamedTuple):
