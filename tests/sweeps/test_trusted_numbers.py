@@ -17,7 +17,7 @@ from conftest import Lagtop
 from exact_scenes import KINDS
 from scenes import UNIT
 
-from lagrange_cli import Top
+from lagrange_cli import Top, solve
 from lagrange_cli.bench.hard_scenes import in_doubles
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.sweeps.records import sweep
@@ -95,21 +95,28 @@ def allowed(key: str, judge: Judge, scene: dict[str, float]) -> float | None:
     return max([abs(scene["r0"]), *sizes])
 
 
-@pytest.mark.slow
+MEANS = {"mean_spin_rate", "mean_precession_rate", "T_spin", "T_precession"}
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_key_is_within_ten_eps(kind: str) -> None:
-    """Forty scenes of each of the worst kinds."""
+    """Twenty-five scenes of each of the worst kinds, all keys but mean rates within four eps.
+
+    Worst seen in 9000 scenes: mean rates and their periods 9.3 eps, all others 3.8.
+    """
     rng = random.Random(f"trusted {kind}")
-    scenes = [{"thetadot0": 0.0, "psidot0": 0.0, **in_doubles(KINDS[kind](rng))} for _ in range(40)]
+    scenes = [{"thetadot0": 0.0, "psidot0": 0.0, **in_doubles(KINDS[kind](rng))} for _ in range(25)]
     names = sorted({name for scene in scenes for name in scene})
     columns: dict[str, Any] = {
         name: [scene.get(name, math.nan) for scene in scenes] for name in names
     }
-    records = sweep(**columns, keys=[*NUMBER_KEYS, "error"])
+    records = sweep(**columns, keys=["regime", "path", *NUMBER_KEYS, "error"])
     fine = [i for i, error in enumerate(records["error"]) if not error]
-    assert len(fine) > 20
+    assert len(fine) > 12
     for i in fine:
         scene = scenes[i]
+        motion = solve(Top(**scene))
+        assert (records["regime"][i], records["path"][i]) == (motion.regime, motion.path), scene
         judge = Judge({name: Fraction(value) for name, value in scene.items()})
         for key in NUMBER_KEYS:
             value, exact = float(records[key][i]), judge.record.get(key)
@@ -117,7 +124,8 @@ def test_every_key_is_within_ten_eps(kind: str) -> None:
                 assert math.isnan(value), (key, scene)
             else:
                 error = judge.relative(key, value, allowed(key, judge, scene))
-                assert error <= 10 or judge.ulps(key, value) <= 1, (key, error, scene)
+                most = 10 if key in MEANS else 4
+                assert error <= most or judge.ulps(key, value) <= 1, (key, error, scene)
 
 
 @pytest.mark.parametrize("body", [(1.0, 1.0, 1.0, 1.0, 1.0), (2.0, 3.0, 0.5, 4.0, 9.81)])
