@@ -16,7 +16,7 @@ from ..inputs import rotations
 from ..inputs.names import ANGLES
 from ..inputs.seen import Seen
 from ..motion.solve import Motion
-from .deviations import rows_of_parts
+from .deviations import quaternion_of
 
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 WORDS = {
@@ -102,7 +102,7 @@ def frames_of(alignment: Alignment, motion: Motion, first: Seen) -> FrameChange:
     if alignment.start:
         return _counted_from(frames, seen, {x: float(y[0]) for x, y in exact.items()})
     assert seen.quaternion is not None
-    (wanted,) = rows_of_parts(exact, "quaternion", "wxyz")
+    (wanted,) = quaternion_of(exact)
     given = seen.quaternion[0] / np.linalg.norm(seen.quaternion[0])
     if alignment.body:
         turn = rotations.product(rotations.conjugate(wanted), given)
@@ -112,9 +112,14 @@ def frames_of(alignment: Alignment, motion: Motion, first: Seen) -> FrameChange:
 
 
 def _check(alignment: Alignment, first: Seen) -> None:
-    lacks_space = first.axis is None and first.space_rates is None
-    if alignment.hides_frames or alignment.axis != "z" or (alignment.up != "z" and lacks_space):
-        raise LagtopError("align needs the whole attitude for axis, up, body and space", "align")
+    words = [x for x in ("body", "space") if getattr(alignment, x)]
+    words += [f"axis={alignment.axis}"] if alignment.axis != "z" else []
+    if words:
+        raise LagtopError(f"align {words[0]} needs the whole attitude: leave it out", "align")
+    if alignment.up != "z" and first.axis is None and first.space_rates is None:
+        raise LagtopError(
+            f"align up={alignment.up} needs the axis or the whole attitude: leave it out", "align"
+        )
 
 
 def _counted_from(frames: FrameChange, seen: Seen, exact: dict[str, float]) -> FrameChange:

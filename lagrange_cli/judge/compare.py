@@ -1,13 +1,15 @@
-"""The two entry points: `compare` of arrays, and trajectories in files, block by block."""
+"""The entry points: `compare` of arrays, and of trajectories in files; verdicts and convergence."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.descriptions import difference, scene_in
 from ..inputs.files import shown_path, utf8_path
@@ -18,7 +20,6 @@ from ..inputs.trajectory import Trajectory, open_trajectory
 from ..motion.solve import Motion, solve
 from ..output.terminal import Progress, silent
 from .alignment import Alignment, alignment
-from .convergence import Convergence, check_step_sizes, convergence
 from .judgement import LIMIT, JudgedRun, Judgement, ReadTrajectory, judge
 from .mistakes import explanation
 
@@ -36,6 +37,12 @@ JUDGEMENTS = {
     LOST: "a row is not finite",
 }
 """The words with their meanings; if several apply, the verdict is the last one."""
+LOST_PHASE = 0.3
+"""Error in radians beyond which the phase is lost, and no order can be measured."""
+ROUNDING = 1e-8
+"""Error that need not fall any more."""
+LEAST_ORDER = 0.5
+"""Least order of a method that converges."""
 _OF_THE_FILE = {"t", "angle_rates"}
 """Arguments that come from a file, so that errors about them are errors of data."""
 
@@ -99,6 +106,66 @@ def compare(
     motion = top if isinstance(top, Motion) else solve(top)
     (judgement,), _ = with_verdicts(motion, [judge(motion, given)], max_error)
     return replace(judgement, step=step)
+
+
+class Convergence(NamedTuple):
+    """The dependence of the error on the step."""
+
+    order: float | None
+    """Fitted exponent; None if there are fewer than two errors to fit."""
+    falls: bool
+    """Whether the error depends on the step, or is a rounding error."""
+    until: float
+    """Time up to which the errors were compared, at which the first trajectory loses the phase."""
+    errors: Sequence[float]
+    """Greatest error of each trajectory up to that time."""
+
+
+def convergence(judgements: Sequence[Judgement]) -> Convergence | None:
+    """Return how the errors of trajectories fall with their steps, or None for fewer than two.
+
+    The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
+    rad.  Steps finer than the step of the least error do not count, because rounding grows there.
+    """
+    curves = [_greatest_so_far(judgement) for judgement in judgements]
+    if len({judgement.step for judgement in judgements}) < 2:
+        return None
+    # the last time at which no phase is lost, or the first time if there is none
+    until = min(
+        float(t[max(int(np.searchsorted(error, LOST_PHASE)) - 1, 0)]) for t, error in curves
+    )
+    errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
+    points = sorted((x.step or 0.0, error) for x, error in zip(judgements, errors, strict=True))
+    least = min(range(len(points)), key=lambda i: points[i][1])
+    known = [(step, error) for step, error in points[least:] if 0 < error < LOST_PHASE]
+    order = _slope(known) if len({step for step, _ in known}) > 1 else None
+    return Convergence(order, _depends_on_step(points), until, errors)
+
+
+def _depends_on_step(points: Sequence[tuple[float, float]]) -> bool:
+    """Return whether some error is a rounding error, or much less than another, for its step.
+
+    Errors that hardly depend on the step belong to another motion.
+    """
+    steps, errors = zip(*points, strict=True)
+    if not ROUNDING <= min(errors) < math.inf:
+        return True
+    return bool(max(errors) >= min(errors) * (max(steps) / min(steps)) ** LEAST_ORDER)
+
+
+def _greatest_so_far(judgement: Judgement) -> tuple[Array, Array]:
+    """Return times since the first row, and the greatest error so far; infinite when lost."""
+    assert judgement.t is not None
+    assert judgement.error is not None
+    error = np.nan_to_num(judgement.error, nan=np.inf)
+    return abs(judgement.t - judgement.t[0]), np.maximum.accumulate(error)
+
+
+def _slope(points: Sequence[tuple[float, float]]) -> float:
+    """Return the exponent of a power law through points, by least squares of the logarithms."""
+    x, y = (np.log(values) for values in zip(*points, strict=True))
+    x = x - x.mean()
+    return float(x @ y / (x @ x))
 
 
 def with_verdicts(
@@ -180,16 +247,20 @@ def compare_files(
     """
     if paths.count("-") > 1:
         raise LagtopError("standard input can be read once, got - twice")
-    if request.step_sizes is not None:
-        check_step_sizes(request.step_sizes, len(paths))
+    steps = request.step_sizes
+    if steps is not None and len(steps) != len(paths):
+        wanted = f"one number per trajectory ({len(paths)})"
+        raise LagtopError(f"step_sizes must have {wanted}, got {len(steps)}", "step_sizes")
+    if wrong := [step for step in steps or [] if not step > 0]:
+        raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
     runs, warnings = [], []
     for path in paths:
         with open_trajectory(path, request.columns, request.dialect) as trajectory:
             top = scene_in(trajectory.description, trajectory.name)
             if top is not None and not is_named:
                 motion = solve(top)
-            elif top is not None and (wrong := difference(top, motion.top)):
-                warnings.append(f"{trajectory.name} describes another scene: {wrong}")
+            elif top is not None and (other := difference(top, motion.top)):
+                warnings.append(f"{trajectory.name} describes another scene: {other}")
             is_named = True
             runs.append(_judged(motion, path, trajectory, request, progress))
     found = with_verdicts(motion, runs, request.limit, request.step_sizes)

@@ -23,9 +23,9 @@ _SURE = 2.0
 """Largest change of a deviation from row to row, in radians, for whole turns to be counted."""
 
 
-def rows_of_parts(table: Mapping[str, Array], name: str, parts: str) -> Array:
-    """Return the columns NAME_PART of a table as one array with a row for each time."""
-    return np.stack([table[f"{name}_{part}"] for part in parts], axis=1)
+def quaternion_of(table: Mapping[str, Array]) -> Array:
+    """Return the quaternion of a table as one array with a row for each time."""
+    return np.stack([table[f"quaternion_{part}"] for part in "wxyz"], axis=1)
 
 
 class Deviations:
@@ -67,37 +67,28 @@ class Deviations:
         return found | {"error": error}
 
     def _attitude(self, seen: Seen) -> dict[str, Array]:
+        """Return the errors of the attitude, or of its parts that are given."""
+        found: dict[str, Array] = {}
         if seen.quaternion is not None:
-            return self._whole(seen.t, seen.quaternion)
-        if seen.axis is not None:
-            names = ["axis", "theta", "psi"]
-            exact = self.motion.table(seen.t, names, wrap=True)
-            axis = rows_of_parts(exact, "axis", "xyz")
+            exact = self.motion.table(seen.t, [*ANGLES, "quaternion"], wrap=True)
+            angles, q = rotations.angles_of(seen.quaternion), quaternion_of(exact)
+            axes = rotations.axis_of(q), rotations.axis_of(seen.quaternion)
+            found["attitude"] = rotations.angle_between(q, seen.quaternion)
+            found["axis"] = rotations.angle_between_vectors(*axes)
+            if self.vertical:  # only the sum or the difference of spin and precession is defined
+                sign = 1 if self.motion.regime == Regime.SLEEPING else -1
+                for one in (angles, exact):
+                    one["phi"] = one["phi"] + sign * one.pop("psi")
+        elif seen.axis is not None:
+            exact = self.motion.table(seen.t, ["axis", "theta", "psi"], wrap=True)
             angles = rotations.angles_of_axis(seen.axis)
+            axis = np.stack([exact[f"axis_{x}"] for x in "xyz"], axis=1)
+            found["axis"] = rotations.angle_between_vectors(axis, seen.axis)
             if self.vertical:
                 del angles["psi"]
-            found = {"axis": rotations.angle_between_vectors(axis, seen.axis)}
         else:
-            exact, found = self.motion.table(seen.t, ANGLES, wrap=True), {}
-            angles = dict(seen.angles)
+            exact, angles = self.motion.table(seen.t, ANGLES, wrap=True), dict(seen.angles)
         return found | {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
-
-    def _whole(self, t: Array, quaternion: Array) -> dict[str, Array]:
-        exact = self.motion.table(t, [*ANGLES, "quaternion"], wrap=True)
-        q = rows_of_parts(exact, "quaternion", "wxyz")
-        angles = rotations.angles_of(quaternion)
-        axes = rotations.axis_of(q), rotations.axis_of(quaternion)
-        found = {
-            "attitude": rotations.angle_between(q, quaternion),
-            "axis": rotations.angle_between_vectors(*axes),
-            "theta": angles["theta"] - exact["theta"],
-        }
-        if self.vertical:  # only the sum or the difference of spin and precession is defined
-            up = self.motion.regime == Regime.SLEEPING
-            twist = angles["psi"] + angles["phi"] if up else angles["phi"] - angles["psi"]
-            ours = exact["psi"] + exact["phi"] if up else exact["phi"] - exact["psi"]
-            return found | {"phi": within_half_turn(twist - ours)}
-        return found | {key: within_half_turn(angles[key] - exact[key]) for key in ("phi", "psi")}
 
     def _rates(self, seen: Seen) -> dict[str, Array]:
         if seen.body_rates is None and seen.space_rates is None:
@@ -107,7 +98,7 @@ class Deviations:
         given = seen.body_rates
         if given is None:
             given = seen.space_rates
-            rates = rotations.rotated(rows_of_parts(exact, "quaternion", "wxyz"), rates)
+            rates = rotations.rotated(quaternion_of(exact), rates)
         assert given is not None
         return {"rate": np.linalg.norm(given - rates, axis=1)}
 

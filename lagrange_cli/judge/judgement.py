@@ -58,8 +58,7 @@ class Judgement(HasRecord):
     rows: int = _field("the number of rows", 0)
     judged: str = _field("quantity of the error: attitude, axis, angles or rates", "")
     error_max: float | None = _field(
-        "greatest error: of the attitude, or of what is given of it "
-        "(of an angular velocity over the size of the rates)"
+        "greatest error of the quantity in judged; that of rates is relative to their size"
     )
     attitude_error_max: float | None = _field("greatest angle between the given and exact attitude")
     attitude_error_final: float | None = _field("the angle at the last row")
@@ -82,8 +81,8 @@ class Judgement(HasRecord):
         "the period: that of the nutation, or else of the spin, or else 1"
     )
     norm_drift: float | None = _field(
-        "greatest distance from 1: of the norm of a quaternion or axis, of R R^T, of the "
-        "mass centre's distance over s"
+        "greatest distance from 1: of the norm of a quaternion or axis, of the matrix R R^T, or "
+        "of the mass centre's distance divided by s"
     )
     energy_drift: float | None = _field("greatest change of energy, over its size at the start")
     Lz_drift: float | None = _field("greatest change of the vertical angular momentum, likewise")
@@ -151,9 +150,9 @@ class ReadTrajectory(NamedTuple):
         seen = see(block, self.conventions, self.said)
         return seen if self.change is None else self.change(seen)
 
-    def with_order(self, quaternion: str) -> ReadTrajectory:
-        """Return the trajectory with an order of its quaternion."""
-        return self._replace(conventions=self.conventions._replace(quaternion=quaternion))
+    def with_conventions(self, **changes: Any) -> ReadTrajectory:
+        """Return the trajectory with other conventions."""
+        return self._replace(conventions=self.conventions._replace(**changes))
 
 
 class JudgedRun(NamedTuple):
@@ -205,15 +204,14 @@ class _Tally:
         said_order = given.said.get("quaternion", ("", None))[0] or given.conventions.quaternion
         if "quaternion" in first and not said_order:
             self.proved = _proved_order(motion, given, first)
-            given = given.with_order(self.proved)
+            given = given.with_conventions(quaternion=self.proved)
         self.given = given
         self.frames = frames_of(given.alignment, motion, given.see(first))
         self.deviations = Deviations(motion)
         self.extremes: defaultdict[str, Extremes] = defaultdict(Extremes)
         self.fits = {name: LineFit() for name in ANGLES}
-        self.passed: dict[str, float | None] = dict.fromkeys(PASSED)
+        self.first: dict[str, Any] = dict.fromkeys([*PASSED, "lost_at"])
         self.kept, self.rows, self.start = Kept(), 0, math.nan
-        self.lost_at: float | None = None
 
     def add(self, block: Quantities) -> None:
         """Add a block of rows."""
@@ -225,15 +223,14 @@ class _Tally:
             if name in found:
                 self.fits[name].add(seen.t, found[name])
         error = found["error"]
-        for key, size in PASSED.items():
-            if self.passed[key] is None and (beyond := np.flatnonzero(error > size)).size:
-                self.passed[key] = float(seen.t[beyond[0]])
+        events = {key: error > size for key, size in PASSED.items()} | {"lost_at": np.isnan(error)}
+        for key, happens in events.items():
+            if self.first[key] is None and happens.any():
+                self.first[key] = float(seen.t[np.argmax(happens)])
         self.kept.add({**block, "error": error[:, np.newaxis]})
         if not self.rows:
             self.start = float(error[0])
             self.judged = next(word for name, word in _JUDGED.items() if name in found)
-        if self.lost_at is None and (lost := np.flatnonzero(np.isnan(error))).size:
-            self.lost_at = float(seen.t[lost[0]])
         self.rows += len(error)
 
     def kept_rows(self) -> ReadTrajectory:
@@ -256,20 +253,18 @@ class _Tally:
                 slope, values[f"{name}_rest"] = line
                 values[f"{name}_drift"] = slope * period
         known: dict[str, Any] = {x: None if math.isnan(y) else y for x, y in values.items()}
-        passed: dict[str, Any] = self.passed
         kept = self.kept.rows()
         return Judgement(
             rows=self.rows,
             judged=self.judged,
             period=period,
-            lost_at=self.lost_at,
             quaternion_order=self.proved,
             error_start=self.start,
             rate_error_relative=self.extremes["rate"].greatest / self.deviations.rate_scale,
             t=kept["t"][:, 0] - self.frames.time,
             error=kept["error"][:, 0],
             **known,
-            **passed,
+            **self.first,
         )
 
 
@@ -280,7 +275,7 @@ def _proved_order(motion: Motion, given: ReadTrajectory, first: Mapping[str, Arr
     """
     errors = {}
     for order in ORDERS:
-        one = given.with_order(order)._replace(blocks=[first])
+        one = given.with_conventions(quaternion=order)._replace(blocks=[first])
         errors[order] = float(np.nan_to_num(errors_of(motion, one)[0], nan=math.inf))
     right, wrong = sorted(ORDERS, key=lambda order: errors[order])
     if errors[right] < PROVED and errors[wrong] > DISPROVED:

@@ -20,7 +20,6 @@ from ..inputs.rotations import HALF_TURN_X, HALF_TURN_Z
 from ..inputs.seen import Seen
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
-from .alignment import Alignment
 from .judgement import JudgedRun, ReadTrajectory, errors_of
 
 EXPLAINS = 0.1
@@ -32,21 +31,9 @@ class Mistake(NamedTuple):
 
     name: str
     top: Callable[[Top], Top] | None = None
-    seen: Callable[[Seen], Seen] | None = None
-    alignment: Callable[[Alignment], Alignment] | None = None
-    other_unit: bool = False
-    """Whether angles whose names have no unit are in the other unit."""
-    excess: Callable[[Top], Fraction] | None = None
-    """Spin rate of the top that moved minus that of `top`, if another body represents it."""
-
-    def reading(self, given: ReadTrajectory, meant: Top) -> ReadTrajectory:
-        """Return the trajectory of the intended top, as read without the mistake."""
-        conventions = given.conventions
-        if self.other_unit:
-            conventions = conventions._replace(radians=not conventions.radians)
-        alignment = given.alignment if self.alignment is None else self.alignment(given.alignment)
-        change = self.seen if self.excess is None else _spun_less(float(self.excess(meant)))
-        return given._replace(conventions=conventions, alignment=alignment, change=change)
+    """The top that moved, from the intended one."""
+    reading: Callable[[ReadTrajectory, Top], ReadTrajectory] = lambda given, _: given
+    """The trajectory of the intended top, as read without the mistake."""
 
 
 def explanation(motion: Motion, run: JudgedRun) -> tuple[str, float] | None:
@@ -111,12 +98,9 @@ def _exchanged_moments(top: Top) -> Top:
     return top.replace(A=top.C, C=top.C, r0=Fraction(top.r0) * Fraction(top.A) / Fraction(top.C))
 
 
-def _spin_of_exchanged_moments(top: Top) -> Fraction:
-    return Fraction(top.r0) * (1 - Fraction(top.A) / Fraction(top.C))
-
-
-def _spun_less(rate: float) -> Callable[[Seen], Seen]:
-    """Return the change to a body that spins more slowly by a constant rate."""
+def _with_its_own_spin(given: ReadTrajectory, meant: Top) -> ReadTrajectory:
+    """Return the trajectory of a body that spins as the top of `_exchanged_moments`."""
+    rate = float(Fraction(meant.r0) * (1 - Fraction(meant.A) / Fraction(meant.C)))
 
     def changed(seen: Seen) -> Seen:
         angle = rate * seen.t
@@ -129,7 +113,12 @@ def _spun_less(rate: float) -> Callable[[Seen], Seen]:
         slower = replace(seen, angles=angles, body_rates=own, space_rates=fixed)
         return slower.turned(rotations.IDENTITY, rotations.about_z(angle))
 
-    return changed
+    return given._replace(change=changed)
+
+
+def _seen(change: Callable[[Seen], Seen]) -> Callable[[ReadTrajectory, Top], ReadTrajectory]:
+    """Return the reading that changes the rows of a trajectory."""
+    return lambda given, _: given._replace(change=change)
 
 
 def _with_quaternion(name: str, change: Callable[[Array], Array]) -> Mistake:
@@ -137,7 +126,7 @@ def _with_quaternion(name: str, change: Callable[[Array], Array]) -> Mistake:
         q = seen.quaternion
         return seen if q is None else replace(seen, quaternion=change(q))
 
-    return Mistake(name, seen=changed)
+    return Mistake(name, reading=_seen(changed))
 
 
 def _exchanged(seen: Seen) -> Seen:
@@ -153,13 +142,13 @@ def _exchanged(seen: Seen) -> Seen:
 def _framed(name: str, *, axis: str = "z", up: str = "z") -> Mistake:
     """Return the mistake of frames with these axes, with angles counted from the first row."""
 
-    def aligned(alignment: Alignment) -> Alignment:
-        if alignment.hides_frames:
+    def aligned(given: ReadTrajectory, _: Top) -> ReadTrajectory:
+        if given.alignment.hides_frames:
             raise LagtopError("the frames come from the first row")
-        return alignment._replace(start=True, axis=axis, up=up)
+        return given._replace(alignment=given.alignment._replace(start=True, axis=axis, up=up))
 
     words = [f"{key}={x}" for key, x in (("axis", axis), ("up", up)) if x != "z"]
-    return Mistake(f"{name} (--align {','.join([*words, 'start'])})", alignment=aligned)
+    return Mistake(f"{name} (--align {','.join([*words, 'start'])})", reading=aligned)
 
 
 _SIDES = ("x", "y", "-z")
@@ -171,7 +160,7 @@ MISTAKES = [
         "A: the moment about the mass centre taken as about the pivot (A - m s^2)",
         _moment_moved(-1),
     ),
-    Mistake("A and C exchanged", _exchanged_moments, excess=_spin_of_exchanged_moments),
+    Mistake("A and C exchanged", _exchanged_moments, _with_its_own_spin),
     _spin_times("r0 with the wrong sign", -1),
     _spin_times("r0 in radians taken as degrees", math.pi / 180),
     _spin_times("r0 in degrees taken as radians", 180 / math.pi),
@@ -182,26 +171,31 @@ MISTAKES = [
     Mistake(
         "theta0 in degrees taken as radians",
         lambda top: _tilt_of(top, -1),
-        lambda seen: seen.turned(HALF_TURN_Z, HALF_TURN_Z),
+        _seen(lambda seen: seen.turned(HALF_TURN_Z, HALF_TURN_Z)),
     ),
     Mistake("g left out", lambda top: top.replace(g=0)),
     Mistake(
         "g upwards",
         _upside_down,
-        lambda seen: seen.turned(
-            rotations.product(rotations.conjugate(HALF_TURN_Z), HALF_TURN_X),
-            rotations.conjugate(HALF_TURN_Z),
+        _seen(
+            lambda seen: seen.turned(
+                rotations.product(rotations.conjugate(HALF_TURN_Z), HALF_TURN_X),
+                rotations.conjugate(HALF_TURN_Z),
+            )
         ),
     ),
     _with_quaternion("the quaternion is the conjugate, from space to body", rotations.conjugate),
     _with_quaternion("the quaternion is xyzw and was read as wxyz", lambda q: np.roll(q, 1, 1)),
     _with_quaternion("the quaternion is wxyz and was read as xyzw", lambda q: np.roll(q, -1, 1)),
-    Mistake("phi and psi are exchanged", seen=_exchanged),
+    Mistake("phi and psi are exchanged", reading=_seen(_exchanged)),
     Mistake(
         "the angular velocity is in the other frame (--rates-frame)",
-        seen=lambda x: replace(x, body_rates=x.space_rates, space_rates=x.body_rates),
+        reading=_seen(lambda x: replace(x, body_rates=x.space_rates, space_rates=x.body_rates)),
     ),
-    Mistake("angles in degrees taken as radians, or the reverse", other_unit=True),
+    Mistake(
+        "angles in degrees taken as radians, or the reverse",
+        reading=lambda given, _: given.with_conventions(radians=not given.conventions.radians),
+    ),
     _framed("spin and precession do not start at 0"),
     *(_framed(f"the figure axis is the body's {x} axis", axis=x) for x in _SIDES),
     *(_framed(f"up is the {x} axis of space", up=x) for x in _SIDES),

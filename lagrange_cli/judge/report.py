@@ -10,8 +10,17 @@ from ..inputs.names import ANGLES
 from ..motion.solve import Motion
 from ..output.report import Field, Report, short
 from ..output.terminal import one_line
-from .compare import ANOTHER, DRIFTS, FINE, LOST, OFF, RATES, Comparison, ComparisonRequest
-from .convergence import LEAST_ORDER
+from .compare import (
+    ANOTHER,
+    DRIFTS,
+    FINE,
+    LEAST_ORDER,
+    LOST,
+    OFF,
+    RATES,
+    Comparison,
+    ComparisonRequest,
+)
 from .judgement import JUDGEMENT_KEYS, LIMIT, Judgement
 
 _SHOWN: dict[str, tuple[str, Callable[[Any], str]]] = {

@@ -20,7 +20,7 @@ from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.engines import IMPORTS, SCHEMES, engine_attitudes, engines, scaled_body
 from lagrange_cli.bench.measure import chosen_methods, measure, task
 from lagrange_cli.bench.method import FailedError, NotApplicableError
-from lagrange_cli.judge.convergence import convergence
+from lagrange_cli.judge.compare import convergence
 from lagrange_cli.judge.judgement import Judgement
 
 GENERAL = Top(theta0_deg=50, thetadot0=-2, psidot0=3, r0=-40)

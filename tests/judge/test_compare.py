@@ -13,8 +13,7 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli import Judgement, LagtopError, Top, compare, solve
 from lagrange_cli.inputs.seen import Conventions
 from lagrange_cli.judge.alignment import Alignment
-from lagrange_cli.judge.compare import with_verdicts
-from lagrange_cli.judge.convergence import convergence
+from lagrange_cli.judge.compare import convergence, with_verdicts
 from lagrange_cli.judge.deviations import MOST_KEPT, Kept
 from lagrange_cli.judge.judgement import ReadTrajectory, judge
 
@@ -575,7 +574,9 @@ def test_rows_that_are_kept_are_spread_evenly(block: int) -> None:
         ({"quaternion": Q, "align": ["up=w"]}, "align must be among axis=y"),
         ({"quaternion": Q, "align": "start"}, "align must be a list of words"),
         ({"quaternion": Q, "align": ["body", "space"]}, "align takes one of start, body and space"),
-        ({"theta": ANGLES[:, 1], "align": ["body"]}, "align needs the whole attitude"),
+        ({"theta": ANGLES[:, 1], "align": ["body"]}, "align body needs the whole attitude"),
+        ({"axis": PARTS["axis"]["axis"], "align": ["up=y", "axis=x"]}, "align axis=x needs the"),
+        ({"theta": ANGLES[:, 1], "align": ["up=y", "start"]}, "align up=y needs the axis or the"),
         ({"quaternion": Q * math.nan, "quaternion_order": None}, "the first row does not prove"),
         (
             {"quaternion": Q, "quaternion_order": None, "align": ["body"]},
