@@ -1,23 +1,26 @@
-"""`lagtop solve`: one record."""
+"""`lagtop solve`: one record, or selected keys of it (`--get` and `--derivation`)."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..errors import LagtopError
+from ..errors import AbsentError, LagtopError
 from ..motion.numbers import Numbers, record_in_range
-from ..motion.record import shown_keys
+from ..motion.quantity import unit_name
+from ..motion.record import all_keys, record_keys, shown_keys
 from ..motion.regime import exact
 from . import options as opt
 from .app import complain
 from .top import UNCERTAIN, TopOptions, top_options, warned
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from ..arithmetic.values import Key
     from ..inputs.units import System
     from ..output.destination import Output
+
+_Keys = dict[str, "Key"]
 
 
 @opt.command(
@@ -56,10 +59,8 @@ def solve_command(
     tilt needs none.  An input may have an uncertainty ('1587(2)').
     """
     radians = top.radians
-    if keys is not None or derivation:
-        from . import selected
     if keys is not None:
-        selected.check_selected(keys, radians)
+        _check_selected(keys, radians)
     if seed is not None and samples is None:
         raise LagtopError("--seed needs --samples")
     found = top.given()
@@ -72,7 +73,7 @@ def solve_command(
     if asked:
         uncertainty.write_uncertainty(found, motion, budget, samples, seed, radians, out)
         return
-    names = selected.steps_of_section_8(motion, radians) if derivation else keys
+    names = _steps_of_section_8(motion, radians) if derivation else keys
     wanted = list(dict.fromkeys(name.removesuffix("_std") for name in names)) if names else None
     record = _record(motion, found.system, wanted, digits=digits, radii=certify, radians=radians)
     is_summed = wanted is None and out.fmt != "csv"
@@ -82,19 +83,19 @@ def solve_command(
         drawn = out.fmt in {"table", "markdown"} and (keys is None or out.is_named)
         record = uncertainty.with_stds(found, motion, record, drawn)
 
-    def shown() -> dict[str, Key]:
+    def shown() -> _Keys:
         return shown_keys(radians=radians, named=named, requested=names is not None)
 
     if keys is not None:
-        values = selected.chosen_values(motion, record, keys)
+        values = _chosen_values(motion, record, keys)
         if out.fmt == "table":
             out.values(values.values())
         else:
-            out.record(values, lambda: selected.with_std_keys(shown()))
+            out.record(values, lambda: _with_std_keys(shown()))
     elif names is not None:
-        out.record(
-            selected.steps_in_order(record, names), lambda: selected.keys_by_step(shown(), radians)
-        )
+        more = {x: record[x] for x in record if x.endswith("_radius") or x == "remark"}
+        steps = {name: record[name] for name in names} | more
+        out.record(steps, lambda: _keys_by_step(shown(), radians))
     else:
         units = {}
         if found.system is not None and out.fmt in {"json", "ndjson"}:
@@ -129,3 +130,59 @@ def _summary(
         return {"summary": summary(record, motion.exact.facts, named)}
     except TypeError:  # a number beyond the range of doubles is None
         return {}
+
+
+def _check_selected(keys: Sequence[str], radians: bool) -> None:
+    """Raise LagtopError for an unknown or repeated key."""
+    from ..inputs.names import check_names
+
+    values = [key.removesuffix("_std") for key in keys]
+    if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
+        values = list(dict.fromkeys(values))
+    known = record_keys(radians=radians)
+    check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
+
+
+def _chosen_values(motion: Numbers, record: dict[str, Any], keys: Sequence[str]) -> dict[str, Any]:
+    """Return values of the record, each with its radius, if any.
+
+    Raises AbsentError if the motion has no such number, LagtopError for the uncertainty of a text.
+    """
+    for key in keys:
+        if key not in record:
+            text = key.removesuffix("_std")
+            raise LagtopError(f"{text} has no uncertainty: leave {key} out of --get")
+        if record[key] is None:
+            raise AbsentError(f"{key} is undefined {motion.absence(key)}")
+    return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
+
+
+def _with_std_keys(keys: _Keys) -> _Keys:
+    """Return keys and those of their uncertainties."""
+    stds = {
+        f"{name}_std": key.replace(symbol="", meaning=f"uncertainty of {name}", equation="")
+        for name, key in keys.items()
+    }
+    return keys | stds
+
+
+def _steps_of_section_8(motion: Numbers, radians: bool) -> list[str]:
+    """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
+    from ..motion.paper.requested import derivation_keys
+
+    if motion.roots_sum is None:
+        top = motion.top
+        raise AbsentError(
+            "--derivation must be of a top that nutates after release from rest, got one of the "
+            f"regime {motion.regime.value!r}, thetadot0 = {float(top.thetadot0)}, "
+            f"psidot0 = {float(top.psidot0)}"
+        )
+    return derivation_keys(radians=radians)
+
+
+def _keys_by_step(keys: _Keys, radians: bool) -> _Keys:
+    """Return the keys of the steps of section 8, in order and grouped by step."""
+    from ..motion.paper.requested import CHAIN
+
+    chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
+    return {name: keys[name].replace(group=step) for name, step in chain.items()}

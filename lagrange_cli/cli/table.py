@@ -72,7 +72,7 @@ def table_command(
     last columns are the uncertainties of the angles.
     """
     from ..motion.over_time.columns import DEFAULT_COLUMNS
-    from ..motion.over_time.table_request import DEFAULT_ROWS, TableRequest
+    from ..motion.over_time.table_request import DEFAULT_ROWS, TableRequest, grid
 
     top, interval = top.in_seconds(t_min=t_min, t_max=t_max, dt=dt)
     if jobs is not None and tops is None:
@@ -81,7 +81,7 @@ def table_command(
     opt.exclude({name: path == "-" for name, path in stdin.items()})
     _check_format(out.fmt, times, tops, digits, certify)
     request = TableRequest(
-        _listed(times, tops, out.fmt, dialect) or partial(_grid, n=count, **interval),
+        _listed(times, tops, out.fmt, dialect) or partial(grid, n=count, **interval),
         DEFAULT_COLUMNS if columns is None else columns,
         top.radians,
         wrap,
@@ -99,10 +99,13 @@ def table_command(
     described = is_described(out, header_comments)
     with blaming(times):
         at = _times(motion, request, out.fmt)
-        if certify or digits is not None:
-            header, parts = _proved_rows(motion, at, request, digits, certify)
-        else:
+        if digits is None and not certify:
             header, parts = _rows(motion, at, request, found, out.fmt)
+        else:
+            from ..motion.over_time.proved_table import ProvedTable
+
+            proved = ProvedTable(motion, request.columns, digits, radians=top.radians, wrap=wrap)
+            header, parts = proved.rows(at, radii=certify)
         if described:
             header = _described(header, motion.top.texts(), found.system, request)
         out.table(header, with_progress(parts, "rows", at.count or None, len), at.count)
@@ -148,12 +151,6 @@ def _same(times: Points, _: Motion) -> Points:
     return times
 
 
-def _grid(motion: Motion, **interval: Any) -> Points:
-    from ..motion.over_time.table_request import grid
-
-    return grid(motion, **interval)
-
-
 def _times(motion: Motion, request: TableRequest, fmt: str) -> Points:
     """Return the times of a table.  Raises LagtopError for more rows than can be drawn."""
     times = request.times(motion)
@@ -176,16 +173,6 @@ def _rows(
         texts = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
         header = [*texts, *header[len(texts) :]]
     return header, parts
-
-
-def _proved_rows(
-    motion: Motion, times: Points, request: TableRequest, digits: int | None, radii: bool
-) -> tuple[Sequence[str], Iterable[Any]]:
-    """Return the header and the rows of a table whose numbers are rounded from enclosures."""
-    from ..motion.over_time.proved_table import ProvedTable
-
-    shown = {"radians": request.radians, "wrap": request.wrap}
-    return ProvedTable(motion, request.columns, digits, **shown).rows(times, radii=radii)
 
 
 def _described(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
@@ -85,6 +84,24 @@ def first_order(found: Given, motion: Numbers) -> FirstOrder:
     return FirstOrder(motion.top, found.stds, found.inputs.keys())
 
 
+class _BudgetRow(NamedTuple):
+    """An input or, in the last row, the key itself, which has no more than its uncertainty."""
+
+    quantity: str
+    value: float
+    std: float
+    sensitivity: float | None = None
+    contribution: float | None = None
+    elasticity: float | None = None
+    share: float | None = None
+    sensitivity_unit: str | None = None
+
+    @property
+    def noise(self) -> float:
+        """The uncertainty, which decides how many digits are shown."""
+        return self.std
+
+
 def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
     """Return the budget of a key: the contribution of each uncertain input, and the key itself.
 
@@ -118,17 +135,10 @@ def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
         Field("elasticity", "elasticity", _figures),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
-    values: list[dict[str, Any]] = [
-        {
-            "quantity": line.input,
-            "sensitivity_unit": _over(units.get(key, "1"), units.get(line.input, "1")),
-            **line._asdict(),
-        }
-        for line in lines
+    rows = [
+        _BudgetRow(*line, _over(units.get(key, "1"), units.get(line.input, "1"))) for line in lines
     ]
-    values.append({"quantity": key, "value": value, "std": whole})  # last of all, as in EA-4/02
-    nothing = dict.fromkeys(field.key for field in fields)
-    rows = [SimpleNamespace(**(nothing | row), noise=row["std"]) for row in values]
+    rows.append(_BudgetRow(key, value, whole))  # last of all, as in EA-4/02
     return Report({"key": key}, fields, rows, conclusions, units)
 
 

@@ -301,7 +301,7 @@ def test_any_locale_shows_all_digits(locale: dict[str, str], tmp_path: Path) -> 
         ("table --columns t,quat", ["t,quaternion", *(f"t,quaternion_{x}" for x in "wxyz")]),
         ("bench --methods lagtop,muj", [f"lagtop,mujoco{x}" for x in ("-euler", "-rk4", "")]),
         ("stability --strata slo", ["slow"]),
-        ("plot sph", ["sphere"]),
+        ("plot sph", ["sphere", "spherical-pendulum"]),
         ("plot --key T_spi", ["T_spin"]),
         ("plot --x thetad", ["thetadot0="]),
         ("find T_pre", ["T_precession="]),
