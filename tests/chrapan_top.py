@@ -213,6 +213,11 @@ def moments(*parts: Any) -> Iterator[tuple[Motion, Any]]:
             yield motion, part * motion.T
 
 
+def tops() -> Iterator[tuple[Motion]]:
+    """Yield each top."""
+    return ((motion,) for motion in MOTIONS)
+
+
 def spoil(patch: pytest.MonkeyPatch, module: str) -> None:
     """Put tops in place, here and in a module, whose record and angles are slightly wrong."""
     for name in (__name__, module):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 import pytest
@@ -18,6 +19,9 @@ Sides = Iterator[tuple[Any, Any]]
 """Pairs of a left and a right side: one by our functions, the other independent of them."""
 
 Equation = Callable[[], Sides]
+Pair = Callable[..., tuple[Any, Any]]
+"""Both sides of an equation in one case."""
+Cases = Callable[[], Iterable[tuple[Any, ...]]]
 
 
 PLACE = re.compile(
@@ -49,9 +53,24 @@ class Register:
         """
         return _entry(self.fails, number)
 
+    def each(self, cases: Cases, holds: Mapping[str, Pair]) -> None:
+        """Register equations with one pair of sides in each case, such as a top and a time."""
+        for number, sides in holds.items():
+            self.equation(number)(partial(_pairs, sides, cases))
+
+    def each_as_printed(self, cases: Cases, fails: Mapping[str, Pair]) -> None:
+        """Register misprints with one pair of sides in each case."""
+        for number, sides in fails.items():
+            self.as_printed(number)(partial(_pairs, sides, cases))
+
     def misreading(self, number: str) -> Callable[[Equation], Equation]:
         """Register another reading of a blurred sign, whose sides do not agree."""
         return _entry(self.misread, number)
+
+
+def _pairs(sides: Pair, cases: Cases) -> Sides:
+    """Yield the pair of sides of each case."""
+    return (sides(*case) for case in cases())
 
 
 def _entry(equations: dict[str, Equation], number: str) -> Callable[[Equation], Equation]:

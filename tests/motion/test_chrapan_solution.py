@@ -7,7 +7,7 @@ those of the paper's imaginary modulus too.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, ClassVar
 
@@ -26,6 +26,7 @@ from chrapan_top import (
     nth_value,
     slope,
     spoil,
+    tops,
 )
 from equations import EquationTests, Register, Sides
 from errata import misprints
@@ -166,6 +167,12 @@ def _() -> Sides:
         yield motion.A * q_rate - gyro * p, -pull * ar.sin(phi)
 
 
+def with_rate(rate: int, *only: Any) -> Iterator[tuple[Motion, Any, Any]]:
+    """Yield each top and time, or one of each, with a rate."""
+    for motion, t in [only] if only else moments():
+        yield motion, t, motion.rates(t)[rate]
+
+
 RATES: dict[str, tuple[Callable[[Motion, Any, Any], tuple[Any, Any]], int, int]] = {
     "(4,2)": (
         lambda top, t, rate: (
@@ -196,16 +203,10 @@ RATES: dict[str, tuple[Callable[[Motion, Any, Any], tuple[Any, Any]], int, int]]
 """Sides with a rate of spin (1) or precession (2): the right side, and the printed one."""
 
 for _name, (_sides, _right, _printed) in RATES.items():
-
-    @equation(_name)
-    def _(sides: Callable[..., Any] = _sides, rate: int = _right) -> Sides:
-        for motion, t in moments():
-            yield sides(motion, t, motion.rates(t)[rate])
-
-    @as_printed(_name)
-    def _(sides: Callable[..., Any] = _sides, rate: int = _printed) -> Sides:
-        t = PARTS[0] * RIGHT.T
-        yield sides(RIGHT, t, RIGHT.rates(t)[rate])
+    chrapan.each(partial(with_rate, _right), {_name: _sides})
+    chrapan.each_as_printed(
+        partial(with_rate, _printed, RIGHT, PARTS[0] * RIGHT.T), {_name: _sides}
+    )
 
 
 @equation("section 4 d: power of the weight")
@@ -325,11 +326,7 @@ CONSTANTS: dict[str, Callable[[Motion], tuple[Any, Any]]] = {
 }
 """Sides without time."""
 
-for _name, _constants in CONSTANTS.items():
-
-    @equation(_name)
-    def _(sides: Callable[..., Any] = _constants) -> Sides:
-        yield from map(sides, MOTIONS)
+chrapan.each(tops, CONSTANTS)
 
 
 ROOTS: dict[str, Callable[..., Any]] = {
@@ -348,12 +345,7 @@ ROOTS: dict[str, Callable[..., Any]] = {
 }
 """Identities between the roots and b^2/a."""
 
-for _name, _sides in ROOTS.items():
-
-    @equation(_name)
-    def _(sides: Callable[..., Any] = _sides) -> Sides:
-        for motion in MOTIONS:
-            yield sides(*motion.roots, motion.b**2 / motion.a)
+chrapan.each(lambda: ((*top.roots, top.b**2 / top.a) for top in MOTIONS), ROOTS)
 
 
 @equation("(4,20)")
@@ -363,6 +355,12 @@ def _() -> Sides:
         sn, _, dn = motion.jacobi(t)
         yield motion.u(t), u3 - (u3 - u1) / dn**2
         yield motion.u(t), u1 - (u1 - u2) * (u3 - u1) / (u3 - u2) * (sn / dn) ** 2
+
+
+def states() -> Iterator[tuple[Motion, Any, Any, Any]]:
+    """Yield each top and time with u and xi^2."""
+    for motion, t in moments():
+        yield motion, t, motion.u(t), motion.xi(t) ** 2
 
 
 STATES: dict[str, Callable[[Motion, Any, Any, Any], tuple[Any, Any]]] = {
@@ -387,12 +385,7 @@ STATES: dict[str, Callable[[Motion, Any, Any, Any], tuple[Any, Any]]] = {
 }
 """Sides at a time, with u and xi^2."""
 
-for _name, _states in STATES.items():
-
-    @equation(_name)
-    def _(sides: Callable[..., Any] = _states) -> Sides:
-        for motion, t in moments():
-            yield sides(motion, t, motion.u(t), motion.xi(t) ** 2)
+chrapan.each(states, STATES)
 
 
 @equation("section 4 g: u by the imaginary modulus")
@@ -410,23 +403,6 @@ def _precession_rate(motion: Motion, t: Any, power: int) -> Any:
     xi2, kappa = motion.xi(t) ** 2, ar.sqrt(motion.kappa2)
     first, second = (motion.kappa2 * motion.at_parameter(i)[0] ** 2 * xi2 for i in (1, 2))
     return motion.b / 2 * (kappa ** (power - 2) * first / (1 - first) - second / (1 - second))
-
-
-@equation("section 4 ch: rate of precession")
-def _() -> Sides:
-    for motion, t in moments():
-        yield motion.rates(t)[2], _precession_rate(motion, t, 2)
-
-
-@as_printed("section 4 ch: rate of precession as printed, the power")
-def _() -> Sides:
-    t = RIGHT.T / 3
-    yield RIGHT.rates(t)[2], _precession_rate(RIGHT, t, 3)
-
-
-@as_printed("section 4 ch: rate of precession as printed, the left side")
-def _() -> Sides:
-    yield RIGHT.rates(RIGHT.T / 3)[1], _precession_rate(RIGHT, RIGHT.T / 3, 2)
 
 
 @equation("section 4 k: rate of spin")
@@ -473,10 +449,6 @@ def _quotient(motion: Motion, v: Any) -> Any:
     return motion.k_prime * sn * dn / cn
 
 
-def _size(motion: Motion, b: Any) -> Any:
-    return ar.sqrt(motion.a * (motion.u3 - motion.u1)) / b
-
-
 @equation("line before (4,27)")
 def _() -> Sides:
     for motion in MOTIONS:
@@ -494,30 +466,6 @@ def _() -> Sides:
         yield _quotient(motion, J * motion.alpha), right
 
 
-@equation("(4,27)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        yield _quotient(motion, J * motion.alpha), J * _size(motion, abs(motion.b))
-
-
-@as_printed("(4,27)")
-def _() -> Sides:
-    yield _quotient(LEFT, J * LEFT.alpha), J * _size(LEFT, LEFT.b)
-
-
-@equation("(4,28)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        v = J * motion.alpha + J * motion.K_prime + motion.K
-        yield _quotient(motion, v), -J * _size(motion, abs(motion.b))
-
-
-@as_printed("(4,28)")
-def _() -> Sides:
-    v = J * LEFT.alpha + J * LEFT.K_prime + LEFT.K
-    yield _quotient(LEFT, v), -J * _size(LEFT, LEFT.b)
-
-
 def _pi(motion: Motion, t: Any) -> tuple[Any, Any]:
     """Return Pi00 and Pi11 of section 4 j."""
     kind = partial(_pi_function, modulus(ar, k=motion.k), motion.w(t), J * motion.alpha)
@@ -529,88 +477,101 @@ def _pi_function(k: Any, w: Any, parameter: Any, kind: str) -> Any:
     return pi_function(ar, kind, w, parameter, k)
 
 
-@equation("(4,29)")
-def _() -> Sides:
-    for motion, t in moments():
-        even, odd = _pi(motion, t)
-        yield motion.angles(t)[2], motion.sigma * J * (even + odd + J * ar.pi / 2)
+def _precession(motion: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
+    """Return the precession and (4,29) for a direction of spin."""
+    even, odd = _pi(motion, t)
+    return motion.angles(t)[2], sigma * J * (even + odd + J * ar.pi / 2)
 
 
-@as_printed("(4,29)")
-def _() -> Sides:
-    even, odd = _pi(LEFT, LEFT.T / 3)
-    yield LEFT.angles(LEFT.T / 3)[2], J * (even + odd + J * ar.pi / 2)
+def _spin(motion: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
+    """Return the spin and (4,34) for a direction of spin."""
+    even, odd = _pi(motion, t)
+    return motion.angles(t)[1], motion.r0 * t + sigma * J * (even - odd - J * ar.pi / 2)
 
 
-def _stretched(motion: Motion, t: Any, stretch: Any) -> tuple[Any, Any]:
-    """Return w of (4,30) and eta times a factor that should be sqrt(1 + k_bar^2)."""
+def _argument(motion: Motion, t: Any, stretch: Any) -> tuple[Any, Any]:
+    """Return w of (4,30), and eta times a factor that should be sqrt(1 + k_bar^2)."""
     eta = ar.sqrt(motion.a * (motion.u3 - motion.u1)) * t / 2
     return 2 * motion.K * t / motion.T, eta * stretch
+
+
+def _of_w(motion: Motion, t: Any, part: int) -> tuple[Any, Any]:
+    """Return dn^2 w and its value by section 4 l, where w has the factor 1/part."""
+    w = ar.sqrt(motion.a * (motion.u3 - motion.u2)) * t / part
+    value = (motion.u3 - motion.u1) / (motion.u3 - motion.u(t))
+    return ar.ellipfun("dn", w, m=motion.k**2) ** 2, value
+
+
+def _at_parameter(motion: Motion, sign: int, b: Any) -> tuple[Any, Any]:
+    """Return both sides of (4,27), or with sign = -1 of (4,28)."""
+    v = J * motion.alpha + (0 if sign == 1 else J * motion.K_prime + motion.K)
+    return _quotient(motion, v), sign * J * ar.sqrt(motion.a * (motion.u3 - motion.u1)) / b
+
+
+def _at_alpha(motion: Motion, name: str, numerator: Any) -> tuple[Any, Any]:
+    """Return a function of alpha for k', and its value by the roots."""
+    value = ar.ellipfun(name, motion.alpha, m=1 - motion.k**2)
+    return value, ar.sqrt(numerator / (motion.u3 + 1))
 
 
 @equation("(4,30)")
 def _() -> Sides:
     for motion, t in moments():
         u1, u2, u3 = motion.roots
-        yield _stretched(motion, t, ar.sqrt((u3 - u2) / (u3 - u1)))
-        yield _stretched(motion, t, ar.sqrt(1 - motion.kappa2))
+        yield _argument(motion, t, ar.sqrt((u3 - u2) / (u3 - u1)))
+        yield _argument(motion, t, ar.sqrt(1 - motion.kappa2))
         yield 2 * motion.K * t / motion.T, motion.w(t)
 
 
-@as_printed("(4,30) as printed, the roots")
-def _() -> Sides:
-    _, u2, u3 = RIGHT.roots
-    yield _stretched(RIGHT, RIGHT.T / 3, ar.sqrt((u3 + u2) / (u3 - u2)))
-
-
-@as_printed("(4,30) as printed, the modulus")
-def _() -> Sides:
-    yield _stretched(RIGHT, RIGHT.T / 3, ar.sqrt(1 + RIGHT.k**2))
-
-
-@equation("section 4 l: w")
-def _() -> Sides:
-    for motion, t in moments():
-        _, u2, u3 = motion.roots
-        w = ar.sqrt(motion.a * (u3 - u2)) * t / 2
-        yield ar.ellipfun("dn", w, m=motion.k**2) ** 2, (u3 - motion.u1) / (u3 - motion.u(t))
-
-
-@as_printed("section 4 l: w")
-def _() -> Sides:
-    (u1, u2, u3), t = RIGHT.roots, RIGHT.T / 3
-    w = ar.sqrt(RIGHT.a * (u3 - u2)) * t / 3
-    yield ar.ellipfun("dn", w, m=RIGHT.k**2) ** 2, (u3 - u1) / (u3 - RIGHT.u(t))
-
-
-def _at_alpha(name: str, numerator: Callable[..., Any]) -> Callable[[], Sides]:
-    def sides() -> Sides:
-        for motion in MOTIONS:
-            u1, u2, u3 = motion.roots
-            left = ar.ellipfun(name, motion.alpha, m=1 - motion.k**2)
-            yield left, ar.sqrt(numerator(u1, u2, u3) / (u3 + 1))
-
-    return sides
-
-
-equation("(4,31)")(_at_alpha("cn", lambda u1, u2, u3: 1 + u2))
-equation("(4,32)")(_at_alpha("sn", lambda u1, u2, u3: u3 - u2))
-equation("(4,33)")(_at_alpha("dn", lambda u1, u2, u3: 1 + u1))
-
-
-@equation("(4,34)")
-def _() -> Sides:
-    for motion, t in moments():
-        even, odd = _pi(motion, t)
-        right = motion.r0 * t + motion.sigma * J * (even - odd - J * ar.pi / 2)
-        yield motion.angles(t)[1], right
-
-
-@as_printed("(4,34)")
-def _() -> Sides:
-    t = LEFT.T / 3
-    even, odd = _pi(LEFT, t)
-    yield LEFT.angles(t)[1], LEFT.r0 * t + J * (even - odd - J * ar.pi / 2)
+chrapan.each(
+    moments,
+    {
+        "section 4 ch: rate of precession": lambda top, t: (
+            top.rates(t)[2],
+            _precession_rate(top, t, 2),
+        ),
+        "(4,29)": lambda top, t: _precession(top, t, top.sigma),
+        "section 4 l: w": lambda top, t: _of_w(top, t, 2),
+        "(4,34)": lambda top, t: _spin(top, t, top.sigma),
+    },
+)
+chrapan.each(
+    tops,
+    {
+        "(4,27)": lambda top: _at_parameter(top, 1, abs(top.b)),
+        "(4,28)": lambda top: _at_parameter(top, -1, abs(top.b)),
+        "(4,31)": lambda top: _at_alpha(top, "cn", 1 + top.u2),
+        "(4,32)": lambda top: _at_alpha(top, "sn", top.u3 - top.u2),
+        "(4,33)": lambda top: _at_alpha(top, "dn", 1 + top.u1),
+    },
+)
+chrapan.each_as_printed(
+    lambda: [(RIGHT, RIGHT.T / 3)],
+    {
+        "section 4 ch: rate of precession as printed, the power": lambda top, t: (
+            top.rates(t)[2],
+            _precession_rate(top, t, 3),
+        ),
+        "section 4 ch: rate of precession as printed, the left side": lambda top, t: (
+            top.rates(t)[1],
+            _precession_rate(top, t, 2),
+        ),
+        "(4,30) as printed, the roots": lambda top, t: _argument(
+            top, t, ar.sqrt((top.u3 + top.u2) / (top.u3 - top.u2))
+        ),
+        "(4,30) as printed, the modulus": lambda top, t: _argument(top, t, ar.sqrt(1 + top.k**2)),
+        "section 4 l: w": lambda top, t: _of_w(top, t, 3),
+    },
+)
+chrapan.each_as_printed(
+    lambda: [(LEFT, LEFT.T / 3)],
+    {
+        "(4,27)": lambda top, _: _at_parameter(top, 1, top.b),
+        "(4,28)": lambda top, _: _at_parameter(top, -1, top.b),
+        "(4,29)": lambda top, t: _precession(top, t, 1),
+        "(4,34)": lambda top, t: _spin(top, t, 1),
+    },
+)
 
 
 class TestChrapan(EquationTests):
