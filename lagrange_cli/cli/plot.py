@@ -18,7 +18,17 @@ from ..inputs.names import check_names
 from ..output.destination import write_bytes
 from ..output.terminal import is_terminal, with_progress
 from ..plot.files import require_matplotlib
-from ..plot.kinds import KINDS, MAP_KEY, ON_THE_SHEET, SHEET, PlotRequest, help_lines
+from ..plot.kinds import (
+    FILM_OPTIONS,
+    KINDS,
+    MAP_KEY,
+    ON_THE_SHEET,
+    SHEET,
+    InputRange,
+    PlotRequest,
+    flag_of,
+    help_lines,
+)
 from ..plot.style import chosen_look
 from . import options as opt
 from .tables import angle_stds
@@ -29,17 +39,9 @@ if TYPE_CHECKING:
     from ..inputs.value import Value
     from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
-    from ..plot.map_axes import InputRange
 
 _FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
-_OF_KINDS = {
-    "t_max": tuple(name for name, kind in KINDS.items() if "t_max" in kind.options),
-    **dict.fromkeys(("key", "x", "y", "colour_limits"), ("map",)),
-    "camera": ("sphere",),
-}
-"""The kinds of picture that have an option; the other options are those of every picture."""
-_OF_A_FILM = ("t_max", "camera")
 HELP = "Draw pictures of one motion.\n\n\b\n{kinds}\n"
 
 
@@ -120,8 +122,6 @@ def plot_command(
     output: str | None = opt.file("FILE.png, .svg or .pdf (replaced on success).", "-o --output"),
 ) -> None:
     """Write, film and show the pictures that the options request."""
-    if not (output or show or animate):
-        raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
     chosen = _kinds(top.words)
     written = _format_of(fmt, output)
     eye = None if camera is None else _camera(camera, top.radians)
@@ -150,12 +150,14 @@ def plot_command(
         x=axes.get("x"),
         y=axes.get("y"),
         camera=eye,
-        limits=colour_limits,
+        colour_limits=colour_limits,
         progress=with_progress,
         stds=angle_stds(found, motion),
         uncertain=_first_order(found, motion),
         look=chosen_look(dark),
     )
+    if not (output or show or animate):
+        raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
     page = Page(motion, chosen, request, size)
     page_dpi, film_dpi = (float(dpi or usual) for usual in (PAGE_DPI, FILM_DPI))
     if output is not None:
@@ -178,12 +180,12 @@ def plot_command(
 def _check_kinds(options: Mapping[str, Any], kinds: Sequence[str], films: bool) -> None:
     """Raise LagtopError for an option that none of the pictures has, and no film."""
     for name, value in options.items():
-        filmed = name in _OF_A_FILM
-        if value is None or set(_OF_KINDS[name]) & set(kinds) or (filmed and films):
+        having = [kind.name for kind in KINDS.values() if name in kind.options]
+        films_too = name in FILM_OPTIONS
+        if value is None or set(having) & set(kinds) or (films_too and films):
             continue
-        needed = " or ".join([*_OF_KINDS[name], *["--animate FILE.gif"] * filmed])
-        flag = name.replace("_", "-")
-        raise LagtopError(f"--{flag} needs {needed}, got {', '.join(kinds)}")
+        needed = " or ".join([*having, *["--animate FILE.gif"] * films_too])
+        raise LagtopError(f"{flag_of(name)} needs {needed}, got {', '.join(kinds)}")
 
 
 def _kinds(names: Sequence[str]) -> tuple[str, ...]:
@@ -233,7 +235,7 @@ def _given(top: TopOptions, **axes: str | None) -> tuple[Given, dict[str, InputR
     texts = {name: text for name, text in axes.items() if text is not None}
     if not texts:
         return top.given(), {}
-    from ..plot.map_axes import input_range, parse_axis  # start-up: loads NumPy
+    from ..plot.map import input_range, parse_axis  # start-up: loads NumPy
 
     parsed = {name: parse_axis(name, text, radians=top.radians) for name, text in texts.items()}
     try:

@@ -1,8 +1,7 @@
 """Pictures of motions: files, films, a page for the browser, and drawings on your own axes.
 
 Each function here draws one kind of picture on your own axes, in your own style.  Pass an `Axes` of
-matplotlib, or a sequence with as many axes as the kind has; by default a new figure is made.
-`t_max` is the last time, `radians` the unit of angles, `dark` selects colours for dark paper.  The
+matplotlib, or a sequence with as many axes as the kind has; by default a new figure is made.  The
 functions raise LagtopError for a time out of range, if there is nothing to draw, and without
 matplotlib.
 
@@ -12,10 +11,10 @@ matplotlib and NumPy are imported when a function is called, because help does n
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, Unpack
 
 from .files import require_matplotlib
-from .kinds import KINDS, MAP_KEY, PlotRequest
+from .kinds import KINDS, PictureKind, PlotRequest
 from .style import chosen_look, points
 
 if TYPE_CHECKING:
@@ -26,64 +25,32 @@ if TYPE_CHECKING:
     AxesOfUser: TypeAlias = Axes | Sequence[Axes] | None
 
 
-class OverTime(TypedDict, total=False):
-    """Options of a picture over time."""
+class DrawingOptions(TypedDict, total=False):
+    """Options of drawings; each kind has some of them."""
 
     t_max: float | None
+    """The last time."""
     radians: bool
+    """Whether angles are in radians instead of degrees."""
+    key: str
+    """The key that a map shows."""
+    x: str | None
+    """Horizontal axis of a map, such as `r0=5:120:80`."""
+    y: str | None
+    """Vertical axis of a map."""
     dark: bool
-
-
-def draw_sphere(motion: Motion, ax: AxesOfUser = None, **shown: Unpack[OverTime]) -> list[Axes]:
-    """Draw the path of the figure axis on the unit sphere, and return the axes."""
-    return draw(motion, "sphere", ax, **shown)
-
-
-def draw_angles(motion: Motion, ax: AxesOfUser = None, **shown: Unpack[OverTime]) -> list[Axes]:
-    """Draw tilt, spin and precession over time on three axes, and return the axes."""
-    return draw(motion, "angles", ax, **shown)
-
-
-def draw_remainders(motion: Motion, ax: AxesOfUser = None, **shown: Unpack[OverTime]) -> list[Axes]:
-    """Draw the periodic parts of spin and precession on two axes, and return the axes."""
-    return draw(motion, "remainders", ax, **shown)
-
-
-def draw_cubic(motion: Motion, ax: AxesOfUser = None, *, dark: bool = False) -> list[Axes]:
-    """Draw f(u) with its roots and the band of the motion, and return the axes."""
-    return draw(motion, "cubic", ax, dark=dark)
-
-
-def draw_phase(
-    motion: Motion, ax: AxesOfUser = None, *, radians: bool = False, dark: bool = False
-) -> list[Axes]:
-    """Draw tilt rate against tilt, and the separatrix, and return the axes."""
-    return draw(motion, "phase", ax, radians=radians, dark=dark)
-
-
-def draw_map(
-    motion: Motion,
-    ax: AxesOfUser = None,
-    *,
-    key: str = MAP_KEY,
-    x: str | None = None,
-    y: str | None = None,
-    dark: bool = False,
-) -> list[Axes]:
-    """Draw a key of the record over two inputs, and return the axes.
-
-    `x` and `y` are ranges such as `r0=5:120:80`.
-    """
-    return draw(motion, "map", ax, key=key, x=x, y=y, dark=dark)
+    """Whether colours are for dark paper."""
 
 
 def draw(
-    motion: Motion, kind: str = "sphere", ax: AxesOfUser = None, *, dark: bool = False, **shown: Any
+    motion: Motion,
+    kind: str = "sphere",
+    ax: AxesOfUser = None,
+    **options: Unpack[DrawingOptions],
 ) -> list[Axes]:
     """Draw the kind of picture with this name, and return the axes.
 
-    The options are those of the function of the kind, such as `draw_sphere`.  Raises LagtopError
-    for an unknown kind, and TypeError for an option that the kind does not have.
+    Raises LagtopError for an unknown kind, and TypeError for an option that the kind does not have.
 
     >>> len(draw(solve(Top()), "angles", t_max=1.0))
     3
@@ -96,7 +63,10 @@ def draw(
     check_type("kind", kind, str)
     check_names("kind", [kind], KINDS)
     picture = KINDS[kind]
-    if unknown := [name for name in shown if name not in picture.options]:
+    shown: dict[str, Any] = {**options}
+    dark = shown.pop("dark", False)
+    known = DrawingOptions.__annotations__.keys() & picture.options
+    if unknown := [name for name in shown if name not in known]:
         raise TypeError(f"draw_{kind}() got an unexpected keyword argument {unknown[0]!r}")
     require_matplotlib()
     from matplotlib.axes import Axes
@@ -104,7 +74,7 @@ def draw(
     from .curves import checked_span  # start-up
 
     if "key" in picture.options:
-        from .map_axes import parse_input_range  # start-up
+        from .map import parse_input_range  # start-up
 
         ranges = {name: shown.get(name) for name in ("x", "y")}
         shown |= {name: parse_input_range(name, text) for name, text in ranges.items() if text}
@@ -129,3 +99,31 @@ def draw(
     title = picture.draw(motion, PlotRequest(look=chosen_look(dark), **shown), places)
     axes[0].set_title(title, pad=points(18))  # above names at the top of the axes
     return axes
+
+
+class Drawing(Protocol):
+    """A function that draws one kind of picture."""
+
+    def __call__(
+        self, motion: Motion, ax: AxesOfUser = None, **options: Unpack[DrawingOptions]
+    ) -> list[Axes]:
+        """Draw the picture, and return the axes."""
+
+
+def _drawing(kind: PictureKind) -> Drawing:
+    """Return the function that draws a kind on axes of a user."""
+
+    def function(
+        motion: Motion, ax: AxesOfUser = None, **options: Unpack[DrawingOptions]
+    ) -> list[Axes]:
+        return draw(motion, kind.name, ax, **options)
+
+    own = [name for name in DrawingOptions.__annotations__ if name in (*kind.options, "dark")]
+    function.__doc__ = f"Draw {kind.help}; options: {', '.join(own)}."
+    function.__name__ = function.__qualname__ = f"draw_{kind.name}"
+    return function
+
+
+draw_sphere, draw_angles, draw_remainders, draw_cubic, draw_phase, draw_map = map(
+    _drawing, KINDS.values()
+)

@@ -7,7 +7,7 @@ computes the picture, draws it on the axes of a page or of a user, and returns i
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
@@ -18,13 +18,13 @@ from .style import DARK, LIGHT, Look
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ..arithmetic.types import Array
     from ..arithmetic.values import Key
     from ..inputs.input_keys import Input
     from ..inputs.units import System
     from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
-    from .map_axes import InputRange
 
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows by default."""
@@ -51,6 +51,22 @@ They are chosen by the rules of `PHRASES`.  Only the browser page knows `plane`,
 """
 
 
+class InputRange(NamedTuple):
+    """An input of the top and its values along one axis of a map."""
+
+    name: str
+    values: Array
+    """Increasing values; a tilt in degrees."""
+    logarithmic: bool = False
+    """Whether the values grow by equal factors instead of equal steps."""
+
+    def text(self) -> str:
+        """Return the range as it is written on the command line."""
+        first, last = (repr(float(self.values[i])) for i in (0, -1))
+        steps = "log:" if self.logarithmic else ""
+        return f"{self.name}={steps}{first}:{last}:{self.values.size}"
+
+
 class PlotRequest(NamedTuple):
     """The options of a picture of a motion."""
 
@@ -68,7 +84,7 @@ class PlotRequest(NamedTuple):
     """The units of the inputs, if they have units."""
     camera: tuple[float, float] | None = None
     """Azimuth and elevation (radians) of the camera; by default it sees most of the path."""
-    limits: tuple[float, float] | None = None
+    colour_limits: tuple[float, float] | None = None
     """Ends of the colour scale of a map; by default all values but the outermost are within."""
     progress: Progress = silent
     """Reports the progress of a map."""
@@ -111,19 +127,24 @@ class PlotRequest(NamedTuple):
         """The size of one radian in the unit of angles."""
         return angle_unit(radians=self.radians)[0]
 
-    def options(self) -> list[str]:
-        """Return the settings that differ from the defaults, as options of the command."""
+    def options(self, kinds: Iterable[str]) -> list[str]:
+        """Return the settings of some kinds that differ from the defaults, as command options."""
         given = {
-            "--t-max": self.t_max and repr(self.t_max),
-            "--key": self.key if self.key != MAP_KEY else None,
-            "--x": self.x and self.x.text(),
-            "--y": self.y and self.y.text(),
-            "--camera": self.camera
-            and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
-            "--colour-limits": self.limits and ":".join(map(repr, self.limits)),
+            "t_max": self.t_max and repr(self.t_max),
+            "key": self.key if self.key != MAP_KEY else None,
+            "x": self.x and self.x.text(),
+            "y": self.y and self.y.text(),
+            "camera": self.camera and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
+            "colour_limits": self.colour_limits and ":".join(map(repr, self.colour_limits)),
         }
+        taken = {name for kind in kinds for name in KINDS[kind].options}
         flags = ["--rad"] * self.radians + ["--dark"] * (self.look is DARK)
-        return [f"{name} {text}" for name, text in given.items() if text] + flags
+        return [f"{flag_of(x)} {y}" for x, y in given.items() if y and x in taken] + flags
+
+
+def flag_of(name: str) -> str:
+    """Return an option as it is written on a command line."""
+    return f"--{name.replace('_', '-')}"
 
 
 Places: TypeAlias = "Callable[[Sequence[float]], Sequence[Axes]]"
@@ -138,10 +159,8 @@ class PictureKind(NamedTuple):
     """One line for the help of the command."""
     size: tuple[float, float]
     """Width and height (inches) of a page that holds only this picture."""
-    on_sheet: bool = False
-    """Whether the picture is on the sheet, which the command draws by default."""
     options: tuple[str, ...] = ()
-    """Options of a drawing on a user's own axes, besides `dark`."""
+    """Fields of `PlotRequest` that the kind uses and others do not."""
     axes: int = 1
     """Number of axes that a user passes; several share the time axis."""
     file: str = ""
@@ -158,23 +177,23 @@ class PictureKind(NamedTuple):
 
 
 _OVER_TIME = ("t_max", "radians")
+_OF_MAP = ("key", "x", "y", "colour_limits")
+_SPHERE, _ANGLES, _REMAINDERS, _PLANE = (6.4, 6.0), (7.0, 6.0), (7, 5), (6.8, 5.0)
 _ROWS = [
     PictureKind(
-        "sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True, _OVER_TIME
+        "sphere", "the path of the figure axis on the unit sphere", _SPHERE, (*_OVER_TIME, "camera")
     ),
-    PictureKind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, _OVER_TIME, 3),
+    PictureKind("angles", "tilt, spin and precession over time", _ANGLES, _OVER_TIME, axes=3),
     PictureKind(
-        "remainders", "periodic parts of spin and precession", (7, 5), True, _OVER_TIME, 2, "angles"
+        *("remainders", "periodic parts of spin and precession", _REMAINDERS, _OVER_TIME),
+        axes=2,
+        file="angles",
     ),
-    PictureKind("cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
+    PictureKind("cubic", "f(u), its roots, and the band of the motion", _PLANE),
     PictureKind(
-        "phase",
-        "tilt rate against tilt, and the separatrix",
-        (6.8, 5.0),
-        options=("radians",),
-        file="cubic",
+        "phase", "tilt rate against tilt, and the separatrix", _PLANE, ("radians",), file="cubic"
     ),
-    PictureKind("map", "a key of the record over two inputs", (6.8, 5.0), False, ("key", "x", "y")),
+    PictureKind("map", "a key of the record over two inputs", _PLANE, _OF_MAP),
 ]
 
 KINDS = {kind.name: kind for kind in _ROWS}
@@ -183,8 +202,11 @@ KINDS = {kind.name: kind for kind in _ROWS}
 SHEET = "all"
 """The name of the sheet, which holds several kinds."""
 
-ON_THE_SHEET = tuple(kind.name for kind in _ROWS if kind.on_sheet)
-"""The names of the kinds on the sheet."""
+ON_THE_SHEET = ("sphere", "angles", "remainders", "cubic")
+"""The kinds on the sheet, which the command draws by default."""
+
+FILM_OPTIONS = ("t_max", "camera")
+"""Fields of `PlotRequest` that a film uses."""
 
 
 def help_lines() -> list[str]:

@@ -12,21 +12,25 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator
 
+from ..arithmetic.points import LogPoints, Points
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
-from ..inputs.input_keys import DECLARED
+from ..inputs.input_keys import DECLARED, NINE, TILT
 from ..inputs.names import check_names
+from ..inputs.ranges import parse_range, refuse_units_inside
 from ..inputs.top import Top
+from ..inputs.value import Value, parse_value
 from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
 from ..output.terminal import Progress, silent
 from ..sweeps.records import BLOCK_ROWS, sweep
-from .kinds import Places, PlotRequest
-from .map_axes import InputRange
+from .kinds import InputRange, Places, PlotRequest
 from .style import Look, mark_start, points, scale
 
 MOST_CELLS = 1_000_000
+MOST_VALUES = 2000
+"""Greatest number of values of an input along one axis."""
 DEFAULT_COUNTS = 128, 90
 
 OUTERMOST = 1.0
@@ -48,6 +52,52 @@ class KeyMap(NamedTuple):
     def known(self) -> Array:
         """The values that are defined, in one row."""
         return self.values[np.isfinite(self.values)]
+
+
+def parse_axis(name: str, text: str, *, radians: bool = False) -> tuple[str, Value]:
+    """Return the input and the points of an axis such as `r0=10:100:40` or `r0=60:600:40 rpm`.
+
+    A tilt is converted to degrees or `radians`.  `name` is the argument to name in errors.  Raises
+    LagtopError for an unknown input.
+    """
+    known, _, grid = text.partition("=")
+    if known not in NINE:
+        wanted = f"one of {' '.join(NINE)} and ="
+        raise LagtopError(f"{name} must begin with {wanted}, got {text!r}", name)
+    try:
+        refuse_units_inside(grid, "60:600:40 rpm")
+        value = parse_value(grid, parse_range)
+        if known == TILT and value.unit:
+            from ..inputs.units import factor_of  # few maps have units
+
+            value = value.scaled(factor_of(known, value, "rad" if radians else "deg"))
+        return known, value
+    except LagtopError as error:
+        raise LagtopError(f"{name} {error}", name) from None
+
+
+def input_range(name: str, known: str, points: Points) -> InputRange:
+    """Return the values of an input.  Raises LagtopError unless they are 2 to 2000 and increase."""
+    if not 2 <= points.count <= MOST_VALUES:
+        raise LagtopError(
+            f"{name} must have a count in [2, {MOST_VALUES}], got {points.count}", name
+        )
+    values = next(points.blocks())
+    if not values[0] < values[-1]:
+        ends = f"{values[0]:g}:{values[-1]:g}"
+        raise LagtopError(f"{name} must have start < stop, got {known}={ends}", name)
+    return InputRange(known, values, isinstance(points, LogPoints) and bool(values[0] > 0))
+
+
+def parse_input_range(name: str, text: str) -> InputRange:
+    """Parse a range without a unit, such as `r0=10:100:40` or `r0=log:1:100:40`.
+
+    `name` is the argument to name in errors.  Raises LagtopError as `parse_axis` and `input_range`.
+    """
+    known, value = parse_axis(name, text)
+    if value.unit:
+        raise LagtopError(f"{name} must have no unit, as the motion has none, got {text!r}", name)
+    return input_range(name, known, value.number)
 
 
 def default_ranges(top: Top, *, radians: bool = False) -> tuple[InputRange, InputRange]:
@@ -144,7 +194,7 @@ def _draw_cells(axes: Axes, chart: KeyMap, request: PlotRequest) -> Colorbar:
     axes.set_facecolor(look.faint)  # if the key is undefined
     if known.size < chart.values.size:
         axes.fill([], [], color=look.faint, label="undefined here")
-    low, high = request.limits or colour_limits(known)
+    low, high = request.colour_limits or colour_limits(known)
     logarithmic = low > 0 and high > 30 * low
     mesh = axes.pcolormesh(
         _edges(chart.x),

@@ -88,7 +88,7 @@ class Page(NamedTuple):
             if value or not name.endswith("dot0")
         ]
         size = [f"--size {self.size[0]:g}x{self.size[1]:g}"] if self.size else []
-        words = " ".join([*self.kinds, *scene, *request.options(), *size])
+        words = " ".join([*self.kinds, *scene, *request.options(self.kinds), *size])
         title = f"Lagrange top: {', '.join(self.kinds)}"
         return About(title, text, f"lagtop plot {words} -o picture.svg")
 

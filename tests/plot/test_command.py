@@ -37,7 +37,10 @@ def test_kinds_and_scene_in_any_order(lagtop: Lagtop, tmp_path: Path) -> None:
 
 REFUSED = [
     ("", "nothing to do: give -o FILE.png, --show or --animate FILE.gif"),
-    ("spere -o x.png", "got 'spere' (did you mean 'sphere'?)"),
+    ("spere", "got 'spere' (did you mean 'sphere'?)"),
+    ("--t-max 0", "--t-max must be > 0, got 0"),
+    ("--duration 3", "--duration needs --animate FILE.gif"),
+    ("sphere --camera 30", "--camera must be AZIMUTH,ELEVATION"),
     ("nowhere.toml -o x.png", "nowhere.toml: No such file", 65),
     ("-o x.jpg", "-o must be a file that ends in .png or .svg or .pdf, got 'x.jpg'"),
     ("-o x.png --size 8", "--size must be WIDTHxHEIGHT, each in [2, 50] inches, got '8'"),

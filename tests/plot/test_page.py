@@ -27,7 +27,7 @@ from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
 from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest
-from lagrange_cli.plot.map_axes import parse_input_range
+from lagrange_cli.plot.map import parse_input_range
 from lagrange_cli.plot.page import (
     LEAST_LETTERS,
     MOST_PIXELS,
@@ -264,7 +264,7 @@ def test_the_command_in_a_file_draws_the_same_file(lagtop: Lagtop) -> None:
         x=parse_input_range("x", "r0=log:10:90:3"),
         y=parse_input_range("y", "theta0=0.25:1.5:3"),
         camera=(0.5, -0.25),
-        limits=(0.5, 2.5),
+        colour_limits=(0.5, 2.5),
         look=DARK,
     )
     motion = solve(Top(theta0_rad=0.625, psidot0=-0.5))
@@ -274,6 +274,19 @@ def test_the_command_in_a_file_draws_the_same_file(lagtop: Lagtop) -> None:
     result = lagtop(*words[1:-2], "--format", "svg", "-o", "-")
     assert result.exit_code == 0
     assert result.stdout_bytes == page_bytes(page, "svg", 150.0)
+
+
+def test_the_command_in_a_file_has_no_option_that_its_pictures_lack() -> None:
+    """Such options may belong to the film of the same command; `plot` refuses them alone."""
+    request = PlotRequest(t_max=1.0, camera=(0.5, 0.25), key="nome", x=X)
+    words = {kind: Page(solve(Top()), [kind], request).about().command for kind in KINDS}
+    for option, kinds in (
+        ("--t-max", ["sphere", "angles", "remainders"]),
+        ("--camera", ["sphere"]),
+        ("--key", ["map"]),
+        ("--x", ["map"]),
+    ):
+        assert [kind for kind in KINDS if f" {option} " in words[kind]] == kinds
 
 
 # Colours.

@@ -23,8 +23,7 @@ from lagrange_cli.plot.cubic import cubic_curve, phase_portrait, separatrix_orbi
 from lagrange_cli.plot.curves import sampled_columns, span, sphere_span, tilt_period, turn_span
 from lagrange_cli.plot.globe import best_camera
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest, help_lines
-from lagrange_cli.plot.map import colour_limits, jumps, key_map
-from lagrange_cli.plot.map_axes import parse_input_range
+from lagrange_cli.plot.map import colour_limits, jumps, key_map, parse_input_range
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import number_text
 
@@ -415,7 +414,7 @@ def test_contours_stop_at_a_jump_and_not_on_a_slope() -> None:
 
 def test_a_map_in_radians_with_its_own_colours() -> None:
     x, y = parse_input_range("x", "r0=20:100:4"), parse_input_range("y", "theta0=0.2:1.5:3")
-    asked = PlotRequest(x=x, y=y, radians=True, key="theta_max_rad", limits=(0.5, 2.0))
+    asked = PlotRequest(x=x, y=y, radians=True, key="theta_max_rad", colour_limits=(0.5, 2.0))
     figure = drawn(solve(Top()), ["map"], asked)
     axes, bar = figure.axes
     mesh: Any = axes.collections[0]

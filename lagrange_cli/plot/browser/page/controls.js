@@ -1,6 +1,7 @@
 // The controls of time: play, pause, speed, step, and a jump to any time.  In closed form a jump
 // costs no more than a step.  The controls of the inputs: a slider and a number field for each.
 // All inputs and the time are in the address of the page after the #: m=1587&A=39032 ... &t=0.5.
+// The hands that move the camera, and the keys.
 
 import { INPUTS } from "../data.js";
 import { textOf } from "../drawing/canvas.js";
@@ -226,4 +227,59 @@ export function showLink(scene, t) {
   } catch {
     // a page in a notebook
   }
+}
+
+/** Turn a camera by drag and arrows, zoom by pinch, wheel, + and -; each calls `moved()`. */
+export function followHands(canvas, camera, moved) {
+  const fingers = new Map();
+  const spread = () => {
+    const [p, q] = [...fingers.values()];
+    return Math.hypot(p.x - q.x, p.y - q.y);
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture?.(event.pointerId);
+    fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const last = fingers.get(event.pointerId);
+    if (!last) return;
+    const before = fingers.size === 2 ? spread() : 0;
+    fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    if (fingers.size === 2) camera.magnify(spread() / Math.max(before, 1));
+    else camera.turn((event.clientX - last.x) * 0.5, (event.clientY - last.y) * 0.5);
+    moved();
+  });
+  for (const end of ["pointerup", "pointercancel"]) {
+    canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
+  }
+  canvas.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    camera.magnify(Math.exp(-event.deltaY / 500));
+    moved();
+  }, { passive: false });
+  canvas.addEventListener("dblclick", () => {
+    camera.reset();
+    moved();
+  });
+  const moves = {
+    ArrowLeft: () => camera.turn(-5, 0),
+    ArrowRight: () => camera.turn(5, 0),
+    ArrowUp: () => camera.turn(0, 5),
+    ArrowDown: () => camera.turn(0, -5),
+    "+": () => camera.magnify(1.2),
+    "-": () => camera.magnify(1 / 1.2),
+    0: () => camera.reset(),
+  };
+  canvas.addEventListener("keydown", (event) => {
+    if (actOnKey(event, moves)) moved();
+  });
+}
+
+/** Run the action that a table has for the key of an event; return whether it has one. */
+export function actOnKey(event, actions) {
+  if (!actions[event.key]) return false;
+  event.preventDefault();
+  event.stopPropagation();
+  actions[event.key]();
+  return true;
 }

@@ -1,13 +1,13 @@
 // The page: one scene, its motion, and all that shows it.
 
 import { EXAMPLES, INPUTS, SCENE, UNITS } from "../data.js";
-import { actOnKey, Camera, followHands, frameOf } from "../drawing/camera.js";
 import { readLook, textOf } from "../drawing/canvas.js";
-import { drawCubic } from "../drawing/cubic.js";
-import { curvesAt, drawPlots, windowOf } from "../drawing/plots.js";
-import { drawSpace, onLid } from "../drawing/space.js";
+import { curvesAt, drawCubic, drawPlots, windowOf } from "../drawing/plots.js";
+import { Camera, drawSpace, frameOf, onLid } from "../drawing/space.js";
 import { motionOf } from "../numerics/motion.js";
-import { Clock, Inputs, linkOf, readLink, showLink } from "./controls.js";
+import {
+  actOnKey, Clock, followHands, Inputs, linkOf, readLink, showLink,
+} from "./controls.js";
 import { showRecord, unitText, wordsOf } from "./record.js";
 
 const FRAME = 1 / 60;  // seconds
