@@ -6,7 +6,7 @@ parameters.  With both, `lagtop solve` would take 7 % more time.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, dataclass_transform
 
 __all__ = ["Key", "Over", "Values"]
@@ -98,3 +98,8 @@ class Key(Values):
     """The formula, written with names of keys, such as `2*m*g*s/A`; see `motion.explanation`."""
     absent: str = ""
     """The case in which the number does not exist, such as `if r0 = 0`, besides some regimes."""
+
+    def in_units(self, *, radians: bool, named: Callable[[str], str] = str) -> Self:
+        """Return the key with its unit as printed; `named` gives the names of units of a system."""
+        angle = "rad" if radians else "deg"
+        return self.replace(unit=angle if self.unit == "angle" else named(self.unit))

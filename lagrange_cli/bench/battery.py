@@ -268,8 +268,8 @@ def bounds_at(proofs: ProvedTable, t: float, computed: Sequence[float]) -> list[
 def _bounds(sample: BallSample, computed: Sequence[float]) -> list[float]:
     if not all(map(math.isfinite, computed)):
         return [math.inf] * len(computed)
-    angles = [sample.theta, sample.phi, sample.psi]
-    exact = [*angles, *(getattr(sample, f"quaternion_{part}") for part in "wxyz")]
+    angles = [sample.column(name) for name in JUDGED_COLUMNS[:3]]
+    exact = [*angles, *(sample.column(f"quaternion_{part}") for part in "wxyz")]
     return [
         _bound(ball - sample.t.ar.convert(value), size / 2**52)
         for ball, value, size in zip(exact, computed, _sizes(sample, angles), strict=True)
@@ -284,7 +284,7 @@ def _sizes(sample: BallSample, angles: Sequence[Ball]) -> list[Ball]:
     square, across, r0 = sample.theta_square, sample.across, sample.kind.r0
     theta_rate = ar.sqrt(square) if (square > 0) is True else 0 * square
     turning = ar.sqrt(theta_rate * theta_rate + across * across + r0 * r0) / 2
-    rates = theta_rate, sample.phidot, sample.psidot
+    rates = theta_rate, sample.column("phidot"), sample.column("psidot")
     sizes = [
         ar.exact(max(angle.least, Decimal(1))) + ar.exact((tau * rate).least)
         for angle, rate in zip(angles, rates, strict=True)

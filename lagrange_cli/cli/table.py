@@ -169,7 +169,8 @@ def _rows(
     header, parts = request.rows(motion, times, stds.at if stds else None)
     if fmt in _DRAWN:
         named = found.system.named if found.system is not None else str
-        units = [named(part.unit) for part in chosen_columns(request.columns)]
+        chosen = chosen_columns(request.columns).values()
+        units = ["" if column.is_angle else named(column.key.unit) for column in chosen]
         texts = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
         header = [*texts, *header[len(texts) :]]
     return header, parts

@@ -13,9 +13,10 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
+from ..arithmetic.values import Key
 from ..inputs.names import check_names
 from .numbers import record_in_range
-from .over_time.columns import COLUMNS, Column
+from .over_time.columns import COLUMNS, shown_columns
 from .quantity import unit_name
 from .record import KEYS, all_keys, shown_keys
 from .solve import Motion
@@ -64,31 +65,19 @@ def explained_names() -> list[str]:
 
 def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[Explained]:
     """Return all keys and columns; `named` gives the names of units of a system."""
-    keys = shown_keys(radians=radians, named=named, requested=True)
     of_record = {unit_name(name, radians=radians) for name in KEYS}
     symbols = _symbols()
-    rows = [
-        Explained(
-            *(name, "record" if name in of_record else "on request", key.symbol, key.meaning),
-            *(key.unit, key.equation, _shown(key.formula, symbols), key.formula),
-        )
-        for name, key in keys.items()
+
+    def row(name: str, kind: str, key: Key) -> Explained:
+        shown = key.symbol, key.meaning, key.unit, key.equation, _shown(key.formula, symbols)
+        return Explained(name, kind, *shown, key.formula)
+
+    keys = shown_keys(radians=radians, named=named, requested=True)
+    columns = shown_columns(radians=radians, named=named)
+    return [
+        *(row(name, "record" if name in of_record else "on request", keys[name]) for name in keys),
+        *(row(name, "column", columns[name]) for name in columns),
     ]
-    angle = "rad" if radians else "deg"
-    for name, column in COLUMNS.items():
-        part, text = column.parts[0], column_formula(column)
-        unit = angle if part.heading.endswith("*") else named(part.unit)
-        shown = _shown(text, symbols)
-        row = (name, "column", part.symbol, column.meaning, unit, part.equation, shown, text)
-        rows.append(Explained(*row))
-    return rows
-
-
-def column_formula(column: Column) -> str:
-    """Return the formula of a column, or one equation per part for a group."""
-    if len(column.parts) == 1:
-        return column.parts[0].formula
-    return ", ".join(f"{part.heading} = {part.formula}" for part in column.parts)
 
 
 def explanations(
@@ -145,7 +134,7 @@ def _symbols() -> dict[str, str]:
     """Return the symbols of names in formulas."""
     keys = shown_keys(requested=True).items()
     symbols = {_bare(name): key.symbol for name, key in keys if key.symbol}
-    return symbols | {name: column.parts[0].symbol for name, column in COLUMNS.items()} | _WORDS
+    return symbols | {name: key.symbol for name, key in shown_columns().items()} | _WORDS
 
 
 def _bare(name: str) -> str:

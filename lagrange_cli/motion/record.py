@@ -68,10 +68,7 @@ def shown_keys(
     *, radians: bool = False, named: Callable[[str], str] = str, requested: bool = False
 ) -> dict[str, Key]:
     """Return the declaration of each key by name in a record; `named` gives the names of units."""
-    angle = "rad" if radians else "deg"
     return {
-        unit_name(name, radians=radians): key.replace(
-            unit=angle if key.unit == "angle" else named(key.unit)
-        )
+        unit_name(name, radians=radians): key.in_units(radians=radians, named=named)
         for name, key in (KEYS | (requested_keys() if requested else {})).items()
     }

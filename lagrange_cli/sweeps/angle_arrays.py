@@ -18,7 +18,7 @@ from ..arithmetic.types import Array, Mask
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine
 from ..motion.gaps import Gaps, State, gaps_from_rest
-from ..motion.over_time.attitude import Attitude, Growth, Growths, Spinor, Times
+from ..motion.over_time.attitude import Attitude, Growth, Growths, Times
 from ..motion.over_time.samplers import tilt_of
 from ..motion.over_time.series_constants import theta_constants
 from ..motion.over_time.theta_sampler import arguments_of, moduli_of, unwound
@@ -144,8 +144,8 @@ class ArraySampler(NamedTuple):
         upper = (np.rint(half, out=step) != half) == self.lower
         parts = self._parts(argument, upper, space[4:8])
         arguments = unwound(arguments_of(parts, space[8:10]), self.slopes, argument, lost)
-        spinor = Spinor(tilt_of(*moduli_of(parts)), None, None, *arguments)
-        return Attitude(self.growths, Times(t, farthest, space[12:]), spinor)
+        tilt, times = tilt_of(*moduli_of(parts)), Times(t, farthest, space[12:])
+        return Attitude(self.growths, times, tilt, arg_x=arguments[0], arg_y=arguments[1])
 
     def _parts(self, argument: Array, upper: Mask, parts: Array) -> Array:
         """Return real and imaginary parts of X and Y; `upper` marks phases counted from u1."""

@@ -12,7 +12,7 @@ from scenes import UNIT
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.arithmetic.arrays import ROWS, workspace
 from lagrange_cli.motion.over_time import theta_sampler
-from lagrange_cli.motion.over_time.columns import COLUMNS, chosen_columns
+from lagrange_cli.motion.over_time.columns import COLUMNS, SCALARS, chosen_columns
 from lagrange_cli.motion.over_time.table import samples
 
 STARTS: dict[str, dict[str, float]] = {
@@ -33,9 +33,9 @@ T = np.linspace(-3, 40, 40_000)
 def test_a_column_is_the_same_whatever_stands_beside_it(start: str) -> None:
     motion = solve(Top(**STARTS[start]))
     together = motion.table(T, list(COLUMNS))
-    for part in chosen_columns(list(COLUMNS)):
-        alone = motion.table(T, [part.name])[part.name]
-        np.testing.assert_array_equal(alone, together[part.name])
+    for name in SCALARS:
+        alone = motion.table(T, [name])[name]
+        np.testing.assert_array_equal(alone, together[name])
 
 
 def _forbidden(*_: Any) -> Any:
@@ -110,8 +110,8 @@ def test_motions_may_be_sampled_in_turns() -> None:
 
     one, other = solve(Top()), solve(Top(r0=200))
     for (rows, mine), (_, theirs) in zip(blocks(one), blocks(other), strict=True):
-        np.testing.assert_array_equal(mine.phi, one.angles(T).phi[rows])
-        np.testing.assert_array_equal(theirs.phi, other.angles(T).phi[rows])
+        np.testing.assert_array_equal(mine.spin, one.angles(T).phi[rows])
+        np.testing.assert_array_equal(theirs.spin, other.angles(T).phi[rows])
 
 
 def test_a_workspace_is_lent_once() -> None:

@@ -63,7 +63,7 @@ def tried(count: int, seed: int) -> tuple[int, int]:
             try:
                 sample = ProvedTable(motion, ["t"]).sample(time, digits)
                 for column in COLUMNS:
-                    getattr(sample, column)
+                    sample.column(column)
             except TooFewDigitsError:
                 unbounded += 1
     return bounded, unbounded

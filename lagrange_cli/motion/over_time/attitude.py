@@ -142,9 +142,11 @@ def growths(
     return Growths(growth(phi, x - y), growth(psi, x + y), halves)
 
 
-class Spinor(NamedTuple):
-    """X and Y up to a common positive factor; parts that are not requested are None."""
+class Attitude(NamedTuple):
+    """X and Y at a block of times up to a common factor; parts that are not needed are None."""
 
+    growths: Growths
+    times: Times
     tilt: Array | None = None
     x2: Array | None = None
     """|X|^2."""
@@ -156,17 +158,9 @@ class Spinor(NamedTuple):
     rate: Array | None = None
     """2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
 
-
-class Attitude(NamedTuple):
-    """The attitude at a block of times."""
-
-    growths: Growths
-    times: Times
-    spinor: Spinor
-
     def theta(self) -> Array:
         """Return the tilt."""
-        return needed(self.spinor.tilt)
+        return needed(self.tilt)
 
     def phi(self, *, wrap: bool = False, out: Array | None = None) -> Array:
         """Return the spin, arg X - arg Y."""
@@ -182,7 +176,7 @@ class Attitude(NamedTuple):
     @property
     def args(self) -> tuple[Array, Array]:
         """The periodic parts of arg X and arg Y."""
-        return needed(self.spinor.arg_x), needed(self.spinor.arg_y)
+        return needed(self.arg_x), needed(self.arg_y)
 
 
 def needed(part: Array | None) -> Array:

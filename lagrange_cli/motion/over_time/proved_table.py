@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +21,9 @@ from ..exact.rational_columns import known_column
 from ..exact.rational_keys import known_fraction
 from ..kinds import Constant, Separatrix
 from ..numbers import Numbers
-from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
-from .columns import ScalarColumn, chosen_columns, headings
+from ..quantity import quantity
+from .column_parts import ColumnConstants, ColumnParts, column_constants
+from .columns import chosen_columns, headings
 from .series_constants import Pose, pose_of
 
 if TYPE_CHECKING:
@@ -34,20 +35,31 @@ _EXTRA = 16
 """Step in digits by which the precision grows with time, so that one precision serves many rows."""
 
 
-class BallSample(ColumnFormulas[Ball]):
+class BallSample(ColumnParts[Ball]):
     """A motion at one time in balls."""
 
     def __init__(
         self,
         motion: Numbers,
         digits: int,
-        constants: ColumnConstants[Ball],
+        top: ColumnConstants[Ball],
         t: Ball,
         at: Pose[Ball],
     ) -> None:
         self.exact, self.kind = motion.exact, motion.kind(digits)
-        self.constants, self.t, self.ar = constants, t, t.ar
-        self.x, self.y, self.within, self.around, self.tilting = at
+        self.top, self.t, self.ar = top, t, t.ar
+        self.tilting = at.tilting
+        vars(self).update(x=at.x, y=at.y, within=at.phi, around=at.psi)
+
+    @quantity
+    def x2(self) -> Ball:
+        """|X|^2."""
+        return self.x * self.x
+
+    @quantity
+    def y2(self) -> Ball:
+        """|Y|^2."""
+        return self.y * self.y
 
     def over(self, value: Ball, divisor: Ball) -> Ball:
         """Return a quotient, and 0 if the value is exactly 0."""
@@ -60,13 +72,13 @@ class BallSample(ColumnFormulas[Ball]):
             return ar.pi * int(ar.nint(angle / ar.pi) % 2)
         return angle - 2 * ar.pi * int(ar.ceiling(angle / (2 * ar.pi) - ar.convert(0.5)))
 
-    @property
-    def dphi(self) -> Ball:
+    @quantity
+    def spin_wave(self) -> Ball:
         """The periodic part of the spin (6,4)."""
         return self._periodic(self.within, "mean_spin_rate", self.kind.state.spin_drift)
 
-    @property
-    def dpsi(self) -> Ball:
+    @quantity
+    def precession_wave(self) -> Ball:
         """The periodic part of the precession (7,4)."""
         return self._periodic(self.around, "mean_precession_rate", self.kind.b / 2)
 
@@ -79,12 +91,12 @@ class BallSample(ColumnFormulas[Ball]):
         rate = limit if isinstance(self.kind, Separatrix) else getattr(self.kind, name)
         return angle - rate * self.t
 
-    @cached_property
+    @quantity
     def theta_square(self) -> Ball:
         """theta'^2 by the energy (4,2)."""
-        return self.constants.alpha - self.constants.a * self.u - self.across * self.across
+        return self.top.alpha - self.top.a * self.u - self.across * self.across
 
-    @cached_property
+    @quantity
     def thetadot(self) -> Ball:
         """The nutation rate, with the sign of `tilting`."""
         if not self.tilting:
@@ -122,7 +134,7 @@ class ProvedTable:
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
         sample = cache(lambda digits: self.sample(time, digits))
-        return [self._number(part, time, sample) for part in self.chosen]
+        return [self._number(name, time, sample) for name in self.chosen]
 
     def sample(self, time: Fraction, digits: int) -> BallSample:
         """Return the motion at a time in balls of `digits` digits.
@@ -134,33 +146,31 @@ class ProvedTable:
         at = self._pose(digits)(t) if time else start
         return BallSample(self.motion, digits, self._constants(digits), t, at)
 
-    def _number(
-        self, part: ScalarColumn, time: Fraction, sample: Callable[[int], BallSample]
-    ) -> Settled:
+    def _number(self, name: str, time: Fraction, sample: Callable[[int], BallSample]) -> Settled:
         """Return a column at a time; `sample` returns the motion there in a number of digits."""
-        what = f"{part.name} at t = {float(time)}"
+        what = f"{name} at t = {float(time)}"
         rounding = rounding_of(what, self.digits)
-        if part.name == "t":
+        if name == "t":
             return Settled(rounding(time), (time,))
         number = settled(
             what,
-            lambda digits: self._enclosure(part, sample(digits)),
+            lambda digits: self._enclosure(name, sample(digits)),
             rounding,
             digits=self.digits or 0,
             more=self._digits_of(time),
             exactly=lambda: known_column(
-                self.motion.exact, part.name, time, radians=self.radians, wrap=self.wrap
+                self.motion.exact, name, time, radians=self.radians, wrap=self.wrap
             ),
         )
         assert number is not None
         return number
 
-    def _enclosure(self, part: ScalarColumn, sample: BallSample) -> Ball:
+    def _enclosure(self, name: str, sample: BallSample) -> Ball:
         """Return a ball that contains a column, with angles in the unit in use."""
-        value: Ball = getattr(sample, part.name)
-        if self.wrap and part.name in {"phi", "psi"}:
+        value = sample.column(name)
+        if self.wrap and name in {"phi", "psi"}:
             value = sample.wrapped(value)
-        in_degrees = part.heading.endswith("*") and not self.radians
+        in_degrees = self.chosen[name].is_angle and not self.radians
         return value * 180 / sample.t.ar.pi if in_degrees else value
 
     def _digits_of(self, time: Fraction) -> int:

@@ -24,7 +24,7 @@ from ...arithmetic.points import MAX_PERIODS, MAX_TIME
 from ...arithmetic.types import Array
 from ...errors import LagtopError
 from ..kinds import Constant, Separatrix
-from .attitude import Attitude, Growths, Spinor, Times, growths
+from .attitude import Attitude, Growths, Times, growths
 from .columns import TILT, TURN, Needs
 from .series_constants import SeparatrixConstants, separatrix_constants
 
@@ -89,8 +89,8 @@ class ConstantSampler(Sampler):
         """Return the attitude at a block of times; there is no phase."""
         tilt, x2, y2 = (np.full_like(t, x) for x in (self.tilt, self.x**2, self.y**2))
         zero = np.zeros_like(t)
-        spinor = Spinor(tilt, x2, y2, zero, zero, zero)
-        return Attitude(self.growths, Times(t, farthest, space[12:, : t.size]), spinor)
+        times = Times(t, farthest, space[12:, : t.size])
+        return Attitude(self.growths, times, tilt, x2, y2, zero, zero, zero)
 
 
 @dataclass(frozen=True)
@@ -109,8 +109,8 @@ class SeparatrixSampler(Sampler):
         x2, y = real * real + imag * imag, swing.y * sech
         arg_x, zero = np.arctan2(imag, real), np.zeros_like(h)
         falling = -4.0 * self.speed * y * y * tanh
-        spinor = Spinor(tilt_of(x2, y * y), x2, y * y, arg_x, zero, falling)
-        return Attitude(self.growths, Times(t, farthest, space[12:, : t.size]), spinor)
+        times, y2 = Times(t, farthest, space[12:, : t.size]), y * y
+        return Attitude(self.growths, times, tilt_of(x2, y2), x2, y2, arg_x, zero, falling)
 
 
 def check_times(times: Array, most: float, name: str = "t") -> float:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, reduce
+from operator import or_
 from typing import Any
 
 import numpy as np
@@ -15,92 +16,103 @@ from ...arithmetic.points import EvenPoints, Points
 from ...arithmetic.types import Array
 from ...inputs.names import ANGLES
 from ..numbers import Numbers
+from ..quantity import quantity
 from .attitude import Attitude, needed
-from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
-from .columns import DEFAULT_COLUMNS, NOTHING, ScalarColumn, chosen_columns, headings
+from .column_parts import ColumnConstants, ColumnParts, column_constants
+from .columns import DEFAULT_COLUMNS, Column, chosen_columns, headings
 from .proved_table import ProvedTable
 from .series_constants import direction
 
 
-class Sample(ColumnFormulas[Array]):
+class Sample(ColumnParts[Array]):
     """The motion at a block of times."""
 
     ar: Any = ARRAYS
 
     def __init__(
-        self, attitude: Attitude, constants: ColumnConstants[Array], rises: int, wrap: bool
+        self, attitude: Attitude, top: ColumnConstants[Array], rises: int, wrap: bool
     ) -> None:
         self.attitude = attitude
-        self.growths, self.times, self.spinor = attitude
-        self.t, self.constants, self.rises, self.wrap = self.times.t, constants, rises, wrap
+        self.growths, self.times = attitude.growths, attitude.times
+        self.t, self.top, self.rises, self.wrap = self.times.t, top, rises, wrap
 
     @property
-    def theta(self) -> Array:
-        """The tilt."""
+    def tilt(self) -> Array:
+        """The angle theta."""
         return self.attitude.theta()
 
     @property
-    def phi(self) -> Array:
-        """The spin."""
+    def spin(self) -> Array:
+        """The angle phi."""
         return self.attitude.phi(wrap=self.wrap)
 
     @property
-    def psi(self) -> Array:
-        """The precession."""
+    def precession(self) -> Array:
+        """The angle psi."""
         return self.attitude.psi(wrap=self.wrap)
 
-    @property
-    def dphi(self) -> Array:
+    @quantity
+    def spin_wave(self) -> Array:
         """The periodic part of the spin (6,4)."""
         return self.growths.phi.since_start(np.subtract(*self.attitude.args), self.times)
 
-    @property
-    def dpsi(self) -> Array:
+    @quantity
+    def precession_wave(self) -> Array:
         """The periodic part of the precession (7,4)."""
         return self.growths.psi.since_start(np.add(*self.attitude.args), self.times)
 
-    @property
+    @quantity
     def x2(self) -> Array:
         """|X|^2."""
-        return needed(self.spinor.x2)
+        return needed(self.attitude.x2)
 
-    @property
+    @quantity
     def y2(self) -> Array:
         """|Y|^2."""
-        return needed(self.spinor.y2)
+        return needed(self.attitude.y2)
 
-    @cached_property
+    @quantity
+    def x(self) -> Array:
+        """|X|."""
+        return np.sqrt(self.x2)
+
+    @quantity
+    def y(self) -> Array:
+        """|Y|."""
+        return np.sqrt(self.y2)
+
+    @quantity
     def thetadot(self) -> Array:
         """The nutation rate (5,3); on a pole by the energy (4,2), with the sign of the start."""
         product = 2.0 * self.norm * self.x * self.y
-        speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
+        speed = np.sqrt(np.maximum(self.top.alpha - self.top.a * self.u, 0.0))
         speed *= self.rises
-        return np.divide(needed(self.spinor.rate), product, out=speed, where=product != 0.0)
+        return np.divide(needed(self.attitude.rate), product, out=speed, where=product != 0.0)
 
-    @cached_property
+    @quantity
     def within(self) -> Array:
         """The spin, up to whole turns."""
         return self.attitude.phi(wrap=True)
 
-    @cached_property
+    @quantity
     def around(self) -> Array:
         """The precession, up to whole turns; the line of nodes lies along x at psi = 0."""
         return self.attitude.psi(wrap=True)
 
-    @cached_property
+    @quantity
     def quarters(self) -> Sequence[tuple[Array, Array]]:
         """(psi + phi)/2 and (psi - phi)/2, reduced by half turns, with the signs of X and Y."""
         assert self.growths.halves is not None
         halves = zip(self.growths.halves(), self.attitude.args, strict=True)
         return [half.within_a_quarter(arg.copy(), self.times) for half, arg in halves]
 
-    @property
+    @quantity
     def args(self) -> tuple[Array, Array]:
         """(psi + phi)/2 and (psi - phi)/2, reduced by half turns."""
         (arg_x, _), (arg_y, _) = self.quarters
         return arg_x, arg_y
 
-    @cached_property
+    @quantity
     def unit(self) -> tuple[Array, Array]:
         """|X| and |Y|, each over sqrt(N), with the signs that make the quaternion continuous."""
         (_, sign_x), (_, sign_y) = self.quarters
@@ -113,14 +125,14 @@ class Sample(ColumnFormulas[Array]):
 
 
 def samples(
-    motion: Numbers, t: Array, chosen: Sequence[ScalarColumn], *, wrap: bool
+    motion: Numbers, t: Array, chosen: Mapping[str, Column], *, wrap: bool
 ) -> Iterator[tuple[slice, Sample]]:
     """Yield the motion at the times t, block by block, with the parts that some columns need.
 
     The next sample overwrites the one before.
     """
     sampler, kind = motion.sampler(), motion.middle()
-    needs = NOTHING.union(*(column.needs for column in chosen))
+    needs = reduce(or_, (column.needs for column in chosen.values()))
     constants = ColumnConstants(*(np.array(float(x)) for x in column_constants(kind, motion.exact)))
     farthest = sampler.check(t)
     with workspace(min(t.size, BLOCK)) as space:
@@ -174,7 +186,7 @@ def table(
     chosen, times = chosen_columns(columns), doubles_of("t", t)
     motion.sampler().check(times)
     flat = np.ascontiguousarray(times).reshape(-1)
-    found = {column.name: np.empty_like(flat) for column in chosen}
+    found = {name: np.empty_like(flat) for name in chosen}
     write = _writer(motion, columns, radians=True, wrap=wrap)
     with ARRAYS.working():
         for part, sample in samples(motion, flat, chosen, wrap=wrap):
@@ -197,9 +209,9 @@ def _writer(
     def write(sample: Sample, targets: Iterable[Array]) -> None:
         first = sample.t == 0
         at_start = bool(first.any())
-        for i, (column, target) in enumerate(zip(chosen, targets, strict=False)):
-            target[:] = getattr(sample, column.name)
-            if column.heading.endswith("*") and not radians:
+        for i, (name, target) in enumerate(zip(chosen, targets, strict=False)):
+            target[:] = sample.column(name)
+            if chosen[name].is_angle and not radians:
                 np.degrees(target, out=target)
             if at_start:
                 target[first] = start()[i]

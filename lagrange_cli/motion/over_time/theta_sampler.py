@@ -25,8 +25,8 @@ from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
 from ..kinds import Kind, Separatrix
 from ..spin_precession import Nutating
-from .attitude import Attitude, Spinor, Times, growths
-from .columns import Needs
+from .attitude import Attitude, Times, growths
+from .columns import MODULI, TILT, TURN, Needs
 from .samplers import Sampler, constant_sampler, separatrix_sampler, start_tilt, tilt_of
 from .series_constants import series_from_start
 from .theta_series import Coefficients, Component, Frame, Series
@@ -70,7 +70,7 @@ class ThetaSampler(Sampler):
         space = space[:, : t.size]
         times = Times(t, farthest, space[12:])
         if not needs:
-            return Attitude(self.growths, times, Spinor())
+            return Attitude(self.growths, times)
         step, argument, lost = whole_periods(t, self.step, farthest, space[:3], self.offset or None)
         argument -= lost
         argument *= self.speed
@@ -85,12 +85,12 @@ class ThetaSampler(Sampler):
         if order is not None:
             free = (space[i] for i in (0, 1, 2, 3, 4, 8))
             found = {name: placed(values, order, next(free)) for name, values in found.items()}
-        return Attitude(self.growths, times, Spinor(**found))
+        return Attitude(self.growths, times, **found)
 
     def _evaluated(
         self, argument: Array, even: int, needs: Needs, space: Array
     ) -> dict[str, Array]:
-        """Return the needed parts of a spinor.
+        """Return the needed parts of an attitude.
 
         The first `even` arguments belong to the first turning point, the others to the second.
         """
@@ -100,7 +100,7 @@ class ThetaSampler(Sampler):
         pieces = list(zip((slice(even), slice(even, None)), self.frames, strict=True))
         for rows, frame in pieces:
             self._write_parts(frame, functions[:, rows], parts[:, rows])
-        if "arguments" in needs:
+        if TURN in needs:
             arguments = arguments_of(parts, space[7:9])
             if self.over_a_pole:
                 for rows, frame in pieces:
@@ -108,13 +108,13 @@ class ThetaSampler(Sampler):
                         _settle_on_the_pole(side, part, argument[rows])
             unwound(arguments, self.slopes, argument, space[10])
             found |= {"arg_x": arguments[0], "arg_y": arguments[1]}
-        if "tilt" in needs or "moduli" in needs:
+        if needs & (TILT | MODULI):
             x2, y2 = moduli_of(parts)
-            if "tilt" in needs:
+            if TILT in needs:
                 found["tilt"] = tilt_of(x2, y2, out=parts[1])
-            if "moduli" in needs:
+            if MODULI in needs:
                 found |= {"x2": x2, "y2": y2}
-        if "rate" in needs:
+        if Needs.RATE in needs:
             found["rate"] = rate = space[9]
             for rows, frame in pieces:
                 _write_polynomial(frame.rate, functions[2][rows], rate[rows])
