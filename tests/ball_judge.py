@@ -103,6 +103,12 @@ class Judge:
 
         return self._raised(Motion.half_parts, good, 2 * FIRST_BITS)
 
+    @property
+    def phase(self) -> float:
+        """The periods from the nearest passage of u1 to t = 0."""
+        since = self._raised(lambda motion: motion.w0 / motion.K, arb.is_finite, FIRST_BITS)
+        return float(((since - 1 if since > 0 else since + 1) / 2).mid())
+
     def at(self, t: float | Fraction, digits: int = 0) -> State:
         """Return the motion at a time, each angle within 2^-12 of its unit without whole turns.
 

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from scenes import EPS, NAMED, UNIT
+from scenes import EPS, EVERY_KIND, NAMED
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.arrays import ARRAYS, PAIRS
@@ -22,12 +22,8 @@ from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.regime import exact as exact_of
 
 SCENES: dict[str, dict[str, float]] = {
-    "worked example": {},
-    "from rest, slow": UNIT | {"r0": 0.5, "theta0_deg": 130},
-    "from rest, fast": UNIT | {"r0": -9, "theta0_deg": 40},
-    "any start": UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.75, "psidot0": 0.5},
-    "against the spin": UNIT | {"r0": -3, "theta0_deg": 110, "thetadot0": 1.5, "psidot0": 1},
-    "starts lowest": UNIT | {"r0": 3, "theta0_deg": 40, "psidot0": 2},
+    **{x: EVERY_KIND[x] for x in ("worked example", "slow", "any start", "looping")},
+    **{x: EVERY_KIND[x] for x in ("starts lowest", "fast")},
 }
 
 
