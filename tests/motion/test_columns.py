@@ -68,14 +68,14 @@ def test_columns_are_those_of_the_judge(name: str) -> None:
     sizes = {"moment": inertia * speed**2, "energy": inertia * speed**2, "Lz": inertia * speed}
     for i, t in enumerate(times):
         exact = judge.columns(t)
-        for part, found in zip(proved.chosen, proved.row(Fraction(t)), strict=True):
+        for column, found in zip(proved.chosen, proved.row(Fraction(t)), strict=True):
             with arb_bits(400):
-                true, radius = exact[part.name], exact_arb(found.radius)
-                assert not abs(true - exact_arb(found.value)) > radius, (t, part.name)
-                assert radius <= abs(true) * 2.0**-52 or true.contains(0), (t, part.name)
-            if part.name not in {"theta", "phi", "psi"}:
-                off = abs(doubles[part.name][i] - found.value)
-                assert off <= 5e-16 * sizes.get(part.name, speed), (t, part.name)
+                true, radius = exact[column], exact_arb(found.radius)
+                assert not abs(true - exact_arb(found.value)) > radius, (t, column)
+                assert radius <= abs(true) * 2.0**-52 or true.contains(0), (t, column)
+            if column not in {"theta", "phi", "psi"}:
+                off = abs(doubles[column][i] - found.value)
+                assert off <= 5e-16 * sizes.get(column, speed), (t, column)
 
 
 @pytest.mark.parametrize("scene", NAMED.values(), ids=NAMED)
