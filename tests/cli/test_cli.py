@@ -97,18 +97,12 @@ def test_the_remark_stands_below_the_table(lagtop: Lagtop) -> None:
     assert max(map(len, shown.splitlines())) <= 80
 
 
-def test_table_in_ascii(lagtop: Lagtop) -> None:
-    shown = lagtop("solve", charset="ascii").stdout
+@pytest.mark.parametrize("line", ["solve", "--help", *(f"{name} --help" for name in COMMANDS)])
+def test_texts_in_ascii(lagtop: Lagtop, line: str) -> None:
+    shown = lagtop(*line.split(), charset="ascii").stdout
     assert shown.isascii()
     assert "?" not in shown
-    assert "theta max" in shown
-
-
-@pytest.mark.parametrize("command", ["", *COMMANDS])
-def test_help_in_ascii(lagtop: Lagtop, command: str) -> None:
-    shown = lagtop(*command.split(), "--help", charset="ascii").stdout
-    assert shown.isascii()
-    assert "?" not in shown
+    assert ("theta max" in shown) is (line == "solve")
 
 
 def test_record_agrees_with_the_library(solved: Solved) -> None:
@@ -152,24 +146,7 @@ def test_samples_show_what_they_say(solved: Solved) -> None:
     assert sample("hanging-top")["theta_min_deg"] > 90
 
 
-def test_published_values_of_simo_and_wong(lagtop: Lagtop) -> None:
-    """A long double Taylor integration found elsewhere, at t = 10."""
-    path = ROOT / "sample_inputs" / "simo-wong-1991.toml"
-    result = lagtop("table", path, "--rad", "--t-max", "10", "--n", "2")
-    assert rows(result.stdout)[1] == pytest.approx(
-        [10, 0.0542200994026610601, 495.809793424335, 4.19619104074063746], rel=1e-13
-    )
-    assert "Warning: a rigid body with its mass centre at s has A > m s^2" in result.stderr
-
-
 # table
-
-
-def test_one_second_in_a_hundred_steps(lagtop: Lagtop) -> None:
-    text = lagtop("table", "--t-max", "1").stdout
-    assert text.splitlines()[0] == "t,theta_deg,phi_deg,psi_deg"
-    times = [row[0] for row in rows(text)]
-    assert times == [i / 100 for i in range(101)]
 
 
 def test_table_agrees_with_the_library(lagtop: Lagtop) -> None:
@@ -188,29 +165,27 @@ def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
     assert [list(map(float, line.split())) for line in shown] == plain
 
 
-def test_a_step_that_fits(lagtop: Lagtop) -> None:
-    """0.1 is not a tenth in binary; ten steps of it still make one."""
-    times = [row[0] for row in rows(lagtop("table", "--t-max", "1", "--dt", "0.1").stdout)]
-    assert times == [i / 10 for i in range(11)]
-    times = [row[0] for row in rows(lagtop("table", "--t-max", "1", "--dt", "0.3").stdout)]
-    assert times == [0.0, 0.3, 0.6, 0.9]
-
-
-def test_grid_from_below_zero(lagtop: Lagtop) -> None:
-    text = lagtop("table", "--t-min", "-2", "--t-max", "2", "--n", "5e0").stdout
-    assert [row[0] for row in rows(text)] == [-2, -1, 0, 1, 2]
+@pytest.mark.parametrize(
+    ("line", "times"),
+    [
+        ("--t-max 1", [i / 100 for i in range(101)]),
+        ("--t-max 1 --dt 0.1", [i / 10 for i in range(11)]),  # 0.1 is not a tenth in binary
+        ("--t-max 1 --dt 0.3", [0.0, 0.3, 0.6, 0.9]),
+        ("--t-min -2 --t-max 2 --n 5e0", [-2, -1, 0, 1, 2]),
+        ("--t-min 3 --t-max 3", [3]),
+        ("--theta0 0", [i / 100 for i in range(101)]),  # no period
+    ],
+)
+def test_grids_of_times(line: str, times: list[float], lagtop: Lagtop) -> None:
+    text = lagtop("table", *line.split()).stdout
+    assert text.splitlines()[0] == "t,theta_deg,phi_deg,psi_deg"
+    assert [row[0] for row in rows(text)] == times
 
 
 def test_default_is_one_period(lagtop: Lagtop) -> None:
     times = [row[0] for row in rows(lagtop("table").stdout)]
     assert len(times) == 101
     assert times[-1] == pytest.approx(solve(Top()).T_nutation, rel=1e-15)
-    assert rows(lagtop("table", "--theta0", "0").stdout)[-1][0] == 1
-
-
-def test_single_time(lagtop: Lagtop) -> None:
-    text = lagtop("table", "--t-min", "3", "--t-max", "3").stdout
-    assert [row[0] for row in rows(text)] == [3]
 
 
 def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Path) -> None:
@@ -258,7 +233,7 @@ BAD = {
     "--theta0 181": "--theta0 must be in [0, 180], got 181.0",
     "--theta0 3.15 --rad": "--theta0 must be in [0, pi rad], got 3.15",
     "--theta0 30rad": "--theta0 must be in [0, pi rad], got 30.0",
-    "--theta 3": "unknown option --theta (did you mean",
+    "--theta 3": "unknown option --theta (did you mean '--theta0'?)",
     "--format xml": "--format must be one of ",
     "a.toml b.toml": "unexpected argument b.toml: see lagtop",
 }
@@ -321,11 +296,13 @@ def test_bad_line_of_times(lagtop: Lagtop) -> None:
     assert "at least one time" in lagtop("table", "--times", "-", input="").stderr
 
 
-def test_a_body_that_cannot_be_built_is_computed_with_a_warning(lagtop: Lagtop) -> None:
-    result = lagtop("solve", "--C", "30000", "--format", "json")
-    assert result.exit_code == 0
-    assert json.loads(result.stdout)["C"] == 30000
-    assert "Warning: a rigid body with its mass centre at s has C <= 2 (A - m s^2)" in result.stderr
+@pytest.mark.parametrize(
+    ("line", "bound"), [("--C 30000", "C <= 2 (A - m s^2) ="), ("simo-wong-1991", "A > m s^2, got")]
+)
+def test_a_body_that_cannot_be_built_is_computed(line: str, bound: str, lagtop: Lagtop) -> None:
+    result = lagtop("solve", *line.split(), "--get", "regime")
+    assert (result.exit_code, result.stdout) == (0, "regular\n")
+    assert f"Warning: a rigid body with its mass centre at s has {bound} " in result.stderr
 
 
 @pytest.mark.parametrize("options", ["--r0 0", "--g 0", "--s 0", "--theta0 0", "--theta0 180"])
@@ -337,14 +314,9 @@ def test_edges_are_legal_scenes(options: str, lagtop: Lagtop) -> None:
         assert "inf" not in result.stdout.lower()
 
 
-@pytest.mark.parametrize("word", ["-", "top.toml", "folder/scene", "./scene", "x.txt", "a.b/c"])
-def test_words_that_name_a_scene(word: str) -> None:
-    assert is_scene(word)
-
-
-@pytest.mark.parametrize("word", ["sphere", "T_nutation=0.5", "r0<1.5", "K>./2", "", "map"])
-def test_words_that_do_not(word: str) -> None:
-    assert not is_scene(word)
+def test_words_that_name_a_scene() -> None:
+    assert all(map(is_scene, ["-", "top.toml", "folder/scene", "./scene", "x.txt", "a.b/c"]))
+    assert not any(map(is_scene, ["sphere", "T_nutation=0.5", "r0<1.5", "K>./2", "", "map"]))
 
 
 # help
@@ -402,10 +374,8 @@ def test_scenes_are_found_by_name(
 
 
 def test_commands_and_options_that_are_nearly_right_are_suggested(lagtop: Lagtop) -> None:
-    assert "did you mean 'solve'?" in lagtop("solv").stderr
     assert "did you mean 'stability'?" in lagtop("stabilty").stderr
     assert lagtop("xyz").stderr == "Error: unknown command 'xyz': see lagtop --help\n"
-    assert "--theta0" in lagtop("solve", "--theta", "3").stderr
 
 
 def test_errors_name_options_where_the_library_names_arguments(lagtop: Lagtop) -> None:
