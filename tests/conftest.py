@@ -27,6 +27,7 @@ ROOT = Path(__file__).parent.parent
 LAGTOP = [sys.executable, "-m", "lagrange_cli"]
 
 Lagtop = Callable[..., Result]
+Solved = Callable[..., dict[str, Any]]
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -82,7 +83,7 @@ def lagtop() -> Lagtop:
 
 
 @pytest.fixture
-def solved(lagtop: Lagtop) -> Callable[..., dict[str, Any]]:
+def solved(lagtop: Lagtop) -> Solved:
     """Return the record of `lagtop solve` as a dictionary."""
 
     def run(*args: Any) -> dict[str, Any]:

@@ -8,12 +8,11 @@ import json
 import math
 import random
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import ROOT, Lagtop, assert_one_line
+from conftest import ROOT, Lagtop, Solved, assert_one_line
 from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, errors, solve, sweep
@@ -23,7 +22,6 @@ from lagrange_cli.motion.over_time.columns import COLUMNS
 from lagrange_cli.motion.record import KEYS as SHOWN
 from lagrange_cli.motion.record import NUMBER_KEYS, all_keys
 
-Solved = Callable[..., dict[str, Any]]
 KEYS = """
     m A C s g r0 theta0_deg thetadot0 psidot0 regime a b u1 u2 u3 k k_prime modular_angle_deg nome
     K K_prime E amplitude_deg alpha T_nutation T_spin T_precession u_quarter theta_min_deg

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop, Solved, assert_one_line
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.numbers import DOUBLES
@@ -22,6 +22,11 @@ from lagrange_cli.output.report import uncertain_text
 uncertainties = pytest.importorskip("uncertainties")
 
 BODY = ["--m", "1587(2)", "--A", "39032", "--C", "17458", "--s", "4.00(1)", "--g", "981 ± 0.1 %"]
+
+
+def dicts(text: str) -> list[dict[str, str]]:
+    """Return the rows of CSV by column."""
+    return list(csv.DictReader(io.StringIO(text)))
 
 
 def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
@@ -75,7 +80,7 @@ def test_commands_without_uncertainties_say_so(lagtop: Lagtop, text: str, spread
         assert_one_line(lagtop(*command, "--r0", text), 2, said)
 
 
-def test_the_record_carries_uncertainties(lagtop: Lagtop) -> None:
+def test_the_record_carries_uncertainties(lagtop: Lagtop, solved: Solved) -> None:
     text = lagtop("solve", *BODY, "--theta0", "30(1)", "--format", "json").stdout
     record = json.loads(text)
     assert list(record)[list(record).index("remark") + 1] == "m_std"
@@ -92,9 +97,7 @@ def test_the_record_carries_uncertainties(lagtop: Lagtop) -> None:
     shown = lagtop("solve", *BODY, "--theta0", "30(1)").stdout
     assert uncertain_text(exact, record["T_nutation_std"]) in shown
     assert "1587.0(2.0)" in shown
-    radians = json.loads(
-        lagtop("solve", *BODY, "--rad", "--theta0", "0.5(1)", "--format", "json").stdout
-    )
+    radians = solved(*BODY, "--rad", "--theta0", "0.5(1)")
     assert radians["theta_min_rad_std"] == pytest.approx(0.1)
 
 
@@ -114,7 +117,7 @@ def test_measured_inputs_hand_their_uncertainty_on() -> None:
 
 def test_a_budget_adds_up(lagtop: Lagtop) -> None:
     arguments = [*BODY, "--theta0", "30(1)", "--budget", "T_nutation"]
-    rows = list(csv.DictReader(io.StringIO(lagtop("solve", *arguments, "--format", "csv").stdout)))
+    rows = dicts(lagtop("solve", *arguments, "--format", "csv").stdout)
     *rows, result = rows
     assert [row["quantity"] for row in rows] == ["theta0_deg", "s", "m", "g"]
     whole = math.hypot(*(float(row["contribution"]) for row in rows))
@@ -135,7 +138,7 @@ def test_a_budget_in_radians_is_that_in_degrees(lagtop: Lagtop) -> None:
         tilt = more or ["--theta0", repr(math.degrees(0.6))]
         words = [*tilt, "--r0", "50(1)", "--thetadot0", "2.0(1)", "--budget", key]
         text = lagtop("solve", *words, "--format", "csv").stdout
-        found.append(list(csv.DictReader(io.StringIO(text))))
+        found.append(dicts(text))
     for degrees, radians in zip(*found, strict=True):
         for name in ("sensitivity", "contribution"):
             if degrees[name]:
@@ -149,22 +152,20 @@ def test_a_budget_in_radians_is_that_in_degrees(lagtop: Lagtop) -> None:
 UNITS = "--m 1587(2)g --A-cm 13640g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
 
 
-def test_budgets_and_reports_on_samples_name_units(lagtop: Lagtop) -> None:
+def test_budgets_and_reports_on_samples_name_units(lagtop: Lagtop, solved: Solved) -> None:
     arguments = [*UNITS, "--r0", "50rad/s", "--psidot0", "1.0(1)rad/s"]
     shown = lagtop("solve", *arguments, "--budget", "T_nutation").stdout
     words = "m [kg]", "psidot0 [rad/s]", "contribution [s]", "s/kg", "s/(rad/s)", ") s, to"
     assert all(x in shown for x in words)
-    found = json.loads(
-        lagtop("solve", *arguments, "--budget", "T_nutation", "--format", "json").stdout
-    )
+    found = solved(*arguments, "--budget", "T_nutation")
     assert found["units"] == {"T_nutation": "s", "m": "kg", "psidot0": "rad/s"}
     sampled = [*arguments, "--samples", "100", "--seed", "1"]
     shown = lagtop("solve", *sampled).stdout
     assert "mean_spin_rate [rad/s]" in shown
-    found = json.loads(lagtop("solve", *sampled, "--units", "cgs", "--format", "json").stdout)
+    found = solved(*sampled, "--units", "cgs")
     assert (found["units"]["a"], found["units"]["theta_max_deg"]) == ("1/s²", "deg")
     assert set(found["units"]) <= {row["key"] for row in found["rows"]}
-    plain = json.loads(lagtop("solve", "--m", "9(1)", "--budget", "a", "--format", "json").stdout)
+    plain = solved("--m", "9(1)", "--budget", "a")
     assert "units" not in plain
 
 
@@ -207,7 +208,7 @@ def test_what_does_not_go_together_is_a_line(
 
 def test_a_report_on_samples_tells_both_uncertainties_apart(lagtop: Lagtop) -> None:
     arguments = ["--r0", "50(1)", "--samples", "100", "--seed", "1"]
-    row, *_ = csv.DictReader(io.StringIO(lagtop("solve", *arguments, "--format", "csv").stdout))
+    row, *_ = dicts(lagtop("solve", *arguments, "--format", "csv").stdout)
     assert "std" not in row
     assert {"first_order_std", "sampled_std"} <= row.keys()
     shown = lagtop("solve", *arguments).stdout
@@ -255,7 +256,9 @@ def correlated(path: Path, table: str) -> Path:
     return path
 
 
-def test_correlated_inputs_by_the_full_covariance(lagtop: Lagtop, tmp_path: Path) -> None:
+def test_correlated_inputs_by_the_full_covariance(
+    lagtop: Lagtop, solved: Solved, tmp_path: Path
+) -> None:
     """J C J^T with differences for J, as `uncertainties` propagates correlated numbers."""
     table = "[correlations]\nm = { s = 0.7, r0 = -0.4 }\nr0 = { theta0_deg = 0.5, m = -0.4 }\n"
     scene = correlated(tmp_path / "scene.toml", table)
@@ -271,10 +274,8 @@ def test_correlated_inputs_by_the_full_covariance(lagtop: Lagtop, tmp_path: Path
             strict=True,
         )
     )
-    record = json.loads(lagtop("solve", scene, "--format", "json").stdout)
-    independent = json.loads(
-        lagtop("solve", correlated(tmp_path / "plain.toml", ""), "--format", "json").stdout
-    )
+    record = solved(scene)
+    independent = solved(correlated(tmp_path / "plain.toml", ""))
     for key in keys:
 
         def number(*values: float, key: str = key) -> float:
@@ -284,7 +285,7 @@ def test_correlated_inputs_by_the_full_covariance(lagtop: Lagtop, tmp_path: Path
         assert record[f"{key}_std"] == pytest.approx(judge.s, rel=1e-5)
         assert independent[f"{key}_std"] != pytest.approx(judge.s, rel=0.02)
     samples = ["--samples", "20000", "--seed", "3", "--format", "csv"]
-    rows = csv.DictReader(io.StringIO(lagtop("solve", scene, *samples).stdout))
+    rows = dicts(lagtop("solve", scene, *samples).stdout)
     for row in rows:
         if row["key"] in keys and row["key"] != "theta_max_deg":
             assert float(row["sampled_std"]) == pytest.approx(record[f"{row['key']}_std"], rel=0.02)
@@ -318,7 +319,7 @@ def test_correlated_angles_by_the_full_covariance(lagtop: Lagtop, tmp_path: Path
     assert np.array(found) == pytest.approx(wanted, rel=1e-4)
 
 
-def test_a_common_scale_cancels(lagtop: Lagtop, tmp_path: Path) -> None:
+def test_a_common_scale_cancels(lagtop: Lagtop, solved: Solved, tmp_path: Path) -> None:
     """m, A and C in units of one reference mass: the motion does not depend on its size.
 
     The uncertainty 1/64 is a double, so that the contributions cancel exactly.
@@ -329,7 +330,7 @@ def test_a_common_scale_cancels(lagtop: Lagtop, tmp_path: Path) -> None:
         'm = "1587 +- 1.5625 %"\nA = "39032 +- 1.5625 %"\nC = "17458 +- 1.5625 %"\ns = 4\ng = 981\n'
         f"[correlations]\n{names}"
     )
-    record = json.loads(lagtop("solve", scene, "--format", "json").stdout)
+    record = solved(scene)
     assert (record["T_nutation_std"], record["theta_max_deg_std"]) == (0, 0)
     assert record["m_std"] == 1587 / 64
 
@@ -396,11 +397,11 @@ def test_a_table_carries_the_uncertainties_of_the_angles(lagtop: Lagtop) -> None
     """Columns of the table itself, an uncertainty to either side, differ by twice as much."""
     arguments = ["--t-max", "0.6", "--n", "4", "--psidot0", "1"]
     uncertain = ["--r0", "50.0000(2)", "--theta0", "30.0000+/-0.0001", *arguments]
-    rows = list(csv.DictReader(io.StringIO(lagtop("table", *uncertain).stdout)))
+    rows = dicts(lagtop("table", *uncertain).stdout)
     assert list(rows[0])[4:] == ["theta_deg_std", "phi_deg_std", "psi_deg_std"]
     sides = [
         [
-            list(csv.DictReader(io.StringIO(lagtop("table", *given, *arguments).stdout)))
+            dicts(lagtop("table", *given, *arguments).stdout)
             for given in ([name, value - std], [name, value + std])
         ]
         for name, value, std in (("--r0", 50, 0.0002), ("--theta0", 30, 0.0001))
@@ -446,19 +447,19 @@ def test_angles_are_drawn_with_bands(lagtop: Lagtop, tmp_path: Path) -> None:
     assert bands.count("FillBetweenPolyCollection") == 3 + plain.count("FillBetweenPolyCollection")
 
 
-def test_a_sweep_has_the_uncertainties_of_solve(lagtop: Lagtop, tmp_path: Path) -> None:
+def test_a_sweep_has_the_uncertainties_of_solve(
+    lagtop: Lagtop, solved: Solved, tmp_path: Path
+) -> None:
     arguments = [*BODY, "--psidot0", "1.0(1)", "--keys", "r0,T_nutation,regime,u1"]
-    rows = list(csv.DictReader(io.StringIO(lagtop("sweep", "--r0", "40:50:2", *arguments).stdout)))
+    rows = dicts(lagtop("sweep", "--r0", "40:50:2", *arguments).stdout)
     assert list(rows[0]) == [*arguments[-1].split(","), "r0_std", "T_nutation_std", "u1_std"]
-    alone = json.loads(
-        lagtop("solve", "--r0", 40, *BODY, "--psidot0", "1.0(1)", "--format", "json").stdout
-    )
+    alone = solved("--r0", 40, *BODY, "--psidot0", "1.0(1)")
     for key in ("r0_std", "T_nutation_std", "u1_std"):
         assert float(rows[0][key]) == pytest.approx(alone[key], rel=1e-14)
     tops = tmp_path / "tops.csv"
     tops.write_text("id,s\nfirst,4\nwrong,-1\n")
     result = lagtop("sweep", tops, *BODY, "--keys", "T_nutation,s")
-    first, wrong = csv.DictReader(io.StringIO(result.stdout))
+    first, wrong = dicts(result.stdout)
     assert first["s_std"] == "0.0"
     assert 0 < float(first["T_nutation_std"]) < 1e-3
     assert wrong["T_nutation_std"] == ""
