@@ -8,6 +8,7 @@ single run, wherever they were computed.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -231,16 +232,12 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
 def runs_of(columns: Iterable[ResultColumn]) -> Columns:
     """Return neighbouring columns of numbers as one array of rows, and texts as lists."""
     runs: list[Any] = []
-    numbers: list[ResultColumn] = []
-    for column in columns:
-        if column.dtype == np.float64:
-            numbers.append(column)
-            continue
-        if numbers:
-            runs.append(np.stack(numbers, axis=1))
-            numbers = []
-        runs.append(column.tolist())
-    return [*runs, np.stack(numbers, axis=1)] if numbers else runs
+    for are_numbers, run in groupby(columns, lambda column: column.dtype == np.float64):
+        if are_numbers:
+            runs.append(np.stack([*run], axis=1))
+        else:
+            runs += [column.tolist() for column in run]
+    return runs
 
 
 def shard_of(

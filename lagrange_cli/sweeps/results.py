@@ -143,11 +143,13 @@ def std_columns(
     from ..motion.sensitivity.uncertainty import FirstOrder, stds_of  # for start-up
 
     names = std_keys(list(columns))
-    found = {name: np.full(len(columns["error"]), np.nan) for name in names}
+    size = len(columns["error"])
+    found = {name: np.full(size, np.nan) for name in names}
+    rows = {name: np.broadcast_to(x, size) for name, x in given.items()}
     for i, error in enumerate(columns["error"]):
         if error:
             continue
-        present = [name for name, x in given.items() if not np.isnan(_of_row(x, i))]
+        present = [name for name, x in rows.items() if not np.isnan(x[i])]
         try:
             uncertain = FirstOrder(Top(**tops.one(i)), stds, present)
         except LagtopError:
@@ -157,10 +159,6 @@ def std_columns(
             if std is not None:
                 found[name][i] = std
     return found
-
-
-def _of_row(values: Array | float, row: int) -> float:
-    return float(values[row] if isinstance(values, np.ndarray) and values.ndim else values)
 
 
 class Together:

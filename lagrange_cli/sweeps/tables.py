@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.points import Points
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given
@@ -120,19 +119,20 @@ def open_tables(
     if a top has many rows, or an unknown number of rows.  Raises DataError if the file cannot be
     read, LagtopError for bad inputs.
     """
-    count, same = request.rows_per_top, _same_times(request)
+    count = request.rows_per_top
     at_once = 1 if not count else min(max(_ROWS_PER_TASK // count, 1), _TOPS_AT_ONCE)
     file, lines, _ = open_tops(path, [*request.headings(), "error"], at_once, dialect=dialect)
-    few = same is not None and same.count <= _ROWS_PER_TASK
-    times = np.concatenate([*same.blocks()]) if same is not None and few else None
     given, source = file.among(inputs, scene, system)
-    tables = Tables(source, shared_inputs(given), request, fmt, times)
+    tables = Tables(source, shared_inputs(given), request, fmt, _same_times(request))
     return tables, (some._replace(file=source) for some in lines), given
 
 
-def _same_times(request: TableRequest) -> Points | None:
-    """Return the times of all tops, or None if they depend on the motion."""
+def _same_times(request: TableRequest) -> Array | None:
+    """Return the times of all tops, or None if they are many or depend on the motion."""
     try:
-        return request.times(solve(Top())) if request.same else None
+        times = request.times(solve(Top())) if request.same else None
     except LagtopError:  # every row reports the error
         return None
+    if times is None or times.count > _ROWS_PER_TASK:
+        return None
+    return np.concatenate([*times.blocks()])
