@@ -54,8 +54,17 @@ class Browser:
         return self.driver.execute_cdp_cmd(name, values)
 
     def ask(self, script: str, *values: Any) -> Any:
-        """Return what a script returns; `page` is the page, `at` its elements by id."""
+        """Return what a script returns; `page` is the page, `at` its elements by id.
+
+        `set` gives an element a value, as a reader does.
+        """
         names = """const { page, motionOf } = window.lagtop;
+            const set = (element, value, ...kinds) => {
+                element.value = value;
+                for (const kind of kinds.length ? kinds : ["change"]) {
+                    element.dispatchEvent(new Event(kind));
+                }
+            };
             const at = new Proxy({}, { get: (_, id) => document.getElementById(id) });"""
         return self.driver.execute_script(names + script, *values)
 

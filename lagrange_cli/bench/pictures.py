@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..output.destination import write_bytes
 from ..output.report import Report
-from ..plot.files import About, report_bytes
-from ..plot.style import LIGHT, head, styled
+from ..plot.reports import report_bytes
+from ..plot.style import LIGHT, About, head, styled
 from .closed_forms import CLOSED_FORMS
 from .measure import all_methods
 from .method import OURS, is_done

@@ -85,7 +85,7 @@ def bench_command(
     from ..bench.compare_methods import compare_methods
     from ..bench.measure import chosen_methods
     from ..bench.pictures import draw_methods
-    from ..plot.files import check_plot
+    from ..plot.reports import check_plot
 
     if t_max == 0:
         raise LagtopError("--t-max must not be 0")
@@ -146,7 +146,7 @@ def stability_command(
     """Compare methods in random scenes; STABILITY is the help."""
     from ..bench import stability
     from ..bench.pictures import draw_stability
-    from ..plot.files import check_plot
+    from ..plot.reports import check_plot
 
     check_plot(plot, out.path)
     chosen = list(STRATA) if strata is None else check_names("strata", strata, STRATA)

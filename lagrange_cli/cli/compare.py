@@ -83,7 +83,7 @@ def compare_command(
     from ..judge.alignment import alignment
     from ..judge.compare import ComparisonRequest, compare_files
     from ..judge.report import comparison_report, failures
-    from ..plot.files import check_plot
+    from ..plot.reports import check_plot
 
     check_plot(plot, out.path)
     if not top.words:

@@ -106,7 +106,7 @@ def fit_command(
     from ..fits.windows import fit_windows, split
     from ..inputs.files import shown_path
     from ..inputs.seen import Conventions
-    from ..plot.files import check_plot
+    from ..plot.reports import check_plot
 
     check_plot(plot, out.path)
     if len(top.words) != 1:

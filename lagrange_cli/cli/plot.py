@@ -17,7 +17,6 @@ from ..inputs.input_keys import TILT
 from ..inputs.names import check_names
 from ..output.destination import write_bytes
 from ..output.terminal import is_terminal, with_progress
-from ..plot.files import require_matplotlib
 from ..plot.kinds import (
     FILM_OPTIONS,
     KINDS,
@@ -29,7 +28,7 @@ from ..plot.kinds import (
     flag_of,
     help_lines,
 )
-from ..plot.style import chosen_look
+from ..plot.style import DARK, LIGHT, require_matplotlib
 from . import options as opt
 from .tables import angle_stds
 from .top import INPUT, TIME, UNCERTAIN, TopOptions, motion_of, top_options, warn_unused, words
@@ -154,7 +153,7 @@ def plot_command(
         progress=with_progress,
         stds=angle_stds(found, motion),
         uncertain=_first_order(found, motion),
-        look=chosen_look(dark),
+        look=DARK if dark else LIGHT,
     )
     if not (output or show or animate):
         raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
@@ -172,7 +171,7 @@ def plot_command(
     if output is not None:
         write_bytes(output, lambda: page_bytes(page, written, page_dpi))
     if animate is not None:
-        write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, pace, with_progress))
+        write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, pace))
     if window:
         show_page(page, window)
 

@@ -13,9 +13,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, Unpack
 
-from .files import require_matplotlib
 from .kinds import KINDS, PictureKind, PlotRequest
-from .style import chosen_look, points
+from .style import DARK, LIGHT, points, require_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,7 +95,7 @@ def draw(
             empty.set_axis_off()
         return axes[: len(heights)]
 
-    title = picture.draw(motion, PlotRequest(look=chosen_look(dark), **shown), places)
+    title = picture.draw(motion, PlotRequest(look=DARK if dark else LIGHT, **shown), places)
     axes[0].set_title(title, pad=points(18))  # above names at the top of the axes
     return axes
 

@@ -86,7 +86,7 @@ def cubic_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
     cubic, look = cubic_curve(motion), request.look
     (axes,) = places((1.0,))
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())
-    axes.set_ylabel(request.label("f(u) (1/time²)"))
+    axes.set_ylabel(f"f(u) ({request.unit('1/time²')})")
     axes.axhline(0.0, color=look.quiet, lw=points(0.9))
     if cubic.u2 < cubic.u1:
         axes.axvspan(cubic.u2, cubic.u1, color=look.faint, zorder=0)
@@ -140,8 +140,8 @@ class PhasePortrait(NamedTuple):
     theta: Array
     rate: Array
     start: tuple[float, float]
-    separatrix: tuple[Array, Array] | None
-    """Upper half, from the upright position down; None above the sleeping threshold."""
+    separatrix: tuple[Array, Array]
+    """Upper half, from the upright position down; empty above the sleeping threshold."""
     why: str
     """The meaning of the separatrix, or the reason why there is none, in words."""
 
@@ -154,7 +154,7 @@ def phase_portrait(motion: Motion) -> PhasePortrait:
     if not b * b < 2 * a:
         reason = "without torque" if a == 0 else f"as C²r₀² = {b * b / (2 * a):.3g} · 4Amgs"
         why = f"no separatrix: the upright top is stable with this spin, {reason}"
-        return PhasePortrait(theta, rate, start, None, why)
+        return PhasePortrait(theta, rate, start, (np.empty(0), np.empty(0)), why)
     return PhasePortrait(theta, rate, start, separatrix_orbit(a, b), SEPARATRIX)
 
 
@@ -179,13 +179,12 @@ def phase_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
     """Draw the orbit in the plane of tilt and tilt rate, its start and the separatrix."""
     portrait, factor, look = phase_portrait(motion), request.per_radian, request.look
     (axes,) = places((1.0,))
-    axes.set(
-        xlabel=f"tilt ϑ ({request.angle_unit})", ylabel=request.label("tilt rate ϑ̇ (rad/time)")
-    )
+    axes.set_xlabel(f"tilt ϑ ({request.angle_unit})")
+    axes.set_ylabel(f"tilt rate ϑ̇ ({request.unit('rad/time')})")
     axes.axhline(0.0, color=look.quiet, lw=points(0.9))
     axes.plot(portrait.theta * factor, portrait.rate, color=look.lines[0], label="this motion")
     mark_start(axes, portrait.start[0] * factor, portrait.start[1], look)
-    theta, rate = portrait.separatrix or (np.empty(0), np.empty(0))
+    theta, rate = portrait.separatrix
     both = np.append(theta, theta[::-1]) * factor, np.append(rate, -rate[::-1])
     dashes = {"lw": points(1.4), "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
     axes.plot(*both, color=look.ink, label=portrait.why, **dashes)

@@ -22,7 +22,6 @@ from PIL import Image
 
 from ..errors import LagtopError, UnavailableError
 from ..motion.solve import Motion
-from ..output.terminal import Progress, silent
 from .curves import MOST_PERIODS, span, tilt_period, turn_span
 from .globe import camera_at, cone_at, draw_globe, on_one_side, side_camera
 from .page import Page, check_pixels
@@ -114,7 +113,7 @@ def check_film(page: Page, name: str, dpi: float) -> None:
     check_pixels(dpi, page.size or USUAL_SIZE)
 
 
-def film_bytes(page: Page, name: str, dpi: float, pace: Pace, progress: Progress = silent) -> bytes:
+def film_bytes(page: Page, name: str, dpi: float, pace: Pace) -> bytes:
     """Return the film as a GIF or an MP4, by the ending of `name`.
 
     Raises LagtopError as `check_film` does.
@@ -123,7 +122,7 @@ def film_bytes(page: Page, name: str, dpi: float, pace: Pace, progress: Progress
     writer = _gif if Path(name).suffix.lower() == ".gif" else _mp4
     with styled(page.request.look):
         film = Film(page, pace)
-        return writer(film, dpi, progress(range(pace.frames), "frames"))
+        return writer(film, dpi, page.request.progress(range(pace.frames), "frames"))
 
 
 def _gif(film: Film, dpi: float, numbers: Iterable[int]) -> bytes:

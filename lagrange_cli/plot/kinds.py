@@ -6,7 +6,6 @@ computes the picture, draws it on the axes of a page or of a user, and returns i
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -87,7 +86,7 @@ class PlotRequest(NamedTuple):
     colour_limits: tuple[float, float] | None = None
     """Ends of the colour scale of a map; by default all values but the outermost are within."""
     progress: Progress = silent
-    """Reports the progress of a map."""
+    """Reports the progress of a map or a film."""
     stds: AngleStds | None = None
     """Uncertainties of the angles, drawn as bands."""
     uncertain: FirstOrder | None = None
@@ -102,10 +101,6 @@ class PlotRequest(NamedTuple):
     def in_words(self, remark: str) -> str:
         """Return a remark on the motion in the names of the units of the inputs."""
         return self.system.in_words(remark) if self.system else remark
-
-    def label(self, text: str) -> str:
-        """Return a label with the unit in brackets converted to the units of the inputs."""
-        return re.sub(r"\((.*?)\)", lambda inside: f"({self.unit(inside[1])})", text)
 
     @property
     def time_label(self) -> str:

@@ -23,7 +23,6 @@ from ..inputs.value import Value, parse_value
 from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
-from ..output.terminal import Progress, silent
 from ..sweeps.records import BLOCK_ROWS, sweep
 from .kinds import InputRange, Places, PlotRequest
 from .style import Look, mark_start, points, scale
@@ -110,22 +109,17 @@ def default_ranges(top: Top, *, radians: bool = False) -> tuple[InputRange, Inpu
     return InputRange("r0", spins), InputRange("theta0", np.radians(tilts) if radians else tilts)
 
 
-def key_map(
-    motion: Motion,
-    key: str,
-    x: InputRange,
-    y: InputRange,
-    progress: Progress = silent,
-    *,
-    radians: bool = False,
-) -> KeyMap:
+def key_map(motion: Motion, request: PlotRequest) -> KeyMap:
     """Return the key over the grid, with the other inputs of the motion.
 
     Raises LagtopError for a key that is not a number, for the same input on both axes, and for too
     many cells.  It also refuses a grid that contains an impossible top.
     """
+    key, radians = request.key, request.radians
     names = [*NUMBER_KEYS, *requested_keys()]
     check_names("key", [key], [unit_name(name, radians=radians) for name in names])
+    usual = default_ranges(motion.top, radians=radians)
+    x, y = request.x or usual[0], request.y or usual[1]
     if x.name == y.name:
         raise LagtopError(f"x must differ from y, got {x.name} for both", "x")
     cells = x.values.size * y.values.size
@@ -147,7 +141,7 @@ def key_map(
 
     rows = max(BLOCK_ROWS // x.values.size, 1)
     parts = (part(y.values[first : first + rows]) for first in range(0, y.values.size, rows))
-    done = list(progress(parts, "tops", cells, lambda part: part[0].size))
+    done = list(request.progress(parts, "tops", cells, lambda part: part[0].size))
     values, a, b = np.concatenate(done, axis=1)
     with np.errstate(divide="ignore"):
         return KeyMap(key, x, y, values, np.where(a > 0, abs(b) / np.sqrt(2 * a), np.inf))
@@ -155,11 +149,8 @@ def key_map(
 
 def map_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
     """Draw the cells, contours, the sleeping threshold and the marker of the scene."""
-    radians = request.radians
-    usual = default_ranges(motion.top, radians=radians)
-    x, y = request.x or usual[0], request.y or usual[1]
-    chart = key_map(motion, request.key, x, y, request.progress, radians=radians)
-    key = number_key(degree_name(chart.key))
+    chart = key_map(motion, request)
+    x, y, key = chart.x, chart.y, number_key(degree_name(chart.key))
     assert key is not None
     unit = request.unit_of(key)
     (axes,) = places((1.0,))
@@ -170,7 +161,7 @@ def map_picture(motion: Motion, request: PlotRequest, places: Places) -> str:
     bar.set_label(f"{chart.key} ({unit})" if unit else chart.key)
     _draw_contours(axes, chart, bar, request.look)
     _draw_threshold(axes, chart, request.look)
-    inputs = motion.top.inputs(radians=radians)
+    inputs = motion.top.inputs(radians=request.radians)
     own = {name.partition("_")[0]: float(value) for name, value in inputs.items()}
     if all(axis.values[0] <= own[axis.name] <= axis.values[-1] for axis in (x, y)):
         mark_start(axes, own[x.name], own[y.name], request.look, "this scene")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, FigureBase, SubFigure
+from matplotlib.figure import Figure, SubFigure
 
 from ..errors import LagtopError, NothingToDrawError
 from ..motion.quantity import degree_name
@@ -17,9 +17,8 @@ from ..motion.sensitivity.uncertainty import stds_of
 from ..motion.solve import Motion
 from ..output.report import uncertain_text
 from .curves import motion_in_words
-from .files import About, figure_bytes
 from .kinds import KINDS, PlotRequest
-from .style import POINTS, head, number_text, styled
+from .style import POINTS, About, figure_bytes, head, number_text, styled
 
 NUMBERS_WIDTH, PANEL = 3.7, (5.8, 5.0)
 """Width of the column of numbers; width and height of one of several panels (inches)."""
@@ -202,7 +201,7 @@ def _settle_layout(figure: Figure) -> None:
     if _write_powers(figure) | _fit_titles(figure):
         engine.execute(figure)
     figure.set_layout_engine("none")
-    for panel in _panels(figure):
+    for panel in figure.findobj(SubFigure):
         box = panel.bbox_relative
         box.p0, box.p1 = box.p0.round(5), box.p1.round(5)
     for axes in figure.axes:
@@ -210,13 +209,6 @@ def _settle_layout(figure: Figure) -> None:
         x, y, width, height = (round(z, 5) for z in axes.get_position().bounds)
         axes.set_aspect("auto")  # it has been applied
         axes.set_position((x, y, width, height))
-
-
-def _panels(part: FigureBase) -> Iterator[SubFigure]:
-    """Yield the panels of a figure, and the panels inside them."""
-    for panel in part.subfigs:
-        yield panel
-        yield from _panels(panel)
 
 
 def _write_powers(figure: Figure) -> bool:
@@ -235,7 +227,7 @@ def _write_powers(figure: Figure) -> bool:
 def _fit_titles(figure: Figure) -> bool:
     """Reduce the letters of titles that are wider than their panel; return whether any was."""
     changed = False
-    for panel in _panels(figure):
+    for panel in figure.findobj(SubFigure):
         for title in [text for text in panel.texts if text.get_text() == panel.get_suptitle()]:
             while title.get_window_extent().x1 > panel.bbox.x1:
                 title.set_fontsize(float(title.get_fontsize()) * 0.95)

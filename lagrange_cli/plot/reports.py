@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import cycle
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..errors import check_type
-from .files import About, report_bytes, require_matplotlib
-from .style import LIGHT, scale, styled
+from ..errors import CannotWriteError, LagtopError, check_type
+from .style import LIGHT, About, figure_bytes, require_matplotlib, scale, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +18,31 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from ..fits.record import Outcome
     from ..fits.report import FittedCurve
+
+REPORT_KINDS = (".svg", ".png")
+"""File types of the pictures of reports."""
+
+
+def report_bytes(figure: Figure, path: str, about: About) -> bytes:
+    """Return the figure of a report in the format given by its file name."""
+    return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
+
+
+def check_plot(path: str | None, output: str) -> None:
+    """Raise LagtopError for an unsupported file type, or for the file of the report itself.
+
+    Raises UnavailableError if matplotlib is missing, and CannotWriteError if the directory does not
+    exist.
+    """
+    if path is None:
+        return
+    if Path(path).suffix.lower() not in REPORT_KINDS:
+        raise LagtopError(f"plot must end in {' or '.join(REPORT_KINDS)}, got {path!r}", "plot")
+    if Path(path).resolve() == Path(output).resolve():
+        raise LagtopError(f"plot must not be the file of the report, got {path!r}", "plot")
+    require_matplotlib()
+    if not Path(path).resolve().parent.is_dir():
+        raise CannotWriteError(f"cannot write {path}: no such directory")
 
 
 def _report(

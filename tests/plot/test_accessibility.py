@@ -86,8 +86,7 @@ def test_every_letter_of_the_record_is_explained(browser: Browser) -> None:
     """Symbol, meaning and formula are shown on hover and on focus or tap, in every example."""
     rows = browser.ask(
         """return [...at.examples.options].flatMap((example) => {
-            at.examples.value = example.value;
-            at.examples.dispatchEvent(new Event("change"));
+            set(at.examples, example.value);
             return [...at.record.querySelectorAll("tbody tr[tabindex]")].map((row) => {
                 row.focus();
                 return [row.cells[0].textContent, row.title, at.explained.textContent];

@@ -172,12 +172,11 @@ def test_attitudes_and_records_of_scenes_that_sliders_reach(browser: Browser) ->
     found = browser.ask(
         """const [moves, parts] = arguments;
         return [...at.examples.options].flatMap((example) => moves.map((some) => {
-            at.examples.value = example.value;
-            at.examples.dispatchEvent(new Event("change"));
+            set(at.examples, example.value);
             for (const [name, place] of some) {
                 const { slider } = page.inputs.fields[name];
-                slider.value = Number(slider.min) + place * (slider.max - slider.min);
-                for (const kind of ["input", "change"]) slider.dispatchEvent(new Event(kind));
+                const { min, max } = slider;
+                set(slider, Number(min) + place * (max - min), "input", "change");
             }
             const { scene, motion } = page;
             const said = at.words.textContent;
@@ -256,7 +255,7 @@ def test_every_slider_and_field_changes_the_motion(browser: Browser) -> None:
     motion = solve(Top(**browser.ask("return page.scene")))
     record = browser.ask("return page.motion.record")
     assert record["T_nutation"] == pytest.approx(motion.T_nutation, rel=1e-12)
-    browser.ask("at['field-r0'].value = '1e3'; at['field-r0'].dispatchEvent(new Event('change'))")
+    browser.ask("set(at['field-r0'], '1e3')")
     assert browser.ask("return [page.scene.r0, +at['slider-r0'].value]") == [1000, 1000]
 
 
@@ -278,7 +277,7 @@ def test_a_bad_input_is_said_and_changes_nothing(browser: Browser) -> None:
     for name, text, message in BAD_INPUTS:
         said, invalid = browser.ask(
             """const field = at[`field-${arguments[0]}`];
-            field.value = arguments[1]; field.dispatchEvent(new Event("change"));
+            set(field, arguments[1]);
             return [at.error.textContent, field.ariaInvalid]""",
             *(name, text),
         )
@@ -325,10 +324,9 @@ def test_inputs_of_any_size_are_computed_or_refused(browser: Browser) -> None:
 
 def test_rates_in_turns_per_minute(browser: Browser) -> None:
     for text, rate in (("477 rpm", 477 * math.pi / 30), ("-60RPM", -2 * math.pi)):
-        field = "const f = at['field-r0']; f.value = arguments[0];"
-        browser.ask(field + "f.dispatchEvent(new Event('change'))", text)
+        browser.ask("set(at['field-r0'], arguments[0])", text)
         assert browser.ask("return page.scene.r0") == pytest.approx(rate, rel=1e-14)
-    browser.ask("at['field-m'].value = '5 rpm'; at['field-m'].dispatchEvent(new Event('change'))")
+    browser.ask("set(at['field-m'], '5 rpm')")
     assert browser.ask("return at.error.textContent").startswith("m must be a number, got 5 rpm")
     browser.ask("at.reset.click()")
     assert browser.ask("return page.scene") == page_scene(solve(Top()))
@@ -462,7 +460,7 @@ def test_play_pause_step_and_any_time(browser: Browser) -> None:
     assert browser.ask("return page.clock.playing && page.clock.t > 0")
     browser.press(" ", "space")
     assert not browser.ask("return page.clock.playing")
-    browser.ask("at.time.value = '1e6'; at.time.dispatchEvent(new Event('change'))")
+    browser.ask("set(at.time, '1e6')")
     browser.settle()
     motion, period = solve(Top()), solve(Top()).T_nutation
     theta = math.degrees(float(motion.angles(1e6).theta))
@@ -471,9 +469,9 @@ def test_play_pause_step_and_any_time(browser: Browser) -> None:
     assert browser.ask("return page.clock.t") == pytest.approx(1e6 + period / 50, rel=1e-15)
     browser.press("\ue011")  # Home
     assert browser.ask("return page.clock.t") == 0
-    browser.ask("at.scrub.value = '2'; at.scrub.dispatchEvent(new Event('input'))")
+    browser.ask("set(at.scrub, '2', 'input')")
     assert browser.ask("return page.clock.t") == pytest.approx(2, abs=period / 500)
-    browser.ask("at.time.value = 'soon'; at.time.dispatchEvent(new Event('change'))")
+    browser.ask("set(at.time, 'soon')")
     assert browser.ask("return at.time.ariaInvalid") == "true"
 
 
@@ -528,8 +526,7 @@ def test_every_example_is_a_shipped_scene_and_moves(browser: Browser) -> None:
     """Name, first line and inputs are those of the file."""
     seen = browser.ask(
         """return [...at.examples.options].slice(1).map((option) => {
-            at.examples.value = option.value;
-            at.examples.dispatchEvent(new Event("change"));
+            set(at.examples, option.value);
             page.draw();
             const before = at.now.textContent;
             page.clock.play(true);

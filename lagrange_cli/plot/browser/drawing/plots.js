@@ -157,12 +157,9 @@ function heightsOf(values) {
 
 // The cubic f(u) = u'^2 (4,9), its roots, and the top as a point that runs between two of them.
 
-/** f(u) from its product form; without torque it is a parabola. */
+/** f(u) from its product form, with the factor a (u - u3), which without torque is a constant. */
 function cubicOf({ start, record, gaps }) {
-  const lead = record.u3 === null ? null : +start.a;
-  const parabola = gaps.aU3FromU1 ? -gaps.aU3FromU1 : 0;
-  return (u) => (u - record.u1) * (u - record.u2) * (
-    lead === null ? parabola : lead * (u - record.u3));
+  return (u) => (u - record.u1) * (u - record.u2) * (start.a * (u - 1) - gaps.aU3Above);
 }
 
 /** The range of u to show: the band of the motion, and u3 where it is near. */
