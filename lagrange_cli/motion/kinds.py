@@ -14,7 +14,7 @@ from .spin_precession import Nutating, SpinPrecession
 
 
 class Constant(SpinPrecession[R]):
-    """A motion at constant tilt, with constant rates of spin and precession."""
+    """A motion at constant tilt, with constant rates: a steady precession, or no torque."""
 
     lacks = frozenset("amplitude_deg alpha u_quarter spin_rate_half precession_rate_half".split())
 
@@ -50,10 +50,6 @@ class Constant(SpinPrecession[R]):
     def mean_precession_rate(self) -> R:
         """The precession rate, which is constant."""
         return self.state.psi_rate
-
-
-class Steady(Constant[R]):
-    """A steady precession, or a torque-free top that rotates about a fixed axis."""
 
 
 class Vertical(Constant[R]):
@@ -105,5 +101,5 @@ class Separatrix(SpinPrecession[R]):
         return self.m
 
 
-Kind: TypeAlias = Nutating[R] | Steady[R] | Vertical[R] | Separatrix[R]
+Kind: TypeAlias = Nutating[R] | Constant[R] | Separatrix[R]
 """Any kind of motion."""

@@ -193,31 +193,43 @@ class Pose(NamedTuple, Generic[R]):
 
 def pose_of(motion: Kind[R]) -> Callable[[R], Pose[R]]:
     """Return the attitude of a motion as a function of time, in its arithmetic."""
-    if isinstance(motion, Nutating):
-        return nutating_pose(motion)
-    return separatrix_pose(motion) if isinstance(motion, Separatrix) else constant_pose(motion)
-
-
-def nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
-    """Return the attitude of a nutating top by its theta series."""
     ar: Any = motion.ar
     with ar.working():
-        found = series_from_start(motion, proved=True)
-        series, (x_start, y_start) = found.series, found.starts
+        if isinstance(motion, Nutating):
+            pose = _nutating_pose(motion)
+        elif isinstance(motion, Separatrix):
+            pose = _separatrix_pose(motion)
+        else:
+            pose = _constant_pose(motion)
+
+    def at(t: R) -> Pose[R]:
+        with ar.working():
+            found = pose(t)
+            if not motion.facts.plane:
+                return found
+            # in a plane an angle changes only at the poles, by half turns
+            phi, psi = (ar.pi * ar.nint(angle / ar.pi) for angle in (found.phi, found.psi))
+            return found._replace(phi=phi, psi=psi)
+
+    return at
+
+
+def _nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
+    """Return the attitude of a nutating top by its theta series."""
+    ar: Any = motion.ar
+    found = series_from_start(motion, proved=True)
+    series, (x_start, y_start) = found.series, found.starts
 
     def pose(t: R) -> Pose[R]:
-        with ar.working():
-            passed = t / motion.T_nutation * 2 + found.offset
-            step = ar.nint(passed)
-            phase, frame = passed - step, found.frames[step % 2]
-            x, arg_x, y, arg_y = evaluate(ar, series, frame, phase, direction(motion))
-            within, plus, minus = phase - found.offset, arg_x - x_start, arg_y - y_start
-            phi = t * motion.mean_spin_rate + within * series.spin_slope + (plus - minus)
-            psi = t * motion.mean_precession_rate + within * series.precession_slope + plus + minus
-            if motion.facts.plane:
-                phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
-            about_u1 = found.first_is_upper == (step % 2 == 0)
-            return Pose(x, y, phi, psi, phase if about_u1 else -phase)
+        passed = t / motion.T_nutation * 2 + found.offset
+        step = ar.nint(passed)
+        phase, frame = passed - step, found.frames[step % 2]
+        x, arg_x, y, arg_y = evaluate(ar, series, frame, phase, direction(motion))
+        within, plus, minus = phase - found.offset, arg_x - x_start, arg_y - y_start
+        phi = t * motion.mean_spin_rate + within * series.spin_slope + (plus - minus)
+        psi = t * motion.mean_precession_rate + within * series.precession_slope + plus + minus
+        about_u1 = found.first_is_upper == (step % 2 == 0)
+        return Pose(x, y, phi, psi, phase if about_u1 else -phase)
 
     return pose
 
@@ -235,40 +247,29 @@ def _terms(ar: Any, c: ThetaConstants) -> int:
     return 2 + math.isqrt(int(ar.digits * math.log(10) / math.pi * 100 / hundredths))
 
 
-def _half_turns(ar: Any, angle: R) -> R:
-    """Return the nearest multiple of half turns: in a plane an angle changes only at the poles."""
-    turned: R = ar.pi * ar.nint(angle / ar.pi)
-    return turned
-
-
-def constant_pose(motion: Constant[R]) -> Callable[[R], Pose[R]]:
+def _constant_pose(motion: Constant[R]) -> Callable[[R], Pose[R]]:
     """Return the attitude for a constant tilt and constant rates."""
     state = motion.state
 
     def pose(t: R) -> Pose[R]:
-        with motion.ar.working():
-            phi, psi = motion.mean_spin_rate * t, state.psi_rate * t
-            return Pose(state.cos_half, state.sin_half, phi, psi, 0 * t)
+        phi, psi = motion.mean_spin_rate * t, state.psi_rate * t
+        return Pose(state.cos_half, state.sin_half, phi, psi, 0 * t)
 
     return pose
 
 
-def separatrix_pose(motion: Separatrix[R]) -> Callable[[R], Pose[R]]:
+def _separatrix_pose(motion: Separatrix[R]) -> Callable[[R], Pose[R]]:
     """Return the attitude on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset."""
     ar: Any = motion.ar
-    with ar.working():
-        swing = separatrix_constants(motion)
+    swing = separatrix_constants(motion)
 
     def pose(t: R) -> Pose[R]:
-        with ar.working():
-            h = motion.argument_rate * t + swing.offset
-            real, imag = swing.x, swing.sign * swing.y * ar.tanh(h)
-            turned = ar.atan2(imag, real) - swing.start if t else 0 * t
-            half_b = motion.b * t / 2
-            phi, psi = motion.r0 * t - half_b + turned, half_b + turned
-            if motion.facts.plane:
-                phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
-            x = ar.sqrt(real * real + imag * imag)
-            return Pose(x, swing.y * ar.sech(h), phi, psi, -h)
+        h = motion.argument_rate * t + swing.offset
+        real, imag = swing.x, swing.sign * swing.y * ar.tanh(h)
+        turned = ar.atan2(imag, real) - swing.start if t else 0 * t
+        half_b = motion.b * t / 2
+        phi, psi = motion.r0 * t - half_b + turned, half_b + turned
+        x = ar.sqrt(real * real + imag * imag)
+        return Pose(x, swing.y * ar.sech(h), phi, psi, -h)
 
     return pose

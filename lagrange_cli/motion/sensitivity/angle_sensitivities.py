@@ -30,7 +30,7 @@ from ...inputs.top import Top
 from ...inputs.value import Stds
 from ..numbers import Numbers, middle_of
 from ..over_time.samplers import Angles, check_times
-from ..over_time.series_constants import Pose, nutating_pose
+from ..over_time.series_constants import Pose, pose_of
 from ..regime import Exact, Regime, exact
 from ..spin_precession import Nutating
 from .neighbourhood import PARAMETERS, by_inputs, smallness
@@ -216,7 +216,7 @@ class NutationDerivatives:
 
     @cached_property
     def _pose(self) -> Callable[[Dual], Pose[Dual]]:
-        return nutating_pose(self.motion)
+        return pose_of(self.motion)
 
     def _in_digits(self, t: Array) -> Array:
         """Return the derivatives by dual numbers, which take some milliseconds per time."""

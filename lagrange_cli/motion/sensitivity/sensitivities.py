@@ -20,12 +20,12 @@ from ...arithmetic.values import Values
 from ...inputs.names import check_names
 from ...inputs.top import Top
 from ..any_start import cubic
-from ..exact.rational_keys import is_endless
 from ..gaps import Gaps, State
-from ..kinds import Steady
+from ..kinds import Constant
 from ..numbers import kind_of
 from ..paper.textbook import TEXTBOOK
 from ..quantity import quantity
+from ..rational_keys import is_endless
 from ..record import NUMBER_KEYS
 from ..regime import Exact, Regime, exact
 from .neighbourhood import (
@@ -236,7 +236,7 @@ class Partials:
         return self.generic_means if key in _MEANS else self.generic
 
 
-class NearSteady(Steady[Dual]):
+class NearSteady(Constant[Dual]):
     """Tops next to a steady precession, whose gaps are measured from the mean (u1 + u2)/2.
 
     To first order in the nutation, the period and the mean rates take their values at the mean.
