@@ -128,11 +128,6 @@ class Decimals(Scalars, Unenclosed):
         """Return the integer nearest to x, however many digits it has."""
         return int(x.to_integral_value(decimal.ROUND_HALF_EVEN))
 
-    @staticmethod
-    def where(condition: bool, yes: Decimal | int, no: Decimal | int) -> Decimal:
-        """Return one of two numbers."""
-        return Decimal(yes) if condition else Decimal(no)
-
     def _odd_powers(self, x: Decimal, ratio: Decimal) -> Decimal:
         """Return x (1 + r/3 + r^2/5 + ...) of the ratio r."""
         power, total, n, least = x, x, 1, self.eps * abs(x) / 200

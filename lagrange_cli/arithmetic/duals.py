@@ -7,6 +7,7 @@ the derivatives are enclosures.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from fractions import Fraction
@@ -19,6 +20,11 @@ from .numbers import Scalars
 
 Plain = Any
 """A number of the arithmetic underneath."""
+
+
+def _compared(holds: Callable[[Any, Any], Any]) -> Callable[[Dual, Dual | int], Any]:
+    """Return a comparison of values."""
+    return lambda x, other: holds(x.value, _value(other))
 
 
 class Dual:
@@ -101,17 +107,8 @@ class Dual:
     def __bool__(self) -> bool:
         return bool(self.value)
 
-    def __lt__(self, other: Dual | int) -> Any:
-        return self.value < _value(other)
-
-    def __le__(self, other: Dual | int) -> Any:
-        return self.value <= _value(other)
-
-    def __gt__(self, other: Dual | int) -> Any:
-        return self.value > _value(other)
-
-    def __ge__(self, other: Dual | int) -> Any:
-        return self.value >= _value(other)
+    __lt__, __le__ = _compared(operator.lt), _compared(operator.le)
+    __gt__, __ge__ = _compared(operator.gt), _compared(operator.ge)
 
     def __repr__(self) -> str:
         return f"Dual({self.value}, {self.partials})"
@@ -230,11 +227,6 @@ class Duals(Scalars):
     def fixed(x: Dual) -> Dual:
         """Return x as a constant, without derivatives."""
         return Dual(x.value)
-
-    def where(self, condition: bool, yes: Dual | int, no: Dual | int) -> Dual:
-        """Return one of two numbers."""
-        chosen = yes if condition else no
-        return self.convert(chosen) if isinstance(chosen, int) else chosen
 
 
 def _sizes(ar: Balls, x: Dual) -> Dual:

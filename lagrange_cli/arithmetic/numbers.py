@@ -135,14 +135,16 @@ class Scalars:
     """An arithmetic of single numbers, in which a condition is true or false."""
 
     is_array = False
+    convert: Callable[[Any], Any]
 
     def working(self) -> AbstractContextManager[object]:
         """Return a context manager that does nothing, because the numbers know their precision."""
         return nullcontext()
 
     def where(self, condition: Any, yes: Any, no: Any) -> Any:
-        """Return one of two numbers."""
-        return yes if condition else no
+        """Return one of two numbers, each a number of this arithmetic or an integer."""
+        chosen = yes if condition else no
+        return self.convert(chosen) if isinstance(chosen, int) else chosen
 
     def anywhere(self, condition: Any) -> bool:
         """Return whether a condition holds; a condition on balls may raise TooFewDigitsError."""

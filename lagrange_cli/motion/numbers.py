@@ -60,7 +60,7 @@ class Numbers:
         self.exact = scene
         self.kind_class = kind_of(scene.facts)
         self._kinds: dict[int, Kind[Ball]] = {}
-        self._requested: dict[int, tuple[Any, Any]] = {}
+        self._requested: dict[int, Any] = {}
         self._doubles: dict[str, Settled | None] = {}
         self._sampler: Sampler | None = None
 
@@ -130,7 +130,7 @@ class Numbers:
             return None
         kind = self.kind(digits)
         try:
-            source = kind if name in NUMBER_KEYS else self._on_request(name, digits)
+            source = kind if name in NUMBER_KEYS else self._on_request(digits)
             value: Ball | None = getattr(source, name)
         except TooFewDigitsError:
             from .rational_keys import is_endless  # start-up: for few tops only
@@ -148,17 +148,13 @@ class Numbers:
             return f"in the regime {self.regime.value!r}"
         return key.absent
 
-    def _on_request(self, name: str, digits: int) -> Any:
-        """Return the object that computes a key on request, in balls of `digits` digits."""
-        from .paper.requested import TEXTBOOK, Sections, Textbook  # start-up
+    def _on_request(self, digits: int) -> Any:
+        """Return the keys on request in balls of `digits` digits."""
+        from .paper.requested import Requested  # start-up
 
         if digits not in self._requested:
-            kind = self.kind(digits)
-            self._requested[digits] = (
-                Sections(kind, self.exact),
-                Textbook(kind.ar, self.exact, kind.state),
-            )
-        return self._requested[digits][name in TEXTBOOK]
+            self._requested[digits] = Requested(self.kind(digits), self.exact)
+        return self._requested[digits]
 
     def decide(self, what: str, ask: Callable[[Kind[Ball]], _S]) -> _S:
         """Return the result of `ask` at the first precision that decides it.

@@ -186,9 +186,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
         series = (hyperbolic_series if hyperbolic else circular_series)(PAIRS, c)
         phase, lower, *args = _at_start(motions, series)
         count, period = phase.size, motion.T_nutation
-        steps = 2 / period
-        spin, precession = series.spin_slope, series.precession_slope
-        slopes = (precession + spin).scaled(0.5), (precession - spin).scaled(0.5)
+        steps, slopes = 2 / period, series.slopes
         x, y = (
             DoubleDouble(arg) + slope * DoubleDouble(phase)
             for arg, slope in zip(args, slopes, strict=True)

@@ -218,16 +218,19 @@ def _nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
     """Return the attitude of a nutating top by its theta series."""
     ar: Any = motion.ar
     found = series_from_start(motion, proved=True)
-    series, (x_start, y_start) = found.series, found.starts
+    series = found.series
 
     def pose(t: R) -> Pose[R]:
         passed = t / motion.T_nutation * 2 + found.offset
         step = ar.nint(passed)
         phase, frame = passed - step, found.frames[step % 2]
         x, arg_x, y, arg_y = evaluate(ar, series, frame, phase, direction(motion))
-        within, plus, minus = phase - found.offset, arg_x - x_start, arg_y - y_start
-        phi = t * motion.mean_spin_rate + within * series.spin_slope + (plus - minus)
-        psi = t * motion.mean_precession_rate + within * series.precession_slope + plus + minus
+        plus, minus = (
+            (phase - found.offset) * slope + (arg - start)
+            for slope, arg, start in zip(series.slopes, (arg_x, arg_y), found.starts, strict=True)
+        )
+        phi = t * motion.mean_spin_rate + (plus - minus)
+        psi = t * motion.mean_precession_rate + (plus + minus)
         about_u1 = found.first_is_upper == (step % 2 == 0)
         return Pose(x, y, phi, psi, phase if about_u1 else -phase)
 

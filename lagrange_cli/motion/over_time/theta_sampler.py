@@ -212,8 +212,7 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
     with ar.working():
         found = series_from_start(motion, rates=True)
         series, period = found.series, motion.T_nutation
-        steps, spin, precession = 2 / period, series.spin_slope, series.precession_slope
-        slopes = (precession + spin) / 2, (precession - spin) / 2
+        steps, slopes = 2 / period, series.slopes
         x, y = (
             start + slope * found.offset for start, slope in zip(found.starts, slopes, strict=True)
         )

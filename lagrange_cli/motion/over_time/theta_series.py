@@ -109,9 +109,8 @@ class Series(NamedTuple):
     frames: list[Frame]
     scale: Numeric
     """Argument of the functions per step of the phase."""
-    spin_slope: Numeric
-    """Slope per step that is added to the spin of the series to make it periodic."""
-    precession_slope: Numeric
+    slopes: tuple[Numeric, Numeric]
+    """Slopes per step that are added to arg X and arg Y to make them periodic."""
 
 
 def theta_series(ar: FunctionArithmetic, c: ThetaConstants, terms: int = TERMS) -> Series:
@@ -134,8 +133,7 @@ def circular_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) 
         hyperbolic=False,
         frames=_frames(x, y, _rate(weights, 1, c.nutation)),
         scale=quarter_turn,
-        spin_slope=-(c.sign_plus - c.sign_minus) * quarter_turn,
-        precession_slope=-(c.sign_plus + c.sign_minus) * quarter_turn,
+        slopes=(-c.sign_plus * quarter_turn, -c.sign_minus * quarter_turn),
     )
 
 
@@ -152,13 +150,11 @@ def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS
     odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(ar, q, 2, terms)]
     x = _hyperbolic_components(even, odd, plus, c.sign_plus, c.x_size)
     y = _hyperbolic_components(even, odd, minus, c.sign_minus, c.y_size)
-    slope_x, slope_y = -c.sign_plus * ar.atan2(*plus), -c.sign_minus * ar.atan2(*minus)
     return Series(
         hyperbolic=True,
         frames=_frames(x, y, _rate(odd, -1, c.nutation and c.nutation / ratio)),
         scale=ar.pi / 2 * ratio,
-        spin_slope=slope_x - slope_y,
-        precession_slope=slope_x + slope_y,
+        slopes=(-c.sign_plus * ar.atan2(*plus), -c.sign_minus * ar.atan2(*minus)),
     )
 
 

@@ -12,15 +12,24 @@ from fractions import Fraction
 from inspect import signature
 
 from ...arithmetic.exact_cosine import Polynomial, U
+from ...arithmetic.numbers import R
+from ..kinds import Kind
 from ..quantity import keys_of, unit_name
 from ..rational_keys import keys_by_u1, rational_keys, starts_at_u1, starts_at_u2
 from ..regime import Exact
 from .sections import Sections
-from .textbook import TEXTBOOK, Textbook, textbook_fractions
+from .textbook import Textbook, textbook_fractions
 
-__all__ = ["REQUESTED", "TEXTBOOK", "Sections", "Textbook", "requested_fraction"]
 
-REQUESTED = keys_of(Sections) | TEXTBOOK
+class Requested(Textbook[R], Sections[R]):
+    """All keys of one motion on request."""
+
+    def __init__(self, kind: Kind[R], exact: Exact) -> None:
+        Textbook.__init__(self, kind.ar, exact, kind.state)
+        Sections.__init__(self, kind, exact)
+
+
+REQUESTED = keys_of(Requested)
 """The keys on request and their declarations."""
 
 

@@ -76,7 +76,8 @@ class SeriesDerivatives:
             self.about_means = rates_about_means(motion, means, first_is_upper=found.first_is_upper)
             speed, step = 2 / motion.T_nutation, motion.T_nutation.value / 2
             rates = means.mean_spin_rate, means.mean_precession_rate
-            slopes = series.spin_slope, series.precession_slope
+            slope_x, slope_y = series.slopes
+            slopes = slope_x - slope_y, slope_x + slope_y
             self.speed = float(speed.value)
             self.step = period_of(pair(step), self.speed)
             self.speeds, self.offsets, self.scales = map(_row, (speed, found.offset, series.scale))
