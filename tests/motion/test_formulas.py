@@ -8,6 +8,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from scenes import EVERY_KIND
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -171,30 +172,6 @@ def test_a_missing_number_has_a_reason() -> None:
     assert period.missing == "u3: undefined without torque"
 
 
-UNIT = Top(m=1, A=2, C=1, s=1, g=1, r0=0.0)
-DEGENERATE = {
-    "rates": Top(psidot0=3.0, thetadot0=1.0),
-    "starts at u2": Top(theta0_deg=73.9, psidot0=10.0),
-    "plane": Top(r0=0.0),
-    "pendulum": Top(r0=0.0, psidot0=2.0),
-    "steady pendulum": Top(r0=0.0, theta0_deg=120.0, psidot0="steady"),
-    "sleeping": Top(theta0_deg=0.0),
-    "upright": Top(theta0_deg=0.0, r0=0.0),
-    "hanging": Top(theta0_deg=180.0),
-    "turns about an axis": Top(g=0.0),
-    "nothing moves": Top(g=0.0, r0=0.0),
-    "without torque": Top(g=0.0, psidot0=3.0),
-    "without torque over the poles": Top(g=0.0, r0=0.0, thetadot0=3.0),
-    "steady": Top(r0=60.0, psidot0="steady"),
-    "level": Top(theta0_deg=90.0),
-    "level, steady": Top(theta0_deg=90.0, psidot0="steady"),
-    "level, without spin": Top(theta0_deg=90.0, r0=0.0),
-    "separatrix": UNIT.replace(theta0_deg=90.0, thetadot0=1.0),
-    "falls from the top": Top(theta0_deg=0.0, thetadot0=2.0),
-    "rises from below": Top(theta0_deg=180.0, thetadot0=2.0),
-}
-
-
 def cases(motion: Motion) -> dict[str, bool]:
     """Return each case in which a number may not exist, and whether it is that of the motion."""
     facts, top, record = motion.exact.facts, motion.top, motion.record()
@@ -228,9 +205,9 @@ def cases(motion: Motion) -> dict[str, bool]:
     }
 
 
-@pytest.mark.parametrize("top", [*TOPS.values(), *DEGENERATE.values()], ids=[*TOPS, *DEGENERATE])
-def test_the_reason_of_a_missing_number_is_the_case_of_the_motion(top: Top) -> None:
-    motion = solve(top)
+@pytest.mark.parametrize("scene", EVERY_KIND.values(), ids=EVERY_KIND)
+def test_the_reason_of_a_missing_number_is_the_case_of_the_motion(scene: dict[str, Any]) -> None:
+    motion = solve(Top(**scene))
     holds = cases(motion)
     for name, value in motion.record(keys=all_keys()).items():
         key = number_key(name)

@@ -1,23 +1,20 @@
-"""Keys on request: the sections of the text in 150 digits, the judge, and where they are accepted.
+"""Keys on request: where they are accepted, the worked example, and values midway.
 
-The keys are judged as the nearest doubles in `test_cancellation` and by `fuzz.py`; here they are
-compared with the formulas of the text, and with the angles.
+`test_proved_numbers` and `test_cancellation` judge them as the nearest doubles.
 """
 
 from __future__ import annotations
 
-import math
 import subprocess
 import sys
 from decimal import Decimal
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
-from chrapan_top import MOTIONS, Motion, ar
+from chrapan_top import ar
 from conftest import Lagtop
 from errata import FIGURES, round_alike, true_values
 from scenes import UNIT
@@ -27,73 +24,6 @@ from lagrange_cli.motion.paper.requested import derivation_keys
 from lagrange_cli.motion.record import KEYS, all_keys, record_keys, requested_keys
 
 DIGITS = 40
-
-
-def requested(motion: Motion) -> dict[str, Any]:
-    """Return the keys on request of a motion of the text in 40 digits."""
-    texts = solve(motion.top).record(digits=DIGITS, keys=requested_keys())
-    return {key: ar.mpf(text) for key, text in texts.items() if text is not None}
-
-
-def assert_alike(ours: dict[str, Any], right: dict[str, Any]) -> None:
-    """Check that numbers agree to the last but one of the 40 digits."""
-    for key, value in right.items():
-        assert abs(ours[key] - value) <= ar.mpf(10) ** -38 * max(1, abs(value)), key
-
-
-@pytest.mark.parametrize("motion", MOTIONS, ids=["example", "backwards", "disc"])
-def test_constants_of_section_4(motion: Motion) -> None:
-    a, b, u1 = motion.a, motion.b, motion.u1
-    ours = requested(motion)
-    right = {
-        "energy_without_spin": motion.mgs * u1,
-        "Lz": motion.C * motion.r0 * u1,
-        "energy_constant": a * u1,
-        "momentum_constant": b * u1,
-        "discriminant": b**4 - 4 * a * b**2 * u1 + 4 * a**2,
-        "f_upright": -(b**2) * (u1 - 1) ** 2,
-        "f_hanging": -(b**2) * (u1 + 1) ** 2,
-        "f_slope_u1": -a * ar.sin(motion.angles(ar.mpf(0))[0]) ** 2,
-        "u2_criterion": b**2 * u1 - a,
-    }
-    assert_alike(ours, right)
-    assert ours["discriminant"] >= (b**2 - 2 * a) ** 2
-    assert ar.sign(ours["u2_criterion"]) == ar.sign(motion.u(motion.T / 2))
-    assert max(ours["f_upright"], ours["f_hanging"], ours["f_slope_u1"]) < 0
-
-
-@pytest.mark.parametrize("motion", MOTIONS, ids=["example", "backwards", "disc"])
-def test_angles_and_quarters_are_those_of_the_motion(motion: Motion) -> None:
-    """The halves are alike, and so are the quarters next to u1, and those next to u2."""
-    places = [motion.angles(part * motion.T / 4) for part in range(5)]
-    quarters = [
-        [(late - early) / (motion.T / 4) for early, late in zip(first, second, strict=True)]
-        for first, second in pairwise(places)
-    ]
-    right = {
-        "phi_half_deg": ar.degrees(places[2][1]),
-        "phi_period_deg": ar.degrees(places[4][1]),
-        "psi_half_deg": ar.degrees(places[2][2]),
-        "psi_period_deg": ar.degrees(places[4][2]),
-    }
-    ours = requested(motion)
-    for upper, lower, sign in ((0, 1, 1), (3, 2, -1)):
-        for part, quarter in (("upper", quarters[upper]), ("lower", quarters[lower])):
-            right[f"nutation_rate_{part}"] = sign * quarter[0]
-            right[f"spin_rate_{part}"] = quarter[1]
-            right[f"precession_rate_{part}"] = quarter[2]
-        assert_alike(ours, right)
-    assert abs(2 * ours["phi_half_deg"] - ours["phi_period_deg"]) < 1e-35
-    assert abs(2 * ours["psi_half_deg"] - ours["psi_period_deg"]) < 1e-35
-
-
-def test_half_period_angles_hold_for_any_start() -> None:
-    """Half a period after a start between the turning points, the waves are not at rest."""
-    motion = solve(Top(**UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.7, "psidot0": 0.4}))
-    angles = motion.angles(float(motion.T_nutation) / 2)
-    assert motion.phi_half_deg == pytest.approx(math.degrees(angles.phi), rel=1e-14)
-    assert motion.psi_half_deg == pytest.approx(math.degrees(angles.psi), rel=1e-14)
-    assert motion.psi_half_deg != pytest.approx(motion.psi_period_deg / 2, rel=1e-3)
 
 
 def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
