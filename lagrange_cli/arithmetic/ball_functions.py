@@ -64,9 +64,12 @@ class BallFunctions(Ring):
         return self.log1p(2 * x / (1 - x)) / 2
 
     def asinh(self, x: Ball) -> Ball:
-        """Return the inverse hyperbolic sine of x, to a fixed number of digits after the point."""
+        """Return the inverse hyperbolic sine of x, to a fixed number of digits after the point.
+
+        Its slope is less than 1, and less than 1/|x|.
+        """
         value = self.function(self.plain.asinh, x.middle)
-        return value.enlarged(add_up(x.radius, self.unit))
+        return value.enlarged(add_up(divide_up(x.radius, max(x.least, Decimal(1))), self.unit))
 
     def nint(self, x: Ball) -> int:
         """Return an integer within 3/4 of all numbers in x.

@@ -15,16 +15,14 @@ from __future__ import annotations
 import math
 from enum import Enum
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ..arithmetic.points import ExactComplex
-from ..arithmetic.protocol import Numeric
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
+from ..arithmetic.rounding import triple
 from ..errors import LagtopError
 from .complete import complete_k, period_mean
 from .modulus import Modulus, constants, exact_modulus
-
-if TYPE_CHECKING:  # mpmath is loaded for complex numbers only
-    from .many_digits import ManyDigits
 
 
 class ModulusKind(Enum):
@@ -40,48 +38,71 @@ class AnyModulus(NamedTuple):
 
     kind: ModulusKind
     modulus: Modulus
-    stretch: Numeric = 1
+    stretch: Numeric
     """Factor of the argument."""
+    scale: Numeric
+    """Half periods along 2K per unit of the argument, stretch/(2K); a `Triple` in doubles."""
+    across: Numeric
+    """Half periods along 2iK' per unit of the argument, stretch/(2K'); 0 if K' is infinite."""
+
+    def rounded(self) -> AnyModulus:
+        """Return the modulus in doubles, for arrays."""
+        scale, across = (triple(rate) if rate else 0.0 for rate in (self.scale, self.across))
+        modulus = Modulus(*map(float, self.modulus))
+        return AnyModulus(self.kind, modulus, float(self.stretch), scale, across)
 
 
-def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
+def reduced_modulus(
+    ar: FunctionArithmetic, kind: ModulusKind, modulus: Modulus, stretch: Numeric = 1
+) -> AnyModulus:
+    """Return a modulus from the modulus in [0, 1] to which it is reduced."""
+    scale, across = (
+        stretch / (2 * complete_k(ar, other)) if other else 0 * other
+        for other in (modulus.k_prime, modulus.k)
+    )
+    return AnyModulus(kind, modulus, stretch, scale, across)
+
+
+def any_modulus(ar: FunctionArithmetic, k: ExactComplex | complex) -> AnyModulus:
     """Reduce a modulus k >= 0, or i kbar with kbar > 0, to a modulus in [0, 1].
 
-    `ar` is an mpmath context.  Raises LagtopError for other numbers.
+    `ar` is the arithmetic of complex balls or an mpmath context.  Raises LagtopError for other
+    numbers.
     """
-    real, imag = ar.convert(k.real), ar.convert(k.imag)
-    if not (real >= 0 and imag >= 0 and not (real and imag) and max(real, imag) < math.inf):
+    if not (k.real >= 0 and k.imag >= 0 and not (k.real and k.imag) and k.real + k.imag < math.inf):
         raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {k}", "k")
-    if imag:
+    real, imag = ar.convert(k.real), ar.convert(k.imag)
+    if k.imag:
         root = ar.sqrt(1 + imag * imag)
-        return AnyModulus(ModulusKind.IMAGINARY, Modulus(imag / root, 1 / root), root)
-    if real > 1:
+        return reduced_modulus(ar, ModulusKind.IMAGINARY, Modulus(imag / root, 1 / root), root)
+    if k.real > 1:
         complement = ar.sqrt(ar.convert(Fraction(k.real) ** 2 - 1)) / real
-        return AnyModulus(ModulusKind.LARGE, Modulus(1 / real, complement), real)
-    return AnyModulus(ModulusKind.UNIT, exact_modulus(ar, Fraction(k.real)))
+        return reduced_modulus(ar, ModulusKind.LARGE, Modulus(1 / real, complement), real)
+    return reduced_modulus(ar, ModulusKind.UNIT, exact_modulus(ar, Fraction(k.real)))
 
 
-def any_constants(ar: ManyDigits, modulus: ExactComplex | complex) -> dict[str, Numeric]:
-    """Return the record of a modulus that is imaginary or above 1, in an mpmath context.
+def any_constants(ar: FunctionArithmetic, modulus: ExactComplex | complex) -> dict[str, Numeric]:
+    """Return the record of a modulus that is imaginary or above 1, in balls or an mpmath context.
 
     For imaginary k, q is negative and K' = k'(K' - iK), with the constants of the modulus in [0, 1]
     on the right.  For k > 1, k' = i sqrt(k^2 - 1), and K, E and q are complex.
     """
-    kind, (k, k_prime, _), s = given = any_modulus(ar, modulus)
+    kind, (k, k_prime, _), s, *_ = given = any_modulus(ar, modulus)
     assert kind is not ModulusKind.UNIT
     K, K_prime, E, E_prime, q = constants(ar, given.modulus)
     if kind is ModulusKind.IMAGINARY:
         found = s, -q, K / s, ar.mpc(K_prime, -K) / s, s * E, _e_beyond(ar, k_prime, k)
     else:
+        growth = -ar.pi * K_prime / (K * K + K_prime * K_prime)  # log q is growth (K + iK')
+        q = ar.mpc(ar.cos(growth * K_prime), ar.sin(growth * K_prime)) * ar.exp(growth * K)
         K, K_prime, complement = ar.mpc(K, -K_prime) / s, K_prime / s, ar.mpc(0, s * k_prime)
-        q = ar.exp(-ar.pi * K_prime / K)
         found = complement, q, K, K_prime, _e_beyond(ar, k, k_prime), s * E_prime
     k = ar.mpc(ar.convert(modulus.real), ar.convert(modulus.imag))
     names = ("k", "k_prime", "nome", "K", "K_prime", "E", "E_prime")
     return dict(zip(names, (k, *found), strict=True))
 
 
-def _e_beyond(ar: ManyDigits, k: Numeric, k_prime: Numeric) -> Numeric:
+def _e_beyond(ar: FunctionArithmetic, k: Numeric, k_prime: Numeric) -> Numeric:
     """Return E of the modulus 1/k > 1, {E - k'^2 K + i (E' - k^2 K')}/k (DLMF 19.7.3).
 
     The difference E - k'^2 K is computed as k^2 K times the mean of cn^2 over a period, so that

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
+from fractions import Fraction
 from functools import cache, partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.complex_balls import ComplexBalls, complex_balls
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, check_reach
 from ..arithmetic.protocol import ComplexArithmetic, Numeric
+from ..arithmetic.rounding import decided
 from ..errors import LagtopError
-from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
+from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus, reduced_modulus
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .jacobi import complex_jacobi
-from .many_digits import AgreeingNumbers, ManyDigits
 from .modulus import ModulusInput
 from .periods import INDICES, Lattice, Place, lattice, place_of
-from .request import THIRD, ComplexPoints, FunctionRequest, known_parts
-from .tables import TableOfFunctions
+from .request import THIRD, ComplexPoints, FunctionRequest, Known, known_parts
+from .tables import ProvedNumbers, TableOfFunctions
 
 if TYPE_CHECKING:
     from ..arithmetic.text import NumberText
@@ -38,10 +39,11 @@ class _ComplexConstants(NamedTuple):
     """None if only am, sn, cn and dn are requested."""
     third: dict[str, Parameter]
 
-    def rounded(self) -> _ComplexConstants:
+    def rounded(self, ar: ComplexArithmetic) -> _ComplexConstants:
         """Return the constants in doubles, for arrays."""
-        third = {ij: kind.rounded(ARRAYS) for ij, kind in self.third.items()}
-        return _ComplexConstants(self.modulus, self.periods and self.periods.rounded(ARRAYS), third)
+        third = {ij: kind.rounded(ar) for ij, kind in self.third.items()}
+        periods = self.periods and self.periods.rounded(ar)
+        return _ComplexConstants(self.modulus.rounded(), periods, third)
 
 
 class ComplexTable(TableOfFunctions):
@@ -54,65 +56,71 @@ class ComplexTable(TableOfFunctions):
     def __init__(self, arguments: ComplexPoints, request: FunctionRequest) -> None:
         self.arguments, self.request, self.count = arguments, request, arguments.real.count
 
-    def modulus_in(self, ar: ManyDigits) -> AnyModulus:
-        """Return the modulus in a context; raise LagtopError if it is out of range."""
+    def modulus_in(self, ar: ComplexBalls) -> AnyModulus:
+        """Return the modulus in balls; raise LagtopError if it is out of range."""
         modulus = self.request.modulus
         if isinstance(modulus, ModulusInput):
-            return AnyModulus(ModulusKind.UNIT, modulus.in_digits(ar))
+            return reduced_modulus(ar, ModulusKind.UNIT, modulus.in_digits(ar))
         return any_modulus(ar, modulus)
 
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
-        """Yield rows of numbers with N digits, on which two precisions agree."""
-        assert digits is not None
-        given, settled = self.modulus_in(ManyDigits()), AgreeingNumbers(digits)
-        constants = cache(self._constants)
+        """Yield rows of proved numbers; see `TableOfFunctions`."""
+        numbers = ProvedNumbers(digits, short=short, arithmetic=complex_balls)
+        constants, modulus_in = cache(self._constants), cache(self.modulus_in)
+        request, k = self.request, self.request.modulus
+        stretch = Fraction(1) if isinstance(k, ModulusInput) else 1 + k.real + k.imag
 
         def row(u: ExactComplex) -> dict[str, NumberText]:
-            known = known_parts(u, self.request, given)
+            def known_in(digits: int) -> Known:
+                given = modulus_in(ar := complex_balls(digits))
+                beyond = bool(abs(ar.im(u)) * given.across > 0.5)
+                return known_parts(u, request, given, beyond=beyond)
 
-            def compute(ar: ManyDigits) -> dict[str, Numeric]:
-                for far in (*u, *self.request.parameter):
-                    settled.require(ar, abs(ar.convert(far)) * given.stretch)
-                z = ar.mpc(ar.convert(u.real), ar.convert(u.imag))
-                return known.cleared(ar, self._parts(ar, z, constants(ar), known.poles))
+            known = decided("the branch points of am", known_in)
 
-            return settled.texts(compute, known.names())
+            def compute(ar: ComplexBalls) -> dict[str, Numeric]:
+                return known.settled(ar, self._parts(ar, u, constants(ar), known.poles))
+
+            far = max(abs(part) for part in (*u, *request.parameter)) * stretch
+            return numbers.texts(compute, known.values(), len(str(int(far))))
 
         return map(row, self.arguments.exactly())
 
     def array_columns(self) -> ArrayColumns:
         """Return the columns of a block of arguments in doubles, and the blocks."""
-        exact = self._constants(ManyDigits())
-        self._check_doubles(exact)
-        ready = exact.rounded()
+        from ..arithmetic.arrays import ARRAYS  # start-up
+
+        def rounded(digits: int) -> _ComplexConstants:
+            exact = self._constants(complex_balls(digits))
+            self._check_doubles(exact)
+            return exact.rounded(ARRAYS)
+
+        ready = decided("the constants of these functions", rounded)
         return lambda u: self._parts(ARRAYS, u, ready), self.arguments.blocks()
 
-    def _constants(self, ar: ManyDigits) -> _ComplexConstants:
-        """Return the constants in an mpmath context."""
+    def _constants(self, ar: ComplexBalls) -> _ComplexConstants:
+        """Return the constants in balls."""
         request, given = self.request, self.modulus_in(ar)
         periods = lattice(ar, given) if request.families != ("am",) else None
         third: dict[str, Parameter] = {}
         if periods and request.has_parameter:
-            v = ar.mpc(ar.convert(request.parameter.real), ar.convert(request.parameter.imag))
-            third = {ij: parameter(ar, ij, v, periods) for ij in THIRD}
+            third = {ij: parameter(ar, ij, request.parameter, periods) for ij in THIRD}
         return _ComplexConstants(given, periods, third)
 
     def _check_doubles(self, functions: _ComplexConstants) -> None:
         """Raise LagtopError for moduli beyond the range of doubles, and for distant arguments."""
-        k, k_prime, _ = functions.modulus.modulus
-        if functions.modulus.kind is ModulusKind.LARGE and functions.modulus.stretch > _MOST:
+        given = functions.modulus
+        k, k_prime, _ = given.modulus
+        if given.kind is ModulusKind.LARGE and given.stretch > _MOST:
             raise LagtopError(f"k must be at most {_MOST:g} (or give --digits)", "k")
         if 0 < k < _LEAST or 0 < k_prime < _LEAST:
             raise LagtopError(
                 f"k must be 0 or at least {_LEAST:g} in size, and so must k' (or give --digits)",
                 "k",
             )
-        periods = functions.periods
-        if periods is None and not (k and k_prime):
-            limits = MAX_TIME, MAX_TIME
-        else:
-            periods = periods or lattice(ManyDigits(), functions.modulus)
-            limits = float(MAX_PERIODS / periods.scale), float(MAX_PERIODS / periods.across)
+        limits = MAX_TIME, MAX_TIME
+        if k and k_prime:
+            limits = float(MAX_PERIODS / given.scale), float(MAX_PERIODS / given.across)
         check_reach("u", self.arguments.real, limits[0])
         if self.arguments.imag is not None:
             check_reach("the imaginary part of u", self.arguments.imag, limits[1])
@@ -166,15 +174,10 @@ class ComplexTable(TableOfFunctions):
 def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str, Numeric]:
     """Return constants of a modulus that is imaginary or above 1, in real and imaginary parts."""
 
-    def compute(ar: ManyDigits) -> dict[str, Numeric]:
+    def compute(ar: ComplexBalls) -> dict[str, Numeric]:
         return _both(ar, any_constants(ar, modulus))
 
-    if digits is None:
-        return {name: float(x) for name, x in compute(ManyDigits()).items()}
-    zeros = "k_re k_prime_im nome_im K_im E_im"
-    if not modulus.imag:
-        zeros = "k_im k_prime_re K_prime_im E_prime_im"
-    return AgreeingNumbers(digits).texts(compute, zeros.split())
+    return ProvedNumbers(digits, arithmetic=complex_balls).of(compute)
 
 
 def _both(ar: ComplexArithmetic, columns: dict[str, Numeric]) -> dict[str, Numeric]:

@@ -14,11 +14,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..arithmetic.double_double import DoubleDouble
+from ..arithmetic.complex_balls import complex_balls
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, Numeric
-from .any_modulus import AnyModulus, ModulusKind
-from .many_digits import ManyDigits
+from ..arithmetic.rounding import decided
+from .any_modulus import ModulusKind, reduced_modulus
 from .modulus import Modulus, in_many_digits
 from .periods import (
     Complex,
@@ -73,6 +73,8 @@ def theta_of_modulus(ar: ComplexArithmetic, ij: str, x: Complex, modulus: Modulu
     periods = _lattice_of(ar, modulus)
     parts = ar.re(x), ar.im(x) / periods.ratio
     if ar.is_array:
+        from ..arithmetic.double_double import DoubleDouble  # start-up
+
         parts = DoubleDouble(parts[0]), DoubleDouble(parts[1])
     at = Place(*(coordinate_of(ar, part) for part in parts))
     return theta_at_place(ar, ij, at, periods)
@@ -84,12 +86,16 @@ def zeta_of_modulus(ar: ComplexArithmetic, ij: str, v: Complex, modulus: Modulus
 
 
 def _lattice_of(ar: ComplexArithmetic, modulus: Modulus) -> Lattice:
-    """Return the periods of a modulus in [0, 1]; for arrays, rounded from many digits."""
+    """Return the periods of a modulus in [0, 1]; for arrays, rounded from balls."""
     if not ar.is_array:
-        return lattice(ar, AnyModulus(ModulusKind.UNIT, modulus))
-    many = ManyDigits()
-    exact = in_many_digits(many, modulus)
-    return lattice(many, AnyModulus(ModulusKind.UNIT, exact)).rounded(ar)
+        return lattice(ar, reduced_modulus(ar, ModulusKind.UNIT, modulus))
+
+    def rounded(digits: int) -> Lattice:
+        many = complex_balls(digits)
+        exact = reduced_modulus(many, ModulusKind.UNIT, in_many_digits(many, modulus))
+        return lattice(many, exact).rounded(ar)
+
+    return decided("the periods of the modulus", rounded)
 
 
 def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
@@ -119,8 +125,8 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
     angle = ar.pi * 2 * coarse(coordinate_of(ar, half_turns * 0.5).rest)
     wave = ar.mpc(ar.cos(angle), ar.sin(angle)) * (1 - 2 * (parity % 2))
     value = wave * (turn * base_at(ar, inner, at, periods).value)
-    rest = growth - type(growth)(coarse(growth))
-    return ar.exp(coarse(growth)) * (value * (1 + coarse(rest)))
+    rest = growth - coarse(growth)
+    return value * (1 + coarse(rest)) * ar.exp(coarse(growth))
 
 
 _EIGHTH = {
@@ -139,7 +145,7 @@ def zeta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -
         bent = (at.x.total() + at.y.total()) / (1 + T * T)
         real, imag = 2 * ar.pi * T * bent, bent - coarse(at.y.rest)
     slope = slope_in_cell(ar, inner, at, periods)
-    return coarse(periods.scale) * (slope + ar.mpc(real, -2 * ar.pi * imag))
+    return (slope + ar.mpc(real, -2 * ar.pi * imag)) * coarse(periods.scale)
 
 
 def slope_in_cell(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> Complex:
@@ -192,9 +198,9 @@ def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Nu
         return _sines(ar, coarse(phase), coarse(height), t)
     if ij == "10":
         return _cosines(ar, phase, coarse(height), t)
-    low = coarse(height) < 0.25
+    low = ar.either(coarse(height) < 0.25)
     near_0 = ar.where(low, coarse(height), 0 * coarse(height))
-    plain = _even(ar, coarse(phase), near_0, t, alternating=ij[1] == "1")
+    plain = _series(ar, coarse(phase), near_0, t, alternating=ij[1] == "1")
     beyond = coarse(0.5 - height)
     rest = _sines(ar, coarse(phase), beyond, t) if ij == "01" else _cosines(ar, phase, beyond, t)
     rest = rest.mirrored(ar, True)  # half a period tau back: theta01 is then exp(-i pi z) theta11
@@ -206,62 +212,73 @@ def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Nu
 def _cosines(ar: ComplexArithmetic, phase: Fine, height: Numeric, t: Numeric) -> Base:
     """Return the series of theta10; next to its zero, theta11 half a period away."""
     here = coarse(phase)
-    middle = abs(here) < 0.25
+    middle = ar.either(abs(here) < 0.25)
     left = here < 0
     there = ar.where(left, coarse(0.5 + phase), coarse(0.5 - phase))
     value, slope = _sines(ar, there, height, t)
     beside = Base(ar.conj(value), -ar.conj(slope)).chosen(ar, left, Base(value, slope))
-    plain = _odd(ar, ar.where(middle, here, 0 * here), height, t, sines=False)
+    plain = _series(ar, ar.where(middle, here, 0 * here), height, t, odd=True)
     return beside.chosen(ar, middle, plain)
 
 
 def _sines(ar: ComplexArithmetic, phase: Numeric, height: Numeric, t: Numeric) -> Base:
     """Return the series of theta11."""
-    return _odd(ar, phase, height, t, sines=True)
+    return _series(ar, phase, height, t, odd=True, sines=True)
 
 
-def _odd(
-    ar: ComplexArithmetic, phase: Numeric, height: Numeric, t: Numeric, *, sines: bool
+def _series(
+    ar: ComplexArithmetic, phase: Numeric, height: Numeric, t: Numeric, **which: bool
 ) -> Base:
-    """Return 2 sum (-1)^n q^(n (n + 1)) sin (2n + 1) pi z, over exp(t height), and its slope.
-
-    Without `sines`, return the sum of cosines without the signs.
-    """
-    real = imag = slope_real = slope_imag = 0 * phase
-    for n in range(_terms(ar)):
-        near = (-1) ** (n * sines) * ar.exp(-(t * n) * (n + 1 - 2 * height))
-        drop, rate = ar.expm1(-(4 * n + 2) * t * height), (2 * n + 1) * ar.pi
-        both, apart = near * (2 + drop), -near * drop
-        sine, cosine = ar.sin(rate * phase), ar.cos(rate * phase)
-        across = both * sine, apart * cosine
-        along = both * cosine, -apart * sine
-        if not sines:
-            across, along = along, (-across[0], -across[1])
-        real, imag = real + across[0], imag + across[1]
-        slope_real, slope_imag = slope_real + rate * along[0], slope_imag + rate * along[1]
-    value = ar.mpc(real, imag)
-    if not ar.is_array and not value:
+    """Return a sum of `sums_in_cell` and its logarithmic derivative."""
+    value, slope = sums_in_cell(ar, phase, height, t, **which)
+    if not ar.is_array and ar.either(abs(value) == 0):
         return Base(value, ar.mpc(ar.inf, 0))
-    return Base(value, ar.mpc(slope_real, slope_imag) / value)
+    return Base(value, slope / value)
 
 
-def _even(
-    ar: ComplexArithmetic, phase: Numeric, height: Numeric, t: Numeric, *, alternating: bool
-) -> Base:
-    """Return 1 + 2 sum (+-1)^n q^(n^2) cos 2 n pi z, and its slope, for a height up to 1/4."""
-    real, imag, slope_real, slope_imag = 1 + 0 * phase, 0 * phase, 0 * phase, 0 * phase
-    for n in range(1, _terms(ar)):
-        near = (-1) ** (n * alternating) * ar.exp(-(t * n) * (n - 2 * height))
-        drop, rate = ar.expm1(-4 * n * t * height), 2 * n * ar.pi
+def sums_in_cell(
+    ar: ComplexArithmetic,
+    phase: Numeric,
+    height: Numeric,
+    t: Numeric,
+    *,
+    odd: bool = False,
+    sines: bool = False,
+    alternating: bool = False,
+) -> tuple[Complex, Complex]:
+    """Return 1 + 2 sum (+-1)^n q^(n^2) cos 2n pi z, and its slope, for a height up to 1/4.
+
+    For an odd function, return 2 sum q^(n (n + 1)) cos (2n + 1) pi z over exp(t height).  With
+    `sines`, cosines become sines, and signs alternate.  Heights are then from -1/20 to 11/20.
+
+    Let m be the order, 2n or 2n + 1.  A sine is at most m times the first sine, and `apart` at most
+    m times its first factor.  So a left-out term of the slope is at most these two first factors
+    times 2 pi m^3 exp(-t (n - 1/2)^2).  Each is less than half of the one before.
+    """
+    real, imag, slope_real, slope_imag = 0 * phase if odd else 1 + 0 * phase, *[0 * phase] * 3
+    first, terms = 1 if odd else 2, _terms(ar)
+    for order in range(first, 2 * terms, 2):
+        n, rate = order // 2, order * ar.pi
+        near = (-1) ** (n * (sines or alternating)) * ar.exp(-(t * n) * (n + odd - 2 * height))
+        drop = ar.expm1(-2 * order * t * height)
         both, apart = near * (2 + drop), -near * drop
-        sine, cosine = ar.sin(rate * phase), ar.cos(rate * phase)
-        real, imag = real + both * cosine, imag - apart * sine
-        slope_real, slope_imag = (
-            slope_real - rate * (both * sine),
-            slope_imag - rate * (apart * cosine),
-        )
-    value = ar.mpc(real, imag)
-    return Base(value, ar.mpc(slope_real, slope_imag) / value)
+        wave, other = ar.sin(rate * phase), ar.cos(rate * phase)
+        if not sines:
+            wave, other = other, -wave
+        real, imag = real + both * wave, imag + apart * other
+        slope_real = slope_real + rate * (both * other)
+        slope_imag = slope_imag - rate * (apart * wave)
+
+    def widened(x: Numeric, sine: bool, apart: bool) -> Numeric:
+        def left_out() -> tuple[Numeric, ...]:
+            rest = 13 * (2 * terms + 1) ** 3 * ar.exp(-t * (terms - 0.5) ** 2)
+            sines = [ar.sin(first * ar.pi * phase)] * sine
+            return rest, *sines, *[ar.expm1(-2 * first * t * height)] * apart
+
+        return ar.widened(x, left_out, lambda *sizes: math.prod(sizes), values_only=True)
+
+    value = ar.mpc(widened(real, sines, False), widened(imag, not sines, True))
+    return value, ar.mpc(widened(slope_real, not sines, False), widened(slope_imag, sines, True))
 
 
 def _terms(ar: ComplexArithmetic) -> int:

@@ -21,18 +21,18 @@ periods is computed once, in many digits.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, Numeric
 from .any_modulus import ModulusKind
 from .complex_theta import base_at, inner_name, rises, slope_in_cell
-from .many_digits import ManyDigits
 from .periods import Complex, Fine, Lattice, Place, coarse, fine_whole, place_of
 
 
 class Parameter(NamedTuple):
-    """A parameter v and the constants of Omega_ij and Pi_ij, in a context or in doubles."""
+    """A parameter v and the constants of Omega_ij and Pi_ij, in many digits or in doubles."""
 
     ij: str
     v: Complex
@@ -63,8 +63,8 @@ class Parameter(NamedTuple):
         )
 
 
-def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Parameter:
-    """Return Omega_ij and Pi_ij of a parameter, with constants in an mpmath context.
+def parameter(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Parameter:
+    """Return Omega_ij and Pi_ij of a parameter, with constants in balls or an mpmath context.
 
     At the pole of Z_ij (v = 0 for the function 11) the constants of Pi are NaN.
     """
@@ -73,17 +73,17 @@ def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Paramete
     r, s = at.x.rest, at.y.rest
     height = s if periods.circular else r
     if inner == "11" and not (r or s):
-        none = ar.mpc(ar.nan, ar.nan)
+        none = complex(math.nan, math.nan)
         return Parameter(ij, v, periods, at, none, none, none, 0, 0)
     whole = slope_in_cell(ar, inner, at, periods)
     t, T = periods.steepness, periods.ratio
     bell = ar.mpc(0, 0) if periods.circular else ar.mpc(2 * t * r, 2 * ar.pi * s)
     rise = ar.mpc(0, ar.pi) if periods.circular else ar.mpc(-t, 0)
     side = int(ar.sign(height)) if rises(inner, periods) else 0
-    if abs(whole + bell) < abs(whole + bell + side * rise):
+    if ar.either(abs(whole + bell) < abs(whole + bell + side * rise)):
         side = 0  # next to v = 0, where the rises on both sides cancel
     slope = whole + bell + side * rise
-    up = ar.mpc(0, T) * whole + 2 * ar.pi * ar.mpc(-T * s, r)
+    up = ar.mpc(0, T) * whole + ar.mpc(-T * s, r) * (2 * ar.pi)
     turns = int(ar.nint(ar.im(whole) / ar.pi))
     along = whole - ar.mpc(0, turns * ar.pi)
     return Parameter(ij, v, periods, at, slope, along, up, turns, side)
@@ -108,7 +108,7 @@ def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     (r, s), (a, b) = at.coarse_rests(), v.coarse_rests()
     height, other = (u.y, v.y) if given.periods.circular else (u.x, v.x)
     bends = given.periods.kind is ModulusKind.LARGE
-    rise, turns = cell.rise, cell.half_turns(at)
+    rise, turns = cell.rise, cell.half_turns(ar, at)
     if bends or not given.periods.circular:
         rise = rise + 2 * (height.rest * other.rest)
     real, imag = coarse(given.periods.steepness) * coarse(rise), cell.phase
@@ -136,7 +136,7 @@ def pi_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     height = (u.y if given.periods.circular else u.x).rest
     rise = cell.rise + given.side * height
     phase = cell.phase + given.side * (-r if given.periods.circular else s)
-    turns = cell.half_turns(at) + 2 * given.at.x.whole * at.y.whole + given.turns * at.x.whole
+    turns = cell.half_turns(ar, at) + 2 * given.at.x.whole * at.y.whole + given.turns * at.x.whole
     within = ar.mpc(t * coarse(rise), ar.pi * (phase + turns))
     within = within + (ar.mpc(r, T * s) * given.slope + cell.logarithm)
     return at.x.whole * given.along + (at.y.whole * given.up + within)
@@ -177,25 +177,21 @@ class _Cell:
         """Return the angle of the series at a place; on a line of zeros, the mean of both sides."""
         angle = ar.atan2(ar.im(value), ar.re(value))
         if self.inner == "11":  # from -pi/2 to 3 pi/2 above the line of zeros
-            side = 1 - 2 * (coarse(at.y.rest) < 0)
+            side = ar.where(coarse(at.y.rest) < 0, -1, 1)
             angle = side * (ar.atan2(-ar.re(value), side * ar.im(value)) + ar.pi / 2)
         if self.inner[0] == "1":
             angle = ar.where(coarse(at.y.rest) == 0, 0 * angle, angle)
         return angle
 
-    def half_turns(self, at: Place) -> Numeric:
+    def half_turns(self, ar: ComplexArithmetic, at: Place) -> Numeric:
         """Return the half turns of the difference, including the whole periods of u and v."""
         (less, more), v = self.places, self.given.at
-        turns = -less.y.whole * (at.x.whole - v.x.whole) + more.y.whole * (at.x.whole + v.x.whole)
+        turns = more.y.whole * (at.x.whole + v.x.whole) - less.y.whole * (at.x.whole - v.x.whole)
+        twice = 2 * turns
         if self.inner[1] == "1":
-            turns = turns + (less.y.whole - more.y.whole) / 2 - v.y.whole
+            twice = twice + (less.y.whole - more.y.whole) - 2 * v.y.whole
         if self.inner[0] == "1":
-            sides = [_sign(coarse(end.y.rest)) for end in (less, more)]
+            sides = [ar.sign(coarse(end.y.rest)) for end in (less, more)]
             across = sides[0] * (less.x.whole + at.x.whole - v.x.whole)
-            turns = turns - (across - sides[1] * (more.x.whole + at.x.whole + v.x.whole)) / 2
-        return turns
-
-
-def _sign(x: Numeric) -> Numeric:
-    """Return -1, 0 or 1."""
-    return (x > 0) * 1 - (x < 0) * 1
+            twice = twice - (across - sides[1] * (more.x.whole + at.x.whole + v.x.whole))
+        return ar.convert(twice) / 2

@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Numeric
-from ..arithmetic.rounding import triple
-from .any_modulus import AnyModulus, ModulusKind
+from .any_modulus import AnyModulus, ModulusKind, reduced_modulus
 from .complete import complete_k
 from .modulus import Modulus
 from .periods import Complex, Periods, reduced, whole_and_rest
@@ -45,7 +44,7 @@ def jacobi(ar: FunctionArithmetic, u: Numeric, modulus: Modulus) -> Jacobi:
         return Jacobi(*jacobi_of_arrays(u, modulus))
     u = ar.convert(u)
     if ar.im(u):
-        return complex_jacobi(ar, u, AnyModulus(ModulusKind.UNIT, modulus))
+        return complex_jacobi(ar, u, reduced_modulus(ar, ModulusKind.UNIT, modulus))
     u = ar.re(u)
     if not modulus.k_prime:
         am = 2 * ar.atan2(ar.tanh(u / 2), 1 + 0 * u)
@@ -88,17 +87,15 @@ def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus, series: Thet
 
 @in_arithmetic
 def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jacobi:
-    """Return am, sn, cn, dn of complex u; arrays take one modulus, given in many digits.
+    """Return am, sn, cn, dn of complex u for one modulus, for arrays in doubles.
 
     Beyond its branch points, the poles next to the real axis, am is NaN.  For a modulus in [0, 1]
     this means |Im u| > K'.  For k < 1 and imaginary k, am is unwrapped.  For k > 1 its real part
     stays within a quarter of a turn.
     """
     k, k_prime, _ = given.modulus
-    am, s, c, d = _real(ar, ar.re(u), given.modulus, given.stretch)[0]
-    (_, s1, c1, d1), turns = _real(ar, ar.im(u), Modulus(k_prime, k), given.stretch)
-    if ar.is_array:
-        k, k_prime = float(k), float(k_prime)
+    (am, s, c, d), _ = _real(ar, ar.re(u), given.modulus, given.scale)
+    (_, s1, c1, d1), turns = _real(ar, ar.im(u), Modulus(k_prime, k), given.across)
     if given.kind is ModulusKind.IMAGINARY:
         s, c, d = c / d, -k_prime * s / d, k_prime / d
     slant, ratio = k * s * s1, d1 / c1
@@ -108,31 +105,29 @@ def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jaco
     cn = ar.mpc(c, -s * d * s1 * ratio) / below
     dn = ar.mpc(d * d1, -k * c * lift) / below
     size = ar.sqrt(c1 * c1 + slant * slant)
-    rise = d * s1 / size
+    rise, above = d * s1 / size, abs(c1)  # am is defined for c1 > 0
     if given.kind is ModulusKind.LARGE:
-        angle, rise = ar.atan2(k * s, d * c1), k * c * s1 / size
-        sn, cn, dn = k * sn, dn, cn
+        angle, rise = ar.atan2(k * s, d * above), k * c * s1 / size
+        sn, cn, dn = sn * k, dn, cn
     elif given.kind is ModulusKind.IMAGINARY:
-        angle = _near(ar, ar.atan2(-c * c1, s * d1), am)
+        angle = _near(ar, ar.atan2(-c * above, s * d1), am)
         sn, cn, dn = -cn, sn, dn / k_prime
     else:
-        angle = _near(ar, ar.atan2(s * d1, c * c1), am)
+        angle = _near(ar, ar.atan2(s * d1, c * above), am)
     am = ar.where(turns == 0, ar.mpc(angle, ar.asinh(rise)), ar.mpc(ar.nan, ar.nan))
     return Jacobi(am, sn, cn, dn)
 
 
 def _real(
-    ar: ComplexArithmetic, u: Numeric, modulus: Modulus, stretch: Numeric
+    ar: ComplexArithmetic, u: Numeric, modulus: Modulus, rate: Numeric
 ) -> tuple[Jacobi, Numeric]:
-    """Return the functions of real numbers times a factor, and the number of whole periods."""
-    k, k_prime, _ = modulus
-    rate = stretch / (2 * complete_k(k.context, k_prime)) if k_prime else 0 * k
-    if not ar.is_array:
-        return jacobi(ar, stretch * u, modulus), ar.nint(rate * u)
+    """Return the functions of real numbers, and the number of whole periods; see `AnyModulus`."""
+    if not ar.is_array and ar.either(u == 0):  # exactly, as the signs of zeros decide
+        return Jacobi(u, u, 1 + u, 1 + u), 0 * u
     if not rate:
-        return jacobi(ar, u, Modulus(float(k), float(k_prime))), 0 * u
-    x = reduced(u, triple(rate))
-    return jacobi_at(ar, x, Modulus(float(k), float(k_prime))), x.turns
+        return jacobi(ar, u, modulus), 0 * u
+    x = reduced(u, rate) if ar.is_array else whole_and_rest(ar, u * rate)
+    return jacobi_at(ar, x, modulus), x.turns
 
 
 def _near(ar: ComplexArithmetic, angle: Numeric, am: Numeric) -> Numeric:

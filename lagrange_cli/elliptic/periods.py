@@ -13,16 +13,15 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import triple
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind
-from .complete import complete_k
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
     from ..arithmetic.rounding import Triple
     from ..arithmetic.types import Array
-    from .many_digits import ManyDigits
 
 INDICES = ("01", "00", "11", "10")
 """The indices of the four theta functions, in the order of the sources."""
@@ -117,6 +116,15 @@ class Coordinate(NamedTuple):
 
     whole: Numeric
     rest: Fine
+    number: Numeric = None
+    """The coordinate in units of the argument, exactly; None for arrays, whose rests are equal
+    for equal numbers."""
+
+    def rest_beside(self, other: Coordinate, sign: int) -> Fine:
+        """Return the sum or the difference of two rests, exactly 0 if the numbers cancel."""
+        rest = self.rest + sign * other.rest
+        cancels = self.number is not None and self.number + sign * other.number == 0
+        return 0 * rest if cancels else rest
 
     def exactly(self) -> Fine:
         """Return the sum with all its digits."""
@@ -140,7 +148,7 @@ class Place(NamedTuple):
     def within(self) -> Place:
         """Return the place less its whole periods."""
         none = 0 * self.x.whole
-        return Place(Coordinate(none, self.x.rest), Coordinate(none, self.y.rest))
+        return Place(*(coordinate._replace(whole=none) for coordinate in self))
 
     def shifted(self, ar: FunctionArithmetic, by: Place, sign: int) -> Place:
         """Return the place of the sum or the difference of the rests of two places.
@@ -148,11 +156,11 @@ class Place(NamedTuple):
         Its rest along 2K may be slightly more than 1/2, so that neighbouring places are seldom in
         different cells.
         """
-        x, y = (a.rest + sign * b.rest for a, b in zip(self, by, strict=True))
+        x, y = (a.rest_beside(b, sign) for a, b in zip(self, by, strict=True))
         across = coordinate_of(ar, x)
-        inside = abs(coarse(x)) < _WIDE
+        inside = ar.either(abs(coarse(x)) < _WIDE)
         whole = ar.where(inside, 0 * across.whole, across.whole)
-        return Place(Coordinate(whole, x - fine_whole(Coordinate(whole, x))), coordinate_of(ar, y))
+        return Place(Coordinate(whole, x - whole), coordinate_of(ar, y))
 
 
 _WIDE = 0.52
@@ -170,9 +178,8 @@ class Lattice(NamedTuple):
     ratio: Numeric
     """K'/K."""
     scale: Numeric
-    """Half periods along 2K per unit of the argument, stretch/(2K); a `Triple` in doubles."""
+    """See `AnyModulus`."""
     across: Numeric
-    """Half periods along 2iK' per unit of the argument, stretch/(2K')."""
     bend: Fine
     """1/(1 + (K'/K)^2)."""
     lift: Fine
@@ -188,33 +195,27 @@ class Lattice(NamedTuple):
         return self._replace(ratio=float(self.ratio), scale=scale, across=across, **rests)
 
 
-def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
+def lattice(ar: FunctionArithmetic, given: AnyModulus) -> Lattice:
     """Return the periods of a modulus; raise LagtopError for k = 0 and 1, which have only one."""
-    k, k_prime, _ = given.modulus
-    if not (k and k_prime):
+    if not (given.scale and given.across):
         raise LagtopError("k must not be 0 or 1 for theta functions of complex arguments", "k")
-    K, K_prime = complete_k(ar, k_prime), complete_k(ar, k)
-    circular = bool(K <= K_prime)
-    ratio = K_prime / K
-    return Lattice(
-        given.kind,
-        circular,
-        ar.pi * (ratio if circular else 1 / ratio),
-        ratio,
-        given.stretch / (2 * K),
-        given.stretch / (2 * K_prime),
-        1 / (1 + ratio * ratio),
-        ar.pi * ratio,
-    )
+    circular = not ar.either(given.scale < given.across)  # either series serves for K = K'
+    ratio = given.scale / given.across
+    steepness = ar.pi * (ratio if circular else 1 / ratio)
+    if not steepness > 3:
+        raise TooFewDigitsError  # the bounds on the truncation errors assume it
+    bend, lift = 1 / (1 + ratio * ratio), ar.pi * ratio
+    return Lattice(given.kind, circular, steepness, ratio, given.scale, given.across, bend, lift)
 
 
 def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
     """Return the place of complex numbers; arrays keep their digits far from 0."""
     if not ar.is_array:
-        return Place(
-            coordinate_of(ar, ar.re(u) * periods.scale),
-            coordinate_of(ar, ar.im(u) * periods.across),
+        x, y = (
+            coordinate_of(ar, part(u) * rate)
+            for part, rate in ((ar.re, periods.scale), (ar.im, periods.across))
         )
+        return Place(x._replace(number=u.real), y._replace(number=u.imag))
     from ..arithmetic.double_double import DoubleDouble  # start-up
 
     parts = (reduced(ar.re(u), periods.scale), reduced(ar.im(u), periods.across))
@@ -224,7 +225,7 @@ def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
 def coordinate_of(ar: FunctionArithmetic, x: Fine) -> Coordinate:
     """Split a number of periods into whole periods and a rest."""
     whole = ar.nint(coarse(x))
-    return Coordinate(whole, x - type(x)(whole))
+    return Coordinate(whole, x - whole)
 
 
 def fine(ar: FunctionArithmetic, value: Numeric) -> Fine:
@@ -238,7 +239,7 @@ def fine(ar: FunctionArithmetic, value: Numeric) -> Fine:
 
 def fine_whole(coordinate: Coordinate) -> Fine:
     """Return the whole periods of a coordinate in the type of rests."""
-    return type(coordinate.rest)(coordinate.whole)
+    return coordinate.rest * 0 + coordinate.whole
 
 
 def coarse(x: Fine) -> Numeric:

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.points import ExactComplex
 from .any_modulus import AnyModulus, ModulusKind
-from .complete import complete_k
 from .modulus import ModulusInput
 
 if TYPE_CHECKING:
+    from ..arithmetic.complex_balls import ComplexBalls
     from ..arithmetic.points import Points
     from ..arithmetic.protocol import Numeric
     from ..arithmetic.types import Array
-    from .many_digits import ManyDigits
 
 THIRD = ("01", "00", "11")
 """The indices of the functions of an argument and a parameter."""
@@ -157,28 +156,33 @@ _RIGHT = ModulusInput("modular_angle", Fraction(45))
 
 
 class Known(NamedTuple):
-    """Parts that may be exactly 0, and columns that are NaN."""
+    """Parts that are known to be 0 or multiples of a quarter turn, and columns that are NaN."""
 
-    parts: frozenset[str]
+    zeros: frozenset[str]
+    turns: frozenset[str]
+    """Parts that are whole multiples of a quarter turn."""
     poles: frozenset[str]
-    turns: frozenset[str] = frozenset()
-    """Parts that are whole multiples of a quarter turn, up to rounding."""
 
-    def names(self) -> set[str]:
-        """Return all parts that may be 0 or NaN."""
-        split = {f"{name}{part}" for name in self.poles for part in ("", "_re", "_im")}
-        return split | self.parts | self.turns
+    def values(self) -> dict[str, float]:
+        """Return the parts that are 0 or NaN."""
+        poles = [f"{name}{part}" for name in self.poles for part in ("", "_re", "_im")]
+        return dict.fromkeys(self.zeros, 0.0) | dict.fromkeys(poles, math.nan)
 
-    def cleared(self, ar: ManyDigits, parts: dict[str, Numeric]) -> dict[str, Numeric]:
-        """Return all parts, with 0 for `turns` that are 0 up to rounding."""
-        trace = ar.mpf(10) ** (-ar.dps // 2)
-        none = {name for name in self.turns & parts.keys() if abs(parts[name]) < trace}
-        return {name: 0 * part if name in none else part for name, part in parts.items()}
+    def settled(self, ar: ComplexBalls, parts: dict[str, Numeric]) -> dict[str, Numeric]:
+        """Return all parts, with the multiple of a quarter turn for each of `turns`."""
+        turns = self.turns & parts.keys() - self.values().keys()
+        found = {name: ar.nint(2 * parts[name] / ar.pi) * ar.pi / 2 for name in turns}
+        return parts | found
 
 
-def known_parts(u: ExactComplex, request: FunctionRequest, given: AnyModulus) -> Known:
-    """Return the parts that are exactly 0 at u, and the poles."""
-    v, am, kind, zeros = request.parameter, request.am, given.kind, "u_re u_im"
+def known_parts(
+    u: ExactComplex, request: FunctionRequest, given: AnyModulus, *, beyond: bool
+) -> Known:
+    """Return the parts that are known exactly at u, and the poles.
+
+    Set `beyond` if u lies beyond the branch points of am.
+    """
+    v, am, kind, zeros = request.parameter, request.am, given.kind, ""
     large, along, upright = kind is ModulusKind.LARGE, not u.imag, not u.real
     if along:
         zeros += f" {am}_im sn_im cn_im dn_im"
@@ -189,24 +193,24 @@ def known_parts(u: ExactComplex, request: FunctionRequest, given: AnyModulus) ->
         zeros += "" if large else " zeta01_re zeta00_re zeta11_re zeta10_re theta01_im theta00_im"
         zeros += " theta11_re theta10_im" if kind is ModulusKind.UNIT else ""
     if along and upright:
-        zeros += f" u {am} sn zeta01_re zeta01_im zeta00_re zeta00_im zeta10_re zeta10_im"
+        zeros += f" {am} sn zeta01_re zeta01_im zeta00_re zeta00_im zeta10_re zeta10_im"
         zeros += " theta11_re theta11_im"
     if not given.modulus.k:
         zeros += " dn_im"
-    zeros += _third("pi", u, v) + ("" if large and any(u) and any(v) else _third("omega", u, v))
+    turns = _third("pi", u, v) + ("" if large and any(u) and any(v) else _third("omega", u, v))
     poles = {"zeta11"} if along and upright else set()
     if not any(v):
         poles.add("pi11")
     if v in (u, ExactComplex(-u.real, -u.imag)):
         poles |= {"omega11", "pi11"}
-    if _beyond(u, given):
+    if beyond:
         poles.add(am)
-    turns = frozenset() if large else _turns(u, v, request.modulus)
-    return Known(frozenset(zeros.split()), frozenset(poles), turns)
+    also = frozenset() if large else _turns(u, v, request.modulus)
+    return Known(frozenset(zeros.split()), also | frozenset(turns.split()), frozenset(poles))
 
 
 def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
-    """Return the parts of Omega or Pi that vanish by symmetry, up to half turns."""
+    """Return the parts of Omega or Pi that vanish by symmetry, up to quarter turns."""
     parts = ""
     if not (any(u) and any(v)):
         parts = "re im"
@@ -240,12 +244,3 @@ def _turns(
     if even and on_diagonals:
         turns |= {f"pi{ij}_{'im' if straight else 're'}" for ij in (even, "11")}
     return frozenset(turns)
-
-
-def _beyond(u: ExactComplex, given: AnyModulus) -> bool:
-    """Return whether u lies beyond the branch points of am."""
-    k = given.modulus.k
-    if not k:
-        return False
-    ar = k.context
-    return bool(abs(ar.convert(u.imag)) * given.stretch > complete_k(ar, k))

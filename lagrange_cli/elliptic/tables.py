@@ -1,8 +1,8 @@
 """One engine for the tables of functions; each table declares its columns.
 
-With N digits, every number of a real function is rounded from a proof.  Numbers of complex
-functions are rounded if two precisions agree.  In doubles a table is computed in arrays.  A short
-table of real functions is computed as enclosures, which takes less time than loading NumPy.
+With N digits, every number is rounded from an enclosure, which proves it.  In doubles a table is
+computed in arrays.  A short table of real functions is computed as enclosures, which takes less
+time than loading NumPy.
 """
 
 from __future__ import annotations
@@ -43,13 +43,23 @@ _FEW = 24
 class ProvedNumbers:
     """Doubles, or numbers with N significant digits, from enclosures of any precision."""
 
-    def __init__(self, digits: int | None = None, *, short: bool = False) -> None:
-        """Take the digits; a `short` search raises TooFewDigitsError if arrays are quicker."""
+    def __init__(
+        self,
+        digits: int | None = None,
+        *,
+        short: bool = False,
+        arithmetic: Callable[[int], Any] = balls,
+    ) -> None:
+        """Take the digits; a `short` search raises TooFewDigitsError if arrays are quicker.
+
+        `arithmetic` returns the balls with some number of digits, real or complex.
+        """
         self.digits, self.most = digits, _MOST_FOR_DOUBLES if short else MOST_DIGITS
+        self.arithmetic = arithmetic
 
     def of(
         self,
-        compute: Callable[[Balls], Mapping[str, Any]],
+        compute: Callable[[Any], Mapping[str, Any]],
         known: Mapping[str, float] = MappingProxyType({}),
         more: int = 0,
     ) -> dict[str, Any]:
@@ -63,7 +73,7 @@ class ProvedNumbers:
             if working > self.most + more:
                 raise TooFewDigitsError
             with suppress(TooFewDigitsError):
-                values = compute(balls(working))
+                values = compute(self.arithmetic(working))
                 for name in [name for name in values if name not in found]:
                     value = None if values[name] is None else known.get(name, values[name])
                     try:

@@ -103,7 +103,7 @@ def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Comp
 
     def function(x: Complex, *parts: Numeric) -> Complex:
         if is_complex(ar, x):
-            from .complex_theta import theta_of_modulus  # loads NumPy and mpmath
+            from .complex_theta import theta_of_modulus  # start-up
 
             return theta_of_modulus(ar, ij, x, Modulus(*parts))
         return theta_at(ar, ij, whole_and_rest(ar, ar.re(x)), series_for(ar, Modulus(*parts)))
@@ -121,7 +121,7 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
 
     def function(v: Complex, *parts: Numeric) -> Complex:
         if is_complex(ar, v):
-            from .complex_theta import zeta_of_modulus  # loads NumPy and mpmath
+            from .complex_theta import zeta_of_modulus  # start-up
 
             return zeta_of_modulus(ar, ij, v, Modulus(*parts))
         series = series_for(ar, Modulus(*parts))

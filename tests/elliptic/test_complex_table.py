@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
 import random
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
 import mpmath
 import pytest
+from arb_balls import exact_arb
 from conftest import Lagtop
-from function_judge import ComplexJudge, complex_units
+from flint import arb
+from function_judge import STEPS, ComplexJudge, complex_units
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import parse_complex
@@ -60,6 +64,40 @@ def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
         for name in row
         if name.endswith("_re") and row[name] is not None
     }
+
+
+LONG = "0.71828182845904523536028747135266249775724709369995"
+
+
+@pytest.mark.parametrize("k", ["0.3", "0.95", "0.8i", "1.5"])
+@pytest.mark.parametrize(
+    ("u", "v"),
+    [
+        ("-4.1-1.3i", "0.2+0.7i"),
+        ("1e-9+2.5i", "1000.25-0.5i"),
+        (f"0.3+{LONG}i", f"-1.4+{LONG}i"),
+        (f"-{LONG}+0.4i", f"{LONG}-2i"),
+    ],
+)
+def test_all_digits_of_every_column(k: str, u: str, v: str, lagtop: Lagtop) -> None:
+    """Each is rounded from Arb's; equal parts of u and v put u - v or u + v on an axis."""
+    args = f"jacobi --k {k} --rad --u={u} --param={v} --digits 25 --format json"
+    shown = lagtop(*args.split(), "--functions", "am,theta,zeta,omega,pi").stdout
+    (row,) = json.loads(shown, parse_float=str)
+    judge, names = ComplexJudge(parse_complex(k)), set()  # type: ignore[arg-type]
+    for name, exact in judge.columns(parse_complex(u), parse_complex(v)):  # type: ignore[arg-type]
+        column, step = f"{name}_rad" if name == "am" else name, STEPS.get(name.rstrip("01"), 0)
+        for part in ("real", "imag"):
+            text = row[f"{column}_{part[:2]}"]
+            error = exact_arb(text or 0) - getattr(exact.value, part)
+            if turn := getattr(complex(step), part):
+                whole = arb.pi() * round(turn / math.pi)
+                error -= whole * (error / whole + exact_arb("0.5")).floor()
+            if text is not None:
+                names.add(column)
+                unit = Decimal(f"1e{Decimal(text).adjusted() - 24}")
+                assert abs(error) < exact_arb(unit) * 0.500001, (column, part)
+    assert len(names) >= 14
 
 
 @pytest.mark.slow

@@ -20,6 +20,7 @@ from flint import acb, arb
 import lagrange_cli.elliptic.third_kind as third_kinds
 from lagrange_cli.arithmetic.ball import Ball
 from lagrange_cli.arithmetic.balls import Balls
+from lagrange_cli.arithmetic.complex_balls import ComplexBalls
 from lagrange_cli.arithmetic.duals import Dual, Duals, independent
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import (
@@ -33,6 +34,7 @@ from lagrange_cli.elliptic.complete import (
     period_mean,
     place,
 )
+from lagrange_cli.elliptic.complex_theta import sums_in_cell
 from lagrange_cli.elliptic.modulus import exact_modulus, modulus
 from lagrange_cli.elliptic.periods import whole_and_rest
 from lagrange_cli.elliptic.theta import series_for, theta_at, zeta_at
@@ -43,11 +45,11 @@ STOPS = (1, 2, 3, 6, 15, 36, 90)
 SERIES_STOPS = STOPS[2:]
 """Where series are cut short: their steepness has to be known."""
 
-FULL = Balls(DIGITS)
+FULL = ComplexBalls(DIGITS)
 """Constants of series have all digits: their bounds would hide those of the series."""
 
 
-class Unwidened(Balls):
+class Unwidened(ComplexBalls):
     """Balls that forget what an iteration leaves out."""
 
     def widened(self, x: Ball, *_: Any, **__: Any) -> Ball:
@@ -65,7 +67,7 @@ def missed(
     With it they hold the truth, and `sharp` says whether their largest radius is small enough.
     """
     for stop in stops:
-        found = compute(Balls(DIGITS, stop))
+        found = compute(ComplexBalls(DIGITS, stop))
         assert all(map(holds, found, exact)), stop
         assert sharp(stop, max(x.radius for x in found)), stop  # or the bound would be no bound
     short = (compute(Unwidened(DIGITS, stop)) for stop in stops)
@@ -238,6 +240,47 @@ def test_a_theta_series_cut_short_holds_the_truth(name: str, ij: str) -> None:
             sharp = within(5, 4) if exact.is_finite() else lambda *_: True
             count += missed(partial(computed, k=k, x=x), [exact], sharp, SERIES_STOPS)
     assert count >= 3
+
+
+IN_CELL = {
+    "01": {"alternating": True},
+    "00": {},
+    "11": {"odd": True, "sines": True},
+    "10": {"odd": True},
+}
+"""The four sums of theta functions in a cell."""
+
+
+@pytest.mark.parametrize("ij", IN_CELL)
+def test_a_series_of_complex_arguments_cut_short_holds_the_truth(ij: str) -> None:
+    """Without the bounds, the value and the slope miss the truth."""
+    counts = [0, 0]
+    with arb_bits(2000):
+        for t in ("3.3", "9"):
+            tau = acb(0, exact_arb(t) / arb.pi())
+            for phase, height in (
+                ("0.1", "0.2"),
+                ("-0.45", "0.03"),
+                ("0.3", "0"),
+                ("0.37", "0.24"),
+            ):
+                z = acb(exact_arb(phase), exact_arb(height) * tau.imag)
+                size = (exact_arb(t) * (exact_arb(height) - exact_arb("0.25"))).exp()
+                for order in (0, 1):
+
+                    def compute(
+                        ar: Any, x: str = phase, y: str = height, t: str = t, order: int = order
+                    ) -> list[Ball]:
+                        at = [ar.convert(Fraction(part)) for part in (x, y, t)]
+                        found = sums_in_cell(ar, *at, **IN_CELL[ij])[order]
+                        return [found.real, found.imag]
+
+                    value = z.modular_theta(tau, order)[("11", "10", "00", "01").index(ij)]
+                    value = value / (size if ij[0] == "1" else 1)
+                    sharp = within(6, 6)
+                    exact = [value.real, value.imag]
+                    counts[order] += missed(compute, exact, sharp, SERIES_STOPS)
+    assert min(counts) >= 3
 
 
 def kind_at(ar: Balls, ij: str, k: str, y: str, *, imaginary: bool) -> Any:
