@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
+from ..output.destination import Output, write_bytes
 from ..output.terminal import with_progress
 from . import options as opt
 from .app import complain
@@ -25,7 +26,6 @@ from .top import INPUT, TopOptions, top_options, words
 if TYPE_CHECKING:
     from ..inputs.text_lines import Dialect
     from ..judge.compare import Comparison
-    from ..output.destination import Output
     from ..output.report import Report
 
 
@@ -115,7 +115,6 @@ def compare_command(
 
 def _draw(comparison: Comparison, limit: float | None, path: str) -> None:
     from ..judge.judgement import LIMIT
-    from ..output.destination import write_bytes
     from ..plot.reports import ErrorCurve, draw_errors
 
     found = comparison.convergence

@@ -6,8 +6,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import unit_in_radians
+from ..arithmetic.text import json_text, parse_number
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
+from ..output.destination import Output, write_bytes
 from ..output.terminal import with_progress
 from . import options as opt
 from .app import complain
@@ -24,37 +26,29 @@ from .top import UNCERTAIN, TopOptions, top_options, words
 if TYPE_CHECKING:
     from ..fits.parameters import KnownInputs
     from ..fits.record import Outcome
-    from ..fits.recording import Recording
     from ..fits.windows import WindowedFit
     from ..inputs.text_lines import Dialect
     from ..inputs.top import Top
     from ..inputs.units import System
-    from ..output.destination import Output
+
+
+def _positive(text: str) -> float:
+    number = float(parse_number(text))
+    if not number > 0:
+        raise LagtopError(f"must be > 0, got {number:g}")
+    return number
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
-    from ..arithmetic.text import parse_number
-
-    def positive(number: str) -> float:
-        value = float(parse_number(number))
-        if not value > 0:
-            raise LagtopError(f"must be > 0, got {value:g}")
-        return value
-
-    parts = [part.partition("=") for part in split_names(text)]
     if "=" not in text:
-        return positive(text)
-    return {name.strip(): positive(value) for name, _, value in parts}
+        return _positive(text)
+    parts = [part.partition("=") for part in split_names(text)]
+    return {name.strip(): _positive(value) for name, _, value in parts}
 
 
 def _parse_window(text: str) -> tuple[float, bool]:
     """Return the number of windows or their duration, and whether it is a duration."""
-    from ..arithmetic.text import parse_number
-
-    number = float(parse_number(text))
-    if not number > 0:
-        raise LagtopError(f"must be > 0, got {number:g}")
-    return number, not text.strip().isdigit()
+    return _positive(text), not text.strip().isdigit()
 
 
 @opt.command(
@@ -101,8 +95,10 @@ def fit_command(
     Known inputs are the inputs given as options, and the inputs of a scene that --fix names.
     With -o FILE.toml the fitted top is written as a scene, unless the fit fails.
     """
+    from ..fits.fit import fit_recordings
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings
+    from ..fits.report import scene_text
     from ..fits.windows import fit_windows, split
     from ..inputs.files import shown_path
     from ..inputs.seen import Conventions
@@ -122,38 +118,25 @@ def fit_command(
     known, system = _known(top, recordings[0].scene, fix or [])
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {out.path} holds one top, got {len(recordings)} recordings")
+    source = shown_path(recording)
     if window:
-        source = shown_path(recording)
         parts = split(recordings[0], window[0], is_time=window[1], where=source)
         windows = fit_windows(parts, known, source, radians=radians)
         _write_windows(windows, source, system, out)
         return
     groups = [recordings] if together else [[one] for one in recordings]
-    found = _fitted(groups, known, recording, radians)
+    found: list[Outcome] = []
+    for group in with_progress(groups, "fits"):
+        found += fit_recordings(group, known, source, radians=radians)
     failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
-        _write_scene(found[0], recording, system, scene_path)
+        write_bytes(scene_path, lambda: scene_text(found[0], recording, system).encode())
     if plot:
         _draw(found, plot)
-    _write(found, recording, system, out.replace(path="-") if scene_path else out)
+    _write(found, source, system, out.replace(path="-") if scene_path else out)
     if failed and scene_path:
         complain(f"Warning: {scene_path} is not written: the fit has failed")
     fail_for([outcome.failure() for outcome in failed], len(found), "fits")
-
-
-def _fitted(
-    groups: list[list[Recording]],
-    known: KnownInputs,
-    source: str,
-    radians: bool,
-) -> list[Outcome]:
-    from ..fits.fit import fit_recordings
-    from ..inputs.files import shown_path
-
-    found: list[Outcome] = []
-    for group in with_progress(groups, "fits"):
-        found += fit_recordings(group, known, shown_path(source), radians=radians)
-    return found
 
 
 def _known(
@@ -202,9 +185,7 @@ def _write(found: list[Outcome], source: str, system: System | None, out: Output
     from ..fits.report import fit_report, outcome_units
 
     if out.fmt in {"table", "markdown"}:
-        from ..inputs.files import shown_path
-
-        write_report(out, lambda: fit_report(found, shown_path(source), system))
+        write_report(out, lambda: fit_report(found, source, system))
         return
     records: list[dict[str, Any]] = [outcome.record() for outcome in found]
     if system is not None and out.fmt != "csv":
@@ -231,8 +212,6 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
     if out.fmt in {"table", "markdown"}:
         write_report(out, lambda: windows_report(found, source, system))
     elif out.fmt == "json":
-        from ..arithmetic.text import json_text
-
         out.text(f"{json_text(found.record())}\n")
     else:
         out.rows(rows, list(rows[0]))
@@ -242,16 +221,8 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
         raise SomeFailedError(f"{source}: no window is described: use shorter windows")
 
 
-def _write_scene(outcome: Outcome, source: str, system: System | None, path: str) -> None:
-    from ..fits.report import scene_text
-    from ..output.destination import write_bytes
-
-    write_bytes(path, lambda: scene_text(outcome, source, system).encode())
-
-
 def _draw(found: list[Outcome], path: str) -> None:
     from ..fits.report import curves_of
-    from ..output.destination import write_bytes
     from ..plot.reports import draw_fit
 
     curves = [curve for outcome in found for curve in curves_of(outcome)]
