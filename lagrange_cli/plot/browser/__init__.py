@@ -33,7 +33,6 @@ _IMPORT = re.compile(r'^import \{[^}]*\} from "([^"]+)";\n', re.MULTILINE)
 
 _TRACES = {LIGHT: "#472d7b", DARK: "#dde318"}
 """Colour of the path of the axis on each paper: an end of viridis, unlike the colours of angles."""
-UNITLESS = "in any consistent units"
 
 SMALLEST, LARGEST = 1e-30, 1e30
 """Limits of the sizes of inputs; other sizes would leave the range of doubles."""
@@ -57,10 +56,8 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     '<!DOCTYPE html>'
     """
     check_type("motion", motion, Motion)
-    units = [unit(name) for name in ("mass", "len", "time")]
     parts = {
         "style": _filled(_text_of("style.css"), {"light": _colours(LIGHT), "dark": _colours(DARK)}),
-        "units": "in {}, {} and {}".format(*units) if units[0] != "mass" else UNITLESS,
         "script": joined_script(page_data(motion, unit)),
     }
     hashes = {f"{name}_hash": _hash(parts[name]) for name in ("style", "script")}

@@ -141,9 +141,10 @@ export function gapsOf(start, facts) {
     betaPlusB: facts.overBottom ? pair(0) : below.times(psiRate.times(above).plus(b)),
     betaMinusB: touches ? pair(0) : above.times(psiRate.times(below).minus(b)),
   };
-  if (facts.separatrix || facts.steady) return withMomenta(start, facts, gaps);
-  nextToPoles(a, gaps);
-  if (gaps.aU3FromU1 < NEAR * a) nextToSeparatrix(start, gaps);
+  if (!facts.separatrix && !facts.steady) {
+    nextToPoles(a, gaps);
+    if (gaps.aU3FromU1 < NEAR * a) nextToSeparatrix(start, gaps);
+  }
   return withMomenta(start, facts, gaps);
 }
 

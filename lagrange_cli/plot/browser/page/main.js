@@ -8,7 +8,7 @@ import { motionOf } from "../numerics/motion.js";
 import {
   actOnKey, Clock, followHands, Inputs, linkOf, readLink, showLink,
 } from "./controls.js";
-import { showRecord, unitText, wordsOf } from "./record.js";
+import { showRecord, unitsText, unitText, wordsOf } from "./record.js";
 
 const FRAME = 1 / 60;  // seconds
 const FAST = 0.8;      // radians of spin per frame that the eye cannot follow
@@ -54,15 +54,13 @@ class Page {
 
   /** Offer the scene of the file and the shipped ones; a choice shows its first line and moves. */
   offerExamples() {
-    const { examples, reset, units, remark } = this.at;
+    const { examples, reset, remark } = this.at;
     const own = { remark: "", inputs: SCENE };
     const all = { "This scene": own, ...EXAMPLES };
     examples.append(...Object.keys(all).map((name) => new Option(name)));
-    const words = units.textContent;  // the units of the scene of the file
     const choose = () => {
       const scene = all[examples.value];
       this.units = scene === own ? UNITS : {};
-      units.textContent = scene === own ? words : "in any consistent units";
       remark.textContent = scene.remark;
       this.camera.reset();
       this.show(scene.inputs, true);
@@ -128,6 +126,7 @@ class Page {
     if (anew) this.inputs.rescale(scene);
     else this.inputs.show(scene);
     this.inputs.nameUnits(this.units);
+    this.at.units.textContent = unitsText(this.units);
     const [title, text] = wordsOf(this.motion, this.units);
     if (this.at.title.textContent !== title) this.at.title.textContent = title;
     this.at.words.textContent = text;

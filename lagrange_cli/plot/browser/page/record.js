@@ -36,6 +36,11 @@ export function unitText(unit, units) {
   return text === unit && !unit.startsWith("rad") ? "" : text;
 }
 
+/** The units of a scene in words. */
+export function unitsText({ mass = "mass", len, time }) {
+  return mass === "mass" ? "in any consistent units" : `in ${mass}, ${len} and ${time}`;
+}
+
 /** A row of a key, which can be selected, or of a group of keys, with one cell. */
 function rowOf([name, ...cells], title) {
   const row = document.createElement("tr");
