@@ -25,7 +25,7 @@ from ..motion.solve import Motion, solve
 from ..output.terminal import Progress, silent
 from ..sweeps.results import TEXTS, ResultColumn, Results
 from .roots import roots
-from .search import Scan, Search, condition_texts, read_unknown, scan_of, search_of
+from .search import Condition, Scan, Search, condition_texts, read_unknown, scan_of, search_of
 
 _SWEPT = 2.0**-48
 """Bound of the relative error of a number of a sweep."""
@@ -101,8 +101,9 @@ def find_tops(
     motions, broken = [], None
     for point in points:
         motion = solve(search.top(point))
-        record = record_in_range(motion, radians=search.radians, keys=search.conditions.keys)[0]
-        fault = search.conditions.broken_by(record)
+        keys = list(dict.fromkeys(condition.key for condition in search.conditions))
+        record = record_in_range(motion, radians=search.radians, keys=keys)[0]
+        fault = search.broken_by(record)
         broken = broken or fault
         if fault is None:
             motions.append(motion)
@@ -142,7 +143,7 @@ def _looked(grid: Scan) -> str:
     return f"scanned {ranges} at {grid.shape[0]} values{each}: {caution}"
 
 
-def _why(grid: Scan, count: int, broken: str | None) -> str:
+def _why(grid: Scan, count: int, broken: Condition | None) -> str:
     """Return why nothing was found: the nearest number, or a condition that all solutions break."""
     search, wanted = grid.search, grid.search.target_text()
     if broken is not None:
@@ -153,8 +154,8 @@ def _why(grid: Scan, count: int, broken: str | None) -> str:
     size = np.maximum(np.abs(search.targets), np.ptp(grid.numbers[known], axis=0))
     off = np.abs(grid.numbers - search.targets) / np.where(size > 0, size, 1.0)
     nearest = int(np.nanargmin(np.where(known, np.linalg.norm(off, axis=1), np.nan)))
-    found = zip(search.conditions.numbers.items(), grid.numbers[nearest].tolist(), strict=True)
-    reached = ", ".join(f"{key} = {_short(value, target)}" for (key, target), value in found)
+    found = zip(search.keys, grid.numbers[nearest].tolist(), search.targets.tolist(), strict=True)
+    reached = ", ".join(f"{key} = {_short(value, target)}" for key, value, target in found)
     unknowns = zip(search.spans, grid.values[nearest], strict=True)
     where = ", ".join(f"{name} = {value:.6g}" for name, value in unknowns)
     return f"nearest to {wanted} is {reached} at {where}"

@@ -31,7 +31,7 @@ from ..inputs.top import Top
 from ..motion.quantity import unit_name
 from ..motion.solve import Motion, solve
 from .implied_body import completed_body
-from .search import read_conditions
+from .search import read_conditions, targets_of
 
 if TYPE_CHECKING:
     from ..inputs.units import System
@@ -230,15 +230,16 @@ def _numbers(seen: Sequence[str], radians: bool, system: System | None) -> Mappi
     """Return the numbers by key.  Raises LagtopError for a wrong set of keys."""
     conditions = read_conditions(seen, radians=radians, system=system)
     needed = {unit_name(key, radians=radians) for key in _SEEN}
-    given = set(conditions.numbers)
-    if conditions.words or conditions.bounds or not needed <= given <= needed | {_SPIN}:
+    numbers = targets_of(conditions)
+    is_whole = needed <= numbers.keys() <= needed | {_SPIN}
+    if not is_whole or len(numbers) < len(conditions):
         wanted = "=.. ".join([*_SEEN, ""]).replace("_deg", "")
         shown = " ".join(seen)[:100] or "nothing"
         raise LagtopError(
             f"without an unknown input, such as r0 = 10:200, the conditions must be {wanted}and "
             f"may include {_SPIN}=.., got {shown}"
         )
-    return conditions.numbers
+    return numbers
 
 
 def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:

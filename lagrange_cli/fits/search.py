@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from operator import ge, gt, le, lt
+from operator import eq, ge, gt, le, lt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -35,55 +35,43 @@ COUNTS = {1: 1000, 2: 60, 3: 20}
 MOST_TOPS = 10_000_000
 _WORDS = {"regime": [regime.value for regime in Regime], "path": ["cusped", "looping", "wavy"]}
 """Keys that hold a word, and the words."""
-_BOUNDS: Mapping[str, Callable[[float, float], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
+_RELATIONS: Mapping[str, Callable[[Any, Any], bool]]
+_RELATIONS = {"=": eq, "<": lt, "<=": le, ">": gt, ">=": ge}
 
 
-class Inequality(NamedTuple):
-    """A bound on a key: its number must be less, or greater, than a limit."""
+class Condition(NamedTuple):
+    """A condition on the record of a top: a word, a target value or a bound."""
 
     key: str
     relation: str
-    limit: float
+    value: float | str
+
+    def holds(self, record: Mapping[str, Any]) -> bool:
+        """Return whether a record meets the condition; a missing number does not."""
+        found = record[self.key]
+        return found is not None and _RELATIONS[self.relation](found, self.value)
+
+    def __str__(self) -> str:
+        value = self.value if isinstance(self.value, str) else f"{self.value:g}"
+        return f"{self.key}{self.relation}{value}"
 
 
-class Conditions(NamedTuple):
-    """Conditions on the record of a top."""
-
-    numbers: Mapping[str, float]
-    """Target values by key."""
-    words: Mapping[str, str]
-    bounds: list[Inequality]
-
-    @property
-    def keys(self) -> list[str]:
-        """All keys that the conditions name, once."""
-        return list(dict.fromkeys([*self.numbers, *self.words, *(x.key for x in self.bounds)]))
-
-    def broken_by(self, record: Mapping[str, Any]) -> str | None:
-        """Return the first word or bound that a record does not meet, or None.
-
-        A missing number does not meet its bound.
-        """
-        for key, word in self.words.items():
-            if record[key] != word:
-                return f"{key}={word}"
-        for key, relation, limit in self.bounds:
-            if record[key] is None or not _BOUNDS[relation](record[key], limit):
-                return f"{key}{relation}{limit:g}"
-        return None
+def targets_of(conditions: Iterable[Condition]) -> dict[str, float]:
+    """Return the target values by key."""
+    given = {x.key: x.value for x in conditions if x.relation == "="}
+    return {key: x for key, x in given.items() if not isinstance(x, str)}
 
 
 def read_conditions(
     texts: Iterable[str], *, radians: bool = False, system: System | None = None
-) -> Conditions:
+) -> list[Condition]:
     """Parse conditions `KEY=VALUE` and `KEY<VALUE`; the key of an angle may omit its unit.
 
     Values with units are converted to a system.  Raises LagtopError for an unknown key, and for an
     impossible value.
     """
-    numbers: dict[str, float] = {}
-    words: dict[str, str] = {}
-    bounds, known = [], all_keys(radians=radians)
+    found: list[Condition] = []
+    known = all_keys(radians=radians)
     for text in texts:
         match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
         if not match:
@@ -92,18 +80,14 @@ def read_conditions(
         key = unit_name(f"{name}_deg", radians=radians)
         if key not in known:
             (key,) = check_names("a condition", [name], known)
-        if key in numbers or key in words:
+        if any(x.key == key and x.relation == "=" for x in found):
             raise LagtopError(f"a condition must name each key once, got {key} twice")
-        if key in _WORDS:
-            if relation != "=" or value not in _WORDS[key]:
-                wanted, got = ", ".join(_WORDS[key]), f"{relation}{shortened(value)}"
-                raise LagtopError(f"{key}= must be one of {wanted}, got {got}")
-            words[key] = value
-        elif relation == "=":
-            numbers[key] = _number(key, value, radians, system)
-        else:
-            bounds.append(Inequality(key, relation, _number(key, value, radians, system)))
-    return Conditions(numbers, words, bounds)
+        if key in _WORDS and (relation != "=" or value not in _WORDS[key]):
+            wanted, got = ", ".join(_WORDS[key]), f"{relation}{shortened(value)}"
+            raise LagtopError(f"{key}= must be one of {wanted}, got {got}")
+        number = value if key in _WORDS else _number(key, value, radians, system)
+        found.append(Condition(key, relation, number))
+    return found
 
 
 def _number(key: str, text: str, radians: bool, system: System | None) -> float:
@@ -163,17 +147,27 @@ class Search(NamedTuple):
 
     fixed: Mapping[str, float]
     spans: Mapping[str, Span]
-    conditions: Conditions
+    conditions: Sequence[Condition]
     radians: bool = False
+
+    @property
+    def keys(self) -> list[str]:
+        """The keys that have a target value."""
+        return list(targets_of(self.conditions))
 
     @property
     def targets(self) -> Array:
         """The target values of the conditions."""
-        return np.array(list(self.conditions.numbers.values()))
+        return np.array(list(targets_of(self.conditions).values()))
+
+    def broken_by(self, record: Mapping[str, Any]) -> Condition | None:
+        """Return the first word or bound that a record does not meet, or None."""
+        others = (x for x in self.conditions if x.key not in self.keys or x.relation != "=")
+        return next((x for x in others if not x.holds(record)), None)
 
     def target_text(self) -> str:
         """Return the conditions on numbers as text."""
-        numbers = self.conditions.numbers.items()
+        numbers = targets_of(self.conditions).items()
         return ", ".join(f"{key}={double_text(x).removesuffix('.0')}" for key, x in numbers)
 
     @property
@@ -194,17 +188,16 @@ class Search(NamedTuple):
         """Return the numbers that have a target value, correctly rounded; NaN if a key has none."""
         try:
             motion = solve(self.top(values))
-            record = motion.record(radians=self.radians, keys=list(self.conditions.numbers))
+            record = motion.record(radians=self.radians, keys=self.keys)
         except LagtopError:
-            return np.full(len(self.conditions.numbers), np.nan)
-        found = (record[key] for key in self.conditions.numbers)
+            return np.full(len(self.keys), np.nan)
+        found = (record[key] for key in self.keys)
         return np.array([np.nan if x is None else x for x in found])
 
     def swept(self, values: Array) -> Array:
         """Return the numbers that have a target value by `sweep`, a row for each row of values."""
-        keys = list(self.conditions.numbers)
-        found = sweep(keys=keys, radians=self.radians, **self.inputs(list(values.T)))
-        return np.stack([np.asarray(found[key], dtype=np.float64) for key in keys], axis=-1)
+        found = sweep(keys=self.keys, radians=self.radians, **self.inputs(list(values.T)))
+        return np.stack([np.asarray(found[key], dtype=np.float64) for key in self.keys], axis=-1)
 
 
 def search_of(
@@ -225,7 +218,7 @@ def search_of(
     known = {name: x for name, x in given.inputs.items() if name not in spans}
     shared = shared_inputs(given.replace(inputs=known), varying=spans)
     fixed = {name: x for name, x in shared.items() if name not in spans}
-    unknown, numbers = len(spans), len(wanted.numbers)
+    unknown, numbers = len(spans), len(targets_of(wanted))
     if not 1 <= unknown <= max(COUNTS):
         raise LagtopError(
             f"find needs 1 to {max(COUNTS)} unknown inputs, each a range from:to such as "
