@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
+from test_find import SEEN_KEYS
 
 from lagrange_cli import Top, solve
 from lagrange_cli.fits.invert import invert, mean_inverse
@@ -43,8 +44,7 @@ def test_a_and_b_of_a_top_that_starts_next_to_a_pole(seed: int, upper: bool) -> 
     near = 10 ** rng.uniform(-6, -1)
     tilt = {"theta0_deg": near if upper else 180 - near, "psidot0": rng.gauss(0, 1)}
     seen = solve(Top(m=1, s=1, g=100, A=1, C=1, r0=10 ** rng.uniform(0, 1.5), **tilt))
-    keys = ["theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate"]
-    found = invert([f"{key}={getattr(seen, key)!r}" for key in keys])
+    found = invert([f"{key}={getattr(seen, key)!r}" for key in SEEN_KEYS])
     best = min(found, key=lambda x: abs(x.a / seen.a - 1) + abs(x.b / seen.b - 1))
     assert (best.a, best.b) == pytest.approx((seen.a, seen.b), rel=1e-13)
     assert best.mean_precession_rate == pytest.approx(seen.mean_precession_rate, rel=1e-12)
