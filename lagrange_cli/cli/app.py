@@ -29,7 +29,7 @@ COMMANDS = {
 }
 """Names of the commands, by their groups in the help."""
 NAMES = [name for names in COMMANDS.values() for name in names]
-_MODULES = {"view": "plot", "scenes": "explain", "stability": "bench"}
+_MODULES = {"view": "plot", "scenes": "explain", "find": "sweep", "stability": "bench"}
 """Commands that share the module of another command."""
 _COLOURS = {"Error": "red", "Warning": "yellow"}
 _CLOSED_PIPE = 13

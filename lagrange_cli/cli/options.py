@@ -209,7 +209,6 @@ key_names = partial(names, offered=_all_keys, metavar="KEY,...")
 """Declares an option whose value is a list of keys."""
 rad = flag("Use radians for all angles, in and out.", "--rad")
 certify = flag("Also print KEY_radius, a proven bound on the error.")
-keys = key_names("Compute and print only these keys (see lagtop explain).")
 plot = file("Also draw the report: FILE.svg or FILE.png.")
 jobs = option(
     Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),

@@ -13,7 +13,6 @@ from .options import Group, Parsed, choice, flag, late, names, option
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.text_lines import Dialect
-    from ..inputs.units import System
     from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
     from ..output.destination import Output
@@ -85,19 +84,6 @@ def warn_no_tops(path: str) -> None:
     from ..inputs.files import shown_path
 
     complain(f"Warning: {shown_path(path)} holds no tops")
-
-
-def key_headings(
-    names: Sequence[str], system: System | None, fmt: str, *, radians: bool
-) -> Sequence[str]:
-    """Return the headings of keys: with units in a table for people, if inputs have units."""
-    if system is None or fmt not in {"table", "markdown"}:
-        return names
-    from ..motion.record import shown_keys
-    from ..output.report import with_unit
-
-    keys = shown_keys(radians=radians, named=system.named, requested=True)
-    return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
 
 
 def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
