@@ -114,11 +114,7 @@ def check_film(page: Page, name: str, dpi: float) -> None:
 
 
 def film_bytes(page: Page, name: str, dpi: float, pace: Pace) -> bytes:
-    """Return the film as a GIF or an MP4, by the ending of `name`.
-
-    Raises LagtopError as `check_film` does.
-    """
-    check_film(page, name, dpi)
+    """Return the film as a GIF or an MP4, by the ending of `name`; `check_film` has accepted it."""
     writer = _gif if Path(name).suffix.lower() == ".gif" else _mp4
     with styled(page.request.look):
         film = Film(page, pace)

@@ -1,9 +1,8 @@
 // The plots beside the top: tilt, spin and precession over time, and the cubic.
 //
-// Times of samples are even in the amplitude of the nutation, so that cusps stay sharp, and even in
-// time for a top that waits; there are more of them where the axis is fast.
+// Samples are even in time from one turning point to the next, so that cusps stay sharp; there are
+// more of them where the axis is fast.
 
-import { firstKind } from "../numerics/arithmetic.js";
 import {
   chartOf, dot, drawNumbers, even, prepared, stroke, tickText, ticksBetween, write,
 } from "./canvas.js";
@@ -39,31 +38,14 @@ function axisOf({ theta, psiWithin }) {
   return frameOf({ theta, psi: psiWithin }).axis;
 }
 
-function timesBetween(motion, from, until) {
-  const { facts, period, offset, kPrime } = motion;
+/** Times from `from` to `until`, with the turning points of a nutation among them. */
+function timesBetween({ facts, period, offset }, from, until) {
   if (facts.steady || facts.vertical || facts.separatrix) return even(from, until, 8 * PHASES);
-  const T = +period;
-  const top = -offset / 2 * T;  // a time at which the axis is highest
-  const half = halfPeriod(kPrime);
-  const later = half.slice(1, -1).map((x) => 1 - x);
-  const whole = [...half, ...later, ...even(0, 1, PHASES).slice(1, -1)].sort((x, y) => x - y);
-  const [first, last] = [Math.floor((from - top) / T), Math.ceil((until - top) / T)];
-  const times = [from];
-  for (let n = first; n < last; n += 1) {
-    for (const part of whole) {
-      const time = top + (n + part) * T;
-      if (time > from && time < until) times.push(time);
-    }
-  }
-  return [...times, until];
-}
-
-/** Parts of a period from a highest point to the lowest, at even amplitudes am(w) of (4,22). */
-function halfPeriod(kPrime) {
-  const amplitudes = even(0, Math.PI / 2, PHASES);
-  const parts = amplitudes.map((x) => (
-    firstKind(Math.sin(x) ** 2, Math.cos(x) ** 2, kPrime * kPrime)));
-  return parts.map((part) => 0.5 - part / parts[PHASES] / 2).reverse();
+  const step = period / 2 / PHASES;
+  const top = -offset * PHASES;  // steps from t = 0 to a time at which the axis is highest
+  const [first, last] = [from, until].map((t) => Math.ceil(t / step - top));
+  const within = [...Array(last - first).keys()].map((i) => (top + first + i) * step);
+  return [from, ...within.filter((t) => t > from && t < until), until];
 }
 
 /** The times, and more of them where the axis goes far in between. */

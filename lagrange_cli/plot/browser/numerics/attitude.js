@@ -39,13 +39,10 @@ function circularSeries(sizes, K, nome) {
   const weights = indices.map((n) => nome ** (n * (n + 1)));
   const components = sizes.map(([{ eta }, size, sign]) => {
     const y = Math.PI / 2 * eta / K;
-    const cosh = indices.map((n) => weights[n] * Math.cosh((2 * n + 1) * y));
-    const sinh = indices.map((n) => weights[n] * Math.sinh((2 * n + 1) * y));
-    const unit = size / total(cosh);
-    return [
-      component(1, unit, cosh, sign, sinh),                        // theta2
-      component(1, unit, alternate(sinh), sign, alternate(cosh)),  // theta1
-    ];
+    const [cosh, sinh] = [Math.cosh, Math.sinh].map((f) => indices.map((n) => f((2 * n + 1) * y)));
+    const theta2 = component(1, weights, cosh, sign, sinh);
+    const theta1 = component(1, alternate(weights), sinh, sign, cosh);
+    return normalised(size, theta2, theta1);
   });
   const [slopeX, slopeY] = sizes.map((size) => -size[2] * Math.PI / 2);
   return series(components, false, Math.PI / 2, slopeX, slopeY);
@@ -54,23 +51,19 @@ function circularSeries(sizes, K, nome) {
 /** Series in q' after Jacobi's transformation, whose exponent is linear in the time. */
 function hyperbolicSeries(sizes, K, KPrime) {
   const nome = Math.exp(-Math.PI * K / KPrime);
+  const even = alternate(indices.map((n) => (n ? 2 : 1) * nome ** (n * n)));
+  const odd = alternate(indices.map((n) => 2 * nome ** (n * (n + 1) + 0.25)));
   const slopes = [];
   const components = sizes.map(([{ eta, rest }, size, sign]) => {
     const angle = Math.PI / 2 * eta / KPrime;
     const complement = Math.PI / 2 * rest / KPrime;
     const [cos, sin] = multiples(Math.sin(complement), Math.sin(angle));
-    const even = indices.map((n) => (n ? 2 : 1) * nome ** (n * n));
-    const odd = indices.map((n) => 2 * nome ** (n * (n + 1) + 0.25));
-    const cosEven = alternate(even.map((weight, n) => weight * cos[2 * n]));
-    const sinEven = alternate(even.map((weight, n) => weight * sin[2 * n]));
-    const cosOdd = alternate(odd.map((weight, n) => weight * cos[2 * n + 1]));
-    const sinOdd = alternate(odd.map((weight, n) => weight * sin[2 * n + 1]));
-    const unit = size / total(cosEven);
+    const [cosEven, sinEven, cosOdd, sinOdd] = [0, 1].flatMap((first) => (
+      [cos, sin].map((all) => all.filter((_, n) => n % 2 === first))));
     slopes.push(-sign * complement);
-    return [
-      component(0, unit, cosEven, -sign, sinEven),  // theta4
-      component(1, unit, sinOdd, sign, cosOdd),     // theta1
-    ];
+    const theta4 = component(0, even, cosEven, -sign, sinEven);
+    const theta1 = component(1, odd, sinOdd, sign, cosOdd);
+    return normalised(size, theta4, theta1);
   });
   return series(components, true, Math.PI / 2 * K / KPrime, ...slopes);
 }
@@ -86,12 +79,19 @@ function multiples(cosine, sine) {
 }
 
 /** The real part sum re_n cos((2n + first) z), the imaginary part sum im_n sin((2n + first) z). */
-function component(first, unit, real, sign, imaginary) {
+function component(first, weights, real, sign, imaginary) {
   return {
     first,
-    real: real.map((x) => unit * x),
-    imaginary: imaginary.map((x) => sign * unit * x),
+    real: weights.map((weight, n) => weight * real[n]),
+    imaginary: weights.map((weight, n) => sign * weight * imaginary[n]),
   };
+}
+
+/** Components in a unit in which the first one is `size` at z = 0. */
+function normalised(size, ...components) {
+  const unit = size / components[0].real.reduce((x, y) => x + y, 0);
+  return components.map(({ first, real, imaginary }) => (
+    { first, real: real.map((x) => unit * x), imaginary: imaginary.map((x) => unit * x) }));
 }
 
 /** Half a period turns theta2 into theta1 and back. */
@@ -107,10 +107,6 @@ function series([x, y], hyperbolic, scale, slopeX, slopeY) {
 
 function alternate(terms) {
   return terms.map((term, n) => (n % 2 ? -term : term));
-}
-
-function total(terms) {
-  return terms.reduce((x, y) => x + y, 0);
 }
 
 /** Size and argument of X and of Y at a phase from -1/2 to 1/2 half periods about a frame. */
