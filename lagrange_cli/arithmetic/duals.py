@@ -107,6 +107,9 @@ class Dual:
     def __bool__(self) -> bool:
         return bool(self.value)
 
+    def __float__(self) -> float:
+        return float(self.value)
+
     __lt__, __le__ = _compared(operator.lt), _compared(operator.le)
     __gt__, __ge__ = _compared(operator.gt), _compared(operator.ge)
 

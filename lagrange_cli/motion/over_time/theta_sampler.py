@@ -13,6 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +21,7 @@ import numpy as np
 
 from ...arithmetic.arrays import order_by_parity, placed, taken
 from ...arithmetic.double_double import Period, period_of, whole_periods
+from ...arithmetic.numbers import power
 from ...arithmetic.points import MAX_PERIODS
 from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
@@ -35,9 +37,9 @@ _GREATEST = 340.0
 """Greatest argument: the square of its hyperbolic sine does not overflow in later products."""
 _LEAST = 5e-324
 """The smallest argument of the functions that is not 0."""
-_NEGLIGIBLE = Decimal(2) ** -60
+_NEGLIGIBLE = Fraction(1, 2**60)
 _SIZE = 2**16
-"""The size to which the largest coefficient of a frame is scaled, within a factor of 2."""
+"""The size of the largest coefficient of a frame, within a factor of 2."""
 
 
 @dataclass(frozen=True)
@@ -225,29 +227,33 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
             speed=float(series.scale * steps),
             first=float(series.scale * found.offset),
             hyperbolic=series.hyperbolic,
-            frames=[_rounded(ar, frame, series) for frame in found.frames],
+            frames=[
+                kept_frame(frame, ar, series, _NEGLIGIBLE).mapped(_doubles, _doubles)
+                for frame in found.frames
+            ],
             slopes=[float(slope / series.scale) for slope in slopes],
             growths=growths(ar, (motion.mean_spin_rate, motion.mean_precession_rate), (x, y)),
         )
 
 
-def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
-    """Return the frame in doubles, without negligible coefficients."""
-    greatest = greatest_argument(ar, series)
-    # X and Y may have any common factor: it keeps the smallest and largest coefficient in range
+def kept_frame(frame: Frame, ar: Any, series: Series, negligible: Fraction) -> Frame:
+    """Return a frame without negligible coefficients, the largest of which is about `_SIZE`.
+
+    X and Y may have any common factor.  This factor keeps all coefficients in the range of doubles.
+    """
+    greatest, least = greatest_argument(ar, series), ar.convert(negligible)
     parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
-    size = ar.convert(2) ** math.frexp(float(max(abs(part[0]) for part in parts)))[1] / _SIZE
+    exponent = math.frexp(float(max(abs(part[0]) for part in parts)))[1]
+    size = ar.convert(Fraction(2) ** exponent / _SIZE)
 
-    def scaled(polynomial: Coefficients, size: Any) -> Coefficients:
-        count = count_needed([abs(x) for x in polynomial], greatest, _NEGLIGIBLE)
-        return [float(x / size) + 0.0 for x in polynomial[:count]]  # no -0
+    def kept(coefficients: Coefficients, size: Any) -> Coefficients:
+        sizes, count = [abs(x) for x in coefficients], len(coefficients)
+        while count > 2 and sizes[count - 1] * power(greatest, count - 1) <= least * sizes[0]:
+            count -= 1
+        return [x / size for x in coefficients[:count]]
 
-    return frame.mapped(lambda x: scaled(x, size), lambda x: scaled(x, size**4))
+    return frame.mapped(lambda x: kept(x, size), lambda x: kept(x, power(size, 4)))
 
 
-def count_needed(sizes: Sequence[Decimal], greatest: Decimal, negligible: Decimal) -> int:
-    """Return the number of coefficients, at least two, that are needed up to an argument."""
-    count = len(sizes)
-    while count > 2 and sizes[count - 1] * greatest ** (count - 1) <= negligible * sizes[0]:
-        count -= 1
-    return count
+def _doubles(coefficients: Coefficients) -> list[float]:
+    return [float(x) + 0.0 for x in coefficients]  # no -0

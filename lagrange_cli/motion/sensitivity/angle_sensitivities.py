@@ -33,10 +33,9 @@ from ..over_time.samplers import Angles, check_times
 from ..over_time.series_constants import Pose, pose_of
 from ..regime import Exact, Regime, exact
 from ..spin_precession import Nutating
+from .angle_derivatives import SeriesDerivatives, SteadyDerivatives
 from .neighbourhood import PARAMETERS, by_inputs, smallness
 from .sensitivities import Partials
-from .series_derivatives import SeriesDerivatives
-from .steady_neighbours import SteadyDerivatives
 from .uncertainty import by_given
 
 _DIGITS = 48

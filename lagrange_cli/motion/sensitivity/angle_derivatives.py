@@ -1,37 +1,44 @@
-"""The theta series of a nutating top and its derivatives by the parameters of its neighbourhood.
+"""The angles of a top over time, and their derivatives by the parameters of its neighbourhood.
 
-X and Y about a turning point are polynomials in s = sin^2 z or sinh^2 z, with factors S and C (see
-`theta_series`).  Their coefficients, and the constants of z = scale (2t/T + offset), are computed
-as dual numbers.  This module stores them as rows of doubles, the value first and the derivatives
-below it.
+The angles of a nutating top are given by its theta series.  X and Y about a turning point are
+polynomials in s = sin^2 z or sinh^2 z, with factors S and C (see `theta_series`).  Their
+coefficients, and the constants of z = scale (2t/T + offset), are computed as dual numbers.  This
+module stores them as rows of doubles, the value first and the derivatives below it.
+
+Motions next to a steady precession are small nutations about a tilt next to it.  Let u = cos(theta)
+= u0 + x.  To first order in x, the derivative of (4,9) by t is x'' = c1/2 - D x.  At the steady
+precession itself c1 = 0 and D = a (u3 - u0).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from decimal import Decimal
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...arithmetic.arrays import ARRAYS
-from ...arithmetic.double_double import period_of, whole_periods
+from ...arithmetic.double_double import period_of, reduce_phase, whole_periods
 from ...arithmetic.duals import Dual
 from ...arithmetic.numbers import polynomial
 from ...arithmetic.points import MAX_PERIODS
-from ...arithmetic.rounding import pair
+from ...arithmetic.rounding import Pair, pair
 from ...arithmetic.types import Array
 from ...elliptic.jacobi import jacobi
 from ...elliptic.modulus import Modulus
+from ..any_start import cubic
+from ..gaps import State
 from ..over_time.attitude import Growths, Times, growths
-from ..over_time.series_constants import SeriesFromStart, series_from_start
-from ..over_time.theta_sampler import count_needed, greatest_argument
-from ..over_time.theta_series import Coefficients, Component, Frame
+from ..over_time.series_constants import series_from_start
+from ..over_time.theta_sampler import kept_frame
+from ..over_time.theta_series import Coefficients, Component
 from ..spin_precession import Nutating
-from .neighbourhood import PARAMETERS
+from .neighbourhood import PARAMETERS, Neighbourhood
 
-_NEGLIGIBLE = Decimal(2) ** -100
+_NEGLIGIBLE = Fraction(1, 2**100)
+_SMALL = 0.5
 
 
 class Rows(NamedTuple):
@@ -72,7 +79,10 @@ class SeriesDerivatives:
             found = series_from_start(motion, rates=True)
             series, (x_start, y_start) = found.series, found.starts
             self.hyperbolic = series.hyperbolic
-            self.frames = _in_doubles(ar, found)
+            self.frames = [
+                kept_frame(frame, ar, series, _NEGLIGIBLE).mapped(_rows, _values)
+                for frame in found.frames
+            ]
             self.about_means = rates_about_means(motion, means, first_is_upper=found.first_is_upper)
             speed, step = 2 / motion.T_nutation, motion.T_nutation.value / 2
             rates = means.mean_spin_rate, means.mean_precession_rate
@@ -85,7 +95,7 @@ class SeriesDerivatives:
             starts = x_start - y_start, x_start + y_start
             self.starts = np.array(
                 [
-                    _row(start + found.offset * Dual(_decimal(slope)))  # of the phase at t = 0
+                    _row(start + found.offset * ar.fixed(slope))  # of the phase at t = 0
                     for start, slope in zip(starts, slopes, strict=True)
                 ]
             )
@@ -159,28 +169,6 @@ class SeriesDerivatives:
         )
 
 
-def _in_doubles(ar: Any, found: SeriesFromStart) -> list[Frame]:
-    """Return the series about both turning points, without negligible coefficients.
-
-    Coefficients of X and Y are rows of doubles, the value and its derivatives.
-    """
-    greatest = greatest_argument(ar, found.series).value
-    leading = max(abs(c.real[0].value) for frame in found.frames for c in frame[:2])
-    size = Decimal(2) ** math.frexp(float(leading))[1]
-
-    def kept(coefficients: Coefficients) -> Coefficients:
-        sizes = [abs(x.value) for x in coefficients]
-        return coefficients[: count_needed(sizes, greatest, _NEGLIGIBLE)]
-
-    def rows(coefficients: Coefficients) -> Array:
-        return np.array([_row(x / Dual(size)) for x in kept(coefficients)]).T
-
-    def rate(coefficients: Coefficients) -> list[float]:
-        return [float(x.value / size**4) for x in kept(coefficients)]
-
-    return [frame.mapped(rows, rate) for frame in found.frames]
-
-
 def _component(component: Component, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
     """Return real and imaginary parts, each in rows and with its derivative by z."""
     S, C = (np.sinh(z), np.cosh(z)) if hyperbolic else (np.sin(z), np.cos(z))
@@ -198,15 +186,17 @@ def _component(component: Component, z: Array, hyperbolic: bool) -> list[tuple[A
     return parts
 
 
-def _row(x: Dual | Decimal) -> Array:
+def _row(x: Dual) -> Array:
     """Return the value and the derivatives of a number as doubles."""
-    partials = x.partials if isinstance(x, Dual) else None
-    none = [Decimal(0)] * len(PARAMETERS)
-    return np.array([float(_decimal(x)), *map(float, partials or none)])
+    return np.array([float(x), *map(float, x.partials or [0.0] * len(PARAMETERS))])
 
 
-def _decimal(x: Any) -> Decimal:
-    return x.value if isinstance(x, Dual) else Decimal(x)
+def _rows(coefficients: Coefficients) -> Array:
+    return np.array([_row(x) for x in coefficients]).T
+
+
+def _values(coefficients: Coefficients) -> list[float]:
+    return [float(x) for x in coefficients]
 
 
 def rates_about_means(
@@ -244,3 +234,62 @@ def rates_about_means(
         return south - north, south + north, size
 
     return rates
+
+
+class SteadyDerivatives:
+    """Angles of a steady precession over time, and their derivatives by `PARAMETERS`."""
+
+    def __init__(self, near: Neighbourhood) -> None:
+        ar = near.ar.middles
+        with ar.working():
+            state = State(*(x.middle for x in near.moved))
+            _, c1, c2 = cubic(state)
+            self.force = _row(c1)[1:] / 2
+            frequency = ar.plain.sqrt(-c2.value)
+            self.frequency = float(frequency)
+            self.turns = pair(frequency / (2 * ar.plain.pi))
+            self.sine, self.cosine, self.psi_rate, self.b = (
+                float(x.value) for x in (state.sin, state.cos, state.psi_rate, state.b)
+            )
+            self.tilt = 2 * math.atan2(float(state.sin_half.value), float(state.cos_half.value))
+            self.tilts = -_row(state.cos)[1:] / self.sine
+            self.speeds = -self.sine * _row(state.theta_rate)[1:]
+            self.r0s, self.psi_rates = _row(state.r0)[1:], _row(state.psi_rate)[1:]
+            self.spin_rate = float((state.r0 - state.psi_rate * state.cos).value)
+        rate = max(abs(self.spin_rate), abs(self.psi_rate), self.frequency)
+        self.max_time = int(MAX_PERIODS) / rate if rate else math.inf
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return tilt, spin and precession at times, and their derivatives by the parameters.
+
+        The shapes are (3, times) and (3, parameters, times).
+        """
+        sine, one_less_cosine, rest = oscillation(self.frequency, self.turns, t)
+        x = np.outer(self.force, one_less_cosine) + np.outer(self.speeds, sine)
+        passed = np.outer(self.force, rest) + np.outer(self.speeds, one_less_cosine)
+        answer = (2 * self.cosine * self.psi_rate - self.b) / self.sine**2  # of psi' to x
+        psi = np.outer(self.psi_rates, t) + answer * passed
+        turned = passed - np.outer(self.sine * self.tilts, t)  # the integral of the change of u
+        phi = np.outer(self.r0s, t) - self.psi_rate * turned - self.cosine * psi
+        angles = np.array([np.full_like(t, self.tilt), self.spin_rate * t, self.psi_rate * t])
+        return angles, np.array([self.tilts[:, None] - x / self.sine, phi, psi])
+
+
+def oscillation(frequency: float, turns: Pair, t: Array) -> tuple[Array, Array, Array]:
+    """Return sin(wt)/w, (1 - cos(wt))/w^2 and (wt - sin(wt))/w^3, or their limits for w = 0.
+
+    `turns` is w/2 pi as a pair of doubles, so that whole turns are subtracted exactly.
+    """
+    if not frequency:
+        return t, t * t / 2, t**3 / 6
+    x = frequency * t
+    within = 2 * np.pi * reduce_phase(t, turns)[1]
+    sine, half = np.sin(within), np.sin(within / 2)
+    rest = x - sine
+    near = np.abs(x) < _SMALL
+    square = x[near] ** 2
+    series = np.ones_like(square)
+    for n in (14, 12, 10, 8, 6, 4):
+        series = 1 - square / (n * (n + 1)) * series
+    rest[near] = x[near] ** 3 / 6 * series
+    return sine / frequency, 2 * half * half / frequency**2, rest / frequency**3
