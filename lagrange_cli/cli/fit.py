@@ -131,6 +131,7 @@ def fit_command(
     failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
         write_bytes(scene_path, lambda: scene_text(found[0], recording, system).encode())
+        _note_assumed(found[0], scene_path)
     if plot:
         _draw(found, plot)
     _write(found, source, system, out.replace(path="-") if scene_path else out)
@@ -219,6 +220,16 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
     fail_for([outcome.failure() for outcome in failed], len(rows), "windows")
     if not found.is_described:
         raise SomeFailedError(f"{source}: no window is described: use shorter windows")
+
+
+def _note_assumed(outcome: Outcome, path: str) -> None:
+    """Name the inputs of a scene that the recording does not determine alone, and a remedy."""
+    if products := [x for x in outcome.determined if len(x.powers) > 1]:
+        complain(
+            f"Note: {path} has assumed inputs, because {' and '.join(x.name for x in products)} "
+            f"are known only as products: give the inputs that you know, such as "
+            f"--{[*products[0].powers][-1]}"
+        )
 
 
 def _draw(found: list[Outcome], path: str) -> None:

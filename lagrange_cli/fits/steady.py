@@ -154,7 +154,10 @@ class SteadyOutcome(Outcome):
 
     def inputs(self, other: Mapping[str, float] | None = None) -> dict[str, float]:
         """Raise LagtopError, because many tops have this precession."""
-        raise LagtopError("a scene needs a and b, and this recording determines b/a only")
+        raise LagtopError(
+            "a scene needs a and b, and this recording determines b/a only: use a format such as "
+            "-o FILE.json"
+        )
 
     def angles(self, t: Array) -> dict[str, Array]:
         """Return the angles of the steady precession, with the zeros of the recording."""

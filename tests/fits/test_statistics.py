@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
+import fuzz_fits
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from test_fit import angles_of, motion_of
 
 from lagrange_cli import Top, fit
 from lagrange_cli.fits.model import Residual, residual_of
@@ -39,7 +39,7 @@ def test_deviations_from_residuals_count_degrees_of_freedom(rows: int) -> None:
     """
     top = Top(theta0_deg=40, thetadot0=1.0, psidot0=-2.0)
     t, rng = np.linspace(0, 1.1, rows), np.random.default_rng(7)
-    theta = angles_of(motion_of(top, t))["theta"] + rng.normal(scale=0.01, size=rows)
+    theta = fuzz_fits.motion_of(top, t)["theta"] + rng.normal(scale=0.01, size=rows)
     known = {"psidot0": -2.0}
     given = fit(t, theta=theta, sigma=0.02, known=known)
     found = fit(t, theta=theta, known=known)
@@ -61,12 +61,8 @@ def test_a_spin_of_more_than_half_a_turn_per_frame(sign: int) -> None:
     """
     top = Top(m=1, s=1, g=60, A=1, C=0.2, r0=sign * 50, theta0_deg=60, psidot0=sign * 1.0)
     t = np.arange(120.0) * (2 * math.pi / 46)
-    seen = angles_of(motion_of(top, t))
-    rng = np.random.default_rng(2)
-    theta, phi, psi = (
-        seen[name] + rng.normal(scale=1e-3, size=t.size) for name in ("theta", "phi", "psi")
-    )
-    found = fit(t, theta=theta, phi=phi, psi=psi, sigma=1e-3)
+    names, rng = ("theta", "phi", "psi"), np.random.default_rng(2)
+    found = fit(t, **fuzz_fits.noisy(top, t, names, 1e-3, rng), sigma=1e-3)
     assert found.verdict == "good"
     assert found.values["r0"] == pytest.approx(50 * sign, abs=0.05)
     assert found.values["b"] == pytest.approx(10 * sign, rel=1e-2)

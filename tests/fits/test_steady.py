@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
 from engines import Array
+from test_fit import written
 
 from lagrange_cli import LagtopError, Top, fit, solve
 
@@ -23,9 +24,7 @@ T = np.linspace(0, 5, 600)
 
 def noisy(top: Top, t: Array, names: tuple[str, ...], seed: int) -> dict[str, Any]:
     """Return wrapped angles of a top with noise, by an integrator."""
-    exact, rng = fuzz_fits.motion_of(top, t), np.random.default_rng(seed)
-    angles = {name: exact[name] + rng.normal(scale=NOISE, size=t.size) for name in names}
-    return {x: y if x == "theta" else np.angle(np.exp(1j * y)) for x, y in angles.items()}
+    return fuzz_fits.noisy(top, t, names, NOISE, np.random.default_rng(seed))
 
 
 @pytest.mark.parametrize("names", [("theta", "psi"), ("psi",), ("theta", "phi", "psi")])
@@ -98,13 +97,13 @@ def test_angles_that_are_too_little(names: tuple[str, ...], known: Any, message:
 
 def test_the_report_on_a_fast_top(lagtop: Lagtop, tmp_path: Path) -> None:
     angles = noisy(FAST, T, ("theta", "psi"), 5)
-    path = tmp_path / "fast.csv"
-    columns = np.column_stack([T, *(np.degrees(x) for x in angles.values())])
-    np.savetxt(path, columns, delimiter=",", header="t,theta,psi", comments="")
+    path = written(tmp_path / "fast.csv", "t,theta,psi", [T, *map(np.degrees, angles.values())])
     shown = lagtop("fit", path, "--sigma", 0.5, "--plot", tmp_path / "fast.svg")
     assert shown.exit_code == 0, shown.stderr
     assert "C r0/2mgs, by the elementary theory" in shown.stdout
     assert "the nutation is below the noise" in shown.stdout
     assert (tmp_path / "fast.svg").exists()
     refused = lagtop("fit", path, "-o", tmp_path / "fast.toml")
-    assert_one_line(refused, 2, "a scene needs a and b, and this recording determines b/a only")
+    assert_one_line(
+        refused, 2, "a scene needs a and b, and this recording determines b/a only: use a"
+    )

@@ -10,6 +10,7 @@ import fuzz_windows
 import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
+from test_fit import written
 
 from lagrange_cli import LagtopError
 from lagrange_cli.fits.parameters import KnownInputs
@@ -87,9 +88,8 @@ def test_bad_windows(
 
 
 def test_the_command(lagtop: Lagtop, tmp_path: Path, short: fuzz_windows.Slowed) -> None:
-    path, names = tmp_path / "slow.csv", ("theta", "psi", "phi")
-    rows = np.column_stack([short.t, *(np.degrees(short.angles[x]) for x in names)])
-    np.savetxt(path, rows, delimiter=",", header="t,theta,psi,phi", comments="", fmt="%.6g")
+    angles = [np.degrees(short.angles[x]) for x in ("theta", "psi", "phi")]
+    path = written(tmp_path / "slow.csv", "t,theta,psi,phi", [short.t, *angles])
     options = ["fit", path, "--sigma", "theta=0.3,psi=0.5,phi=1", "--window", 5]
     shown = lagtop(*options)
     assert shown.exit_code == 0, shown.stderr
@@ -116,9 +116,8 @@ def test_one_motion_for_a_decaying_spin_fails(lagtop: Lagtop, tmp_path: Path) ->
     spin, t = 50 * fuzz_windows.DECAY, np.arange(0, 20, 0.02)
     psi, phi = 7 * t + t**2 / 20, spin * (1 - np.exp(-t / fuzz_windows.DECAY))
     theta = 0.6 + 0.05 * np.cos(21 * t - t**2 / 20)
-    rows = np.column_stack([t, *np.degrees([theta, psi, phi])])
-    path = tmp_path / "decay.csv"
-    np.savetxt(path, rows, delimiter=",", header="t,theta,psi,phi", comments="", fmt="%.6g")
+    angles = np.degrees([theta, psi, phi])
+    path = written(tmp_path / "decay.csv", "t,theta,psi,phi", [t, *angles])
     for sigma in (["--sigma", 0.3], []):
         shown = lagtop("fit", path, *sigma)
         assert shown.exit_code == 1

@@ -101,6 +101,15 @@ def wrap(rng: np.random.Generator, angles: dict[str, Any], names: Iterable[str])
         angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
 
 
+def noisy(
+    top: Top, t: Array, names: Iterable[str], noise: float, rng: np.random.Generator
+) -> dict[str, Any]:
+    """Return angles of a top with noise; all but the tilt are reduced to (-pi, pi]."""
+    exact = motion_of(top, t)
+    angles = {name: exact[name] + rng.normal(scale=noise, size=t.size) for name in names}
+    return {x: y if x == "theta" else np.angle(np.exp(1j * y)) for x, y in angles.items()}
+
+
 def drawn(seed: int) -> Drawn:
     """Return the recording of a seed."""
     rng = np.random.default_rng(seed)
