@@ -62,10 +62,8 @@ class Report(NamedTuple):
 
         CSV and ndjson hold only the rows.  JSON is one object, in which infinite numbers are null.
         """
-        if fmt == "table":
-            return self._table(view)
-        if fmt == "markdown":
-            return self._markdown()
+        if fmt in {"table", "markdown"}:
+            return self._shown(fmt, view)
         if fmt == "csv":
             lines = [[field.key for field in self.fields], *(row.values() for row in self.values())]
             return "".join(",".join(map(csv_text, line)) + "\n" for line in lines).encode()
@@ -82,24 +80,33 @@ class Report(NamedTuple):
             whole["units"] = self.units
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
-    def _table(self, view: View) -> bytes:
-        from .tables import DrawnColumn, drawn_report  # start-up
-
-        columns: dict[bool, list[DrawnColumn]] = {True: [], False: []}
-        for field in self.fields:
-            if field.heading:
-                cells = [spelt(field.cell(row), view) for row in self.rows]
-                column = DrawnColumn(spelt(field.heading, view), cells, not field.is_text)
-                columns[field.names_the_row].append(column)
-        return drawn_report(self.conditions, columns[True], columns[False], self.conclusions, view)
-
-    def _markdown(self) -> bytes:
+    def _shown(self, fmt: str, view: View) -> bytes:
         shown = [field for field in self.fields if field.heading]
         rows = [[field.cell(row) for field in shown] for row in self.rows]
+        if fmt == "table":
+            return _drawn(shown, rows, view, self.conditions, self.conclusions)
         conditions = "".join(f"- {name}: {text}\n" for name, text in self.conditions.items())
         table = markdown([field.heading for field in shown], rows)
         conclusions = "".join(f"\n{line}\n" for line in self.conclusions)
         return f"{conditions}\n{table}{conclusions}".encode()
+
+
+def _drawn(
+    fields: Sequence[Field],
+    rows: Sequence[Sequence[str]],
+    view: View,
+    conditions: Mapping[str, str],
+    conclusions: Sequence[str],
+) -> bytes:
+    """Return rows of cells as a table between conditions and conclusions."""
+    from .tables import DrawnColumn, drawn_table  # start-up
+
+    columns: dict[bool, list[DrawnColumn]] = {True: [], False: []}
+    for i, field in enumerate(fields):
+        cells = [spelt(row[i], view) for row in rows]
+        column = DrawnColumn(spelt(field.heading, view), cells, not field.is_text)
+        columns[field.names_the_row].append(column)
+    return drawn_table(conditions, columns[True], columns[False], conclusions, view)
 
 
 def record_cells(record: Mapping[str, Any], keys: Keys, view: View) -> dict[str, list[list[str]]]:
@@ -132,11 +139,10 @@ def record_text(record: Mapping[str, Any], keys: Keys, fmt: str, view: View) -> 
 
 def rows_text(names: Sequence[str], rows: Sequence[Sequence[str]], fmt: str, view: View) -> bytes:
     """Return rows as a `table` or as `markdown`."""
-    if fmt == "table":
-        from .tables import drawn_rows  # start-up
-
-        return drawn_rows(names, rows, view)
-    return markdown(names, rows).encode()
+    if fmt == "markdown":
+        return markdown(names, rows).encode()
+    fields = [Field(name, name, names_the_row=not i) for i, name in enumerate(names)]
+    return _drawn(fields, rows, view, {}, ())
 
 
 def markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -112,15 +112,7 @@ def _style(group: str) -> str:
     return _GIVEN if group == INPUT_GROUP else _FOUND
 
 
-def drawn_rows(names: Sequence[str], rows: Sequence[Sequence[str]], view: View) -> bytes:
-    """Return a column per name and a line per row."""
-    cells = list(zip(*rows, strict=True)) or [()] * len(names)
-    headings = [spelt(name, view) for name in names]
-    columns = [DrawnColumn(name, column) for name, column in zip(headings, cells, strict=True)]
-    return _encoded(_folded(columns[:1], columns[1:], view), view)
-
-
-def drawn_report(
+def drawn_table(
     conditions: Mapping[str, str],
     keys: Sequence[DrawnColumn],
     columns: Sequence[DrawnColumn],
