@@ -61,7 +61,10 @@ EVERY_KIND: dict[str, dict[str, Any]] = {
     "looping": UNIT | {"r0": -3, "theta0_deg": 110, "thetadot0": 1.5, "psidot0": 1},
     "starts lowest": UNIT | {"r0": 3, "theta0_deg": 40, "psidot0": 2},
     "radians": UNIT | {"r0": 3, "theta0_rad": 0.7, "psidot0": 2},
-    "over the top": UNIT | {"theta0_deg": 120, "psidot0": 1, "r0": 0.5, "thetadot0": 2.5},
+    **{
+        f"over the top{more}": UNIT | {"theta0_deg": 120, "psidot0": 1, "r0": 0.5, "thetadot0": x}
+        for more, x in {"": 2.5, ", level start": 0, ", back": -1.7, ", slow": 0.5}.items()
+    },
     "over the bottom": UNIT | {"theta0_deg": 60, "psidot0": -2, "r0": 1, "thetadot0": 0.7},
     "pendulum": UNIT | {"theta0_deg": 60, "r0": 0},
     "pendulum from above": UNIT | {"theta0_deg": 150, "r0": 0},

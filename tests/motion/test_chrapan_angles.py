@@ -7,6 +7,7 @@ for nutation, spin and precession over mpmath's elliptic functions, and a quadra
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
 import pytest
@@ -24,7 +25,7 @@ from chrapan_top import (
     moments,
     spoil,
 )
-from equations import EquationTests, Register, Sides
+from equations import EquationTests, Pair, Register, Sides
 from errata import misprints
 
 chrapan = Register()
@@ -103,24 +104,10 @@ def _steady_spin(motion: Motion) -> Any:
     return motion.r0 * (1 - motion.C / (2 * motion.A))
 
 
-@equation("(6,1)")
-def _() -> Sides:
-    for motion, t in moments():
-        turned = ar.pi * ar.floor(t / motion.T) + motion.spin_arccot(t)
-        yield motion.angles(t)[1], _steady_spin(motion) * t + motion.sigma * turned
-
-
 def _printed_arccot(motion: Motion, t: Any) -> Any:
     """Return the arccot of (6,1) from u, its roots positive as the text has them."""
     (u1, u2, u3), u = motion.roots, motion.u(t)
     return ar.acot(ar.sqrt((u3 - u) * (u - u2) / ((u3 + u2) * (u1 - u))))
-
-
-@equation("(6,1) from u, in the first half of a period")
-def _() -> Sides:
-    for motion, t in moments(*HALF):
-        right = _steady_spin(motion) * t + motion.sigma * _printed_arccot(motion, t)
-        yield motion.angles(t)[1], right
 
 
 @equation("section 6: spin after half a period and a whole one")
@@ -221,13 +208,6 @@ def _() -> Sides:
             yield _remainder(motion, angle, t), 0
 
 
-@equation("(6,6)")
-def _() -> Sides:
-    for motion, t in moments(*FAR):
-        remainder = _spin_remainder(motion, _since_whole_period(motion, t))
-        yield motion.angles(t)[1], motion.mean_spin_rate * t + remainder
-
-
 def _precession(motion: Motion, t: Any, growth: Any) -> Any:
     """Return (7,1) with its bracket."""
     u2, u3 = motion.roots[1:]
@@ -235,20 +215,6 @@ def _precession(motion: Motion, t: Any, growth: Any) -> Any:
     waves = ar.pi * ar.floor(t / motion.T) + motion.precession_arccot(t) + motion.series(t)
     rate = ar.sqrt(motion.a * (u3 - u2))
     return drift + motion.sigma * (rate * t * growth - waves)
-
-
-@equation("(7,1)")
-def _() -> Sides:
-    for motion, t in moments():
-        E, F, rest = motion.growth()
-        yield motion.angles(t)[2], _precession(motion, t, E - F * rest)
-
-
-@as_printed("(7,1) as printed, the bracket")
-def _() -> Sides:
-    t = RIGHT.T / 3
-    E, F, rest = RIGHT.growth()
-    yield RIGHT.angles(t)[2], _precession(RIGHT, t, (E - F) * rest)
 
 
 @as_printed("(7,1) as printed, for r0 < 0")
@@ -326,12 +292,6 @@ def _precession_remainder(motion: Motion, tau: Any) -> Any:
     return motion.sigma * (ar.pi * tau / motion.T - waves)
 
 
-@equation("(7,4)")
-def _() -> Sides:
-    for motion, t in moments(*FIRST):
-        yield _remainder(motion, 2, t), _precession_remainder(motion, t)
-
-
 @as_printed("(7,4)")
 def _() -> Sides:
     t = RIGHT.T * 5 / 8
@@ -342,19 +302,55 @@ def _() -> Sides:
         yield _remainder(RIGHT, 2, t), ar.pi * tau / RIGHT.T - waves
 
 
-@equation("(7,5)")
-def _() -> Sides:
-    for motion, t in moments(*FAR):
-        remainder = _precession_remainder(motion, _since_whole_period(motion, t))
-        yield motion.angles(t)[2], motion.mean_precession_rate * t + remainder
-
-
 def _spin(motion: Motion, t: Any, arccot: Callable[[Motion, Any], Any]) -> tuple[Any, Any]:
     """Return the spin and (6,1) as printed, with an arccot."""
     return motion.angles(t)[1], _steady_spin(motion) * t + arccot(motion, t)
 
 
+def _whole_precession(motion: Motion, t: Any, growth: Any) -> tuple[Any, Any]:
+    """Return the precession and (7,1), with a function of E, F and 1 - E/K as its bracket."""
+    return motion.angles(t)[2], _precession(motion, t, growth(*motion.growth()))
+
+
+def _whole_spin(motion: Motion, t: Any, arccot: Any) -> tuple[Any, Any]:
+    """Return the spin and (6,1) with an arccot, and with half a turn per whole period."""
+    turned = ar.pi * ar.floor(t / motion.T) + arccot(motion, t)
+    return motion.angles(t)[1], _steady_spin(motion) * t + motion.sigma * turned
+
+
+ANYWHERE: dict[str, Pair] = {
+    "(6,1)": lambda top, t: _whole_spin(top, t, Motion.spin_arccot),
+    "(7,1)": lambda top, t: _whole_precession(top, t, lambda E, F, rest: E - F * rest),
+}
+FAR_AWAY: dict[str, Pair] = {
+    "(6,6)": lambda top, t: (
+        top.angles(t)[1],
+        top.mean_spin_rate * t + _spin_remainder(top, _since_whole_period(top, t)),
+    ),
+    "(7,5)": lambda top, t: (
+        top.angles(t)[2],
+        top.mean_precession_rate * t + _precession_remainder(top, _since_whole_period(top, t)),
+    ),
+}
+chrapan.each(moments, ANYWHERE)
+chrapan.each(partial(moments, *FAR), FAR_AWAY)
+chrapan.each(
+    partial(moments, *HALF),
+    {
+        "(6,1) from u, in the first half of a period": lambda top, t: _whole_spin(
+            top, t, _printed_arccot
+        )
+    },
+)
+chrapan.each(
+    partial(moments, *FIRST),
+    {"(7,4)": lambda top, t: (_remainder(top, 2, t), _precession_remainder(top, t))},
+)
+
 PRINTED_SIDES: dict[str, Callable[[], tuple[Any, Any]]] = {
+    "(7,1) as printed, the bracket": lambda: _whole_precession(
+        RIGHT, RIGHT.T / 3, lambda E, F, rest: (E - F) * rest
+    ),
     "(5,3)": lambda: (RIGHT.rates(RIGHT.T * 3 / 4)[0], _nutation_rate(RIGHT, RIGHT.T * 3 / 4)),
     "(6,1) as printed, in the second half of a period": lambda: _spin(
         RIGHT, RIGHT.T * 3 / 4, _printed_arccot
@@ -373,11 +369,7 @@ PRINTED_SIDES: dict[str, Callable[[], tuple[Any, Any]]] = {
 }
 """Equations as printed, with one pair of sides."""
 
-for _name, _sides in PRINTED_SIDES.items():
-
-    @as_printed(_name)
-    def _(sides: Callable[[], tuple[Any, Any]] = _sides) -> Sides:
-        yield sides()
+chrapan.each_as_printed(lambda: [()], PRINTED_SIDES)
 
 
 WORKED = Motion(theta0_deg=30)

@@ -13,7 +13,7 @@ from arb_balls import exact_arb, holds
 from ball_judge import Judge, assert_nearest
 from balls.scene import arb_bits
 from conftest import Lagtop
-from scenes import EVERY_KIND, NAMED, UNIT, random_scene
+from scenes import EVERY_KIND, NAMED, random_scene
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
@@ -153,23 +153,12 @@ def test_radians_and_inputs_have_radii() -> None:
     assert list(some) == ["regime", "T_nutation", "T_nutation_radius"]
 
 
-def test_radii_need_no_package_and_no_other_digits(lagtop: Lagtop) -> None:
-    plain = json.loads(lagtop("solve", "--format", "json").stdout)
-    radii = json.loads(lagtop("solve", "--format", "json", "--certify").stdout)
-    assert {key: radii[key] for key in plain} == plain
-    assert radii.keys() - plain.keys() == {
-        f"{key}_radius" for key in plain if key not in ("regime", "path", "remark", "summary")
-    }
-    drawn = lagtop("solve", "--certify").stdout
-    assert f"{radii['T_nutation_radius']}" in drawn
-
-
 def test_a_number_that_underflows_is_not_printed_as_zero(lagtop: Lagtop) -> None:
     """A printed 0 is exactly 0: what is smaller than all doubles is null, and digits print it."""
     motion = solve(Top(r0=1e90))
-    with pytest.warns(OutOfRangeWarning, match="nome must be 0 or at least 5e-324"):
+    with pytest.warns(OutOfRangeWarning, match="nome .* at least 5e-324.* got 3.975e-356: use"):
         assert motion.record()["nome"] is None
-    assert motion.record(digits=5)["nome"].endswith("e-356")
+    assert motion.record(digits=4)["nome"] == "3.975e-356"
     shown = lagtop("solve", "--r0", "1e90", "--format", "json")
     assert json.loads(shown.stdout)["nome"] is None
     assert "use --digits" in shown.stderr
@@ -212,14 +201,3 @@ def test_a_tilt_beyond_pi_is_refused() -> None:
     assert Top(theta0_rad=Fraction(pi)).theta0_rad
     with pytest.raises(ValueError, match=r"theta0_rad must be in \[0, pi rad\]"):
         Top(theta0_rad=Fraction(pi) + Fraction(1, 10**80))
-
-
-def test_a_mean_rate_of_exactly_0_has_no_period_and_others_have() -> None:
-    """Half turns over both poles cancel; any other rate, however small, has a period."""
-    still = solve(Top(**UNIT | {"r0": 0, "theta0_deg": 31, "thetadot0": 2, "g": 0}))
-    assert still.mean_spin_rate == 0
-    assert still.T_spin is None
-    start = {"r0": 1e35, "theta0_deg": 89, "psidot0": 1}
-    moving = solve(Top(**UNIT | start))
-    assert moving.mean_precession_rate == pytest.approx(1e-35)
-    assert moving.T_precession == pytest.approx(6.283185307179586e35)

@@ -154,6 +154,8 @@ def test_commands_write_radii(lagtop: Lagtop) -> None:
     assert list(solved).index("m_radius") == list(solved).index("remark") + 1
     plain = json.loads(lagtop("solve", "--format", "json").stdout)
     assert {key: solved[key] for key in plain} == plain
+    texts = {"regime", "path", "remark", "summary"}
+    assert solved.keys() - plain.keys() == {f"{key}_radius" for key in plain.keys() - texts}
     assert str(solved["T_nutation_radius"]) in lagtop("solve", "--certify").stdout
     bare = lagtop("solve", "--certify", "--get", "u2,path").stdout
     assert bare == f"0.27695194556122277\n{solved['u2_radius']}\ncusped\n"

@@ -9,21 +9,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes import UNIT
+from scenes import EPS, EVERY_KIND, UNIT
 from slopes import Slopes
 
 from lagrange_cli import LagtopError, Top, angle_sensitivities, sensitivities, solve
 
-EPS = 2.0**-52
-
 SCENES: dict[str, dict[str, float]] = {
-    "worked example": {},
-    "from rest, slow": UNIT | {"r0": 0.5, "theta0_deg": 130},
+    **{x: EVERY_KIND[x] for x in ("worked example", "slow", "any start", "starts lowest")},
     "from rest, fast": UNIT | {"r0": -900, "theta0_deg": 40},
     "from rest, tiny tilt": UNIT | {"r0": 2, "theta0_deg": 1e-9},
-    "any start": UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.75, "psidot0": 0.5},
     "in radians": UNIT | {"r0": -3, "theta0_rad": 2, "thetadot0": -1.5, "psidot0": 1},
-    "starts lowest": UNIT | {"r0": 3, "theta0_deg": 40, "psidot0": 2},
     "nearly steady": UNIT | {"r0": 1.5, "theta0_deg": 60, "psidot0": 2 + 1e-13},
     "nearly at rest": {"thetadot0": 1e-12, "psidot0": -1e-12},
     "near the separatrix": UNIT
@@ -40,6 +35,7 @@ SCENES: dict[str, dict[str, float]] = {
     "cancelling": UNIT | {"C": 5e-6, "r0": 2, "theta0_deg": 130, "thetadot0": 2.2e9},
 }
 DEGENERATE: dict[str, dict[str, float]] = {
+    **{x: EVERY_KIND[x] for x in ("sleeping", "hanging")},
     "torque-free": UNIT
     | {"C": 0.5, "g": 0, "r0": 3, "theta0_deg": 50, "psidot0": 1, "thetadot0": 0.5},
     "steady": UNIT | {"r0": 1.5, "theta0_deg": 60, "psidot0": 2},
@@ -49,8 +45,6 @@ DEGENERATE: dict[str, dict[str, float]] = {
     "from the top": UNIT | {"r0": 3, "theta0_deg": 0, "thetadot0": 2},
     "separatrix": UNIT
     | {"m": 3.25, "r0": -2.25, "theta0_deg": 60, "thetadot0": -1.25, "psidot0": -1.5},
-    "sleeping": UNIT | {"r0": 3, "theta0_deg": 0},
-    "hanging": UNIT | {"r0": 3, "theta0_deg": 180},
     "free and steady": UNIT | {"C": 0.5, "g": 0, "r0": 3, "theta0_deg": 50},
 }
 

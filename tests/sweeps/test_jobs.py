@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager, nullcontext, suppress
 from pathlib import Path
 
@@ -161,28 +161,6 @@ class Started(_Worker):
         assert list(self.answer()) == []
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("to_file", [True, False])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_a_signal_ends_all_processes(
-    number: signal.Signals, to_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    output = ["-o", str(tmp_path / "o.csv")] if to_file else []
-    command = [*LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "2", *output]
-    running = subprocess.Popen(
-        command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, start_new_session=True
-    )
-    shared = tmp_path.glob
-    wait_until(lambda: any(path.stat().st_size for path in shared("lagtop-*/*")), running)
-    running.send_signal(number)
-    assert running.wait(timeout=60) == -number
-    assert_gone(running.pid)
-    said = running.communicate()[1]
-    if number != signal.SIGKILL:  # which nothing can clean up after
-        assert (said, list(tmp_path.iterdir())) == (b"", [])
-
-
 @pytest.fixture
 def script(tmp_path: Path) -> list[str]:
     """Return the command as the script of an installation runs it: not from the current folder."""
@@ -224,12 +202,12 @@ HEEDING = ["env", "--default-signal=HUP,INT,QUIT"]
 
 
 @contextmanager
-def sharing(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
+def sharing(folder: Path, *output: str) -> Iterator[subprocess.Popen[bytes]]:
     """Start a long sweep in a process group of its own, and wait until it shares work."""
-    command = [*HEEDING, *LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "3"]
     running = subprocess.Popen(
-        [*command, "-o", str(folder / "out.csv")],
+        [*HEEDING, *LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "3", *output],
         stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
         start_new_session=True,
         env=os.environ | {"TMPDIR": str(folder)},
     )
@@ -242,15 +220,26 @@ def sharing(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["HUP", "INT", "QUIT", "TERM", "USR1"])
-def test_a_signal_to_the_whole_group(name: str, tmp_path: Path) -> None:
-    """A terminal that is closed and a batch system do that."""
-    number = getattr(signal, f"SIG{name}")
-    with sharing(tmp_path) as running:
-        os.killpg(running.pid, number)
-        assert running.communicate(timeout=180)[1] == b""
-    assert running.returncode == -number
-    assert list(tmp_path.iterdir()) == []
+@pytest.mark.parametrize("to_file", [True, False])
+@pytest.mark.parametrize(
+    ("send", "names"),
+    [(os.kill, "INT TERM KILL"), (os.killpg, "HUP INT QUIT TERM USR1")],
+    ids=["one process", "whole group"],
+)
+def test_a_signal_ends_all_processes(
+    send: Callable[[int, int], None], names: str, to_file: bool, tmp_path: Path
+) -> None:
+    """A terminal that is closed and a batch system send it to the whole group."""
+    for name in names.split():
+        number, folder = getattr(signal, f"SIG{name}"), tmp_path / name
+        folder.mkdir()
+        with sharing(folder, *(["-o", str(folder / "out.csv")] if to_file else [])) as running:
+            send(running.pid, number)
+            said = running.communicate(timeout=180)[1]
+            assert_gone(running.pid)
+        assert running.returncode == -number
+        if name != "KILL":  # which nothing can clean up after
+            assert (said, list(folder.iterdir())) == (b"", []), name
 
 
 LONG_WORK = """if True:
@@ -285,7 +274,7 @@ def test_a_worker_ends_with_its_parent_in_the_middle_of_its_work() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("who", ["resource_tracker", "spawn_main"])
 def test_a_helper_that_is_killed(who: str, tmp_path: Path) -> None:
-    with sharing(tmp_path) as running:
+    with sharing(tmp_path, "-o", str(tmp_path / "out.csv")) as running:
         victim = next(pid for pid, line in children(running.pid).items() if who in line)
         os.kill(victim, signal.SIGKILL)
         if who == "resource_tracker":  # which nothing needs
