@@ -12,15 +12,10 @@ from fractions import Fraction
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError, UnavailableError
 from .input_keys import TILT
-from .names import ANGLES, repeated
+from .names import repeated
 from .top import INPUTS
 from .value import Value
 
-_ANGULAR = (*ANGLES, "euler")
-_NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
-"""Units that mean those of the scene, as in a drawn table."""
-_OWN_UNITS = {"position": "m", "rotvec": "rad"}
-"""Quantities of a trajectory that have one possible unit."""
 _GREEK = {
     "\u03b8": "theta",
     "\u03d1": "theta",
@@ -118,19 +113,3 @@ def heading_units(
                 place = f"{name}, heading {column} [{one.unit}]"
                 raise DataError(f"{place}: {error}") from None
     return found
-
-
-def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:
-    """Return the unit that a quantity is converted to, and the factor; None without conversion.
-
-    Raises LagtopError for a unit that the quantity cannot have.
-    """
-    if unit in _NO_UNITS or unit == _OWN_UNITS.get(key):
-        return None, None
-    if key in _ANGULAR and unit in {"deg", "rad"}:
-        return unit, None
-    from .units import DIMENSIONS, factor_of  # for few files only
-
-    if key not in DIMENSIONS:
-        raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
-    return "rad" if key in _ANGULAR else None, factor_of(key, Value(Fraction(1), str(unit)))

@@ -5,7 +5,6 @@ Help texts, tables of records, units, pictures and READMEs take the inputs from 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -55,14 +54,16 @@ psidot0 | ψ'0 | precession rate at start
 """
 
 
-def _declared(table: str) -> Iterator[tuple[str, Input]]:
-    """Yield the inputs of a table, one per line; indented lines continue the line before."""
+def declared(table: str) -> Iterator[list[str]]:
+    """Yield the cells of a table, one row per line; indented lines continue the line before."""
     for line in table.strip().replace("\n ", " ").split("\n"):
-        key, symbol, name, meaning, bound, unit, default = re.split(r"\s*\|\s*", line)
-        yield key, Input(symbol, name, meaning, bound, unit, float(default) if default else None)
+        yield [cell.strip() for cell in line.split("|")]
 
 
-DECLARED = dict(_declared(_TABLE))
+DECLARED = {
+    key: Input(symbol, name, meaning, bound, unit, float(default) if default else None)
+    for key, symbol, name, meaning, bound, unit, default in declared(_TABLE)
+}
 """Every input by key, in the order used everywhere."""
 
 TILT = "theta0"

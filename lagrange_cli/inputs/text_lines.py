@@ -9,10 +9,11 @@ import csv
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from fractions import Fraction
 from io import BufferedIOBase
 from typing import Any, BinaryIO, NamedTuple
 
-from ..arithmetic.text import json_text, quoted, shortened
+from ..arithmetic.text import json_text, parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
 
 LONGEST_LINE = 1 << 20
@@ -137,6 +138,23 @@ class Dialect(NamedTuple):
             cells = enumerate(text.split(delimiter), 1)
             number, cell = next((x for x in cells if x[1].count('"') % 2), (1, text))
             raise _wrong_quote(cell, number) from None
+
+    def row(self, line: bytes, width: int) -> list[str]:
+        """Return the cells of a line.  Raises LagtopError unless there are `width` cells."""
+        cells = self.cells(decoded_row(line))
+        if len(cells) != width:
+            raise LagtopError(f"a row must have {width} cells, got {len(cells)}")
+        return cells
+
+    def number(self, cell: str) -> Fraction:
+        """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
+        plain, bare = self.with_point(cell), cell.strip()
+        try:
+            return parse_number(plain)
+        except LagtopError as error:
+            wrong = str(error).replace(quoted(plain.strip()), quoted(bare))
+            hint = self.remedy(bare)
+            raise LagtopError(f"{wrong.partition(' (')[0]}{hint}" if hint else wrong) from None
 
     def with_point(self, cell: str) -> str:
         """Return a cell with a decimal point; a cell with the other mark then fails to parse."""

@@ -9,13 +9,12 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
-from ..arithmetic.text import NumberText, parse_number, quoted, shortened
+from ..arithmetic.text import NumberText, shortened
 from ..errors import DataError, LagtopError
 from .files import decoded_file, shown_path
-from .headings import in_known_unit
 from .text_lines import UNDECIDED, Dialect, at_line, decoded_row, json_object
 from .text_tables import TextTable, read_table
-from .trajectory_columns import known_quantities, numeric_columns, quantities_in
+from .trajectory_columns import in_known_unit, known_quantities, numeric_columns, quantities_in
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -91,10 +90,7 @@ def _reader(table: TextTable) -> Callable[[bytes], Fraction]:
     dialect = table.decided(numeric_columns(headings or ["t"]))
 
     def time_of(row: bytes) -> Fraction:
-        cells = dialect.cells(decoded_row(row))
-        if len(cells) != width:
-            raise LagtopError(f"a row must have {width} cells, got {len(cells)}")
-        return factor * _parsed(cells[place].strip(), dialect)
+        return factor * _parsed(dialect.row(row, width)[place].strip(), dialect)
 
     return time_of
 
@@ -117,7 +113,6 @@ def _time_in_object(row: bytes, key: str) -> Fraction:
 
 def _parsed(text: str, dialect: Dialect) -> Fraction:
     try:
-        return parse_number(dialect.with_point(text))
+        return dialect.number(text)
     except LagtopError as error:
-        wrong = str(error).partition(", got")[0]
-        raise LagtopError(f"the time {wrong}, got {quoted(text)}{dialect.remedy(text)}") from None
+        raise LagtopError(f"the time {error}") from None

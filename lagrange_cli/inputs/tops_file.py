@@ -14,7 +14,6 @@ from io import BufferedIOBase
 from itertools import chain, islice
 from typing import Any, NamedTuple
 
-from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
 from .files import decoded_file, shown_path
 from .given import Given, gather
@@ -159,23 +158,22 @@ class TopsFile(NamedTuple):
 
 
 def _double_in_text(name: str, text: str, dialect: Dialect, factor: Fraction | None) -> float:
-    plain, bare = dialect.with_point(text), text.strip()
+    bare = text.strip()
     try:
-        value = float(plain)
+        value = float(dialect.with_point(text))
     except ValueError:
         value = math.nan
     if factor is None and value and math.isfinite(value) and text.isascii() and "_" not in text:
         return value
     if not bare:
         raise LagtopError(f"{name} must be a number, got an empty cell")
+    if bare in STEADY_WORDS:
+        raise LagtopError(f"{name} {steady_refused(bare)}")
     try:
-        return checked_double(name, parse_number(plain) * (1 if factor is None else factor))
+        number = dialect.number(text)
     except LagtopError as error:
-        wrong = str(error).replace(quoted(plain.strip()), quoted(bare))
-        wrong = steady_refused(bare) if bare in STEADY_WORDS else wrong
-        if hint := dialect.remedy(bare):
-            wrong = f"{wrong.partition(' (')[0]}{hint}"
-        raise LagtopError(f"{name} {wrong}") from None
+        raise LagtopError(f"{name} {error}") from None
+    return checked_double(name, number if factor is None else number * factor)
 
 
 def open_tops(

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from .files import decoded_file, shown_path, temporary_copy
-from .headings import in_known_unit
 from .names import ANGLES
 from .text_lines import UNDECIDED, Dialect
 from .trajectory_columns import (
     QUANTITIES,
     FoundQuantity,
     expanded,
+    in_known_unit,
     named_twice,
     plain_name,
     quantities_in,

@@ -1,20 +1,22 @@
 """The columns of a trajectory by name: their quantities, and the conventions that names imply.
 
-To add a name or a quantity, add a line to the table.  The help of `lagtop compare` and the table
-in the README of `judge` are generated from it.
+To add a name or a quantity, add a line to a table.  The help of `lagtop compare` and the table in
+the README of `judge` are generated from them.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .headings import name_and_unit
+from .input_keys import declared
 from .names import ANGLES, suggestion
+from .value import Value
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -39,6 +41,8 @@ class Quantity(NamedTuple):
     meaning: str
     shown: str
     """Examples of names, for help texts."""
+    unit: str
+    """`angle`, `time` or `rad/time`, which are converted; or the only unit, empty for none."""
     spellings: Sequence[Spelling]
 
     @property
@@ -66,81 +70,94 @@ class FoundQuantity(NamedTuple):
         return values * size if self.factor > 1 else values / size  # by a whole number, if possible
 
 
-_TABLE = """
-t | time | t, time, timestamp
-    - | t time timestamp times simtime xvalue
-quaternion | quaternion from body to space
-        | quaternion_w ..., qw qx qy qz; by number: quaternion_0 ..., q0 ...
-    w x y z | quaternion quat q orientation attitude xquat - | wxyz
-    0 1 2 3 | quaternion quat q orientation attitude
-    3 4 5 6 | qpos u | wxyz
-    3 4 5 6 | bodyq | xyzw
-    0 1 2 3 | qpos xquat ep eulerparameters | wxyz
-matrix | rotation matrix from body to space, row by row | matrix_0 ..., r11 r12 ... r33, R00 ... R22
-    0 1 2 3 4 5 6 7 8 | matrix rotationmatrix rotation xmat rot r m
-    11 12 13 21 22 23 31 32 33 | matrix rotationmatrix rotation xmat rot r m
-    00 01 02 10 11 12 20 21 22 | matrix rotationmatrix rotation xmat rot r m
-    xx xy xz yx yy yz zx zy zz | matrix rotationmatrix rotation xmat rot r m
-theta | tilt | theta, theta_deg, theta_rad, θ, tilt; elevation: 90 degrees minus the tilt
-    - | theta tilt
-    - | elevation | elevation
-phi | spin | phi, phi_deg, phi_rad, φ, spin
-    - | phi spin
-psi | precession | psi, psi_deg, psi_rad, ψ, precession
-    - | psi precession
-euler | three angles of turns about coordinate axes | euler_0 ..., roll pitch yaw
-    0 1 2 | euler rpy
-    roll pitch yaw | - | xyz
-    0 1 2 | rotxyz | XYZ
-rotvec | rotation vector from body to space, in radians | rotvec_x ..., rv0 rv1 rv2
-    x y z | rotvec rotationvector rv
-    0 1 2 | rotvec rotationvector rv
-axis | figure axis in space | axis_x axis_y axis_z
-    x y z | axis figureaxis director
-    0 1 2 | axis figureaxis director
-position | mass centre in space, from the pivot; read if nothing above is given
-        | x y z, com_x ..., tx ty tz
-    x y z | position com pos p t
-    0 1 2 | position com pos p t
-    x y z | -
-rates | angular velocity in radians per unit of time
-        | p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz
-    p q r | - | body
-    x y z | omega w angularvelocity gyro rates
-    x y z | omegabody omegalocal angularvelocitylocal wbody qvel | body
-    x y z | omegaspace omegaworld omegaglobal wspace | space
-    0 1 2 | omega w angularvelocity gyro rates
-    0 1 2 | omegabody omegalocal angularvelocitylocal wbody qvel | body
-    0 1 2 | omegaspace omegaworld omegaglobal wspace | space
-angle_rates | rates of tilt, spin and precession in radians per unit of time
-        | thetadot phidot psidot
-    thetadot phidot psidot | -
-    dtheta dphi dpsi | -
-    0 1 2 | anglerates
+_QUANTITIES = """
+t | time | time | t, time, timestamp
+quaternion | | quaternion from body to space
+    | quaternion_w ..., qw qx qy qz; by number: quaternion_0 ..., q0 ...
+matrix | | rotation matrix from body to space, row by row
+    | matrix_0 ..., r11 r12 ... r33, R00 ... R22
+theta | angle | tilt | theta, theta_deg, theta_rad, θ, tilt; elevation: 90 degrees minus the tilt
+phi | angle | spin | phi, phi_deg, phi_rad, φ, spin
+psi | angle | precession | psi, psi_deg, psi_rad, ψ, precession
+euler | angle | three angles of turns about coordinate axes | euler_0 ..., roll pitch yaw
+rotvec | rad | rotation vector from body to space, in radians | rotvec_x ..., rv0 rv1 rv2
+axis | | figure axis in space | axis_x axis_y axis_z
+position | m | mass centre in space, from the pivot; read if nothing above is given
+    | x y z, com_x ..., tx ty tz
+rates | rad/time | angular velocity in radians per unit of time
+    | p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz
+angle_rates | rad/time | rates of tilt, spin and precession in radians per unit of time
+    | thetadot phidot psidot
 """
-"""A quantity per line: its name, its meaning, examples of names.  Indented lines are its spellings.
+"""The name of each quantity, its unit, its meaning, and examples of columns.
 
-A spelling has the parts, their prefixes and the convention that they imply; `-` is an empty text.
+They are in the order of preference for the attitude.
 """
 
+_SPELLINGS = """
+t | t time timestamp times simtime xvalue | |
+quaternion | quaternion quat q orientation attitude xquat | w x y z | wxyz
+quaternion | | w x y z | wxyz
+quaternion | quaternion quat q orientation attitude | 0 1 2 3 |
+quaternion | qpos u | 3 4 5 6 | wxyz
+quaternion | bodyq | 3 4 5 6 | xyzw
+quaternion | qpos xquat ep eulerparameters | 0 1 2 3 | wxyz
+matrix | matrix rotationmatrix rotation xmat rot r m | 0 1 2 3 4 5 6 7 8 |
+matrix | matrix rotationmatrix rotation xmat rot r m | 11 12 13 21 22 23 31 32 33 |
+matrix | matrix rotationmatrix rotation xmat rot r m | 00 01 02 10 11 12 20 21 22 |
+matrix | matrix rotationmatrix rotation xmat rot r m | xx xy xz yx yy yz zx zy zz |
+theta | theta tilt | |
+theta | elevation | | elevation
+phi | phi spin | |
+psi | psi precession | |
+euler | euler rpy | 0 1 2 |
+euler | | roll pitch yaw | xyz
+euler | rotxyz | 0 1 2 | XYZ
+rotvec | rotvec rotationvector rv | x y z |
+rotvec | rotvec rotationvector rv | 0 1 2 |
+axis | axis figureaxis director | x y z |
+axis | axis figureaxis director | 0 1 2 |
+position | position com pos p t | x y z |
+position | position com pos p t | 0 1 2 |
+position | | x y z |
+rates | | p q r | body
+rates | omega w angularvelocity gyro rates | x y z |
+rates | omegabody omegalocal angularvelocitylocal wbody qvel | x y z | body
+rates | omegaspace omegaworld omegaglobal wspace | x y z | space
+rates | omega w angularvelocity gyro rates | 0 1 2 |
+rates | omegabody omegalocal angularvelocitylocal wbody qvel | 0 1 2 | body
+rates | omegaspace omegaworld omegaglobal wspace | 0 1 2 | space
+angle_rates | | thetadot phidot psidot |
+angle_rates | | dtheta dphi dpsi |
+angle_rates | anglerates | 0 1 2 |
+"""
+"""The quantity of some columns, their possible prefixes, their endings, and the convention.
 
-def _declared(table: str) -> Iterator[tuple[str, Quantity]]:
-    """Yield the quantities of a table; lines that begin with a bar continue the line before."""
-    for entry in re.split(r"\n(?=\w)", re.sub(r"\n\s*(?=\|)", " ", table.strip())):
-        heading, *lines = entry.split("\n")
-        name, meaning, shown = heading.split(" | ")
-        spellings = [
-            Spelling([f"{prefix}{part}".replace("-", "") for part in parts.split()], says)
-            for parts, prefixes, says in (f"{line.strip()} | ".split(" | ")[:3] for line in lines)
-            for prefix in prefixes.split()
-        ]
-        yield name, Quantity(meaning, shown, spellings)
+The plain name of a column is a prefix followed by an ending: `qw` for the prefix q and the ending
+w.  The names imply the convention, if the last cell has one.
+"""
 
 
-QUANTITIES = dict(_declared(_TABLE))
+def _spellings_of(key: str) -> list[Spelling]:
+    """Return the declared spellings of a quantity, one for each prefix."""
+    return [
+        Spelling([prefix + ending for ending in endings.split() or [""]], says)
+        for quantity, prefixes, endings, says in declared(_SPELLINGS)
+        for prefix in prefixes.split() or [""]
+        if quantity == key
+    ]
+
+
+QUANTITIES = {
+    key: Quantity(meaning, shown, unit, _spellings_of(key))
+    for key, unit, meaning, shown in declared(_QUANTITIES)
+}
 """The quantities by name, in the order of preference for the attitude."""
 
 _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITIES.items()}
+
+_NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
+"""Units that mean those of the scene, as in a drawn table."""
 
 _EXUDYN = {
     "RotationMatrix": ["t", "matrix"],
@@ -206,6 +223,26 @@ def plain_name(name: str) -> tuple[str, str | None]:
     if not unit and match and not match[2].startswith(match[1]):
         text, unit = match[1], match[2]
     return re.sub(r"[^a-z0-9]", "", text), unit or None
+
+
+def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:
+    """Return the unit that a quantity is converted to, and the factor; None without conversion.
+
+    Raises LagtopError for a unit that the quantity cannot have.
+    """
+    own = QUANTITIES[key].unit
+    if unit in {*_NO_UNITS, own}:
+        return None, None
+    if own == "angle" and unit in {"deg", "rad"}:
+        return unit, None
+    if own not in {"angle", "time", "rad/time"}:
+        raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
+    from .units import factor_of  # for few files only
+
+    one = Value(Fraction(1), str(unit))
+    if own == "angle":
+        return "rad", factor_of(key, one, "rad")
+    return None, factor_of(key, one, own)
 
 
 def expanded(names: Sequence[str]) -> list[str]:

@@ -16,7 +16,7 @@ from ..arithmetic.points import Points
 from ..arithmetic.values import Values
 from ..errors import LagtopError, UnavailableError
 from .input_keys import BODY, DECLARED, TILT
-from .names import ANGLES, usual_spelling
+from .names import usual_spelling
 from .stand_ins import EXACT_DIGITS
 from .value import Value
 
@@ -34,11 +34,8 @@ _EXAMPLES = {
     **dict.fromkeys(("deg", "rad"), "30deg or 0.5rad"),
 }
 """An example of each unit of an input."""
-_UNIT_OF = (
-    {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
-    | dict.fromkeys(("t", "t_min", "t_max", "dt"), "time")
-    | dict.fromkeys((*ANGLES, "euler"), "rad")
-    | dict.fromkeys(("rates", "angle_rates"), "rad/time")
+_UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()} | dict.fromkeys(
+    ("t", "t_min", "t_max", "dt"), "time"
 )
 
 _NAME = r"(?:[^\W\d]\w*|°)(?:\s*(?:\*\*|\^)\s*-?\d(?!\d))?"
