@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from .errors import LagtopError, MixedBodyWarning
     from .fits.find import find
     from .fits.fit import fit
-    from .inputs.library_values import read_scene
+    from .inputs.given import read_scene
     from .inputs.top import Top
     from .judge.compare import compare
     from .judge.judgement import Judgement
@@ -59,7 +59,7 @@ _MODULES = {
     "draw_outcome": "plot.reports",
     "find": "fits.find",
     "fit": "fits.fit",
-    "read_scene": "inputs.library_values",
+    "read_scene": "inputs.given",
     "sensitivities": "motion.sensitivity.sensitivities",
     "solve": "motion.solve",
     "sweep": "sweeps.records",

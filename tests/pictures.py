@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from scenes import SAMPLES, UNIT
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.inputs.library_values import read_scene
+from lagrange_cli.inputs.given import read_scene
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import PlotRequest
 from lagrange_cli.plot.page import Page, draw_page

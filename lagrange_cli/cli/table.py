@@ -138,7 +138,7 @@ def _listed(
     """
     if times is None:
         return None
-    from ..inputs.times_file import TimesFile
+    from ..inputs.trajectory import TimesFile
 
     file = TimesFile(times, counted=fmt == "npy", dialect=dialect)
     if tops is None and fmt not in _DRAWN:
@@ -185,7 +185,7 @@ def _described(
     is_whole: bool = True,
 ) -> Header:
     """Return the names of columns with the description of the file."""
-    from ..inputs.descriptions import describe
+    from ..inputs.scene_file import describe
     from ..output.formats import Header
 
     texts = describe(__version__, scene, system, radians=request.radians, is_whole=is_whole)

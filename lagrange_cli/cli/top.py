@@ -203,7 +203,7 @@ def warn_missing(found: Given) -> None:
     if found.empty is not None:
         complain(f"Warning: {found.empty} has no inputs: using the worked example")
     if found.missing:
-        from ..inputs.mixed_body import example_options, remark_on
+        from ..inputs.input_keys import example_options, remark_on
 
         words = example_options(found.missing, units=found.system is not None)
         complain(f"Warning: {remark_on(found.missing, words)}")

@@ -16,7 +16,7 @@ import numpy as np
 from ..arithmetic.text import double_text
 from ..arithmetic.types import Array
 from ..errors import AbsentError, LagtopError, check_type
-from ..inputs.mixed_body import warn_of
+from ..inputs.input_keys import warn_of
 from ..inputs.names import check_names
 from ..inputs.top import INPUTS
 from ..motion.numbers import record_in_range

@@ -15,9 +15,9 @@ from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..inputs import rotations
-from ..inputs.descriptions import scene_in
 from ..inputs.input_keys import checked_double
 from ..inputs.names import ANGLES
+from ..inputs.scene_file import scene_in
 from ..inputs.seen import Conventions, Quantities, Said, angles_in, quantities_of, rows_of, see
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top

@@ -14,11 +14,10 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given, gather
 from ..inputs.input_keys import overridden
-from ..inputs.library_values import exact_number, value_of, values_of
 from ..inputs.names import check_names
 from ..inputs.ranges import Product, Span, parse_span
 from ..inputs.top import Top
-from ..inputs.value import Value, parse_value, split_unit
+from ..inputs.value import Value, exact_number, parse_value, split_unit, value_of, values_of
 from ..motion.quantity import unit_name
 from ..motion.record import all_keys, shown_keys
 from ..motion.regime import Regime

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
-from types import MappingProxyType
+from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import Number
 from ..arithmetic.values import Values
-from ..errors import LagtopError
-from .input_keys import BODY, TILT, checked_double, from_example, one_of_each, overridden
+from ..errors import LagtopError, check_type
+from .input_keys import BODY, TILT, checked_double, from_example, one_of_each, overridden, warn_of
 from .top import Top
-from .value import STEADY_WORDS, InputPair, Stds, Value
+from .value import STEADY_WORDS, InputPair, Stds, Value, values_of
 
 if TYPE_CHECKING:
     from .scene_file import SceneFile
@@ -123,3 +124,23 @@ def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
         return error
     which = f"{' and '.join(moments)} of the worked example"
     return LagtopError(f"{error} (with {which}: give the whole body)", error.key)
+
+
+def read_scene(
+    path: str | os.PathLike[str], given: Mapping[str, Number] | None = None, *, exact: bool = False
+) -> Top:
+    """Return the top of a scene file; `given` inputs override those of the file.
+
+    Numbers are rounded to doubles, or kept as `exact` decimals.  Numbers with units are converted
+    to SI.  A MixedBodyWarning names the defaults if only some of the body is given.  Raises
+    SceneError for a bad file, LagtopError for a bad given input.
+
+    >>> read_scene("hanging-top", {"r0": 20}).r0
+    20.0
+    """
+    check_type("given", given, Mapping, NoneType)
+    found = gather(values_of(given or {}), os.fsdecode(path))
+    top = found.top(exact=exact)
+    if found.missing:
+        warn_of(found.missing, stacklevel=3)
+    return top

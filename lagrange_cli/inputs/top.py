@@ -22,6 +22,7 @@ from .input_keys import (
     from_example,
     one_of_each,
     overridden,
+    warn_of,
 )
 
 if TYPE_CHECKING:
@@ -142,8 +143,6 @@ class Top(Values):
                 raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
             super().__init__(**self.as_dict() | {"psidot0": steady_rate_of(self, word)})
         if missing:
-            from .mixed_body import warn_of  # for few tops only
-
             warn_of(missing, stacklevel=4)
 
     def __reduce__(self) -> tuple[Callable[[], Top], tuple[()]]:

@@ -19,8 +19,8 @@ import numpy as np
 
 from ..arithmetic.text import quoted, shortened
 from ..errors import DataError, LagtopError, UnavailableError
-from .descriptions import description_in
 from .names import repeated
+from .scene_file import description_in
 from .trajectory_columns import quantities_in
 from .trajectory_text import Block, Table, parts
 

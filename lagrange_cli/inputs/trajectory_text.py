@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
 from ..errors import DataError
-from .descriptions import Description, description_in
 from .names import repeated
+from .scene_file import Description, description_in
 from .text_lines import SWAP, Dialect, at_line, decoded_row, is_number, json_object
 from .text_tables import TextTable, read_table
 from .trajectory_columns import known_quantities, names_in_comments

@@ -1,9 +1,10 @@
-"""Input values as users write them: numbers, units and standard uncertainties."""
+"""Input values: numbers, units and standard uncertainties, as texts or as Python objects."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -136,3 +137,44 @@ def split_unit(text: str) -> tuple[str, str]:
     if set(unit) & {":", ","} or number.endswith((":", ",")) or not re.search(r"\d", number):
         return text, ""
     return number, unit
+
+
+def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -> Value:
+    """Return a number or an array as a value; both may be of pint, and numbers of uncertainties.
+
+    A single number with a unit, and an uncertainty, become fractions.  `parse` reads the number of
+    a text, which may be uncertain.  Raises LagtopError if it does, or for numbers that are not
+    finite.
+    """
+    if parse is not None and isinstance(given, str):
+        try:
+            return parse_value(given, parse, uncertain=True)
+        except LagtopError as error:
+            raise LagtopError(f"{name} {error}", name) from None
+    if isinstance(given, Value):
+        return given
+    unit = ""
+    if hasattr(given, "magnitude"):  # xarray has `units` too
+        unit, given = f"{given.units:C}", given.magnitude
+    number, std = getattr(given, "nominal_value", given), getattr(given, "std_dev", None)
+    if unit and not isinstance(number, list | tuple) and not getattr(number, "shape", ()):
+        number = exact_number(name, number)
+    spread = None if std is None else exact_number(name, std, "the uncertainty of ")
+    return Value(number, unit, spread)
+
+
+def values_of(inputs: Mapping[str, Any]) -> dict[str, Value]:
+    """Return the values of inputs by key.  Raises LagtopError."""
+    return {name: value_of(name, x) for name, x in inputs.items()}
+
+
+def exact_number(name: str, number: Any, what: str = "") -> Fraction:
+    """Return a real number as a fraction.  Raises LagtopError for anything else."""
+    number = number.item() if getattr(number, "shape", None) == () else number  # NumPy's overflow
+    try:
+        if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
+            float(number)
+            return Fraction(number)
+    except (ValueError, OverflowError):
+        pass
+    raise LagtopError(f"{what}{name} must be a finite number, got {quoted(number)}", name)

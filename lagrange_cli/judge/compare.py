@@ -11,8 +11,8 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
-from ..inputs.descriptions import difference, scene_in
 from ..inputs.files import shown_path, utf8_path
+from ..inputs.scene_file import difference, scene_in
 from ..inputs.seen import Conventions, quantities_of
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top

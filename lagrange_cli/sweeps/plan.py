@@ -17,17 +17,15 @@ from .. import __version__
 from ..arithmetic.points import Points
 from ..arithmetic.text import value_text
 from ..errors import LagtopError, SomeFailedError
-from ..inputs.descriptions import describe
 from ..inputs.files import digested
 from ..inputs.given import Given, gather
 from ..inputs.input_keys import checked_double, overridden
-from ..inputs.library_values import values_of
 from ..inputs.ranges import Product
-from ..inputs.scene_file import is_scene_file
+from ..inputs.scene_file import describe, is_scene_file
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import Lines, open_tops
-from ..inputs.value import Stds, Value, steady_refused
+from ..inputs.value import Stds, Value, steady_refused, values_of
 from ..output.formats import Header, block_text
 from ..output.rows import Columns
 from .records import BLOCK_ROWS, check_keys, column_keys, records

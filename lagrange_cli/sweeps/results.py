@@ -14,13 +14,11 @@ from ..arithmetic.arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..inputs.given import gather
-from ..inputs.input_keys import EXAMPLE, overridden
-from ..inputs.library_values import values_of
-from ..inputs.mixed_body import warn_of
+from ..inputs.input_keys import EXAMPLE, overridden, warn_of
 from ..inputs.names import check_names
 from ..inputs.top import INPUTS, Top
 from ..inputs.units import System
-from ..inputs.value import Stds, steady_refused
+from ..inputs.value import Stds, steady_refused, values_of
 from ..motion.notebook import html_table
 from ..motion.record import TEXT_KEYS, shown_keys
 from .top_arrays import TopArrays, top_arrays

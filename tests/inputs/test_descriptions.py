@@ -13,7 +13,7 @@ from pyarrow import parquet
 import lagrange_cli
 from lagrange_cli import Top
 from lagrange_cli.errors import DataError
-from lagrange_cli.inputs.descriptions import describe, description_in, difference, scene_in
+from lagrange_cli.inputs.scene_file import describe, description_in, difference, scene_in
 
 SCENE = ["--m", "0.35", "--A", "8.5e-4", "--C", "4e-4", "--s", "0.03", "--g", "9.81", "--r0", "200"]
 TOP = Top(m=0.35, A=8.5e-4, C=4e-4, s=0.03, g=9.81, r0=200.0, theta0_deg=20.0)

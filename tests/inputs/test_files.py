@@ -16,9 +16,9 @@ import lagrange_cli
 from lagrange_cli import LagtopError, Top
 from lagrange_cli.arithmetic.points import POINTS_AT_ONCE
 from lagrange_cli.errors import DataError, SceneError
-from lagrange_cli.inputs.library_values import read_scene
-from lagrange_cli.inputs.times_file import TimesFile
+from lagrange_cli.inputs.given import read_scene
 from lagrange_cli.inputs.tops_file import open_tops
+from lagrange_cli.inputs.trajectory import TimesFile
 
 
 def scene(folder: Path, text: str) -> str:

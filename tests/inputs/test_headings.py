@@ -12,8 +12,7 @@ from conftest import Lagtop, assert_one_line
 from lagrange_cli.errors import DataError
 from lagrange_cli.inputs.headings import name_and_unit
 from lagrange_cli.inputs.seen import Conventions, angles_in
-from lagrange_cli.inputs.times_file import TimesFile
-from lagrange_cli.inputs.trajectory import open_trajectory
+from lagrange_cli.inputs.trajectory import TimesFile, open_trajectory
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,8 @@ from conftest import Lagtop, assert_one_line
 
 from lagrange_cli.errors import DataError
 from lagrange_cli.inputs.text_lines import UNDECIDED, Dialect
-from lagrange_cli.inputs.times_file import TimesFile
 from lagrange_cli.inputs.tops_file import open_tops
-from lagrange_cli.inputs.trajectory import open_trajectory
+from lagrange_cli.inputs.trajectory import TimesFile, open_trajectory
 
 
 def times(path: Path, dialect: Dialect) -> list[float]:

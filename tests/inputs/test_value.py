@@ -12,10 +12,9 @@ import xarray
 from uncertainties import ufloat
 
 from lagrange_cli.errors import LagtopError
-from lagrange_cli.inputs.library_values import value_of
 from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.inputs.uncertain import are_possible
-from lagrange_cli.inputs.value import Stds, Value, parse_value, split_unit
+from lagrange_cli.inputs.value import Stds, Value, parse_value, split_unit, value_of
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,8 @@ from importlib.resources import files
 from pathlib import Path
 
 from ...errors import LagtopError, check_type
+from ...inputs.given import read_scene
 from ...inputs.input_keys import DECLARED, NINE, TILT, Input
-from ...inputs.library_values import read_scene
 from ...inputs.scene_file import scene_names, scene_remark
 from ...inputs.top import Top
 from ...motion.explanation import listed
