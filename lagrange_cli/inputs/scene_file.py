@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.text import parse_number, quoted
+from ..arithmetic.text import parse_number, quoted, shortened
 from ..errors import DataError, LagtopError, SceneError
 from .files import reading, shown_path
 from .input_keys import TILT
@@ -100,7 +100,7 @@ class SceneFile:
     def _correlations(self, table: object) -> dict[InputPair, Fraction]:
         """Return correlations by pair of inputs, from tables such as `A = { C = 0.5 }`."""
         if not isinstance(table, dict) or not all(isinstance(x, dict) for x in table.values()):
-            raise LagtopError(f"must be tables such as A = {{ C = 0.5 }}, got {quoted(table)}")
+            raise LagtopError(f"must be tables such as A = {{ C = 0.5 }}, got {_shown(table)}")
         uncertain = {name: 1.0 for name, x in self.inputs.items() if x.std is not None}
         found: dict[InputPair, Fraction] = {}
         for x, y, r in ((x, y, r) for x, row in table.items() for y, r in row.items()):
@@ -108,8 +108,7 @@ class SceneFile:
                 meant = suggestion(lost[0], uncertain)
                 raise LagtopError(f"must be of uncertain inputs, got {quoted(lost[0])}{meant}")
             if not isinstance(r, int | Fraction) or not -1 <= r <= 1 or isinstance(r, bool):
-                shown = float(r) if isinstance(r, Fraction) else r
-                raise LagtopError(f"must be in [-1, 1], got {quoted(shown)} for {x} and {y}")
+                raise LagtopError(f"must be in [-1, 1], got {_shown(r)} for {x} and {y}")
             if x == y:
                 raise LagtopError(f"must be between two inputs, got {x} twice")
             if r != (other := found.setdefault(InputPair((x, y)), Fraction(r))):
@@ -132,7 +131,7 @@ class SceneFile:
         if isinstance(value, int) and not isinstance(value, bool):
             value = Fraction(value)
         if not isinstance(value, Fraction):
-            wrong = f"{key} must be a finite number, got {quoted(value)}"
+            wrong = f"{key} must be a finite number, got {_shown(value)}"
             raise self.error(LagtopError(wrong, key))
         if key == TILT:
             wrong = f"{key} must have a unit, such as '30 deg', or be called {key}_deg or {key}_rad"
@@ -163,6 +162,16 @@ class SceneFile:
         line = next((i for i, text in numbered if error.key and pattern.match(text)), None)
         place = f"{self.name}, line {line}" if line else self.name
         return SceneError(f"{place}: {error}", error.key)
+
+
+def _shown(value: object) -> str:
+    """Return a value as TOML writes it, for a message; a long one is cut."""
+    import json  # for errors
+
+    if isinstance(value, str):
+        return quoted(value)
+    text = json.dumps(value, default=lambda x: float(x) if isinstance(x, Fraction) else str(x))
+    return shortened(text.strip('"'))
 
 
 def _check_dots(text: str) -> None:

@@ -99,8 +99,9 @@ def json_object(line: bytes) -> dict[str, Any]:
 
     try:
         values = orjson.loads(line)
-    except ValueError as error:
-        raise LagtopError(f"a row must be a JSON object: {error}") from None
+    except orjson.JSONDecodeError as error:
+        wrong = f"{error.msg} at character {error.colno}"
+        raise LagtopError(f"a row must be a JSON object: {wrong}") from None
     if not isinstance(values, dict):
         raise LagtopError(f"a row must be a JSON object, got {shown_json(values)}")
     return values

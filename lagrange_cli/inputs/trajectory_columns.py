@@ -259,7 +259,12 @@ def expanded(names: Sequence[str]) -> list[str]:
         else:
             ending = f"_{unit}" if unit else ""
             single += [f"{word}{i}{ending}" for i in range(quantity.size)]
-    used = {i for found in quantities_in(single).values() for i in found.columns}
+    found = quantities_in(single)
+    if twice := named_twice(single, found):
+        raise LagtopError(
+            f"columns must name each quantity once, got {twice[0]!r} and {twice[1]!r}", "columns"
+        )
+    used = {i for quantity in found.values() for i in quantity.columns}
     for i, name in enumerate(single):
         if i not in used and name != SKIPPED:
             raise LagtopError(

@@ -373,7 +373,7 @@ def test_a_tilt_with_a_unit_is_correlated(lagtop: Lagtop, tmp_path: Path) -> Non
         ),
         ("[correlations]\nm.s = 1.01", "correlations must be in [-1, 1], got 1.01 for m and s"),
         ("[correlations]\nm.s = nan", "correlations must be in [-1, 1], got 'nan' for m and s"),
-        ("[correlations]\nm.s = true", "correlations must be in [-1, 1], got True for m and s"),
+        ("[correlations]\nm.s = true", "correlations must be in [-1, 1], got true for m and s"),
         ("[correlations]\nm.m = 1", "correlations must be between two inputs, got m twice"),
         (
             "[correlations]\nm.s = 0.5\ns.m = 0.6",

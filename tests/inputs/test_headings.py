@@ -87,6 +87,15 @@ def test_rates_have_units(tmp_path: Path) -> None:
     assert rates == pytest.approx([math.pi, -2 * math.pi, 3 * math.pi], rel=1e-15)
 
 
+def test_names_imply_the_frame_of_rates(lagtop: Lagtop) -> None:
+    """p, q and r are about axes of the body, with any --rates-frame."""
+    output = lagtop("table", "--t-max", "1", "--n", "5", "--columns", "t,quaternion,p,q,r").stdout
+    assert lagtop("compare", "-", "--rates-frame", "space", input=output).exit_code == 0
+    unclear = output.replace(",p,q,r", ",w_x,w_y,w_z")
+    assert lagtop("compare", "-", input=unclear).exit_code == 0
+    assert lagtop("compare", "-", "--rates-frame", "space", input=unclear).exit_code == 1
+
+
 def test_an_elevation_is_the_rest_of_a_right_angle(tmp_path: Path, lagtop: Lagtop) -> None:
     """The tilts of both files are those of the worked example."""
     for heading, cell in (("elevation", 60.0), ("elevation [rad]", math.pi / 3)):

@@ -228,7 +228,10 @@ OPEN = "a quoted cell must end with its quote"
         (b"t,qx,qy\n0,1,2\n", "must have columns among"),
         (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column theta: must be a number"),
         (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
-        (b'{"t":0,"theta":1}\n{"t":1,', "line 2: a row must be a JSON object"),
+        (
+            b'{"t":0,"theta":1}\n{"t":1,',
+            "line 2: a row must be a JSON object: unexpected end of data at character 8",
+        ),
         (b't,theta\n0,1\n1,"2\n', f"line 3: {OPEN}, got '\"2' in column 2"),
         (b't,theta\n"0,1\n1,2\n', f"line 2: {OPEN}, got '\"0' in column 1"),
         (b't,"theta\n0,1\n', f"line 1: {OPEN}, got '\"theta' in column 2"),
@@ -305,6 +308,7 @@ def test_columns_that_nobody_reads_may_share_a_name(tmp_path: Path) -> None:
         (["t", "quaternion"], "columns must name all 2 columns of .* got 5 names"),
         (["t", "thta"], r"columns must be among .* got 'thta' \(did you mean 'theta'\?\)"),
         (["t", "qw"], "columns must be among .* got 'qw'"),
+        (["t", "tilt", "theta"], "columns must name each quantity once, got 'theta' and 'tilt'"),
     ],
 )
 def test_bad_names_of_columns(columns: list[str], message: str, tmp_path: Path) -> None:
