@@ -9,6 +9,8 @@ from typing import Any
 from ..errors import OutOfRangeError
 from .ball import Ball, Truth
 from .balls import Balls
+from .numbers import Number
+from .points import ExactComplex
 
 _HIGHEST = 23 * 10**17
 """Exponent above which a power of e may overflow in decimals."""
@@ -66,17 +68,24 @@ class ComplexBall:
 class ComplexBalls(Balls):
     """The arithmetic of complex balls, and of balls that are parts of complex numbers."""
 
-    def mpc(self, real: Ball | float, imag: Ball | float) -> ComplexBall:
+    def convert(self, value: Any) -> Any:
+        """Return a ball or a complex ball that holds an exact value, or a ball unchanged."""
+        if isinstance(value, ExactComplex):
+            return self.mpc(value.real, value.imag)
+        return value if isinstance(value, ComplexBall) else super().convert(value)
+
+    def mpc(self, real: Ball | Number, imag: Ball | Number) -> ComplexBall:
         """Return the complex number with the given parts."""
         return ComplexBall(self.convert(real), self.convert(imag))
 
-    def re(self, x: Any) -> Ball:
-        """Return the real part of a ball, a complex ball or an exact number."""
-        return x if isinstance(x, Ball) else self.convert(x.real)
+    @staticmethod
+    def re(x: Ball | ComplexBall) -> Ball:
+        """Return the real part."""
+        return x if isinstance(x, Ball) else x.real
 
-    def im(self, x: Any) -> Ball:
-        """Return the imaginary part of a ball, a complex ball or an exact number."""
-        return self.exact(0) if isinstance(x, Ball) else self.convert(x.imag)
+    def im(self, x: Ball | ComplexBall) -> Ball:
+        """Return the imaginary part."""
+        return self.exact(0) if isinstance(x, Ball) else x.imag
 
     @staticmethod
     def conj(x: ComplexBall) -> ComplexBall:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
-from fractions import Fraction
-from functools import cache, partial
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.complex_balls import ComplexBalls, complex_balls
@@ -18,12 +17,11 @@ from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .jacobi import complex_jacobi
 from .modulus import ModulusInput
 from .periods import INDICES, Lattice, Place, lattice, place_of
-from .request import THIRD, ComplexPoints, FunctionRequest, Known, known_parts
+from .request import THIRD, ComplexPoints, FunctionRequest, known_parts, whole_quarters
 from .tables import ProvedNumbers, TableOfFunctions
 
 if TYPE_CHECKING:
-    from ..arithmetic.text import NumberText
-    from .tables import ArrayColumns, DigitRows
+    from .tables import Known
 
 _LEAST = 1e-150
 """Least k and k' of the reduced modulus in doubles."""
@@ -53,8 +51,11 @@ class ComplexTable(TableOfFunctions):
     arguments or a parameter beyond 2^50 periods.
     """
 
+    arithmetic = staticmethod(complex_balls)
+
     def __init__(self, arguments: ComplexPoints, request: FunctionRequest) -> None:
-        self.arguments, self.request, self.count = arguments, request, arguments.real.count
+        super().__init__(arguments, arguments.real.count)
+        self.request = request
 
     def modulus_in(self, ar: ComplexBalls) -> AnyModulus:
         """Return the modulus in balls; raise LagtopError if it is out of range."""
@@ -63,53 +64,48 @@ class ComplexTable(TableOfFunctions):
             return reduced_modulus(ar, ModulusKind.UNIT, modulus.in_digits(ar))
         return any_modulus(ar, modulus)
 
-    def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
-        """Yield rows of proved numbers; see `TableOfFunctions`."""
-        numbers = ProvedNumbers(digits, short=short, arithmetic=complex_balls)
-        constants, modulus_in = cache(self._constants), cache(self.modulus_in)
-        request, k = self.request, self.request.modulus
-        stretch = Fraction(1) if isinstance(k, ModulusInput) else 1 + k.real + k.imag
+    def known(self, x: ExactComplex) -> dict[str, float]:
+        """Return the parts that are known exactly at a point; a pole is NaN."""
 
-        def row(u: ExactComplex) -> dict[str, NumberText]:
-            def known_in(digits: int) -> Known:
-                given = modulus_in(ar := complex_balls(digits))
-                beyond = bool(abs(ar.im(u)) * given.across > 0.5)
-                return known_parts(u, request, given, beyond=beyond)
+        def known_in(digits: int) -> dict[str, float]:
+            given = self.modulus_in(ar := complex_balls(digits))
+            beyond = bool(abs(ar.convert(x.imag)) * given.across > 0.5)
+            return known_parts(x, self.request, given, beyond=beyond)
 
-            known = decided("the branch points of am", known_in)
+        return decided("the branch points of am", known_in)
 
-            def compute(ar: ComplexBalls) -> dict[str, Numeric]:
-                return known.settled(ar, self._parts(ar, u, constants(ar), known.poles))
+    def digits_lost(self, x: ExactComplex) -> int:
+        """Return the number of digits taken by the whole periods of u and of the parameter."""
+        k = self.request.modulus
+        stretch = 1 if isinstance(k, ModulusInput) else 1 + k.real + k.imag
+        return len(str(int(stretch * max(abs(part) for part in (*x, *self.request.parameter)))))
 
-            far = max(abs(part) for part in (*u, *request.parameter)) * stretch
-            return numbers.texts(compute, known.values(), len(str(int(far))))
-
-        return map(row, self.arguments.exactly())
-
-    def array_columns(self) -> ArrayColumns:
-        """Return the columns of a block of arguments in doubles, and the blocks."""
+    def rounded_constants(self) -> _ComplexConstants:
+        """Return the constants in doubles."""
         from ..arithmetic.arrays import ARRAYS  # start-up
 
-        def rounded(digits: int) -> _ComplexConstants:
-            exact = self._constants(complex_balls(digits))
-            self._check_doubles(exact)
-            return exact.rounded(ARRAYS)
+        return decided(
+            "the constants of these functions",
+            lambda digits: self.constants(complex_balls(digits)).rounded(ARRAYS),
+        )
 
-        ready = decided("the constants of these functions", rounded)
-        return lambda u: self._parts(ARRAYS, u, ready), self.arguments.blocks()
-
-    def _constants(self, ar: ComplexBalls) -> _ComplexConstants:
+    def constants(self, ar: ComplexBalls) -> _ComplexConstants:
         """Return the constants in balls."""
         request, given = self.request, self.modulus_in(ar)
         periods = lattice(ar, given) if request.families != ("am",) else None
         third: dict[str, Parameter] = {}
         if periods and request.has_parameter:
-            third = {ij: parameter(ar, ij, request.parameter, periods) for ij in THIRD}
+            v = ar.convert(request.parameter)
+            third = {ij: parameter(ar, ij, v, periods) for ij in THIRD}
         return _ComplexConstants(given, periods, third)
 
-    def _check_doubles(self, functions: _ComplexConstants) -> None:
+    def check(self, *, doubles: bool) -> None:
+        """Raise LagtopError for a modulus out of range; see the class."""
+        in_range = self._check_doubles if doubles else lambda _: None
+        decided("the modulus", lambda digits: in_range(self.modulus_in(complex_balls(digits))))
+
+    def _check_doubles(self, given: AnyModulus) -> None:
         """Raise LagtopError for moduli beyond the range of doubles, and for distant arguments."""
-        given = functions.modulus
         k, k_prime, _ = given.modulus
         if given.kind is ModulusKind.LARGE and given.stretch > _MOST:
             raise LagtopError(f"k must be at most {_MOST:g} (or give --digits)", "k")
@@ -121,9 +117,9 @@ class ComplexTable(TableOfFunctions):
         limits = MAX_TIME, MAX_TIME
         if k and k_prime:
             limits = float(MAX_PERIODS / given.scale), float(MAX_PERIODS / given.across)
-        check_reach("u", self.arguments.real, limits[0])
-        if self.arguments.imag is not None:
-            check_reach("the imaginary part of u", self.arguments.imag, limits[1])
+        check_reach("u", self.points.real, limits[0])
+        if self.points.imag is not None:
+            check_reach("the imaginary part of u", self.points.imag, limits[1])
         for part, limit in zip(self.request.parameter, limits, strict=True):
             if abs(part) > limit:
                 raise LagtopError(
@@ -132,28 +128,31 @@ class ComplexTable(TableOfFunctions):
                     "param",
                 )
 
-    def _parts(
-        self,
-        ar: ComplexArithmetic,
-        u: Numeric,
-        constants: _ComplexConstants,
-        poles: Collection[str] = (),
+    def columns(
+        self, ar: ComplexArithmetic, x: Numeric, constants: _ComplexConstants, known: Known
     ) -> dict[str, Numeric]:
-        """Return the parts of the functions at u by name; `poles` are NaN."""
-        parts, both = {"u": u}, {}
+        """Return the parts of the columns, without functions of which both parts are known."""
+        u, parts, both = ar.convert(x), {}, {}
         if "am" in self.request.families:
             am, sn, cn, dn = complex_jacobi(ar, u, constants.modulus)
             am = am * (1 if self.request.radians else 180 / ar.pi)
-            parts |= {self.request.am: am, "sn": sn, "cn": cn, "dn": dn}
-        if self.arguments.imag is None:
+            parts = {self.request.am: am, "sn": sn, "cn": cn, "dn": dn}
+        parts = {"u": u} | parts
+        if self.points.imag is None:
             parts = {name: ar.re(z) for name, z in parts.items()}
         else:
             parts, both = {}, parts
         if constants.periods is not None:
             at = place_of(ar, u, constants.periods)
             for name, compute in self._families(ar, at, constants, constants.periods):
-                both[name] = ar.mpc(ar.nan, ar.nan) if name in poles else compute()
-        return parts | _both(ar, both)
+                is_known = {f"{name}_re", f"{name}_im"} <= known.keys()
+                both[name] = ar.mpc(ar.nan, ar.nan) if is_known else compute()
+        parts |= _both(ar, both)
+        if not ar.is_array:
+            quarters = whole_quarters(x, self.request, constants.modulus.kind) & parts.keys()
+            for name in quarters - known.keys():
+                parts[name] = ar.nint(2 * parts[name] / ar.pi) * ar.pi / 2
+        return parts
 
     def _families(
         self, ar: ComplexArithmetic, at: Place, functions: _ComplexConstants, periods: Lattice

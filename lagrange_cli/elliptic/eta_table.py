@@ -16,7 +16,7 @@ from .complete import complete_k
 from .eta import EtaConstants, Quadrature, eta_constants, modulus_in_use
 from .jacobi import jacobi, jacobi_at
 from .periods import whole_and_rest
-from .tables import ProvedNumbers, RealTable
+from .tables import ProvedNumbers, TableOfFunctions
 
 if TYPE_CHECKING:
     from .tables import Known
@@ -37,7 +37,7 @@ class EtaMotion(NamedTuple):
     """Function of tau: periods since a passage of delta*, as whole periods and the rest."""
 
 
-class EtaTable(RealTable):
+class EtaTable(TableOfFunctions):
     """Tables of eta, its rate, h1, theta and xi' over tau, with eta = delta* at tau = 0.
 
     Raises LagtopError as `Quadrature.check` does and, in doubles, for times beyond 2^50 periods.
@@ -52,7 +52,7 @@ class EtaTable(RealTable):
         angle: str = "deg",
     ) -> None:
         """Take the inputs; `names` are some of ETA_COLUMNS, `angle` is the unit, deg or rad."""
-        super().__init__(points)
+        super().__init__(points, points.count)
         self.quadrature, self.names, self.angle = quadrature, names, angle
 
     def check(self, *, doubles: bool) -> None:
@@ -82,6 +82,7 @@ class EtaTable(RealTable):
         self, ar: FunctionArithmetic, x: Numeric, constants: EtaMotion, known: Known
     ) -> dict[str, Numeric]:
         """Return tau, eta and the other columns of the table."""
+        x = ar.convert(x)
         c, half_period, periods = constants
         turns, rest = periods(x)
         place = place_in_band(ar, half_period * rest, c, self.quadrature)

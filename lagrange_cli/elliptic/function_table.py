@@ -18,7 +18,7 @@ from .jacobi import Jacobi, jacobi, jacobi_at
 from .modulus import Modulus
 from .periods import INDICES, Periods, whole_and_rest
 from .request import THIRD, FunctionRequest, known_values, put_exact_values
-from .tables import RealTable
+from .tables import TableOfFunctions
 from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
 from .third_kind import third_kind
 from .third_kind_series import ThirdKind
@@ -45,7 +45,7 @@ class FunctionConstants(NamedTuple):
         return FunctionConstants(modulus, series, third, self.K and pair(self.K))
 
 
-class FunctionTable(RealTable):
+class FunctionTable(TableOfFunctions):
     """Tables of am, sn, cn, dn and the theta, Zeta, Omega and Pi functions of arguments u.
 
     The arguments are in units of K if the request says so.  For an imaginary parameter, Omega and
@@ -56,7 +56,7 @@ class FunctionTable(RealTable):
     """
 
     def __init__(self, points: Points, request: FunctionRequest) -> None:
-        super().__init__(points)
+        super().__init__(points, points.count)
         self.request, self.modulus = request, request.real_modulus
         self.functions, self.rounds = 4 * len(request.families), not request.in_quarters
 
@@ -104,7 +104,7 @@ class FunctionTable(RealTable):
         self, ar: FunctionArithmetic, x: Numeric, constants: FunctionConstants, known: Known
     ) -> dict[str, Numeric]:
         """Return the columns at arguments x, without those that are `known`."""
-        u, series = x, constants.series
+        u, series = ar.convert(x), constants.series
         if not series:
             columns = {"u": u} | dict(self._named(ar, jacobi(ar, u, constants.modulus)))
             return columns | {name: known[name] for name in known.keys() & columns.keys()}

@@ -15,7 +15,7 @@ from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
 from .modulus import Modulus, ModulusInput
-from .tables import RealTable
+from .tables import TableOfFunctions
 
 if TYPE_CHECKING:
     from .tables import Known
@@ -144,7 +144,7 @@ def _quasi_periodic(
     return product + (error + quarters * low + within)
 
 
-class AmplitudeTable(RealTable):
+class AmplitudeTable(TableOfFunctions):
     """Tables of F and E over amplitudes phi, in radians if the modulus is, else in degrees.
 
     For k = 1, F is infinite from a quarter turn on.  Raises LagtopError for a modulus out of range
@@ -154,7 +154,7 @@ class AmplitudeTable(RealTable):
     functions = 2
 
     def __init__(self, points: Points, modulus_input: ModulusInput) -> None:
-        super().__init__(points)
+        super().__init__(points, points.count)
         self.modulus, self.radians = modulus_input, modulus_input.radians
 
     def check(self, *, doubles: bool) -> None:
@@ -177,6 +177,7 @@ class AmplitudeTable(RealTable):
     ) -> dict[str, Numeric]:
         """Return the amplitudes, F and E."""
         name, reduced = ("phi_rad", in_radians) if self.radians else ("phi_deg", in_degrees)
+        x = ar.convert(x)
         phi = reduced(ar, x)
         return {name: x, "F": f_of(ar, phi, constants), "E": e_of(ar, phi, constants)}
 

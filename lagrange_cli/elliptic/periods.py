@@ -117,14 +117,14 @@ class Coordinate(NamedTuple):
     whole: Numeric
     rest: Fine
     number: Numeric = None
-    """The coordinate in units of the argument, exactly; None for arrays, whose rests are equal
-    for equal numbers."""
+    """The coordinate in units of the argument; None for arrays, whose rests cancel exactly."""
 
-    def rest_beside(self, other: Coordinate, sign: int) -> Fine:
+    def rest_beside(self, ar: FunctionArithmetic, other: Coordinate, sign: int) -> Fine:
         """Return the sum or the difference of two rests, exactly 0 if the numbers cancel."""
         rest = self.rest + sign * other.rest
-        cancels = self.number is not None and self.number + sign * other.number == 0
-        return 0 * rest if cancels else rest
+        if self.number is None or not ar.either(self.number + sign * other.number == 0):
+            return rest
+        return 0 * rest
 
     def exactly(self) -> Fine:
         """Return the sum with all its digits."""
@@ -156,7 +156,7 @@ class Place(NamedTuple):
         Its rest along 2K may be slightly more than 1/2, so that neighbouring places are seldom in
         different cells.
         """
-        x, y = (a.rest_beside(b, sign) for a, b in zip(self, by, strict=True))
+        x, y = (a.rest_beside(ar, b, sign) for a, b in zip(self, by, strict=True))
         across = coordinate_of(ar, x)
         inside = ar.either(abs(coarse(x)) < _WIDE)
         whole = ar.where(inside, 0 * across.whole, across.whole)
@@ -211,11 +211,8 @@ def lattice(ar: FunctionArithmetic, given: AnyModulus) -> Lattice:
 def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
     """Return the place of complex numbers; arrays keep their digits far from 0."""
     if not ar.is_array:
-        x, y = (
-            coordinate_of(ar, part(u) * rate)
-            for part, rate in ((ar.re, periods.scale), (ar.im, periods.across))
-        )
-        return Place(x._replace(number=u.real), y._replace(number=u.imag))
+        ends = (ar.re(u), periods.scale), (ar.im(u), periods.across)
+        return Place(*(coordinate_of(ar, x * rate)._replace(number=x) for x, rate in ends))
     from ..arithmetic.double_double import DoubleDouble  # start-up
 
     parts = (reduced(ar.re(u), periods.scale), reduced(ar.im(u), periods.across))

@@ -12,7 +12,6 @@ from .any_modulus import AnyModulus, ModulusKind
 from .modulus import ModulusInput
 
 if TYPE_CHECKING:
-    from ..arithmetic.complex_balls import ComplexBalls
     from ..arithmetic.points import Points
     from ..arithmetic.protocol import Numeric
     from ..arithmetic.types import Array
@@ -72,7 +71,7 @@ class ComplexPoints(NamedTuple):
             pairs = zip(self.real.blocks(), self.imag.blocks(), strict=True)
             yield from (real + 1j * imag for real, imag in pairs)
 
-    def exactly(self) -> Iterator[ExactComplex]:
+    def decimals(self) -> Iterator[ExactComplex]:
         """Yield every argument exactly."""
         if self.imag is None:
             yield from map(ExactComplex, self.real.decimals())
@@ -155,30 +154,10 @@ _RIGHT = ModulusInput("modular_angle", Fraction(45))
 """The modulus sin 45 degrees, for which K' = K."""
 
 
-class Known(NamedTuple):
-    """Parts that are known to be 0 or multiples of a quarter turn, and columns that are NaN."""
-
-    zeros: frozenset[str]
-    turns: frozenset[str]
-    """Parts that are whole multiples of a quarter turn."""
-    poles: frozenset[str]
-
-    def values(self) -> dict[str, float]:
-        """Return the parts that are 0 or NaN."""
-        poles = [f"{name}{part}" for name in self.poles for part in ("", "_re", "_im")]
-        return dict.fromkeys(self.zeros, 0.0) | dict.fromkeys(poles, math.nan)
-
-    def settled(self, ar: ComplexBalls, parts: dict[str, Numeric]) -> dict[str, Numeric]:
-        """Return all parts, with the multiple of a quarter turn for each of `turns`."""
-        turns = self.turns & parts.keys() - self.values().keys()
-        found = {name: ar.nint(2 * parts[name] / ar.pi) * ar.pi / 2 for name in turns}
-        return parts | found
-
-
 def known_parts(
     u: ExactComplex, request: FunctionRequest, given: AnyModulus, *, beyond: bool
-) -> Known:
-    """Return the parts that are known exactly at u, and the poles.
+) -> dict[str, float]:
+    """Return the parts that are known exactly at u: 0, or NaN at a pole.
 
     Set `beyond` if u lies beyond the branch points of am.
     """
@@ -197,7 +176,6 @@ def known_parts(
         zeros += " theta11_re theta11_im"
     if not given.modulus.k:
         zeros += " dn_im"
-    turns = _third("pi", u, v) + ("" if large and any(u) and any(v) else _third("omega", u, v))
     poles = {"zeta11"} if along and upright else set()
     if not any(v):
         poles.add("pi11")
@@ -205,8 +183,15 @@ def known_parts(
         poles |= {"omega11", "pi11"}
     if beyond:
         poles.add(am)
-    also = frozenset() if large else _turns(u, v, request.modulus)
-    return Known(frozenset(zeros.split()), also | frozenset(turns.split()), frozenset(poles))
+    split = [f"{name}{part}" for name in poles for part in ("", "_re", "_im")]
+    return dict.fromkeys(zeros.split(), 0.0) | dict.fromkeys(split, math.nan)
+
+
+def whole_quarters(u: ExactComplex, request: FunctionRequest, kind: ModulusKind) -> set[str]:
+    """Return the parts of Omega and Pi that are multiples of a quarter turn by symmetry."""
+    v, large = request.parameter, kind is ModulusKind.LARGE
+    turns = _third("pi", u, v) + ("" if large and any(u) and any(v) else _third("omega", u, v))
+    return set(turns.split()) | (set() if large else _turns(u, v, request.modulus))
 
 
 def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
@@ -222,9 +207,7 @@ def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
     return "".join(names)
 
 
-def _turns(
-    u: ExactComplex, v: ExactComplex, modulus: ModulusInput | ExactComplex
-) -> frozenset[str]:
+def _turns(u: ExactComplex, v: ExactComplex, modulus: ModulusInput | ExactComplex) -> set[str]:
     """Return the parts that are multiples of a quarter turn for u and v on symmetric lines.
 
     Omega(u, v) is Omega(v, u), except for the odd theta function and half turns.  It is therefore
@@ -235,7 +218,7 @@ def _turns(
     if u and v are on the same diagonal, and imaginary if they are on different ones.
     """
     if not (all(u) and all(v)):
-        return frozenset()
+        return set()
     turns, straight = set(), u.real * v.real == u.imag * v.imag
     if v in (ExactComplex(u.real, -u.imag), ExactComplex(-u.real, u.imag)):
         turns = {"omega01_im", "omega00_im"}
@@ -243,4 +226,4 @@ def _turns(
     even = {ExactComplex(Fraction(0), Fraction(1)): "01", _RIGHT: "00"}.get(modulus)
     if even and on_diagonals:
         turns |= {f"pi{ij}_{'im' if straight else 're'}" for ij in (even, "11")}
-    return frozenset(turns)
+    return turns

@@ -18,14 +18,13 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.ball import Ball, TooFewDigitsError, TooSmallError
-from ..arithmetic.balls import Balls, balls
+from ..arithmetic.balls import balls
 from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import MOST_DIGITS, alike, precisions, text_of, too_small
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Points
     from ..arithmetic.types import Array
 
     Texts = Sequence[Sequence[str]]
@@ -114,9 +113,15 @@ def _text(value: Any) -> NumberText:
 class TableOfFunctions:
     """A row of functions for each of `count` arguments."""
 
-    count: int
     functions: float = math.inf
     """Functions in a row, if short tables are computed as enclosures; else infinite."""
+    arithmetic: Callable[[int], Any] = staticmethod(balls)
+    """Returns the balls with some number of digits."""
+    rounds = True
+    """Whether points are rounded to the nearest doubles in a table of doubles."""
+
+    def __init__(self, points: Any, count: int) -> None:
+        self.points, self.count = points, count
 
     def rows(self, digits: int | None = None) -> Rows:
         """Return the header, and blocks of rows in doubles or with N significant digits.
@@ -137,32 +142,11 @@ class TableOfFunctions:
         """Return the header, and blocks of rows in doubles as arrays."""
         return _stacked(*self.array_columns())
 
-    def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
-        """Yield rows with N significant digits or, without `digits`, the nearest doubles.
-
-        A `short` search raises TooFewDigitsError for a number that arrays would yield more quickly.
-        """
-        raise NotImplementedError
-
-    def array_columns(self) -> ArrayColumns:
-        """Return the columns of a block of arguments in doubles, and the blocks."""
-        raise NotImplementedError
-
-
-class RealTable(TableOfFunctions):
-    """A table of functions of real points: numbers with N digits are proved by enclosures."""
-
-    rounds = True
-    """Whether points are rounded to the nearest doubles in a table of doubles."""
-
-    def __init__(self, points: Points) -> None:
-        self.points, self.count = points, points.count
-
     def check(self, *, doubles: bool) -> None:
         """Raise LagtopError for inputs that are invalid, or that doubles cannot hold."""
         raise NotImplementedError
 
-    def constants(self, ar: Balls) -> Any:
+    def constants(self, ar: Any) -> Any:
         """Return the constants that do not depend on the point, in balls."""
         raise NotImplementedError
 
@@ -173,31 +157,38 @@ class RealTable(TableOfFunctions):
     def columns(
         self, ar: FunctionArithmetic, x: Numeric, constants: Any, known: Known
     ) -> dict[str, Numeric]:
-        """Return the columns by name at balls or arrays x; `known` columns may be left out."""
+        """Return the columns by name at an exact point or an array x, without `known` columns.
+
+        Known columns may be returned, too.
+        """
         raise NotImplementedError
 
-    def known(self, x: Fraction) -> Known:
+    def known(self, x: Any) -> Known:
         """Return the columns that are known exactly at a point; a pole is NaN."""
         raise NotImplementedError
 
     def put_known(self, columns: dict[str, Array], x: Array) -> None:
         """Put exactly known values into columns of doubles."""
 
-    def digits_lost(self, x: Fraction) -> int:
+    def digits_lost(self, x: Any) -> int:
         """Return the number of digits taken by the whole periods of a point."""
         return 0
 
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
-        """Yield rows of proved numbers; see `TableOfFunctions`."""
-        self.check(doubles=digits is None)
-        numbers, constants = ProvedNumbers(digits, short=short), cache(self.constants)
+        """Yield rows with N proved digits or, without `digits`, the nearest doubles.
 
-        def row(point: Fraction) -> dict[str, NumberText]:
+        A `short` search raises TooFewDigitsError for a number that arrays would yield more quickly.
+        """
+        self.check(doubles=digits is None)
+        numbers = ProvedNumbers(digits, short=short, arithmetic=self.arithmetic)
+        constants = cache(self.constants)
+
+        def row(point: Any) -> dict[str, NumberText]:
             x = Fraction(float(point)) if digits is None and self.rounds else point
             known = self.known(x)
 
-            def compute(ar: Balls) -> dict[str, Numeric]:
-                return self.columns(ar, ar.convert(x), constants(ar), known)
+            def compute(ar: Any) -> dict[str, Numeric]:
+                return self.columns(ar, x, constants(ar), known)
 
             return numbers.texts(compute, known, self.digits_lost(x))
 
