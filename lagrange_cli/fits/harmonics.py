@@ -35,26 +35,19 @@ class Harmonics(NamedTuple):
     """A sum of harmonics, with or without linear growth, fitted to data."""
 
     frequency: float
+    order: int
+    """The order of the highest harmonic."""
     factors: Array
     grows: bool
     misfit: float
     """Sum of the squares of the residuals."""
-    rows: int
-
-    @property
-    def order(self) -> int:
-        """The order of the highest harmonic."""
-        return (self.factors.size - 1 - self.grows) // 2
+    noise: float
+    """Standard deviation of the residuals."""
 
     @property
     def growth(self) -> float:
         """The mean rate of a series with linear growth."""
         return float(self.factors[-1])
-
-    @property
-    def noise(self) -> float:
-        """The standard deviation of the residuals."""
-        return float(np.sqrt(self.misfit / max(self.rows - self.factors.size, 1)))
 
     def at(self, t: Array) -> Array:
         """Return the values of the series at times t."""
@@ -99,7 +92,8 @@ class Signal(NamedTuple):
             basis, y = basis * weights[:, np.newaxis], y * weights
         factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
         left = float(np.sum((y - basis @ factors) ** 2))
-        return Harmonics(frequency, factors, self.grows, left, self.t.size)
+        noise = float(np.sqrt(left / max(self.t.size - factors.size, 1)))
+        return Harmonics(frequency, order, factors, self.grows, left, noise)
 
     @property
     def _around(self) -> Array:

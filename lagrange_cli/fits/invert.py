@@ -248,18 +248,12 @@ def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:
     numbers = {"a": a, "b": b} | ({"r0": r0} if spins else {})
     inputs = completed_body(numbers, known)
     given = ", ".join(f"{name} = {value:g}" for name, value in known.items())
-    if not _moves_so(inputs, numbers):
+    m, A, C, s, g = (inputs[name] for name in ("m", "A", "C", "s", "g"))
+    has = {"a": 2 * m * g * s / A, "b": C * inputs["r0"] / A, "r0": inputs["r0"]}
+    if not all(math.isclose(has[name], x, rel_tol=1e-9) for name, x in numbers.items()):
         raise LagtopError(f"{given} must agree with the motion: leave one of them out")
-    ratio = inputs["C"] / inputs["A"]
-    if not 0 < ratio <= 2:
+    if not 0 < C / A <= 2:
         raise LagtopError(
-            f"the body with {given} and this motion must have 0 < C/A <= 2, got C/A = {ratio:.6g}"
+            f"the body with {given} and this motion must have 0 < C/A <= 2, got C/A = {C / A:.6g}"
         )
     return top.replace(**inputs)
-
-
-def _moves_so(inputs: Mapping[str, float], numbers: Mapping[str, float]) -> bool:
-    """Return whether a body has these values of a (4,4), b (4,5) and r0, up to rounding."""
-    m, A, C, s, g, r0 = (inputs[name] for name in ("m", "A", "C", "s", "g", "r0"))
-    has = {"a": 2 * m * g * s / A, "b": C * r0 / A, "r0": r0}
-    return all(math.isclose(has[name], x, rel_tol=1e-9) for name, x in numbers.items())

@@ -200,15 +200,11 @@ def residuals(recording: Recording, angles: Array) -> Residuals:
 
 def _of_angles(recording: Recording, angles: Array) -> Residuals:
     """Return the residuals of angles that have columns of their own."""
-    values, slopes = [], []
-    for channel in recording.channels:
-        i = ANGLES.index(channel)
-        left = recording.angles[channel] - angles[i]
-        values.append(left if channel == "theta" else within_half_turn(left))
-        slope = np.zeros((left.size, 3))
-        slope[:, i] = -1.0
-        slopes.append(slope)
-    return Residuals(np.stack(values), np.stack(slopes))
+    rows = [ANGLES.index(channel) for channel in recording.channels]
+    left = [recording.angles[ANGLES[i]] - angles[i] for i in rows]
+    values = [within_half_turn(x) if i else x for i, x in zip(rows, left, strict=True)]
+    slopes = np.broadcast_to((0 - np.eye(3)[rows])[:, np.newaxis], (len(rows), left[0].size, 3))
+    return Residuals(np.stack(values), slopes)
 
 
 class Residual(NamedTuple):

@@ -100,10 +100,12 @@ def shown_by(recording: Recording, where: str) -> Shown:
         whole = 2 * math.pi * frequency  # turns per period are unknown next to a pole
         mean_rates = [rate, rate - whole, rate + whole]
     wave = series.at(_PHASES / frequency)
-    ends = np.arccos(np.clip([wave.max(), wave.min()], -1, 1)).tolist()
+    ends = np.arccos(np.clip([wave.max(), wave.min()], -1, 1))
+    tilts = np.clip([*ends, theta.min(), theta.max()], _EDGE, math.pi - _EDGE)
+    least, greatest, low, high = tilts.tolist()
     return Shown(
-        TurningPoints(_inside(ends[0]), _inside(ends[1]), 1 / frequency),
-        (_inside(float(theta.min())), _inside(float(theta.max()))),
+        TurningPoints(least, greatest, 1 / frequency),
+        (low, high),
         float(wave[0]),
         1.0 if wave[1] < wave[0] else -1.0,
         noise,
@@ -125,11 +127,6 @@ def turns_in(recording: Recording, where: str) -> Turns:
             shown = f"{math.degrees(size):.3g}"
             raise DataError(f"{where}: {name} must have less noise than 30 degrees, got {shown}")
     return Turns(fine["psi"], fine.get("phi"), noise)
-
-
-def _inside(tilt: float) -> float:
-    """Return a tilt moved away from the poles if necessary."""
-    return min(max(tilt, _EDGE), math.pi - _EDGE)
 
 
 def _check(signal: Signal, series: Harmonics, where: str, names: str) -> None:

@@ -31,15 +31,6 @@ _FINE = 1200
 """Points of a curve."""
 
 
-class ReportRow(NamedTuple):
-    """A number of one recording, for the report."""
-
-    name: str
-    key: str
-    value: str
-    meaning: str
-
-
 class FittedCurve(NamedTuple):
     """One channel of a recording and the fitted motion, in the unit of angles in use."""
 
@@ -80,11 +71,11 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None) 
     return Report(_conditions(outcomes, source, system), fields, lines, conclusions)
 
 
-def _lines(outcome: Outcome, system: System | None) -> Iterator[ReportRow]:
+def _lines(outcome: Outcome, system: System | None) -> Iterator[SimpleNamespace]:
     name, units = outcome.recording.name, outcome_units(outcome, system) if system else {}
     for key, value, deviation, meaning in outcome.numbers():
-        text = uncertain_text(value, deviation)
-        yield ReportRow(name, with_unit(key, units.get(key)), text, meaning)
+        text, shown = uncertain_text(value, deviation), with_unit(key, units.get(key))
+        yield SimpleNamespace(name=name, key=shown, value=text, meaning=meaning)
 
 
 def _conditions(outcomes: Sequence[Outcome], source: str, system: System | None) -> dict[str, str]:

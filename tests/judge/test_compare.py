@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli import Judgement, LagtopError, Top, compare, solve
 from lagrange_cli.inputs.seen import Conventions
 from lagrange_cli.judge.alignment import Alignment
-from lagrange_cli.judge.compare import convergence, with_verdicts
+from lagrange_cli.judge.compare import Convergence, convergence, with_verdicts
 from lagrange_cli.judge.deviations import MOST_KEPT, Kept
 from lagrange_cli.judge.judgement import ReadTrajectory, judge
 
@@ -370,23 +370,22 @@ def test_numbers_with_six_decimals_are_not_another_top() -> None:
     assert not found.falls
 
 
+def converged(*pairs: tuple[float, float]) -> Convergence:
+    """Return the convergence of trajectories with these steps and errors."""
+    found = convergence([compare(TOP, T, theta=ANGLES[:, 1] + x, step=h) for h, x in pairs])
+    assert found is not None
+    return found
+
+
 def test_steps_finer_than_the_best_do_not_count() -> None:
     """Rounding grows with the number of steps: 1e-9 at the step of 1e-5."""
-    runs = [
-        compare(TOP, T, theta=ANGLES[:, 1] + size, step=h)
-        for h, size in ((1e-2, 1e-2), (1e-3, 1e-4), (1e-4, 1e-6), (1e-5, 1e-3))
-    ]
-    found = convergence(runs[::-1])
-    assert found is not None
+    found = converged((1e-5, 1e-3), (1e-4, 1e-6), (1e-3, 1e-4), (1e-2, 1e-2))
     assert found.order == pytest.approx(2, abs=1e-3)
-    assert convergence(runs[:1]) is None
+    assert convergence([compare(TOP, T, theta=ANGLES[:, 1], step=1e-2)]) is None
 
 
 def test_two_methods_at_once_are_not_another_top() -> None:
-    sizes = ((1e-3, 1e-6), (1e-3, 1e-1), (2e-3, 1e-5), (2e-3, 2e-1))
-    found = convergence([compare(TOP, T, theta=ANGLES[:, 1] + x, step=h) for h, x in sizes])
-    assert found is not None
-    assert found.falls
+    assert converged((1e-3, 1e-6), (1e-3, 1e-1), (2e-3, 1e-5), (2e-3, 2e-1)).falls
 
 
 def explained(judgement: Judgement, name: str) -> bool:
