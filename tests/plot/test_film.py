@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -135,21 +134,14 @@ def test_a_gif_shows_every_frame_in_63_colours() -> None:
 
 @pytest.mark.slow
 def test_a_film(lagtop: Lagtop, tmp_path: Path) -> None:
-    from PIL import Image, ImageChops
+    """Size and number of frames are those of the options; the test above judges the frames."""
+    from PIL import Image
 
     files = [tmp_path / "a.gif", tmp_path / "b.gif"]
     for file in files:
-        line = ["--dpi", "40", "--duration", 0.2]
-        assert lagtop("plot", "--animate", file, *line).output == ""
-    frames = []
+        assert lagtop("plot", "--animate", file, "--dpi", 40, "--duration", 0.2).output == ""
     with Image.open(files[0]) as shown:
-        assert getattr(shown, "n_frames", 1) == 5
-        assert shown.size == (192, 200)
-        for i in range(5):
-            shown.seek(i)
-            frames.append(shown.convert("RGB"))
-    for one, next_one in pairwise(frames):
-        assert ImageChops.difference(one, next_one).getbbox()
+        assert (getattr(shown, "n_frames", 1), shown.size) == (5, (192, 200))
     assert files[0].read_bytes() == files[1].read_bytes()
 
 

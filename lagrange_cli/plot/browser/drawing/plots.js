@@ -10,7 +10,7 @@ import { frameOf } from "./space.js";
 
 const PHASES = 40;  // samples per half period
 const MOST = 6000;  // samples of a window
-const STEP = 0.15;  // the longest way of the axis between two samples, in radians
+const STEP = 0.08;  // the longest way of the axis between two samples, in radians
 const GAP = 24;  // between two rows
 const DEGREES = 180 / Math.PI;
 
