@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import nan
 from typing import Any
 
 from ..errors import OutOfRangeError
@@ -61,8 +60,7 @@ class ComplexBall:
 
     def __complex__(self) -> complex:
         """Return the nearest complex double; raise TooFewDigitsError if the balls leave it open."""
-        real, imag = (nan if part.is_nan else float(part) for part in (self.real, self.imag))
-        return complex(real, imag)
+        return complex(float(self.real), float(self.imag))
 
 
 class ComplexBalls(Balls):

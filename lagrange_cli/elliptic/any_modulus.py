@@ -22,7 +22,7 @@ from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import triple
 from ..errors import LagtopError
 from .complete import complete_k, period_mean
-from .modulus import Modulus, constants, exact_modulus
+from .modulus import Modulus, ModulusInput, constants, exact_modulus
 
 
 class ModulusKind(Enum):
@@ -63,12 +63,14 @@ def reduced_modulus(
     return AnyModulus(kind, modulus, stretch, scale, across)
 
 
-def any_modulus(ar: FunctionArithmetic, k: ExactComplex | complex) -> AnyModulus:
+def any_modulus(ar: FunctionArithmetic, k: ModulusInput | ExactComplex | complex) -> AnyModulus:
     """Reduce a modulus k >= 0, or i kbar with kbar > 0, to a modulus in [0, 1].
 
     `ar` is the arithmetic of complex balls or an mpmath context.  Raises LagtopError for other
     numbers.
     """
+    if isinstance(k, ModulusInput):
+        return reduced_modulus(ar, ModulusKind.UNIT, k.in_digits(ar))
     if not (k.real >= 0 and k.imag >= 0 and not (k.real and k.imag) and k.real + k.imag < math.inf):
         raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {k}", "k")
     real, imag = ar.convert(k.real), ar.convert(k.imag)

@@ -11,7 +11,7 @@ from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, check_reach
 from ..arithmetic.protocol import ComplexArithmetic, Numeric
 from ..arithmetic.rounding import decided
 from ..errors import LagtopError
-from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus, reduced_modulus
+from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .jacobi import complex_jacobi
@@ -57,18 +57,11 @@ class ComplexTable(TableOfFunctions):
         super().__init__(arguments, arguments.real.count)
         self.request = request
 
-    def modulus_in(self, ar: ComplexBalls) -> AnyModulus:
-        """Return the modulus in balls; raise LagtopError if it is out of range."""
-        modulus = self.request.modulus
-        if isinstance(modulus, ModulusInput):
-            return reduced_modulus(ar, ModulusKind.UNIT, modulus.in_digits(ar))
-        return any_modulus(ar, modulus)
-
     def known(self, x: ExactComplex) -> dict[str, float]:
         """Return the parts that are known exactly at a point; a pole is NaN."""
 
         def known_in(digits: int) -> dict[str, float]:
-            given = self.modulus_in(ar := complex_balls(digits))
+            given = any_modulus(ar := complex_balls(digits), self.request.modulus)
             beyond = bool(abs(ar.convert(x.imag)) * given.across > 0.5)
             return known_parts(x, self.request, given, beyond=beyond)
 
@@ -91,7 +84,7 @@ class ComplexTable(TableOfFunctions):
 
     def constants(self, ar: ComplexBalls) -> _ComplexConstants:
         """Return the constants in balls."""
-        request, given = self.request, self.modulus_in(ar)
+        request, given = self.request, any_modulus(ar, self.request.modulus)
         periods = lattice(ar, given) if request.families != ("am",) else None
         third: dict[str, Parameter] = {}
         if periods and request.has_parameter:
@@ -102,7 +95,10 @@ class ComplexTable(TableOfFunctions):
     def check(self, *, doubles: bool) -> None:
         """Raise LagtopError for a modulus out of range; see the class."""
         in_range = self._check_doubles if doubles else lambda _: None
-        decided("the modulus", lambda digits: in_range(self.modulus_in(complex_balls(digits))))
+        decided(
+            "the modulus",
+            lambda digits: in_range(any_modulus(complex_balls(digits), self.request.modulus)),
+        )
 
     def _check_doubles(self, given: AnyModulus) -> None:
         """Raise LagtopError for moduli beyond the range of doubles, and for distant arguments."""

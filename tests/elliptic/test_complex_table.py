@@ -100,6 +100,19 @@ def test_all_digits_of_every_column(k: str, u: str, v: str, lagtop: Lagtop) -> N
     assert len(names) >= 14
 
 
+def test_the_side_of_a_line_of_zeros_is_decided(lagtop: Lagtop) -> None:
+    """Omega01 jumps by i pi where Im(u - v) passes K', however close to K' the number is."""
+    found = []
+    for below in ("1e-6", "1e-45", "-1e-45", "-1e-6"):
+        with mpmath.workdps(80):
+            height = mpmath.ellipk(mpmath.mpf("0.36")) * (1 - mpmath.mpf(below))
+            u = f"0.1+{mpmath.nstr(height, 60)}i"
+        args = f"jacobi --k 0.8 --u {u} --param 0.3 --functions omega --digits 4 --format json"
+        found.append(json.loads(lagtop(*args.split()).stdout)[0]["omega01_im"])
+    assert found[0] == found[1] == pytest.approx(found[2] - math.pi, abs=1e-3)
+    assert found[2] == found[3]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("k", ["0.8", "0.8i", "1.5"])
 def test_every_column(k: str, lagtop: Lagtop) -> None:
