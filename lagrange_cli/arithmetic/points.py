@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
+from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import LagtopError
+from .decimals import own_context
 from .text import is_decimal, parse_number
 
 if TYPE_CHECKING:
@@ -27,9 +28,7 @@ MAX_PERIODS = 2.0**50
 MAX_TIME = 1e290
 """Largest time: the product of a time and a rate can still be computed exactly."""
 
-_DIGITS_OF_LOG_POINTS = Context(
-    prec=30, rounding=ROUND_HALF_EVEN, Emin=-9999, Emax=9999, capitals=1, clamp=0, traps=[]
-)
+_DIGITS_OF_LOG_POINTS = own_context(30, [])
 
 
 class Points:

@@ -48,13 +48,17 @@ def key(
 
 
 def declared_keys(
-    group: str, exists: Callable[[Any], object] = bool, *, unit: str = "", absent: str = ""
+    group: str,
+    exists: Callable[[Any], object] = lambda of: True,
+    *,
+    unit: str = "",
+    absent: str = "",
 ) -> Callable[..., quantity[Any]]:
     """Return a function that declares a key of a group by its formula, without a method.
 
     The returned function takes the texts of `key`, the `value` as a function of the object, and
     keywords that override those given here.  The value is None unless `exists` is true of the
-    object.  By default it always is, because every object is true.
+    object.
     """
     usual: dict[str, Any] = {"exists": exists, "unit": unit, "absent": absent}
 

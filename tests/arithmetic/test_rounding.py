@@ -39,6 +39,11 @@ def noisy(exact: str | Decimal | Fraction | float) -> Callable[[int], Ball]:
     return enclosure
 
 
+def hidden(digits: int) -> Ball:
+    """Return an enclosure of 0 that never proves it."""
+    return balls(digits).exact(0).enlarged(balls(digits).eps.greatest)
+
+
 def value_of(found: Settled | None) -> float:
     assert found is not None
     value: float = found.value
@@ -80,9 +85,6 @@ def test_zero_is_returned_only_if_it_is_exact() -> None:
         one = balls(digits).exact(1)
         return (one + balls(digits).exact(Decimal("1e-100"))) - one
 
-    def hidden(digits: int) -> Ball:
-        return balls(digits).exact(0).enlarged(balls(digits).eps.greatest)
-
     assert value_of(settled("x", cancels, nearest_double("x"))) == 1e-100
     assert value_of(settled("x", lambda digits: balls(digits).exact(0), float)) == 0
     assert value_of(settled("x", hidden, float, exactly=lambda: Fraction(0))) == 0
@@ -92,10 +94,6 @@ def test_zero_is_returned_only_if_it_is_exact() -> None:
 
 def test_a_derivative_may_be_0_by_its_size() -> None:
     """An enclosure of all that round to 0 is enough, and NaN says that there is none."""
-
-    def hidden(digits: int) -> Ball:
-        return balls(digits).exact(0).enlarged(balls(digits).eps.greatest)
-
     assert rounded("x", hidden) == 0
     assert rounded("x", noisy("0.1")) == 0.1
     assert rounded("x", lambda digits: balls(digits).nan) != 0
