@@ -123,7 +123,8 @@ def records(
             if (rows := found & left).any():
                 block.fill(rows, regime)
                 left &= ~rows
-        left = block.fill_moving(left)
+        if left.any() and (moving := left & tops.moving()).any():
+            left &= ~block.fill_moving(moving)
         alone = np.flatnonzero(left).tolist()
         for row in range(tops.m.size) if block.requested else alone:
             keys_left = [*block.texts, *block.numbers] if left[row] else []
@@ -155,7 +156,6 @@ class _Block:
         gaps = gaps_of(ARRAYS, facts, state)
         motion = kind_of(facts)(ARRAYS, facts, state, gaps)
         lacks = {*motion.lacks, "theta_min_deg"}  # the least tilt is the start
-        self._write_numbers(chosen, lambda x: None if x in lacks else getattr(motion, x))
         for key in (key for key in self.numbers if key.startswith("theta_min")):
             self.columns[key][chosen] = tops.tilt_in(self.radians)
         remarks: Sequence[str | None] | None = None
@@ -164,12 +164,15 @@ class _Block:
         elif regime is Regime.REGULAR and "remark" in self.texts:
             remarks = self._fast_remarks(tops, motion)
         path = "cusped" if regime is Regime.REGULAR else None
-        for key, texts in (("regime", regime.value), ("path", path), ("remark", remarks)):
-            if key in self.texts:
-                self.columns[key][chosen] = texts
+        texts = {"regime": regime.value, "path": path, "remark": remarks}
+        self._write(chosen, lambda x: None if x in lacks else getattr(motion, x), texts)
 
-    def _write_numbers(self, rows: Any, number: Callable[[str], Array | None]) -> None:
-        """Write the numbers of some rows, from a function of the key with angles in degrees."""
+    def _write(
+        self, rows: Any, number: Callable[[str], Array | None], texts: Mapping[str, Any]
+    ) -> None:
+        """Write texts of some rows, and numbers by a function of the key (angles in degrees)."""
+        for key in texts.keys() & {*self.texts}:
+            self.columns[key][rows] = texts[key]
         for key in self.numbers:
             value = number(degree_name(key))
             if value is not None:
@@ -188,30 +191,24 @@ class _Block:
                 remarks[row] = fast_remark(*found, radians=self.radians)
         return remarks
 
-    def fill_moving(self, left: Mask) -> Mask:
-        """Fill the rows with other initial rates that can be trusted; return the other rows."""
-        if not left.any() or not (moving := left & self.tops.moving()).any():
-            return left
-        chosen: Any = slice(None) if moving.all() else np.flatnonzero(moving)
-        tops = self.tops.part(chosen)
+    def fill_moving(self, rows: Mask) -> Mask:
+        """Fill rows with other initial rates, if they can be trusted; return which these are."""
+        tops = self.tops.part(slice(None) if rows.all() else np.flatnonzero(rows))
         motions = StartArrays(tops)
         trusted = motions.trusted(self.numbers)
-        if not trusted.all():
-            moving[moving] = trusted
-            chosen = moving
-        fine = slice(None) if trusted.all() else trusted
-        if "regime" in self.texts:
-            regimes = np.array([Regime.REGULAR.value, Regime.NO_SPIN.value], dtype=object)
-            self.columns["regime"][chosen] = regimes[(tops.r0[fine] == 0).astype(np.intp)]
-        if "path" in self.texts:
-            self.columns["path"][chosen] = motions.paths()[fine]
+        fine: Any = slice(None) if trusted.all() else trusted
+        filled = rows.copy()
+        filled[rows] = trusted
 
-        def trusted_number(name: str) -> Array | None:
+        def number(name: str) -> Array | None:
             value = motions.number(name)
             return None if value is None else value[fine]
 
-        self._write_numbers(chosen, trusted_number)
-        return left & ~moving
+        regimes = np.array([Regime.REGULAR.value, Regime.NO_SPIN.value], dtype=object)
+        without_spin = (tops.r0[fine] == 0).astype(np.intp)
+        texts = {"regime": regimes[without_spin], "path": motions.paths()[fine]}
+        self._write(slice(None) if filled.all() else filled, number, texts)
+        return filled
 
     def solve(self, row: int, keys: Sequence[str]) -> None:
         """Fill some keys of one row by `solve`, unless it has an error."""

@@ -66,10 +66,11 @@ def assert_trusted(scenes: list[dict[str, Any]], least: int) -> None:
                 assert error <= most or judge.ulps(key, value) <= 1, (key, error, scene)
 
 
+@pytest.mark.parametrize("count", [8, pytest.param(40, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_key_is_within_ten_eps(kind: str) -> None:
+def test_every_key_is_within_ten_eps(kind: str, count: int) -> None:
     rng = random.Random(f"trusted {kind}")
-    assert_trusted([KINDS[kind](rng) for _ in range(25)], 13)
+    assert_trusted([KINDS[kind](rng) for _ in range(count)], count // 2)
 
 
 EXAMPLE = {name: float(getattr(Top(), name)) for name in ("m", "A", "C", "s", "g")}
@@ -77,7 +78,7 @@ WHIRLS = random.Random(4)
 CANCELLING: dict[str, list[dict[str, float]]] = {
     "over the lower pole from next to the upper one": [
         EXAMPLE | {"r0": 0, "theta0_deg": tilt, "psidot0": 1}
-        for tilt in (1e-9, 1e-10, 1e-12, 1e-15, 1e-30, 1e-100)
+        for tilt in (1e-9, 1e-12, 1e-30, 1e-100)
     ],
     # the mean precession goes as 1/thetadot0^2 where the parts are of the size 1
     "mean rates": [
@@ -87,7 +88,7 @@ CANCELLING: dict[str, list[dict[str, float]]] = {
     "mean rates in pairs of doubles": [
         EXAMPLE
         | {"theta0_deg": 30, "r0": WHIRLS.uniform(-5, 5), "thetadot0": WHIRLS.uniform(5, 300)}
-        for _ in range(60)
+        for _ in range(30)
     ],
     "a cosine": [EXAMPLE | {"theta0_deg": 90, "r0": 1e10}],
 }
