@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.complex_balls import ComplexBalls, complex_balls
@@ -56,13 +56,14 @@ class ComplexTable(TableOfFunctions):
     def __init__(self, arguments: ComplexPoints, request: FunctionRequest) -> None:
         super().__init__(arguments, arguments.real.count)
         self.request = request
+        self.modulus_in = cache(lambda digits: any_modulus(complex_balls(digits), request.modulus))
 
     def known(self, x: ExactComplex) -> dict[str, float]:
         """Return the parts that are known exactly at a point; a pole is NaN."""
 
         def known_in(digits: int) -> dict[str, float]:
-            given = any_modulus(ar := complex_balls(digits), self.request.modulus)
-            beyond = bool(abs(ar.convert(x.imag)) * given.across > 0.5)
+            given, height = self.modulus_in(digits), complex_balls(digits).convert(abs(x.imag))
+            beyond = bool(height * given.across > 0.5)
             return known_parts(x, self.request, given, beyond=beyond)
 
         return decided("the branch points of am", known_in)
@@ -84,7 +85,7 @@ class ComplexTable(TableOfFunctions):
 
     def constants(self, ar: ComplexBalls) -> _ComplexConstants:
         """Return the constants in balls."""
-        request, given = self.request, any_modulus(ar, self.request.modulus)
+        request, given = self.request, self.modulus_in(ar.digits)
         periods = lattice(ar, given) if request.families != ("am",) else None
         third: dict[str, Parameter] = {}
         if periods and request.has_parameter:
@@ -95,10 +96,7 @@ class ComplexTable(TableOfFunctions):
     def check(self, *, doubles: bool) -> None:
         """Raise LagtopError for a modulus out of range; see the class."""
         in_range = self._check_doubles if doubles else lambda _: None
-        decided(
-            "the modulus",
-            lambda digits: in_range(any_modulus(complex_balls(digits), self.request.modulus)),
-        )
+        decided("the modulus", lambda digits: in_range(self.modulus_in(digits)))
 
     def _check_doubles(self, given: AnyModulus) -> None:
         """Raise LagtopError for moduli beyond the range of doubles, and for distant arguments."""
