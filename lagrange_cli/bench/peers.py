@@ -8,7 +8,7 @@ by half a unit in the last place of each input.  No method can do better with in
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import mpmath
@@ -46,16 +46,20 @@ VERDICTS = {
 """The words of the verdict and their meanings, from good to bad."""
 
 
+def _most(*, is_long: bool) -> int:
+    """Return the limit of the evaluations in a run."""
+    return LONG_EVALUATIONS if is_long else EVALUATIONS
+
+
 def peer_conditions(*, is_long: bool) -> dict[str, str]:
     """Return the conditions of the comparison."""
-    most = LONG_EVALUATIONS if is_long else EVALUATIONS
     return {
         "errors": "radians, the turn from the exact to the computed attitude, the greatest of "
         f"{TIMES_OF_A_SPAN} times from 0.1 to 5 periods, and as many to the end of each further "
         "span, at equal ratios",
         "condition": "radians by which half a unit in the last place of each input turns it",
         "methods": "each at its tightest setting; a run gives up after "
-        f"{most:.0e} evaluations of the right-hand side, or {SECONDS:g} s",
+        f"{_most(is_long=is_long):.0e} evaluations of the right-hand side, or {SECONDS:g} s",
         "conserved": "changes of energy and Lz since the start, over the sum of their terms",
         "verdicts": "; ".join(f"{word}: {meaning}" for word, meaning in VERDICTS.items()),
     }
@@ -118,32 +122,49 @@ def _greatest(points: Sequence[tuple[float, float]], span: float) -> float:
     return max((value for t, value in points if t <= span * (1 + _HAIR)), default=0.0)
 
 
-def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterator[PeerRun]:
-    """Yield the run of each method over growing spans; the package of a method may be missing."""
-    most = LONG_EVALUATIONS if len(spans) > len(SPANS) else EVALUATIONS
-    known = CLOSED_FORMS | integrators(SECONDS, most)
+class ExactSpans(NamedTuple):
+    """The exact motion of a top at times of growing spans, for all methods."""
+
+    top: Top
+    period: float
+    grids: Sequence[Array]
+    """Times in periods, an array for each span."""
+    angles: Sequence[Sequence[ExactAngles]]
+    bounds: Sequence[tuple[float, float]]
+    """Times in periods, and conditions at these times (rad)."""
+    most: int
+    """Limit of the evaluations of the right-hand side in a run."""
+
+
+def exact_spans(top: Top, reference: Reference, *, is_long: bool = False) -> ExactSpans:
+    """Return the exact motion at times of each span."""
+    spans = (*SPANS, LONG_SPAN) if is_long else SPANS
     period = float(reference.T)
     ends = zip((0.1, *spans), spans, strict=False)
     grids = [np.geomspace(first, last, TIMES_OF_A_SPAN + 1)[1:] for first, last in ends]
-    exact = [[reference.at(t) for t in (grid * period).tolist()] for grid in grids]
+    angles = [[reference.at(t) for t in (grid * period).tolist()] for grid in grids]
     every = np.concatenate(grids)
     bounds = [*zip(every.tolist(), _conditions(top, every * period), strict=True)]
-    for name in PEERS:
-        method, run, remark = known[name], Run([]), None
-        points: list[tuple[float, float]] = []
-        try:
-            with np.errstate(all="ignore"):
-                sample, _ = method.start(top, method.settings[-1])  # the tightest setting
-                for grid, true in zip(grids, exact, strict=True):
-                    run = sample(grid * period)
-                    found = zip(*run.angles, strict=True)
-                    errors = [turn(x, y) for x, y in zip(found, true, strict=True)]
-                    if math.inf in errors:
-                        raise FailedError("returned values that are not finite")
-                    points += zip(grid.tolist(), errors, strict=True)
-        except FAILURES as reason:
-            remark = failure_remark(reason)
-        yield PeerRun(name, points, bounds, run.work.evaluations, run.drift, remark)
+    return ExactSpans(top, period, grids, angles, bounds, _most(is_long=is_long))
+
+
+def peer_run(name: str, exact: ExactSpans) -> PeerRun:
+    """Return the run of one of PEERS over growing spans; its package may be missing."""
+    method, run, remark = (CLOSED_FORMS | integrators(SECONDS, exact.most))[name], Run([]), None
+    points: list[tuple[float, float]] = []
+    try:
+        with np.errstate(all="ignore"):
+            sample, _ = method.start(exact.top, method.settings[-1])  # the tightest setting
+            for grid, true in zip(exact.grids, exact.angles, strict=True):
+                run = sample(grid * exact.period)
+                found = zip(*run.angles, strict=True)
+                errors = [turn(x, y) for x, y in zip(found, true, strict=True)]
+                if math.inf in errors:
+                    raise FailedError("returned values that are not finite")
+                points += zip(grid.tolist(), errors, strict=True)
+    except FAILURES as reason:
+        remark = failure_remark(reason)
+    return PeerRun(name, points, exact.bounds, run.work.evaluations, run.drift, remark)
 
 
 def turn(angles: Sequence[Any], exact: ExactAngles) -> float:

@@ -7,9 +7,9 @@ quaternion, to compare with the promised bounds.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import closing
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import FIRST_DIGITS
@@ -18,11 +18,22 @@ from ..inputs.top import Top
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import Progress
 from ..sweeps.jobs import in_order
-from .battery import CONTRACT, KEY_CONTRACT, Case, hard_scene, judged_case, prove
+from .battery import CONTRACT, KEY_CONTRACT, Case, HardScene, hard_scene, judged_case, prove
 from .hard_scenes import words_of
 from .measure import common_conditions, settled_reference
 from .method import OURS
-from .peers import LONG_SPAN, SPANS, VERDICTS, PeerRun, peer_conditions, peer_runs
+from .peers import (
+    LONG_SPAN,
+    PEERS,
+    SPANS,
+    VERDICTS,
+    ExactSpans,
+    PeerRun,
+    exact_spans,
+    peer_conditions,
+    peer_run,
+)
+from .reference import Reference
 
 TIMES = 2
 """Random times per scene for lagtop; six more are next to half, quarter and whole periods."""
@@ -31,8 +42,10 @@ PROVED = (
     f"lagtop's own balls of {FIRST_DIGITS} digits or more, which Arb has checked in the tests: "
     "every error is a proved upper bound; `proved` is the worst of the angles and the quaternion"
 )
-Judged = tuple[Case, list[PeerRun]]
-"""The results of a scene: errors of lagtop, and the runs of all methods."""
+Scene = tuple[str, int, int]
+"""Stratum, seed and number of a scene."""
+PARTS = ("", *PEERS)
+"""Parts of the work on a scene: the check of lagtop's promise, and the run of each method."""
 
 
 class StratumRow(NamedTuple):
@@ -117,14 +130,20 @@ def run_battery(
 
     With `certify`, only lagtop is checked, by enclosures, and errors are proved bounds.
     """
-    found: dict[str, list[Judged]] = {name: [] for name in strata}
+    cases: dict[str, list[Case]] = {name: [] for name in strata}
+    runs: dict[str, dict[str, list[PeerRun]]] = {name: {} for name in strata}
     scenes = [(name, seed, i) for name in strata for i in range(samples)]
+    parts = [(scene, part) for scene in scenes for part in (PARTS[:1] if certify else PARTS)]
     work = partial(judged, certify=certify, is_long=is_long)
-    with closing(in_order(work, scenes, jobs)) as results:
-        for name, _, _ in progress(scenes, "scenes"):
-            found[name].append(next(results))
-    rows = [row for name, x in found.items() for row in stratum_rows(name, x)]
-    agreement = max(case.agreement for of_stratum in found.values() for case, _ in of_stratum)
+    with closing(in_order(work, parts, jobs)) as results:
+        for (name, _, _), _ in progress(parts, "runs"):
+            result = next(results)
+            if isinstance(result, Case):
+                cases[name].append(result)
+            else:
+                runs[name].setdefault(result.method, []).append(result)
+    rows = [row for name in strata for row in stratum_rows(name, cases[name], runs[name].values())]
+    agreement = max(case.agreement for of_stratum in cases.values() for case in of_stratum)
     conditions = common_conditions(agreement) | _conditions(strata, samples, seed)
     if certify:
         conditions["reference"] = PROVED
@@ -135,19 +154,31 @@ def run_battery(
     return Report(conditions, fields, rows, _conclusions(rows))
 
 
-def judged(scene: tuple[str, int, int], *, certify: bool, is_long: bool) -> Judged:
-    """Return the results of a scene, given by stratum, seed and number; `certify` for proofs."""
-    hard = hard_scene(*scene, TIMES)
+def judged(part: tuple[Scene, str], *, certify: bool, is_long: bool) -> Case | PeerRun:
+    """Return a part of the results of a scene: lagtop's errors, or the run of a method.
+
+    A scene is given by stratum, seed and number.  With `certify`, the errors are proved bounds.
+    """
+    scene, name = part
     if certify:
-        return prove(hard), []
-    top, spans = Top(**hard.inputs), (*SPANS, LONG_SPAN) if is_long else SPANS
+        return prove(hard_scene(*scene, TIMES))
+    hard, settled, exact = _prepared(scene, is_long)
+    return peer_run(name, exact) if name else judged_case(hard, settled)
+
+
+@lru_cache(maxsize=1)
+def _prepared(scene: Scene, is_long: bool) -> tuple[HardScene, tuple[Reference, float], ExactSpans]:
+    """Return a scene, its settled reference and its exact spans, for all parts of the scene."""
+    hard = hard_scene(*scene, TIMES)
+    top = Top(**hard.inputs)
     settled = settled_reference(top)
-    return judged_case(hard, settled), list(peer_runs(top, settled[0], spans))
+    return hard, settled, exact_spans(top, settled[0], is_long=is_long)
 
 
-def stratum_rows(stratum: str, found: Sequence[Judged]) -> list[StratumRow]:
+def stratum_rows(
+    stratum: str, cases: Sequence[Case], methods: Iterable[Sequence[PeerRun]]
+) -> list[StratumRow]:
     """Return the rows of a stratum, one per method, or one of proved bounds if none was run."""
-    cases = [case for case, _ in found]
     worst = max(cases, key=lambda case: case.excess)
     ours: dict[str, Any] = {name: max(getattr(x, name) for x in cases) for name in _WORST}
     ours["worst_key"] = max(cases, key=lambda case: case.key_ulps).worst_key
@@ -155,13 +186,21 @@ def stratum_rows(stratum: str, found: Sequence[Judged]) -> list[StratumRow]:
     if worst.excess > 1:
         ours["verdict"] = EXCEEDED
     rows = []
-    for runs in zip(*(runs for _, runs in found), strict=True):
+    for runs in methods:
         run = max(runs, key=_badness)
-        energy, Lz = run.drift
         row = StratumRow(
-            *(stratum, run.method, len(cases), run.verdict),
-            *(run.error(SPANS[0]), run.error(SPANS[1]), run.error(LONG_SPAN)),
-            *(run.condition(SPANS[1]), run.growth, energy, Lz, run.evaluations),
+            stratum,
+            run.method,
+            len(cases),
+            run.verdict,
+            error_5_rad=run.error(SPANS[0]),
+            error_100_rad=run.error(SPANS[1]),
+            error_10000_rad=run.error(LONG_SPAN),
+            condition_rad=run.condition(SPANS[1]),
+            growth=run.growth,
+            energy=run.drift[0],
+            Lz=run.drift[1],
+            evaluations=run.evaluations,
             remark=run.remark,
             run=run,
         )

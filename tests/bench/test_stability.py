@@ -25,7 +25,7 @@ from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.battery import HardScene, hard_scene
 from lagrange_cli.bench.hard_scenes import STRATA, words_of
 from lagrange_cli.bench.measure import settled_reference
-from lagrange_cli.bench.peers import SPANS, VERDICTS, PeerRun, peer_runs
+from lagrange_cli.bench.peers import PEERS, VERDICTS, PeerRun, exact_spans, peer_run
 from lagrange_cli.bench.reference import EPS, Reference
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS
@@ -301,7 +301,8 @@ MOVING_TOP = Top(**UNIT, r0=2.3, theta0_deg=55, thetadot0=0.7, psidot0=-0.4)
 @pytest.fixture(scope="module")
 def runs() -> dict[str, PeerRun]:
     """Return the runs of all methods in one scene."""
-    return {x.method: x for x in peer_runs(MOVING_TOP, Reference(MOVING_TOP, 60), SPANS)}
+    exact = exact_spans(MOVING_TOP, Reference(MOVING_TOP, 60))
+    return {name: peer_run(name, exact) for name in PEERS}
 
 
 def test_the_condition_is_what_half_a_unit_of_each_input_does(runs: dict[str, PeerRun]) -> None:
