@@ -18,7 +18,7 @@ from ..inputs import rotations
 from ..inputs.input_keys import checked_double
 from ..inputs.names import ANGLES
 from ..inputs.scene_file import scene_in
-from ..inputs.seen import Conventions, Quantities, Said, angles_in, quantities_of, rows_of, see
+from ..inputs.seen import Conventions, Named, Quantities, angles_in, quantities_of, rows_of, see
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.trajectory import Clock, Trajectory, open_trajectory
@@ -114,7 +114,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
         found = {}
         for name, given in _parts(trajectory, reading.by).items():
             where = f"{trajectory.name}{f', {reading.by} {name}' if name else ''}"
-            found[name] = _recording_of(where, given, reading, trajectory.said, spread)
+            found[name] = _recording_of(where, given, reading, trajectory.quantities, spread)
         scene = scene_in(trajectory.description, trajectory.name)
     return [replace(one, name=name, scene=scene) for name, one in found.items()]
 
@@ -161,7 +161,7 @@ def _recording_of(
     where: str,
     given: Quantities,
     reading: Reading,
-    said: Said = MappingProxyType({}),
+    named: Named = MappingProxyType({}),
     spread: Mapping[str, str | None] = MappingProxyType({}),
 ) -> Recording:
     """Return the recording in some columns, from its first row on, in the order of time.
@@ -170,7 +170,7 @@ def _recording_of(
     Raises LagtopError, DataError for a bad recording.
     """
     t = given["t"][:, 0]
-    kind, measured = _angles(given, reading.conventions, said)
+    kind, measured = _angles(given, reading.conventions, named)
     raw = Recording("", t, 0.0, kind, measured, {})
     sigma = _sigma(raw, given, reading, spread)
     if t.size < LEAST_ROWS:
@@ -219,13 +219,13 @@ def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
 
 
 def _angles(
-    given: Quantities, conventions: Conventions, said: Said
+    given: Quantities, conventions: Conventions, named: Named
 ) -> tuple[str, dict[str, Array]]:
     """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
-    alone = angles_in(given, conventions, said)
+    alone = angles_in(given, conventions, named)
     if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
         return "angles", alone
-    seen = see(given, conventions, said)
+    seen = see(given, conventions, named)
     if seen.quaternion is not None:
         return "attitude", rotations.angles_of(seen.quaternion)
     if seen.axis is not None:

@@ -17,7 +17,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from . import rotations
 from .names import ANGLES
-from .trajectory_columns import ELEVATION, QUANTITIES
+from .trajectory_columns import ELEVATION, NAMELESS, QUANTITIES, FoundQuantity
 
 ORDERS = ("wxyz", "xyzw")
 FRAMES = ("body", "space")
@@ -99,36 +99,36 @@ Quantities = Mapping[str, Array]
 """Arrays of shape (n, parts) by the name of the quantity (see `inputs.trajectory_columns`)."""
 
 
-Said = Mapping[str, tuple[str, str | None]]
-"""The convention and the angle unit that its name implies, by quantity."""
+Named = Mapping[str, FoundQuantity]
+"""The quantities of a file, with the conventions and the angle units that their names imply."""
 
 
-def see(given: Quantities, conventions: Conventions, said: Said) -> Seen:
+def see(given: Quantities, conventions: Conventions, named: Named) -> Seen:
     """Return the motion from its quantities; names override the conventions.
 
     Raises LagtopError for rates of the angles without an attitude.
     """
-    reader = _Reader(given, conventions, said)
+    reader = _Reader(given, conventions, named)
     seen = Seen(given["t"][:, 0], **reader.attitude())
     return replace(seen, **reader.rates(seen))
 
 
-def angles_in(given: Quantities, conventions: Conventions, said: Said) -> dict[str, Array]:
+def angles_in(given: Quantities, conventions: Conventions, named: Named) -> dict[str, Array]:
     """Return tilt, spin and precession, in radians, as far as each has its own column."""
-    reader = _Reader(given, conventions, said)
+    reader = _Reader(given, conventions, named)
     return {key: reader.angle(key)[:, 0] for key in ANGLES if key in given}
 
 
 class _Reader:
     """Quantities with their conventions."""
 
-    def __init__(self, given: Quantities, conventions: Conventions, said: Said) -> None:
-        self.given, self.conventions, self.said = given, conventions, said
+    def __init__(self, given: Quantities, conventions: Conventions, named: Named) -> None:
+        self.given, self.conventions, self.named = given, conventions, named
 
     def attitude(self) -> dict[str, Any]:
         """Return the attitude from the first quantity that gives all of it, or most of it."""
         given = self.given
-        alone = angles_in(given, self.conventions, self.said)
+        alone = angles_in(given, self.conventions, self.named)
         found: dict[str, Any] = {"angles": alone}
         if len(alone) == len(ANGLES) and not {"quaternion", "matrix"} & given.keys():
             found = {"quaternion": rotations.of_angles(**alone)}
@@ -172,14 +172,14 @@ class _Reader:
 
     def convention(self, key: str, other: str) -> str:
         """Return the convention that the name of a quantity implies, or else `other`."""
-        return self.said.get(key, ("", None))[0] or other
+        return self.named.get(key, NAMELESS).says or other
 
     def angle(self, key: str) -> Array:
         """Return angles in radians."""
-        says, unit = self.said.get(key, ("", None))
-        in_radians = self.conventions.radians if unit is None else unit == "rad"
+        named = self.named.get(key, NAMELESS)
+        in_radians = self.conventions.radians if named.unit is None else named.unit == "rad"
         angles = self.given[key]
-        if says == ELEVATION:
+        if named.says == ELEVATION:
             angles = (np.pi / 2 if in_radians else 90.0) - angles
         return angles if in_radians else np.radians(angles)
 

@@ -94,11 +94,6 @@ class Trajectory:
         unit, factor = in_known_unit(key, quantity.unit)
         return quantity._replace(unit=unit, factor=factor)
 
-    @property
-    def said(self) -> dict[str, tuple[str, str | None]]:
-        """The convention and the angle unit that its name implies, by quantity."""
-        return {key: (found.says, found.unit) for key, found in self.quantities.items()}
-
     def add_angle(self, key: str, column: str, unit: str | None) -> str | None:
         """Read one more column of angles, as a quantity named `key`, and return their unit."""
         try:
@@ -111,7 +106,7 @@ class Trajectory:
     def add_words(self, key: str, column: str) -> Callable[[float], str]:
         """Read one more column, of words, as numbers; return the word of a number."""
         index = self.names.index(column)
-        self.quantities[key] = FoundQuantity([index], "", None)
+        self.quantities[key] = FoundQuantity([index])
         return self._table.word_of(index)
 
     def blocks(self, *, repeats: bool = False) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:

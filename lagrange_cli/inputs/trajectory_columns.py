@@ -56,8 +56,8 @@ class FoundQuantity(NamedTuple):
 
     columns: Sequence[int]
     """The indices of the columns of its parts."""
-    says: str
-    unit: str | None
+    says: str = ""
+    unit: str | None = None
     """The unit in its headings."""
     factor: Fraction | None = None
     """The factor that converts its numbers to the units in use, if any."""
@@ -69,6 +69,9 @@ class FoundQuantity(NamedTuple):
         size = float(max(self.factor, 1 / self.factor))
         return values * size if self.factor > 1 else values / size  # by a whole number, if possible
 
+
+NAMELESS = FoundQuantity(())
+"""A quantity that is not from a file: no name implies a convention or a unit."""
 
 _QUANTITIES = """
 t | time | time | t, time, timestamp

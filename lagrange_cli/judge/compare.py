@@ -276,7 +276,7 @@ def _judged(
 ) -> JudgedRun:
     rows = (block for block, _ in trajectory.blocks())
     blocks = progress(rows, "rows", size=lambda block: len(block["t"]))
-    given = ReadTrajectory(blocks, trajectory.said, request.conventions, request.align)
+    given = ReadTrajectory(blocks, trajectory.quantities, request.conventions, request.align)
     try:
         run = judge(motion, given)
     except DataError:

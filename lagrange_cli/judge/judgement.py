@@ -14,7 +14,8 @@ from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
-from ..inputs.seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
+from ..inputs.seen import ORDERS, Conventions, Named, Quantities, Seen, rows_of, see
+from ..inputs.trajectory_columns import NAMELESS
 from ..motion.notebook import HasRecord
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
@@ -139,7 +140,7 @@ class ReadTrajectory(NamedTuple):
     """A trajectory as it is given: blocks of quantities, and their conventions."""
 
     blocks: Iterable[Quantities]
-    said: Said
+    named: Named
     conventions: Conventions
     alignment: Alignment
     change: Callable[[Seen], Seen] | None = None
@@ -147,7 +148,7 @@ class ReadTrajectory(NamedTuple):
 
     def see(self, block: Quantities) -> Seen:
         """Return the motion in a block, in its original frames."""
-        seen = see(block, self.conventions, self.said)
+        seen = see(block, self.conventions, self.named)
         return seen if self.change is None else self.change(seen)
 
     def with_conventions(self, **changes: Any) -> ReadTrajectory:
@@ -201,7 +202,7 @@ class _Tally:
 
     def __init__(self, motion: Motion, given: ReadTrajectory, first: Mapping[str, Array]) -> None:
         self.motion, self.proved = motion, None
-        said_order = given.said.get("quaternion", ("", None))[0] or given.conventions.quaternion
+        said_order = given.named.get("quaternion", NAMELESS).says or given.conventions.quaternion
         if "quaternion" in first and not said_order:
             self.proved = _proved_order(motion, given, first)
             given = given.with_conventions(quaternion=self.proved)

@@ -240,7 +240,7 @@ def test_the_memory_for_times_does_not_grow(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("delimiter", [",", ";", "\t"])
-def test_each_reader_takes_delimiters_comments_and_a_mark(
+def test_extra_columns_are_copied_with_any_delimiter(
     delimiter: str, tmp_path: Path, lagtop: Lagtop
 ) -> None:
     path = tmp_path / "file"
@@ -252,15 +252,9 @@ def test_each_reader_takes_delimiters_comments_and_a_mark(
     )
     tables = lagtop("table", "--tops", path, "--n", "1", "--columns", "t")
     assert tables.stdout == 'id,t,error\n"x, y; z",0.0,\nw,0.0,\n'
-    rows = [["t", "theta", "phi", "psi"], ["0", "30", "0", "0"], ["0", "30", "0", "0"]]
-    path.write_text("\ufeff# seen\n" + "\n\n# more\n".join(map(delimiter.join, rows)))
-    assert "t must not repeat, got 0.0 twice" in lagtop("compare", path, "--exit-zero").stderr
 
 
-def test_times_may_be_a_column_that_table_has_written(lagtop: Lagtop) -> None:
-    column = lagtop("table", "--t-max", "1", "--n", "3", "--columns", "t").stdout
-    again = lagtop("table", "--times", "-", "--columns", "t", input="\ufeff# times\n\n" + column)
-    assert (again.stdout, again.stderr) == (column, "")
+def test_a_heading_below_a_time_is_no_time(lagtop: Lagtop) -> None:
     said = "standard input, line 2: the time must be a finite decimal number, got 't'"
     assert_one_line(lagtop("table", "--times", "-", input="0\nt\n"), 65, said)
 
@@ -312,17 +306,6 @@ def test_a_key_that_comes_after_the_first_lines_is_refused(tmp_path: Path) -> No
     assert [row.line for row in rows] == [1, 2, 3, 4, 5, 6, 7]
     wrong = "the key 'name' must be in one of the first rows too"
     assert [row.error for row in rows] == [*[None] * 6, wrong]
-
-
-def test_a_new_key_late_in_a_sweep(lagtop: Lagtop) -> None:
-    text = '{"r0": 1}\n' * 4096 + '{"r0": 2, "name": "x"}\n{"r0": 3}\n'
-    result = lagtop("sweep", "-", "--keys", "r0,error", input=text)
-    assert result.exit_code == 1
-    assert result.stdout.splitlines()[4096:] == [
-        "1.0,",
-        "2.0,line 4097: the key 'name' must be in one of the first rows too",
-        "3.0,",
-    ]
 
 
 def test_a_long_line_of_tops_is_one_error(tmp_path: Path) -> None:

@@ -63,9 +63,10 @@ def test_units_of_a_trajectory(header: str, t: float, tilt: float, tmp_path: Pat
     path.write_text(f"{header}\n" + "".join(f"{a * t!r},{b * tilt!r}\n" for a, b in rows))
     with open_trajectory(str(path)) as file:
         given, _ = next(file.blocks())
-        said = file.said
     assert given["t"][:, 0] == pytest.approx([0.25, 0.5], rel=1e-15)
-    assert angles_in(given, Conventions(), said)["theta"] == pytest.approx(TILTS, rel=1e-15)
+    assert angles_in(given, Conventions(), file.quantities)["theta"] == pytest.approx(
+        TILTS, rel=1e-15
+    )
     assert [float(x) for x in TimesFile(str(path)).decimals()] == pytest.approx([0.25, 0.5])
 
 
