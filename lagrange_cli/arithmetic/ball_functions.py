@@ -1,6 +1,6 @@
 """The functions of balls that no record needs.
 
-`Balls` takes them from here when they are called, because `lagtop solve` should not load them.
+`Balls` takes them from here when they are used, because `lagtop solve` should not load them.
 """
 
 from __future__ import annotations

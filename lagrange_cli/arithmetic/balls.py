@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from decimal import Decimal, DecimalException, Inexact
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 from .ball import (
@@ -30,17 +30,6 @@ from .ball import (
 )
 from .decimals import Decimals, decimals, pi_to
 from .numbers import Scalars
-
-
-def _late(name: str) -> Callable[[Any, Ball], Any]:
-    """Return a method of `BallFunctions`, which is loaded on the first call."""
-
-    def method(ar: Any, x: Ball) -> Any:
-        from .ball_functions import BallFunctions  # start-up: not for a record
-
-        return getattr(BallFunctions, name)(ar, x)
-
-    return method
 
 
 class Balls(Ring, Scalars):
@@ -183,10 +172,11 @@ class Balls(Ring, Scalars):
         """Return x as a constant."""
         return x
 
-    exp, expm1, log, log1p = map(_late, ("exp", "expm1", "log", "log1p"))
-    sinh, cosh, tanh, sech = map(_late, ("sinh", "cosh", "tanh", "sech"))
-    asinh, atanh = map(_late, ("asinh", "atanh"))
-    nint, ceiling, sign, re, im = map(_late, ("nint", "ceiling", "sign", "re", "im"))
+    def __getattr__(self, name: str) -> Any:
+        """Return a method of `BallFunctions`."""
+        from .ball_functions import BallFunctions  # start-up: not for a record
+
+        return partial(getattr(BallFunctions, name), self)
 
 
 @lru_cache(maxsize=64)

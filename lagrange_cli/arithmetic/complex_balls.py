@@ -7,6 +7,7 @@ from typing import Any
 
 from ..errors import OutOfRangeError
 from .ball import Ball, Truth
+from .ball_functions import BallFunctions
 from .balls import Balls
 from .numbers import Number
 from .points import ExactComplex
@@ -63,7 +64,7 @@ class ComplexBall:
         return complex(float(self.real), float(self.imag))
 
 
-class ComplexBalls(Balls):
+class ComplexBalls(BallFunctions, Balls):
     """The arithmetic of complex balls, and of balls that are parts of complex numbers."""
 
     def convert(self, value: Any) -> Any:
@@ -111,16 +112,14 @@ class ComplexBalls(Balls):
                 "a value is above 1e+990000000000000000 in size, too large for --digits: "
                 "take a smaller argument"
             )
-        power: Ball = super().exp(x)
-        return power
+        return super().exp(x)
 
     def nint(self, x: Ball) -> int:
         """Return the integer nearest to x; raise TooFewDigitsError if x leaves it open.
 
         The branch of a logarithm may depend on it.
         """
-        nearest: int = self.ceiling(x - 0.5)
-        return nearest
+        return self.ceiling(x - 0.5)
 
 
 @lru_cache(maxsize=64)

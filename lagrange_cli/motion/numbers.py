@@ -108,7 +108,7 @@ class Numbers:
 
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
         """Return a number known as a fraction, else None; a root may be a tie in `digits`."""
-        from .rational_keys import fraction_in, known_fraction  # start-up: for few tops
+        from .exact.rational_keys import fraction_in, known_fraction  # start-up: for few tops
 
         if name in NUMBER_KEYS:
             known = known_fraction(self.exact, name, radians=radians)
@@ -133,7 +133,7 @@ class Numbers:
             source = kind if name in NUMBER_KEYS else self._on_request(digits)
             value: Ball | None = getattr(source, name)
         except TooFewDigitsError:
-            from .rational_keys import is_endless  # start-up: for few tops only
+            from .exact.rational_keys import is_endless  # start-up: for few tops only
 
             if is_endless(self.exact, name):
                 return None

@@ -15,9 +15,9 @@ from scenes import UNIT
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.rounding import rounding_of
+from lagrange_cli.motion.exact.rational_columns import known_column
 from lagrange_cli.motion.over_time.columns import SCALARS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
-from lagrange_cli.motion.over_time.rational_columns import known_column
 
 
 @pytest.mark.parametrize("method", ["start", "steady"])

@@ -14,8 +14,8 @@ from scenes import UNIT
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic.ball import Ball
 from lagrange_cli.bench.battery import judged_inputs
-from lagrange_cli.motion import rational_keys as rational_keys_module
-from lagrange_cli.motion.rational_keys import known_fraction, rational_keys
+from lagrange_cli.motion.exact import rational_keys as rational_keys_module
+from lagrange_cli.motion.exact.rational_keys import known_fraction, rational_keys
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.regime import exact
 

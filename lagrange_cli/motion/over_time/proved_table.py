@@ -17,13 +17,13 @@ from ...arithmetic.balls import Balls, balls
 from ...arithmetic.numbers import Number
 from ...arithmetic.rounding import Settled, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
+from ..exact.rational_columns import known_column
+from ..exact.rational_keys import known_fraction
 from ..kinds import Constant, Separatrix
 from ..numbers import Numbers
 from ..quantity import quantity
-from ..rational_keys import known_fraction
 from .column_parts import ColumnConstants, ColumnParts, column_constants
 from .columns import chosen_columns, headings
-from .rational_columns import known_column
 from .series_constants import Pose, pose_of
 
 if TYPE_CHECKING:

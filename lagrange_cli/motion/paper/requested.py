@@ -13,9 +13,9 @@ from inspect import signature
 
 from ...arithmetic.exact_cosine import Polynomial, U
 from ...arithmetic.numbers import R
+from ..exact.rational_keys import keys_by_u1, rational_keys, starts_at_u1, starts_at_u2
 from ..kinds import Kind
 from ..quantity import keys_of, unit_name
-from ..rational_keys import keys_by_u1, rational_keys, starts_at_u1, starts_at_u2
 from ..regime import Exact
 from .sections import Sections
 from .textbook import Textbook, textbook_fractions

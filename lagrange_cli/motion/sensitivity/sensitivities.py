@@ -20,12 +20,12 @@ from ...arithmetic.values import Values
 from ...inputs.names import check_names
 from ...inputs.top import Top
 from ..any_start import cubic
+from ..exact.rational_keys import is_endless
 from ..gaps import Gaps, State
 from ..kinds import Constant
 from ..numbers import kind_of
 from ..paper.textbook import TEXTBOOK
 from ..quantity import quantity
-from ..rational_keys import is_endless
 from ..record import NUMBER_KEYS
 from ..regime import Exact, Regime, exact
 from .neighbourhood import (

@@ -18,14 +18,14 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, cast
 
-from ..arithmetic.ball import Ball, TooFewDigitsError
-from ..arithmetic.balls import balls
-from ..arithmetic.exact_cosine import Polynomial, U
-from ..arithmetic.numbers import polynomial
-from ..arithmetic.rounding import FIRST_DIGITS, decided
-from ..inputs.stand_ins import rational_root
-from .any_start import largest_root
-from .regime import Exact
+from ...arithmetic.ball import Ball, TooFewDigitsError
+from ...arithmetic.balls import balls
+from ...arithmetic.exact_cosine import Polynomial, U
+from ...arithmetic.numbers import polynomial
+from ...arithmetic.rounding import FIRST_DIGITS, decided
+from ...inputs.stand_ins import rational_root
+from ..any_start import largest_root
+from ..regime import Exact
 
 _RATE_OF = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
 """The mean rate of each period."""

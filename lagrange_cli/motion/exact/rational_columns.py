@@ -9,8 +9,8 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ...arithmetic.exact_cosine import Cosine, U
-from ..rational_keys import known_fraction
 from ..regime import Exact
+from .rational_keys import known_fraction
 
 _RATES = {
     "phi": ("mean_spin_rate", "spin_rate_start"),

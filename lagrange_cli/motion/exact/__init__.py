@@ -1,0 +1,1 @@
+"""Keys and columns whose values are known as fractions."""
