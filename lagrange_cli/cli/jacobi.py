@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
 from ..arithmetic.values import Key
 from ..errors import LagtopError
-from ..inputs.names import check_names
+from ..inputs.names import check_names, split_names
 from ..output.terminal import with_progress
 from . import options as opt
 from .app import complain
@@ -86,6 +86,26 @@ def write_functions(table: TableOfFunctions, digits: int | None, out: Output) ->
     out.table(header, with_progress(blocks, "rows", table.count or None, len), table.count)
 
 
+_NAMES = opt.Parsed("NAME,...", split_names, lambda: _FAMILIES)
+_FUNCTIONS: Any = opt.Group(
+    lambda families: [name for named in families for name in named] or None,
+    [
+        opt.option(
+            _NAMES,
+            "Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
+            "omega, pi (of u and --param, after Chrapan).  [default: am]",
+            "--functions",
+            multiple=True,
+        )("families"),
+        *(
+            opt.option(_NAMES, "", f"--{name}", flag_value=name, multiple=True, hidden=True)(
+                "families"
+            )
+            for name in _FAMILIES
+        ),
+    ],
+)
+"""The option --functions, and flags such as --omega, which mean the same."""
 function_formats = opt.output("table", "csv", "json", "ndjson", "markdown", "parquet", "npy")
 
 
@@ -113,12 +133,7 @@ def jacobi_command(
         "Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
         "K such as K/2,-2.5K.",
     ),
-    families: list[str] | None = opt.names(
-        "Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
-        "omega, pi (of u and --param, after Chrapan).  [default: am]",
-        "--functions",
-        offered=lambda: _FAMILIES,
-    ),
+    families: list[str] | None = _FUNCTIONS,
     param: tuple[ExactComplex, bool] | None = opt.option(
         opt.Parsed("V", _parse_parameter), "Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
     ),

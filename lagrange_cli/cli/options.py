@@ -179,7 +179,11 @@ def command(
 
 def exclude(options: dict[str, Any]) -> None:
     """Raise LagtopError if more than one of these options was given."""
-    given = [name for name, value in options.items() if value is not None and value is not False]
+    given = [
+        name
+        for name, value in options.items()
+        if value is not None and value is not False and value != ()
+    ]
     if len(given) > 1:
         raise LagtopError(f"use {given[0]} or {given[1]}, not both")
 

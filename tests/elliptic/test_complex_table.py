@@ -57,6 +57,19 @@ def test_odd_spellings_are_told_the_right_one(option: str, text: str, lagtop: La
     assert result.stderr == line
 
 
+def test_a_flag_of_a_function_means_its_name(lagtop: Lagtop) -> None:
+    """Flags and --functions add to each other; --phi excludes both."""
+    given = ["jacobi", "--k", "0.7", "--u=-6.6+0.7i", "--param=8.5+0.7i", "--format", "csv"]
+    named = lagtop(*given, "--functions", "theta,zeta,omega")
+    flags = lagtop(*given, "--omega", "--zeta", "--functions", "theta")
+    assert named.stdout
+    assert flags.stdout == named.stdout
+    omega = json.loads(lagtop(*given[:-1], "json", "--omega").stdout)[0]["omega11_im"]
+    assert omega == pytest.approx(0.0200677814681204, rel=1e-14)  # by mpmath
+    refused = lagtop("jacobi", "--k", "0.7", "--phi", "30", "--omega")
+    assert (refused.exit_code, refused.stderr) == (2, "Error: use --phi or --functions, not both\n")
+
+
 def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
     """Return the columns of a row with both parts, which may be numbers or texts."""
     return {
