@@ -58,10 +58,10 @@ class ComplexTable(TableOfFunctions):
         self.request = request
         self.modulus_in = cache(lambda digits: any_modulus(complex_balls(digits), request.modulus))
 
-    def known(self, x: ExactComplex) -> dict[str, float]:
+    def known(self, x: ExactComplex) -> Known:
         """Return the parts that are known exactly at a point; a pole is NaN."""
 
-        def known_in(digits: int) -> dict[str, float]:
+        def known_in(digits: int) -> Known:
             given, height = self.modulus_in(digits), complex_balls(digits).convert(abs(x.imag))
             beyond = bool(height * given.across > 0.5)
             return known_parts(x, self.request, given, beyond=beyond)

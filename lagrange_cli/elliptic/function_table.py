@@ -140,9 +140,11 @@ class FunctionTable(TableOfFunctions):
                 for ij, kind in functions.third.items():
                     yield f"{family}{ij}{suffix}", partial(getattr(kind, family), ar, at)
 
-    def known(self, x: Fraction) -> dict[str, float]:
-        """Return the zeros, poles and other exact values at u."""
-        return known_values(x, self.request)
+    def known(self, x: Fraction) -> Known:
+        """Return the zeros, poles and other exact values at u; am is u if k = 0."""
+        request = self.request
+        is_u = "k" in request.real_modulus.zeros() and request.radians and not request.in_quarters
+        return known_values(x, request) | ({request.am: x} if is_u else {})
 
     def put_known(self, columns: dict[str, Array], x: Array) -> None:
         """Put zeros, poles and other exact values into columns of doubles."""

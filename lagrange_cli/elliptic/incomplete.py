@@ -181,10 +181,12 @@ class AmplitudeTable(TableOfFunctions):
         phi = reduced(ar, x)
         return {name: x, "F": f_of(ar, phi, constants), "E": e_of(ar, phi, constants)}
 
-    def known(self, x: Fraction) -> dict[str, float]:
-        """Return the columns that are known exactly: 0 at phi = 0, and an infinite F."""
+    def known(self, x: Fraction) -> Known:
+        """Return the columns that are known exactly: 0 at phi = 0, phi for k = 0, an infinite F."""
         names = () if x else ("phi_rad", "phi_deg", "F", "E")
-        known: dict[str, float] = dict.fromkeys(names, 0)
+        known: dict[str, float | Fraction] = dict.fromkeys(names, 0)
+        if "k" in self.modulus.zeros() and self.radians:
+            known |= {"F": x, "E": x}
         beyond = below_quarters(1, abs(x)) < 0 if self.radians else abs(x) >= 90
         if "k_prime" in self.modulus.zeros() and beyond:
             known["F"] = math.inf

@@ -93,7 +93,6 @@ def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
     K is transcendental for algebraic k (Schneider 1937), so only the rational places u = 0 and u =
     +-v matter.
     """
-    name, value, _ = request.real_modulus
     suffix = "_imag" if request.imaginary else ""
     known: dict[str, float] = {}
 
@@ -101,7 +100,7 @@ def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
         for column in names.split():
             known[column + suffix * column.startswith(("omega", "pi"))] = x
 
-    if value == (1 if name == "k_prime" else 0):
+    if "k" in request.real_modulus.zeros():
         add(VANISH["k"], 0)
     if u == 0:
         add(VANISH["u"] + ("" if request.imaginary else " omega11 pi11"), 0)
@@ -156,8 +155,8 @@ _RIGHT = ModulusInput("modular_angle", Fraction(45))
 
 def known_parts(
     u: ExactComplex, request: FunctionRequest, given: AnyModulus, *, beyond: bool
-) -> dict[str, float]:
-    """Return the parts that are known exactly at u: 0, or NaN at a pole.
+) -> dict[str, float | Fraction]:
+    """Return the parts that are known exactly at u: 0, or NaN at a pole; am is u if k = 0.
 
     Set `beyond` if u lies beyond the branch points of am.
     """
@@ -174,8 +173,11 @@ def known_parts(
     if along and upright:
         zeros += f" {am} sn zeta01_re zeta01_im zeta00_re zeta00_im zeta10_re zeta10_im"
         zeros += " theta11_re theta11_im"
+    known: dict[str, float | Fraction] = {}
     if not given.modulus.k:
         zeros += " dn_im"
+        if request.radians:
+            known = {am: u.real, f"{am}_re": u.real, f"{am}_im": u.imag}
     poles = {"zeta11"} if along and upright else set()
     if not any(v):
         poles.add("pi11")
@@ -184,7 +186,7 @@ def known_parts(
     if beyond:
         poles.add(am)
     split = [f"{name}{part}" for name in poles for part in ("", "_re", "_im")]
-    return dict.fromkeys(zeros.split(), 0.0) | dict.fromkeys(split, math.nan)
+    return known | dict.fromkeys(zeros.split(), 0.0) | dict.fromkeys(split, math.nan)
 
 
 def whole_quarters(u: ExactComplex, request: FunctionRequest, kind: ModulusKind) -> set[str]:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Rows = tuple[list[str], Iterator[Array | Texts]]
     DigitRows = Iterator[dict[str, NumberText]]
     ArrayColumns = tuple[Callable[[Any], dict[str, Array]], Iterator[Any]]
-    Known = Mapping[str, float]
+    Known = Mapping[str, float | Fraction]
 
 _MOST_FOR_DOUBLES = 120
 """Number of digits beyond which arrays of doubles are quicker."""
@@ -59,7 +59,7 @@ class ProvedNumbers:
     def of(
         self,
         compute: Callable[[Any], Mapping[str, Any]],
-        known: Mapping[str, float] = MappingProxyType({}),
+        known: Mapping[str, float | Fraction] = MappingProxyType({}),
         more: int = 0,
     ) -> dict[str, Any]:
         """Return numbers by name; texts, and None for undefined numbers, are left as they are.
@@ -90,8 +90,10 @@ class ProvedNumbers:
         """Return a number as it is printed, or None if it is beyond the range of doubles."""
         if isinstance(value, Ball):
             rounded = alike(value, self._rounding).value
-        elif isinstance(value, int | float):
-            rounded = self._rounding(Fraction(value)) if math.isfinite(value) else None
+        elif isinstance(value, float) and not math.isfinite(value):
+            rounded = None
+        elif isinstance(value, int | float | Fraction):
+            rounded = self._rounding(Fraction(value))
         else:
             return value
         return None if rounded in {math.inf, -math.inf} else rounded

@@ -70,6 +70,22 @@ def test_a_flag_of_a_function_means_its_name(lagtop: Lagtop) -> None:
     assert (refused.exit_code, refused.stderr) == (2, "Error: use --phi or --functions, not both\n")
 
 
+@pytest.mark.parametrize(
+    ("options", "row"),
+    [
+        ("--u 0.25 --digits 1", "0.2,0.2,0.2,1.0,1.0"),
+        ("--u 12345 --digits 4", "12340.0,12340.0,-0.9938,0.1114,1.0"),
+        ("--phi 0.25 --digits 1", "0.2,0.2,0.2"),
+        ("--u 0.25+1i --digits 1", "0.2,1.0,0.2,1.0,0.4,1.0,1.0,-0.3,1.0,0.0"),
+        ("--u 1+2.5i --digits 1", "1.0,2.0,1.0,2.0,5.0,3.0,3.0,-5.0,1.0,0.0"),
+    ],
+)
+def test_am_at_k_0_is_u_also_midway(options: str, row: str, lagtop: Lagtop) -> None:
+    """Midway between two roundings, only the exact value decides: the even digit is printed."""
+    result = lagtop("jacobi", "--k", "0", "--rad", "--format", "csv", *options.split())
+    assert result.stdout.splitlines()[1:] == [row]
+
+
 def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
     """Return the columns of a row with both parts, which may be numbers or texts."""
     return {
