@@ -107,12 +107,11 @@ class ComplexBalls(BallFunctions, Balls):
 
     def exp(self, x: Ball) -> Ball:
         """Return e to the power x; raise OutOfRangeError if decimals cannot hold it."""
-        if (x > _HIGHEST) is True:
-            raise OutOfRangeError(
-                "a value is above 1e+990000000000000000 in size, too large for --digits: "
-                "take a smaller argument"
-            )
-        return super().exp(x)
+        return super().exp(_in_range(x))
+
+    def sech(self, x: Ball) -> Ball:
+        """Return 1/cosh x; raise OutOfRangeError if decimals cannot hold cosh x."""
+        return super().sech(_in_range(abs(x)))
 
     def nint(self, x: Ball) -> int:
         """Return the integer nearest to x; raise TooFewDigitsError if x leaves it open.
@@ -120,6 +119,16 @@ class ComplexBalls(BallFunctions, Balls):
         The branch of a logarithm may depend on it.
         """
         return self.ceiling(x - 0.5)
+
+
+def _in_range(x: Ball) -> Ball:
+    """Return x, or raise OutOfRangeError if e to the power x may overflow."""
+    if (x > _HIGHEST) is True:
+        raise OutOfRangeError(
+            "the size of a value is not within 1e-990000000000000000 and 1e+990000000000000000, "
+            "the limits of --digits: take a smaller argument"
+        )
+    return x
 
 
 @lru_cache(maxsize=64)

@@ -22,9 +22,10 @@ _FORMATS = ("table", "json", "csv", "ndjson", "markdown")
 
 
 def _names() -> list[str]:
-    from ..motion.explanation import explained_names
+    from ..motion.over_time.columns import COLUMNS
+    from ..motion.record import all_keys
 
-    return [*explained_names(), *scene_names()]
+    return list(dict.fromkeys([*all_keys(), *COLUMNS, *scene_names()]))
 
 
 @opt.command(

@@ -1,4 +1,4 @@
-"""Moduli beyond [0, 1]: imaginary k = i kbar, and k above 1.
+"""Moduli of any kind, reduced to [0, 1]: imaginary k = i kbar, and k above 1.
 
 The functions of such a modulus are functions of a modulus in [0, 1] at an argument that is
 stretched by a real factor.

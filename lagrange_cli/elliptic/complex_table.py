@@ -37,10 +37,10 @@ class _ComplexConstants(NamedTuple):
     """None if only am, sn, cn and dn are requested."""
     third: dict[str, Parameter]
 
-    def rounded(self, ar: ComplexArithmetic) -> _ComplexConstants:
+    def rounded(self) -> _ComplexConstants:
         """Return the constants in doubles, for arrays."""
-        third = {ij: kind.rounded(ar) for ij, kind in self.third.items()}
-        periods = self.periods and self.periods.rounded(ar)
+        third = {ij: kind.rounded() for ij, kind in self.third.items()}
+        periods = self.periods and self.periods.rounded()
         return _ComplexConstants(self.modulus.rounded(), periods, third)
 
 
@@ -76,11 +76,9 @@ class ComplexTable(TableOfFunctions):
 
     def rounded_constants(self) -> _ComplexConstants:
         """Return the constants in doubles."""
-        from ..arithmetic.arrays import ARRAYS  # start-up
-
         return decided(
             "the constants of these functions",
-            lambda digits: self.constants(complex_balls(digits)).rounded(ARRAYS),
+            lambda digits: self.constants(complex_balls(digits)).rounded(),
         )
 
     def constants(self, ar: ComplexBalls) -> _ComplexConstants:

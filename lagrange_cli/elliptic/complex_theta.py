@@ -93,14 +93,14 @@ def _lattice_of(ar: ComplexArithmetic, modulus: Modulus) -> Lattice:
     def rounded(digits: int) -> Lattice:
         many = complex_balls(digits)
         exact = reduced_modulus(many, ModulusKind.UNIT, in_many_digits(many, modulus))
-        return lattice(many, exact).rounded(ar)
+        return lattice(many, exact).rounded()
 
     return decided("the periods of the modulus", rounded)
 
 
 def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
     """Return Theta_ij at a place."""
-    inner, T = inner_name(ij, periods.kind), periods.ratio
+    inner, T = inner_name(ij, periods.given.kind), periods.ratio
     (r, s), (X, Y) = ((c.rest for c in at), map(fine_whole, at))
     parity = at.x.whole * (inner[0] == "1") + at.y.whole * (inner[1] == "1")
     turn = ar.mpc(1, 0) / (1 if periods.circular else ar.sqrt(T))
@@ -112,14 +112,14 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
     else:
         rise = -((0.5 - size) * (0.5 - size)) if odd else -(r * r)
         square, half_turns = (Y + s) * (Y + s), r * (Y + s) * -2
-    if periods.kind is ModulusKind.LARGE:
+    if periods.given.kind is ModulusKind.LARGE:
         whole = X + r + Y + s
         bent = whole * whole * periods.bend
         square = bent - s * s if periods.circular else bent
         half_turns = s * (s + (X + Y) * 2 + (r * 2 if periods.circular else 0)) - bent
         parity = parity + at.y.whole
         turn = turn * ar.sqrt(ar.mpc(1, -T))
-    if ij in _EIGHTH[periods.kind]:
+    if ij in _EIGHTH[periods.given.kind]:
         turn = turn * ar.mpc(1, 1) / ar.sqrt(2)
     growth = rise * periods.steepness + square * periods.lift
     angle = ar.pi * 2 * coarse(coordinate_of(ar, half_turns * 0.5).rest)
@@ -139,13 +139,13 @@ _EIGHTH = {
 
 def zeta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
     """Return Z_ij at a place."""
-    inner, T = inner_name(ij, periods.kind), periods.ratio
+    inner, T = inner_name(ij, periods.given.kind), periods.ratio
     real, imag = 0 * at.x.whole, at.y.whole
-    if periods.kind is ModulusKind.LARGE:
+    if periods.given.kind is ModulusKind.LARGE:
         bent = (at.x.total() + at.y.total()) / (1 + T * T)
         real, imag = 2 * ar.pi * T * bent, bent - coarse(at.y.rest)
     slope = slope_in_cell(ar, inner, at, periods)
-    return (slope + ar.mpc(real, -2 * ar.pi * imag)) * coarse(periods.scale)
+    return (slope + ar.mpc(real, -2 * ar.pi * imag)) * coarse(periods.given.scale)
 
 
 def slope_in_cell(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> Complex:

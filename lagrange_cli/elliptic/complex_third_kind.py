@@ -49,14 +49,16 @@ class Parameter(NamedTuple):
     side: int
     """Sign of the height of v if the slope leaves out the rise of the series with it; else 0."""
 
-    def rounded(self, ar: ComplexArithmetic) -> Parameter:
+    def rounded(self) -> Parameter:
         """Return the parameter with its constants in doubles, for use with arrays."""
         import numpy as np
 
-        periods = self.periods.rounded(ar)
+        from ..arithmetic.arrays import ARRAYS  # start-up
+
+        periods = self.periods.rounded()
         return self._replace(
             periods=periods,
-            at=place_of(ar, np.array([complex(self.v)]), periods),  # like eta: equal parts agree
+            at=place_of(ARRAYS, np.array([complex(self.v)]), periods),  # equal parts agree
             slope=complex(self.slope),
             along=complex(self.along),
             up=complex(self.up),
@@ -69,7 +71,7 @@ def parameter(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> P
     At the pole of Z_ij (v = 0 for the function 11) the constants of Pi are NaN.
     """
     at = place_of(ar, v, periods)
-    inner = inner_name(ij, periods.kind)
+    inner = inner_name(ij, periods.given.kind)
     r, s = at.x.rest, at.y.rest
     height = s if periods.circular else r
     if inner == "11" and not (r or s):
@@ -107,7 +109,7 @@ def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     cell = _Cell(ar, u, given)
     (r, s), (a, b) = at.coarse_rests(), v.coarse_rests()
     height, other = (u.y, v.y) if given.periods.circular else (u.x, v.x)
-    bends = given.periods.kind is ModulusKind.LARGE
+    bends = given.periods.given.kind is ModulusKind.LARGE
     rise, turns = cell.rise, cell.half_turns(ar, at)
     if bends or not given.periods.circular:
         rise = rise + 2 * (height.rest * other.rest)
@@ -154,7 +156,7 @@ class _Cell:
 
     def __init__(self, ar: ComplexArithmetic, u: Place, given: Parameter) -> None:
         periods, v = given.periods, given.at
-        self.inner = inner_name(given.ij, periods.kind)
+        self.inner = inner_name(given.ij, periods.given.kind)
         self.given = given
         self.places = less, more = u.shifted(ar, v, -1), u.shifted(ar, v, 1)
         ends = [place_.y if periods.circular else place_.x for place_ in self.places]

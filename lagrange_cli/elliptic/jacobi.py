@@ -87,7 +87,7 @@ def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus, series: Thet
 
 @in_arithmetic
 def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jacobi:
-    """Return am, sn, cn, dn of complex u for one modulus, for arrays in doubles.
+    """Return am, sn, cn, dn of complex u for one modulus; for arrays, pass `given.rounded()`.
 
     Beyond its branch points, the poles next to the real axis, am is NaN.  For a modulus in [0, 1]
     this means |Im u| > K'.  For k < 1 and imaginary k, am is unwrapped.  For k > 1 its real part
@@ -105,7 +105,7 @@ def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jaco
     cn = ar.mpc(c, -s * d * s1 * ratio) / below
     dn = ar.mpc(d * d1, -k * c * lift) / below
     size = ar.sqrt(c1 * c1 + slant * slant)
-    rise, above = d * s1 / size, abs(c1)  # am is defined for c1 > 0
+    rise, above = d * s1 / size, abs(c1)  # where am is defined, c1 > 0
     if given.kind is ModulusKind.LARGE:
         angle, rise = ar.atan2(k * s, d * above), k * c * s1 / size
         sn, cn, dn = sn * k, dn, cn

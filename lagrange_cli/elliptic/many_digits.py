@@ -1,4 +1,4 @@
-"""The arithmetic of mpmath, for callers from Python and for the nome series."""
+"""The arithmetic of mpmath, for callers from Python, the nome series and the paper's forms."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from ..arithmetic.numbers import Scalars, Unenclosed
 class ManyDigits(Scalars, Unenclosed, MPContext):  # type: ignore[misc]
     """The arithmetic of mpmath: any number of digits, complex numbers, and special functions.
 
-    Each instance is a context of its own and leaves other precisions alone.  The default suits
-    constants that are rounded to doubles: 34 digits would do, and the others are margin.
+    Each instance is a context of its own and leaves other precisions alone.
     """
 
     def __init__(self, digits: int = 50) -> None:

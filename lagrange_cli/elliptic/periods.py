@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.protocol import FunctionArithmetic, Numeric
-from ..arithmetic.rounding import triple
 from ..errors import LagtopError
-from .any_modulus import AnyModulus, ModulusKind
+from .any_modulus import AnyModulus
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
     from ..arithmetic.rounding import Triple
@@ -170,29 +169,24 @@ _WIDE = 0.52
 class Lattice(NamedTuple):
     """The periods of a modulus, reduced to k strictly between 0 and 1."""
 
-    kind: ModulusKind
+    given: AnyModulus
     circular: bool
     """Whether the series run in the nome of k (k <= k'), not in the nome of k'."""
     steepness: Fine
     """pi K'/K or pi K/K', whichever is at least pi."""
     ratio: Numeric
     """K'/K."""
-    scale: Numeric
-    """See `AnyModulus`."""
-    across: Numeric
     bend: Fine
     """1/(1 + (K'/K)^2)."""
     lift: Fine
     """pi K'/K."""
 
-    def rounded(self, ar: FunctionArithmetic) -> Lattice:
-        """Return the lattice in doubles, with pairs of doubles for constants that multiply rests.
+    def rounded(self) -> Lattice:
+        """Return the lattice in doubles, and in pairs of doubles the factors of rests."""
+        from ..arithmetic.arrays import PAIRS  # start-up
 
-        `ar` is the arithmetic of arrays.
-        """
-        rests = {name: fine(ar, getattr(self, name)) for name in ("steepness", "bend", "lift")}
-        scale, across = triple(self.scale), triple(self.across)
-        return self._replace(ratio=float(self.ratio), scale=scale, across=across, **rests)
+        rests = {name: PAIRS.convert(getattr(self, name)) for name in ("steepness", "bend", "lift")}
+        return self._replace(given=self.given.rounded(), ratio=float(self.ratio), **rests)
 
 
 def lattice(ar: FunctionArithmetic, given: AnyModulus) -> Lattice:
@@ -205,17 +199,18 @@ def lattice(ar: FunctionArithmetic, given: AnyModulus) -> Lattice:
     if not steepness > 3:
         raise TooFewDigitsError  # the bounds on the truncation errors assume it
     bend, lift = 1 / (1 + ratio * ratio), ar.pi * ratio
-    return Lattice(given.kind, circular, steepness, ratio, given.scale, given.across, bend, lift)
+    return Lattice(given, circular, steepness, ratio, bend, lift)
 
 
 def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
     """Return the place of complex numbers; arrays keep their digits far from 0."""
     if not ar.is_array:
-        ends = (ar.re(u), periods.scale), (ar.im(u), periods.across)
+        ends = (ar.re(u), periods.given.scale), (ar.im(u), periods.given.across)
         return Place(*(coordinate_of(ar, x * rate)._replace(number=x) for x, rate in ends))
     from ..arithmetic.double_double import DoubleDouble  # start-up
 
-    parts = (reduced(ar.re(u), periods.scale), reduced(ar.im(u), periods.across))
+    scale, across = periods.given.scale, periods.given.across
+    parts = reduced(ar.re(u), scale), reduced(ar.im(u), across)
     return Place(*(Coordinate(turns, DoubleDouble(rest, low)) for turns, rest, low in parts))
 
 
@@ -223,15 +218,6 @@ def coordinate_of(ar: FunctionArithmetic, x: Fine) -> Coordinate:
     """Split a number of periods into whole periods and a rest."""
     whole = ar.nint(coarse(x))
     return Coordinate(whole, x - whole)
-
-
-def fine(ar: FunctionArithmetic, value: Numeric) -> Fine:
-    """Convert a number with many digits to the type of rests."""
-    if not ar.is_array:
-        return value
-    from ..arithmetic.arrays import PAIRS  # start-up
-
-    return PAIRS.convert(value)
 
 
 def fine_whole(coordinate: Coordinate) -> Fine:

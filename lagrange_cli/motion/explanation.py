@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from ..arithmetic.values import Key
 from ..inputs.names import check_names
 from .numbers import record_in_range
-from .over_time.columns import COLUMNS, shown_columns
+from .over_time.columns import shown_columns
 from .quantity import unit_name
 from .record import KEYS, all_keys, shown_keys
 from .solve import Motion
@@ -56,11 +56,6 @@ class Explained(NamedTuple):
     value: Any = None
     missing: str = ""
     """The numbers that the motion does not have, among the value and its formula, and why."""
-
-
-def explained_names() -> list[str]:
-    """Return the names of all keys and columns, without duplicates."""
-    return list(dict.fromkeys([*all_keys(), *COLUMNS]))
 
 
 def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[Explained]:

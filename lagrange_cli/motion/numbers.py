@@ -29,13 +29,13 @@ SAMPLER_DIGITS = 40
 """Digits of the gaps of a sampler: 2^50 periods use 16 of them, and a double 16 more."""
 
 
-def gaps_of(ar: Any, facts: Facts, start: State[R], find_root: Any = None) -> Gaps[R]:
-    """Return the gaps of any top; `find_root` is explained at `gaps_from_start`."""
+def gaps_of(ar: Any, facts: Facts, start: State[R]) -> Gaps[R]:
+    """Return the gaps of any top."""
     if facts.falls:
         return gaps_from_rest(ar, start)
     from .any_start import gaps_from_start  # start-up: not for a release from rest
 
-    return gaps_from_start(ar, start, facts, find_root)
+    return gaps_from_start(ar, start, facts)
 
 
 def kind_of(facts: Facts) -> type[Kind[Any]]:

@@ -38,13 +38,13 @@ def columns(case: Case) -> dict[str, Any]:
     """Return our functions on an array of arguments, by their columns."""
     given = any_modulus(AR, case.k)
     exact = lattice(AR, given)
-    periods, u = exact.rounded(ARRAYS), np.array(case.arguments)
+    periods, u = exact.rounded(), np.array(case.arguments)
     found = complex_jacobi(ARRAYS, u, given.rounded())._asdict()
     for ij in INDEX:
         found[f"theta{ij}"] = complex_theta(ARRAYS, ij, u, periods)
         found[f"zeta{ij}"] = complex_zeta(ARRAYS, ij, u, periods)
     for ij in THIRD:
-        kind = parameter(AR, ij, AR.convert(case.v), exact).rounded(ARRAYS)
+        kind = parameter(AR, ij, AR.convert(case.v), exact).rounded()
         found[f"omega{ij}"] = complex_omega(ARRAYS, u, kind)
         found[f"pi{ij}"] = complex_pi(ARRAYS, u, kind)
     return found
@@ -80,7 +80,7 @@ def random_case(rng: random.Random) -> Case:
         )
     )
     periods = lattice(AR, any_modulus(AR, k))
-    sizes = float(1 / (2 * periods.scale)), float(1 / (2 * periods.across))
+    sizes = float(1 / (2 * periods.given.scale)), float(1 / (2 * periods.given.across))
     far = rng.choice([1.0, 1.0, power(0, 14)])
 
     def part(size: float) -> float:
@@ -153,9 +153,9 @@ def test_constants(k: complex) -> None:
 def test_the_branch_has_no_jumps_between_lines_of_zeros(k: complex, v: complex) -> None:
     """Along the real direction nothing jumps, in any strip."""
     exact = lattice(AR, any_modulus(AR, k))
-    up = float(1 / (2 * exact.across))
+    up = float(1 / (2 * exact.given.across))
     for ij in THIRD:
-        kind = parameter(AR, ij, AR.convert(v), exact).rounded(ARRAYS)
+        kind = parameter(AR, ij, AR.convert(v), exact).rounded()
         for function in (complex_omega, complex_pi):
             for y in (0.0, 0.1 * up, 1.37 * up, -2.6 * up):
                 values = function(ARRAYS, np.linspace(-9, 9, 2000) + 1j * y, kind)

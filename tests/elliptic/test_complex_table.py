@@ -86,6 +86,13 @@ def test_am_at_k_0_is_u_also_midway(options: str, row: str, lagtop: Lagtop) -> N
     assert result.stdout.splitlines()[1:] == [row]
 
 
+@pytest.mark.parametrize("options", ["--k 0 --u 1e19i", "--k 1 --u 1e19+0.5i"])
+def test_sizes_beyond_decimals_are_refused(options: str, lagtop: Lagtop) -> None:
+    result = lagtop("jacobi", *options.split(), "--digits", "10")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "1e+990000000000000000, the limits of --digits" in result.stderr
+
+
 def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
     """Return the columns of a row with both parts, which may be numbers or texts."""
     return {

@@ -16,9 +16,10 @@ from lagrange_cli.arithmetic.double_double import DoubleDouble
 from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.motion.any_start import gaps_from_start
-from lagrange_cli.motion.gaps import State, gaps_from_rest, state
-from lagrange_cli.motion.numbers import gaps_of, kind_of
+from lagrange_cli.motion.gaps import Gaps, State, gaps_from_rest, state
+from lagrange_cli.motion.numbers import kind_of
 from lagrange_cli.motion.record import NUMBER_KEYS
+from lagrange_cli.motion.regime import Facts
 from lagrange_cli.motion.regime import exact as exact_of
 
 SCENES: dict[str, dict[str, float]] = {
@@ -44,12 +45,17 @@ def newton(ar: Any, c2: Any, c1: Any, c0: Any, above: Any) -> Any:
         x = following
 
 
+def gaps_by_newton(ar: Any, facts: Facts, begin: State[Any]) -> Gaps[Any]:
+    """Return the gaps of any top, with `newton` for a start with rates."""
+    return gaps_from_rest(ar, begin) if facts.falls else gaps_from_start(ar, begin, facts, newton)
+
+
 def keys_in(ar: Any, top: Top) -> dict[str, Any]:
     """Return the numbers of a record in any arithmetic."""
     exact = exact_of(top)
     with ar.working():
         begin = state(ar, exact)
-        gaps = gaps_of(ar, exact.facts, begin, newton)
+        gaps = gaps_by_newton(ar, exact.facts, begin)
         motion = kind_of(exact.facts)(ar, exact.facts, begin, gaps)
         return {key: getattr(motion, key) for key in NUMBER_KEYS if key not in motion.lacks}
 
@@ -105,7 +111,7 @@ def test_pairs_of_doubles_give_the_gaps(scene: dict[str, float]) -> None:
     exact, ar = exact_of(top), decimals(60)
     with ar.working():
         begin = state(ar, exact)
-        wanted = gaps_of(ar, exact.facts, begin, newton)
+        wanted = gaps_by_newton(ar, exact.facts, begin)
         halves = [(float(x), float(x - Decimal(float(x)))) for x in begin]
         start: State[DoubleDouble] = State(
             *(DoubleDouble(np.array([x]), np.array([y])) for x, y in halves)

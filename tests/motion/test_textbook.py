@@ -30,7 +30,7 @@ from lagrange_cli import (
 )
 from lagrange_cli.motion.over_time.columns import COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
-from lagrange_cli.motion.paper.textbook import TEXTBOOK
+from lagrange_cli.motion.paper.requested import TEXTBOOK
 from lagrange_cli.motion.record import all_keys
 
 DIGITS = 50

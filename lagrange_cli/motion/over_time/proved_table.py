@@ -152,12 +152,13 @@ class ProvedTable:
         rounding = rounding_of(what, self.digits)
         if name == "t":
             return Settled(rounding(time), (time,))
+        turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
         number = settled(
             what,
             lambda digits: self._enclosure(name, sample(digits)),
             rounding,
             digits=self.digits or 0,
-            more=self._digits_of(time),
+            more=turns // _EXTRA * _EXTRA,
             exactly=lambda: known_column(
                 self.motion.exact, name, time, radians=self.radians, wrap=self.wrap
             ),
@@ -172,11 +173,6 @@ class ProvedTable:
             value = sample.wrapped(value)
         in_degrees = self.chosen[name].is_angle and not self.radians
         return value * 180 / sample.t.ar.pi if in_degrees else value
-
-    def _digits_of(self, time: Fraction) -> int:
-        """Return the approximate number of digits of the whole turns."""
-        turns = len(str(int(abs(time) * self._speed)))
-        return turns // _EXTRA * _EXTRA
 
     def rows(
         self, times: Points, *, radii: bool = False

@@ -194,11 +194,6 @@ def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> 
     value += coefficients[0]
 
 
-def greatest_argument(ar: Any, series: Series) -> Any:
-    """Return the greatest s, sin^2 or sinh^2: at the end of a step, half of `scale` from 0."""
-    return ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
-
-
 def sampler_of(motion: Kind[Decimal]) -> Sampler:
     """Return the attitude of a motion as a function of arrays of doubles."""
     if isinstance(motion, Nutating):
@@ -241,7 +236,9 @@ def kept_frame(frame: Frame, ar: Any, series: Series, negligible: Fraction) -> F
 
     X and Y may have any common factor.  This factor keeps all coefficients in the range of doubles.
     """
-    greatest, least = greatest_argument(ar, series), ar.convert(negligible)
+    # the greatest s, sin^2 or sinh^2, is at the end of a step, half of `scale` from 0
+    greatest = ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
+    least = ar.convert(negligible)
     parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
     exponent = math.frexp(float(max(abs(part[0]) for part in parts)))[1]
     size = ar.convert(Fraction(2) ** exponent / _SIZE)

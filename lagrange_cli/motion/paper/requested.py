@@ -1,8 +1,8 @@
 """Keys on request: numbers of a motion that are not part of its record.
 
-Each key is declared with its formula, like the keys of the record.  `sections` has those of
-sections 4 to 8, and `textbook` those of elementary theory.
-These modules are imported only when one of their keys is requested.
+Each key is declared with its formula, like the keys of the record.  The keys of elementary theory
+are here, and those of sections 4 to 8 in `sections`.  Both modules are imported only when one of
+their keys is requested.
 """
 
 from __future__ import annotations
@@ -10,15 +10,85 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from inspect import signature
+from typing import TYPE_CHECKING
 
 from ...arithmetic.exact_cosine import Polynomial, U
-from ...arithmetic.numbers import R
+from ...arithmetic.numbers import R, absolute
+from ...arithmetic.values import Over
+from ...inputs.stand_ins import FAST, SLOW, SteadyRates, rational_root
 from ..exact.rational_keys import keys_by_u1, rational_keys, starts_at_u1, starts_at_u2
+from ..gaps import State
 from ..kinds import Kind
-from ..quantity import keys_of, unit_name
+from ..quantity import declared_keys, keys_of, unit_name
 from ..regime import Exact
 from .sections import Sections
-from .textbook import Textbook, textbook_fractions
+
+if TYPE_CHECKING:
+    from ...arithmetic.protocol import Arithmetic
+
+_GROUP = "Steady precession and elementary theory"
+_number = declared_keys(_GROUP)
+_rate = declared_keys(_GROUP, unit="rad/time")
+
+
+class Textbook(Over[R]):
+    """Numbers of the elementary theory for any start; None if a number does not exist.
+
+    They depend only on a = 2mgs/A (4,4), b = C r0/A (4,5), the tilt and A/C.  They need no
+    solution of the motion.
+    """
+
+    def __init__(self, ar: Arithmetic[R], exact: Exact, start: State[R]) -> None:
+        self.ar, self.exact, self.steady = ar, exact, SteadyRates(exact.a, exact.b, exact.cosine)
+        self.a, self.b, self.cos = start.a, start.b, start.cos
+        with ar.working():
+            self.ratio = ar.convert(ratio_of(exact))
+        self.upper = exact.cosine.sign(U) >= 0
+        """Whether the tilt is at most 90 degrees."""
+
+    stability_factor = _number(
+        *("λ", "stability factor C²r0²/(4Amgs)", "b²/2a", "b**2/(2*a)"),
+        value=lambda of: of.b * of.b / (2 * of.a),
+        exists=lambda of: of.exact.a,
+        absent="without torque",
+    )
+    r0_sleeping = _rate(
+        *("r0 sleeping", "least r0 of a stable upright top", "2√(Amgs)/C", "2*sqrt(A*m*g*s)/C"),
+        value=lambda of: of.ratio * of.ar.sqrt(2 * of.a),
+    )
+    steady_rate_slow = _rate(  # the root of smaller size of A cos(theta) w^2 - C r0 w + mgs = 0
+        *("Ω slow", "slow steady precession", "ϑ'' = 0"),
+        "m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2",
+        value=lambda of: of.steady.rate(of.ar, of.a, of.b, of.cos, SLOW),
+        exists=lambda of: of.steady.exists(SLOW),
+        absent="if |r0| < r0_steady_min, or if r0 = 0 at 90 degrees",
+    )
+    steady_rate_fast = _rate(  # the root of larger size, which is infinite at 90 degrees
+        *("Ω fast", "fast steady precession", "ϑ'' = 0"),
+        "m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
+        value=lambda of: of.steady.rate(of.ar, of.a, of.b, of.cos, FAST),
+        exists=lambda of: of.steady.exists(FAST),
+        absent="if |r0| < r0_steady_min, or at 90 degrees",
+    )
+
+    r0_steady_min = _rate(  # 0 from 90 degrees on
+        *("r0 steady", "least r0 of steady precession", "2√(Amgs u0)/C"),
+        "2*sqrt(A*m*g*s*max(cos(theta0), 0))/C",
+        value=lambda of: of.ratio * of.ar.sqrt(2 * of.a * of.cos) if of.upper else 0 * of.a,
+    )
+    precession_rate_elementary = _rate(
+        *("ψ' elementary", "precession of a fast top", "mgs/(C r0)", "m*g*s/(C*r0)"),
+        value=lambda of: of.a / (2 * of.b),
+        exists=lambda of: of.exact.b,
+        absent="if r0 = 0",
+    )
+    T_nutation_elementary = _number(
+        *("T elementary", "nutation of a fast top", "2πA/(C r0)", "2*pi*A/(C*abs(r0))"),
+        value=lambda of: 2 * of.ar.pi / absolute(of.b),
+        exists=lambda of: of.exact.b,
+        unit="time",
+        absent="if r0 = 0",
+    )
 
 
 class Requested(Textbook[R], Sections[R]):
@@ -29,15 +99,41 @@ class Requested(Textbook[R], Sections[R]):
         Sections.__init__(self, kind, exact)
 
 
+TEXTBOOK = keys_of(Textbook)
+"""The keys of elementary theory and their declarations."""
+STEADY_KEYS = frozenset({"steady_rate_slow", "steady_rate_fast"})
+WITH_RATIO = frozenset({"r0_sleeping", "r0_steady_min"})
+"""The keys that have the factor A/C."""
 REQUESTED = keys_of(Requested)
 """The keys on request and their declarations."""
+
+
+def ratio_of(exact: Exact) -> Fraction:
+    """Return A/C."""
+    return Fraction(exact.top.A) / Fraction(exact.top.C)
+
+
+def _textbook_fractions(exact: Exact) -> dict[str, Fraction | None]:
+    """Return the keys of elementary theory as fractions, or None if a value is not known as one."""
+    a, b, u, ratio = exact.a, exact.b, exact.cosine.rational, ratio_of(exact)
+    steady, side = SteadyRates(a, b, exact.cosine), exact.cosine.sign(U)
+    sleeping = rational_root(2 * a)
+    least = Fraction(0) if side <= 0 or not a else None if u is None else rational_root(2 * a * u)
+    return {
+        "stability_factor": b * b / (2 * a) if a else None,
+        "r0_sleeping": None if sleeping is None else ratio * sleeping,
+        "steady_rate_slow": steady.fraction(SLOW),
+        "steady_rate_fast": steady.fraction(FAST),
+        "r0_steady_min": None if least is None else ratio * least,
+        "precession_rate_elementary": a / (2 * b) if b else None,
+    }
 
 
 def _known_fractions(exact: Exact) -> dict[str, Fraction]:
     """Return the keys on request whose values are known as fractions."""
     known, facts, zero = rational_keys(exact), exact.facts, Fraction(0)
-    keys = {"spin_share": 1 - Fraction(exact.top.C) / (2 * Fraction(exact.top.A))}
-    keys |= textbook_fractions(exact)
+    keys = _textbook_fractions(exact)
+    keys["spin_share"] = 1 - Fraction(exact.top.C) / (2 * Fraction(exact.top.A))
     if facts.steady or facts.regime == "separatrix":
         keys["f_slope_u1"] = zero
     even = (starts_at_u1(exact) or starts_at_u2(exact)) and not facts.meets_a_pole
@@ -47,8 +143,8 @@ def _known_fractions(exact: Exact) -> dict[str, Fraction]:
         # in a plane this is a multiple of half turns, so 0 if enclosures cannot round it
         if facts.plane or (even and known.get(rate) == 0):
             keys[f"{angle}_half_deg"] = zero
-    values = {name: exact.cosine.fraction(P) for name, P in _polynomials(exact).items()}
-    return keys | {name: value for name, value in values.items() if value is not None}
+    keys |= {name: exact.cosine.fraction(P) for name, P in _polynomials(exact).items()}
+    return {name: value for name, value in keys.items() if value is not None}
 
 
 def _polynomials(exact: Exact) -> dict[str, Polynomial]:

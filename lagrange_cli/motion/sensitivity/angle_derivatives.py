@@ -80,7 +80,9 @@ class SeriesDerivatives:
             series, (x_start, y_start) = found.series, found.starts
             self.hyperbolic = series.hyperbolic
             self.frames = [
-                kept_frame(frame, ar, series, _NEGLIGIBLE).mapped(_rows, _values)
+                kept_frame(frame, ar, series, _NEGLIGIBLE).mapped(
+                    _rows, lambda row: [float(x) for x in row]
+                )
                 for frame in found.frames
             ]
             self.about_means = rates_about_means(motion, means, first_is_upper=found.first_is_upper)
@@ -193,10 +195,6 @@ def _row(x: Dual) -> Array:
 
 def _rows(coefficients: Coefficients) -> Array:
     return np.array([_row(x) for x in coefficients]).T
-
-
-def _values(coefficients: Coefficients) -> list[float]:
-    return [float(x) for x in coefficients]
 
 
 def rates_about_means(

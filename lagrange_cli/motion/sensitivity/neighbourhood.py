@@ -17,7 +17,7 @@ from ...arithmetic.values import Values
 from ...inputs.stand_ins import rates_of
 from ..any_start import gaps_from_start, largest_root
 from ..gaps import Gaps, State, are_told_apart, state
-from ..paper.textbook import STEADY_KEYS, WITH_RATIO, Textbook
+from ..paper.requested import STEADY_KEYS, WITH_RATIO, Textbook
 from ..regime import Exact, Facts, Regime
 
 PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")

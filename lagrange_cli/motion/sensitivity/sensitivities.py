@@ -24,7 +24,7 @@ from ..exact.rational_keys import is_endless
 from ..gaps import Gaps, State
 from ..kinds import Constant
 from ..numbers import kind_of
-from ..paper.textbook import TEXTBOOK
+from ..paper.requested import TEXTBOOK
 from ..quantity import quantity
 from ..record import NUMBER_KEYS
 from ..regime import Exact, Regime, exact
