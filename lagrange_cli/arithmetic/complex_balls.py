@@ -60,7 +60,7 @@ class ComplexBall:
         return size
 
     def __complex__(self) -> complex:
-        """Return the nearest complex double; raise TooFewDigitsError if the balls leave it open."""
+        """Return the nearest complex double; raise TooFewDigitsError if it is not determined."""
         return complex(float(self.real), float(self.imag))
 
 
@@ -92,7 +92,7 @@ class ComplexBalls(BallFunctions, Balls):
         return ComplexBall(x.real, -x.imag)
 
     def where(self, condition: Truth, yes: Any, no: Any) -> Any:
-        """Return one of two numbers, or balls that hold both if the condition is open."""
+        """Return one of two numbers, or balls that hold both if the condition is undecided."""
         if not isinstance(yes, ComplexBall):
             return super().where(condition, yes, no)
         real = super().where(condition, yes.real, no.real)
@@ -114,7 +114,7 @@ class ComplexBalls(BallFunctions, Balls):
         return super().sech(_in_range(abs(x)))
 
     def nint(self, x: Ball) -> int:
-        """Return the integer nearest to x; raise TooFewDigitsError if x leaves it open.
+        """Return the integer nearest to x; raise TooFewDigitsError if x does not determine it.
 
         The branch of a logarithm may depend on it.
         """

@@ -155,7 +155,7 @@ def run_battery(
 
 
 def judged(part: tuple[Scene, str], *, certify: bool, is_long: bool) -> Case | PeerRun:
-    """Return a part of the results of a scene: lagtop's errors, or the run of a method.
+    """Return lagtop's errors in a scene, or the run of one method.
 
     A scene is given by stratum, seed and number.  With `certify`, the errors are proved bounds.
     """

@@ -155,7 +155,8 @@ def jacobi_command(
     A unit is 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), where v = --param.  Whole
     periods are first removed from u and from a real v; for k > 1 only in am, sn, cn and dn.
 
-    u and a real v may be up to 2^50 periods, an imaginary v up to K'.  An empty cell is a pole.
+    u and a real v may be up to 2^50 periods, an imaginary v up to K'.  An empty cell is a pole,
+    or am beyond its branch points.
 
     The modulus is read as an exact decimal, u and --param as doubles unless --digits is given.
     Complex results have columns that end in _re and _im.

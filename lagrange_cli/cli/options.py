@@ -118,7 +118,7 @@ def names(
     offered: Callable[[], Iterable[str]] | None = None,
     metavar: str = "NAME,...",
 ) -> Any:
-    """Declare an option whose value is a list of names, of which a shell offers some."""
+    """Declare an option whose value is a list of names; a shell completes those `offered`."""
     return option(Parsed(metavar, late("inputs.names", "split_names"), offered), text, flag)
 
 

@@ -118,7 +118,9 @@ def plot_command(
     speed: Fraction | None = opt.number("Simulated time per second of film."),
     show: bool = opt.flag("Open a window."),
     fmt: str | None = opt.choice(_FORMATS, "png, svg or pdf.", "FORMAT", flag="--format"),
-    output: str | None = opt.file("FILE.png, .svg or .pdf (replaced on success).", "-o --output"),
+    output: str | None = opt.file(
+        "FILE.png, .svg or .pdf (replaced only on success).", "-o --output"
+    ),
 ) -> None:
     """Write, film and show the pictures that the options request."""
     chosen = _kinds(top.words)

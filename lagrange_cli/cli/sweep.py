@@ -71,7 +71,8 @@ def sweep_command(
 
     A file of tops is CSV with a header, or JSON lines, with names such as r0.  Options and the
     scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
-    unit: m [g].  If a top cannot be solved, its row shows the error, and the exit code is 1.
+    unit: m [g].  If a top cannot be solved, the exit code is 1 and the column
+    error gives the reason; with --keys, list error to see it.
 
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.

@@ -110,7 +110,7 @@ class Drawing(Protocol):
 
 
 def _drawing(kind: PictureKind) -> Drawing:
-    """Return the function that draws a kind on axes of a user."""
+    """Return the function that draws a kind on axes of the caller."""
 
     def function(
         motion: Motion, ax: AxesOfUser = None, **options: Unpack[DrawingOptions]

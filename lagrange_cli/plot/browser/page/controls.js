@@ -1,7 +1,7 @@
 // The controls of time: play, pause, speed, step, and a jump to any time.  In closed form a jump
 // costs no more than a step.  The controls of the inputs: a slider and a number field for each.
 // All inputs and the time are in the address of the page after the #: m=1587&A=39032 ... &t=0.5.
-// The hands that move the camera, and the keys.
+// Mouse, touch and keys move the camera.
 
 import { INPUTS } from "../data.js";
 import { textOf } from "../drawing/canvas.js";
