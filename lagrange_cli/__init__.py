@@ -3,25 +3,8 @@
 Examples in docstrings follow `from lagtop import *`, `import numpy as np` and `import warnings`.
 """
 
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .errors import LagtopError, MixedBodyWarning
-    from .fits.find import find
-    from .fits.fit import fit
-    from .inputs.given import read_scene
-    from .inputs.top import Top
-    from .judge.compare import compare
-    from .judge.judgement import Judgement
-    from .motion.regime import Regime
-    from .motion.sensitivity.angle_sensitivities import angle_sensitivities
-    from .motion.sensitivity.sensitivities import sensitivities
-    from .motion.solve import Motion, solve
-    from .plot import draw
-    from .plot.browser import view
-    from .plot.reports import draw_outcome
-    from .sweeps.angles import sweep_angles
-    from .sweeps.records import sweep
+from importlib import import_module
+from typing import Any
 
 __version__ = "0.1.0"
 __all__ = [
@@ -74,14 +57,13 @@ subpackage above theirs.
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name of the package."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
+    """Return a public name.
 
-    value = getattr(import_module(f".{_MODULES[name]}", __name__), name)
-    globals()[name] = value
-    return value
+    Import it from `lagtop`: here `sweep`, `find`, `fit` and `compare` are also subpackages.
+    """
+    if name not in _MODULES:
+        raise AttributeError(f"module 'lagtop' has no attribute {name!r}")
+    return getattr(import_module(f".{_MODULES[name]}", __name__), name)
 
 
 def __dir__() -> list[str]:

@@ -1,3 +1,24 @@
-"""Installed as `lagtop-stubs`: type checkers see the public names of `lagrange_cli` in `lagtop`."""
+"""Installed as `lagtop-stubs`: the public names of `lagtop` for type checkers."""
 
-from lagrange_cli import *  # noqa: F403
+from lagrange_cli.errors import LagtopError as LagtopError
+from lagrange_cli.errors import MixedBodyWarning as MixedBodyWarning
+from lagrange_cli.fits.find import find as find
+from lagrange_cli.fits.fit import fit as fit
+from lagrange_cli.inputs.given import read_scene as read_scene
+from lagrange_cli.inputs.top import Top as Top
+from lagrange_cli.judge.compare import compare as compare
+from lagrange_cli.judge.judgement import Judgement as Judgement
+from lagrange_cli.motion.regime import Regime as Regime
+from lagrange_cli.motion.sensitivity.angle_sensitivities import (
+    angle_sensitivities as angle_sensitivities,
+)
+from lagrange_cli.motion.sensitivity.sensitivities import sensitivities as sensitivities
+from lagrange_cli.motion.solve import Motion as Motion
+from lagrange_cli.motion.solve import solve as solve
+from lagrange_cli.plot import draw as draw
+from lagrange_cli.plot.browser import view as view
+from lagrange_cli.plot.reports import draw_outcome as draw_outcome
+from lagrange_cli.sweeps.angles import sweep_angles as sweep_angles
+from lagrange_cli.sweeps.records import sweep as sweep
+
+__version__: str

@@ -19,8 +19,8 @@ from balls.record import Motion, Remainders
 from balls.requested import Requested
 from balls.scene import Number, Scene, Undecided, arb_bits, facts_of, scene_from
 from flint import arb
+from lagtop import Top, solve
 
-from lagrange_cli import Top, solve
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 EPS = 2.0**-52

@@ -148,7 +148,7 @@ FRAMES = """
 
 def main() -> None:
     """Print the medians of the times that frames take, for some scenes; make the picture."""
-    from lagrange_cli import Top, solve, view
+    from lagtop import Top, solve, view
 
     with chromium() as browser, tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "top.html"

@@ -9,8 +9,8 @@ from functools import cached_property, partial
 from typing import Any
 
 import pytest
+from lagtop import Top
 
-from lagrange_cli import Top
 from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable

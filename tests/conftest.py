@@ -49,7 +49,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 @pytest.fixture(scope="session")
 def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the page of the default top."""
-    from lagrange_cli import Top, solve, view
+    from lagtop import Top, solve, view
 
     path = tmp_path_factory.mktemp("view") / "top.html"
     view(solve(Top())).save(path)

@@ -9,9 +9,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from lagtop import Top
 from scipy.integrate import solve_ivp
-
-from lagrange_cli import Top
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 

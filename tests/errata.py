@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 
 import mpmath
 from ball_judge import Judge
-
-from lagrange_cli import Top
+from lagtop import Top
 
 
 class Verdict(StrEnum):

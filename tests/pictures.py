@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from lagtop import Motion, Top, solve
 from matplotlib.figure import Figure
 from scenes import SAMPLES, UNIT
 
-from lagrange_cli import Motion, Top, solve
 from lagrange_cli.inputs.given import read_scene
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import PlotRequest

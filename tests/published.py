@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import mpmath
 from ball_judge import Judge
 from conftest import ROOT
+from lagtop import Motion, read_scene, solve
 
-from lagrange_cli import Motion, read_scene, solve
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.elliptic.modulus import modulus

@@ -11,8 +11,7 @@ from balls.angles import State
 from balls.requested import Requested
 from balls.scene import Undecided, arb_bits, scene_from
 from flint import arb
-
-from lagrange_cli import LagtopError, Top, solve
+from lagtop import LagtopError, Top, solve
 
 BITS, STEP = 600, Fraction(1, 2**120)
 

@@ -12,10 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
-from matplotlib.figure import Figure
-
-import lagrange_cli as package
-from lagrange_cli import (
+from lagtop import (
     LagtopError,
     Top,
     angle_sensitivities,
@@ -31,6 +28,9 @@ from lagrange_cli import (
     sweep_angles,
     view,
 )
+from matplotlib.figure import Figure
+
+import lagrange_cli as package
 
 ODD: dict[str, Any] = {
     **{repr(x): x for x in (None, True, False, "x", "", "\udcff", b"x", 1j, -1, 0, 1.5)},

@@ -218,7 +218,8 @@ class Outcome(HasRecord):
         """Draw data, motion and residuals, on a figure of matplotlib or a new one; return it."""
         from .. import draw_outcome  # the face of the package: drawn by a subpackage above
 
-        return draw_outcome(self, figure)
+        drawn: Figure = draw_outcome(self, figure)
+        return drawn
 
     def record(self) -> dict[str, Any]:
         """Return everything by key, flat."""

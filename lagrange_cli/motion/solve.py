@@ -162,7 +162,8 @@ class Motion(Numbers):
         """
         from .. import view  # the face of the package: pictures are drawn by a subpackage above
 
-        return view(self)
+        page: Document = view(self)
+        return page
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """Return tilt, spin and precession (radians) at the times t, in the shape of t.

@@ -20,9 +20,9 @@ import pytest
 from arb_balls import many_digits
 from ball_judge import Judge
 from conftest import ROOT, Lagtop, assert_one_line
+from lagtop import LagtopError, Top, solve
 from scipy.integrate import solve_ivp
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import value_text
 from lagrange_cli.bench import compare_methods
 from lagrange_cli.bench import method as methods

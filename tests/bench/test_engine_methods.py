@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
+from lagtop import LagtopError, Top, compare, solve
 
-from lagrange_cli import LagtopError, Top, compare, solve
 from lagrange_cli.bench import compare_methods
 from lagrange_cli.bench import engines as engines_module
 from lagrange_cli.bench import method as methods

@@ -9,9 +9,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from conftest import Lagtop
+from lagtop import Top, solve
 from scenes import UNIT
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.balls import balls
 from lagrange_cli.arithmetic.rounding import Settled

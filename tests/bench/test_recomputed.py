@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 from ball_judge import Judge
 from conftest import Lagtop
+from lagtop import Top, solve
 from scipy.integrate import solve_ivp
 
-from lagrange_cli import Top, solve
 from lagrange_cli.bench import peers
 
 START = {"r0": 40.0, "theta0": 50.0, "thetadot0": -2.0, "psidot0": 3.0}

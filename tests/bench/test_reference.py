@@ -9,8 +9,8 @@ import mpmath
 import pytest
 from arb_balls import many_digits
 from ball_judge import Judge
+from lagtop import Top
 
-from lagrange_cli import Top
 from lagrange_cli.bench.battery import judged_inputs
 from lagrange_cli.bench.hard_scenes import STRATA
 from lagrange_cli.bench.reference import Reference, angle_units

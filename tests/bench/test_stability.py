@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 from ball_judge import Judge
 from conftest import Lagtop, assert_one_line
+from lagtop import Top, solve
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.text import value_text
 from lagrange_cli.bench import battery, stability
 from lagrange_cli.bench import method as methods

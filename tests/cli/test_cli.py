@@ -13,9 +13,10 @@ from typing import Any
 
 import pytest
 from conftest import ROOT, Lagtop, Solved, assert_one_line
+from lagtop import LagtopError, Top, solve, sweep
 from scenes import SAMPLES
 
-from lagrange_cli import LagtopError, Top, errors, solve, sweep
+from lagrange_cli import errors
 from lagrange_cli.cli.app import NAMES as COMMANDS
 from lagrange_cli.cli.top import is_scene
 from lagrange_cli.motion.over_time.columns import COLUMNS

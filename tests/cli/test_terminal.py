@@ -16,8 +16,8 @@ from types import SimpleNamespace
 
 import pytest
 from conftest import Lagtop
+from lagtop import Top, solve
 
-from lagrange_cli import Top, solve
 from lagrange_cli.motion.record import shown_keys
 from lagrange_cli.output.report import Field, Report, record_text
 from lagrange_cli.output.terminal import View, view_of, with_progress

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Lagtop, Solved, assert_one_line
+from lagtop import Top, solve
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.inputs.value import parse_value
 from lagrange_cli.motion.sensitivity.uncertainty import by_given

@@ -12,8 +12,8 @@ import mpmath
 import numpy as np
 import pytest
 from function_judge import INDEX, ComplexJudge, complex_units
+from lagtop import LagtopError
 
-from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.elliptic.any_modulus import any_constants, any_modulus
 from lagrange_cli.elliptic.complex_theta import complex_theta, complex_zeta

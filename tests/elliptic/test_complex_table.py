@@ -15,8 +15,8 @@ from arb_balls import exact_arb
 from conftest import Lagtop
 from flint import arb
 from function_judge import STEPS, ComplexJudge, complex_units
+from lagtop import LagtopError
 
-from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import parse_complex
 
 EVERYTHING = "--functions am,theta,zeta,omega,pi --param 0.2+0.7i --format json"

@@ -14,8 +14,8 @@ from conftest import Lagtop
 from function_tables import array_rows
 from hypothesis import given
 from hypothesis import strategies as st
+from lagtop import LagtopError, Top, solve
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.eta import Quadrature, eta_constants

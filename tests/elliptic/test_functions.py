@@ -15,9 +15,9 @@ from arb_balls import exact_arb
 from balls.scene import arb_bits
 from conftest import Lagtop
 from flint import acb
+from lagtop import LagtopError
 from scenes import EPS
 
-from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rf, carlson_rj

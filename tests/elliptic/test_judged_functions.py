@@ -16,8 +16,8 @@ from arb_balls import exact_arb
 from conftest import Lagtop
 from function_judge import EPS, Judge, units
 from function_tables import array_rows, request_of
+from lagtop import LagtopError
 
-from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.points import ListedPoints

@@ -14,8 +14,8 @@ from conftest import Lagtop
 from flint import acb, arb, ctx
 from function_judge import EPS, INDEX, Judge
 from function_tables import array_rows
+from lagtop import LagtopError
 
-from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import ExactComplex, ListedPoints
 from lagrange_cli.elliptic.function_table import FunctionTable
 from lagrange_cli.elliptic.modulus import ModulusInput

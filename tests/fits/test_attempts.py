@@ -10,8 +10,8 @@ import fuzz_fits
 import numpy as np
 import pytest
 from engines import Array
+from lagtop import LagtopError, Top, fit, solve
 
-from lagrange_cli import LagtopError, Top, fit, solve
 from lagrange_cli.fits.harmonics import Signal, slowest_spin, turning_rate
 from lagrange_cli.fits.least_squares import Problem
 from lagrange_cli.fits.parameters import FIT_QUANTITIES, Coordinates

@@ -17,10 +17,10 @@ import pint
 import pytest
 from ball_judge import Judge
 from conftest import Lagtop, assert_one_line
+from lagtop import LagtopError, MixedBodyWarning, Top, sensitivities, solve
 from scipy.integrate import solve_ivp
 from uncertainties import ufloat
 
-from lagrange_cli import LagtopError, MixedBodyWarning, Top, sensitivities, solve
 from lagrange_cli.fits.find import find, number_slopes
 from lagrange_cli.fits.implied_body import BODY_INPUTS, completed_body, determined_products
 from lagrange_cli.fits.invert import invert

@@ -16,10 +16,10 @@ import pytest
 import recordings
 from conftest import Lagtop, assert_one_line
 from engines import Array, Body, dop853
+from lagtop import LagtopError, Top, fit, read_scene, solve, sweep
 from scipy.spatial.transform import Rotation
 from uncertainties import ufloat
 
-from lagrange_cli import LagtopError, Top, fit, read_scene, solve, sweep
 from lagrange_cli.fits import fit as fits
 from lagrange_cli.fits.invert import TurningPoints, candidates, top_of
 from lagrange_cli.fits.least_squares import Problem

@@ -7,9 +7,9 @@ import math
 import fuzz_fits
 import numpy as np
 import pytest
+from lagtop import Top, fit
 from scipy.signal import lfilter
 
-from lagrange_cli import Top, fit
 from lagrange_cli.fits.model import Residual, residual_of
 
 

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
 from engines import Array
+from lagtop import LagtopError, Top, fit, solve
 from test_fit import written
-
-from lagrange_cli import LagtopError, Top, fit, solve
 
 NOISE = math.radians(0.5)
 BODY = {"m": 1.587, "A": 3.9032e-3, "s": 0.04, "g": 9.81}

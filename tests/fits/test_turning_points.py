@@ -8,9 +8,9 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
+from lagtop import Top, solve
 from test_find import SEEN_KEYS
 
-from lagrange_cli import Top, solve
 from lagrange_cli.fits.invert import invert, mean_inverse
 
 EPS = 2.0**-52

@@ -10,9 +10,9 @@ import fuzz_windows
 import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
+from lagtop import LagtopError
 from test_fit import written
 
-from lagrange_cli import LagtopError
 from lagrange_cli.fits.parameters import KnownInputs
 from lagrange_cli.fits.recording import recording_from
 from lagrange_cli.fits.windows import WindowedFit, fit_windows, split

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 from conftest import Lagtop, assert_one_line
+from lagtop import Top
 from pyarrow import parquet
 
 import lagrange_cli
-from lagrange_cli import Top
 from lagrange_cli.errors import DataError
 from lagrange_cli.inputs.scene_file import describe, description_in, difference, scene_in
 

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 from conftest import LAGTOP, ROOT, Lagtop, assert_one_line
+from lagtop import LagtopError, Top
 
 import lagrange_cli
-from lagrange_cli import LagtopError, Top
 from lagrange_cli.arithmetic.points import POINTS_AT_ONCE
 from lagrange_cli.errors import DataError, SceneError
 from lagrange_cli.inputs.given import read_scene

@@ -12,8 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
-
-from lagrange_cli import LagtopError, Motion, Top, solve, sweep, sweep_angles
+from lagtop import LagtopError, Motion, Top, solve, sweep, sweep_angles
 
 TILTS = (0.0, 1e-9, 30.0, 60.0, 90.0, 90.00000001, 120.0, 179.9)
 

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Lagtop
-
-from lagrange_cli import MixedBodyWarning, Top, read_scene, sweep, sweep_angles
+from lagtop import MixedBodyWarning, Top, read_scene, sweep, sweep_angles
 
 BODY = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81}
 WHOLE = " ".join(f"--{name} {value}" for name, value in BODY.items()).split()

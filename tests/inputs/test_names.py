@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 from conftest import Lagtop
+from lagtop import LagtopError, sweep
 
-from lagrange_cli import LagtopError, sweep
 from lagrange_cli.inputs.names import check_names, split_names
 
 KNOWN = ["alpha", "beta", "T_nutation"]

@@ -13,8 +13,8 @@ import pytest
 from conftest import Lagtop
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from lagtop import LagtopError, Top, solve
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.points import POINTS_AT_ONCE, EvenPoints, ListedPoints
 from lagrange_cli.inputs.ranges import Product, parse_range, parse_values
 from lagrange_cli.motion.over_time.table import rows

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import LagtopError, Top, solve
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.points import EvenPoints
 from lagrange_cli.arithmetic.rounding import text_of
 from lagrange_cli.inputs.ranges import parse_values

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pytest
+from lagtop import LagtopError
 from pyarrow import parquet
 
-from lagrange_cli import LagtopError
 from lagrange_cli.errors import DataError
 from lagrange_cli.inputs import text_lines, trajectory_arrays
 from lagrange_cli.inputs.trajectory import open_trajectory

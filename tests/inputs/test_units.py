@@ -12,8 +12,8 @@ from typing import Any
 import mpmath
 import pytest
 from conftest import Lagtop, assert_one_line
+from lagtop import LagtopError, Top, read_scene
 
-from lagrange_cli import LagtopError, Top, read_scene
 from lagrange_cli.inputs.given import gather
 from lagrange_cli.inputs.units import CGS, SYSTEMS, UNITS, factor_of, unit_by_pint, unit_of_text
 from lagrange_cli.inputs.value import Value, parse_value

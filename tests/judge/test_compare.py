@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from engines import Array, Body, dop853, rk4, semi_implicit_euler
+from lagtop import Judgement, LagtopError, Top, compare, solve
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import Judgement, LagtopError, Top, compare, solve
 from lagrange_cli.inputs.seen import Conventions
 from lagrange_cli.judge.alignment import Alignment
 from lagrange_cli.judge.compare import Convergence, convergence, with_verdicts

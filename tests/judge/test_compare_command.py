@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
 from engines import Body, Run, rk4, semi_implicit_euler
+from lagtop import Top, solve
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import Top, solve
 from lagrange_cli.judge.judgement import JUDGEMENT_KEYS
 from lagrange_cli.plot.reports import ErrorCurve, draw_errors
 

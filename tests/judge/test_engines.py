@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import Judgement, Top, solve
 
-from lagrange_cli import Judgement, Top, solve
 from lagrange_cli.judge.compare import ComparisonRequest, compare_files
 
 M, A, C, S, G, R0 = 1.587, 3.9032e-3, 1.7458e-3, 0.04, 9.81, 50.0

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import LagtopError, Motion, Regime, Top, solve
 from scenes import UNIT, period
 
-from lagrange_cli import LagtopError, Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.arrays import BLOCK
 from lagrange_cli.bench.hard_scenes import Scene, ordinary
 

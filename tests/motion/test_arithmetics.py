@@ -7,9 +7,9 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from lagtop import Top, solve
 from scenes import EPS, EVERY_KIND, NAMED
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.arrays import ARRAYS, PAIRS
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.arithmetic.double_double import DoubleDouble

@@ -13,9 +13,8 @@ from typing import Any
 import pytest
 from ball_judge import Judge, assert_nearest
 from conftest import Lagtop
+from lagtop import Top, solve
 from scenes import UNIT
-
-from lagrange_cli import Top, solve
 
 HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
 

@@ -12,8 +12,8 @@ from typing import Any, ClassVar
 import pytest
 from chrapan_top import MOTIONS, PARTS, J, Motion, ar, moments, slope, spoil
 from equations import EquationTests, Register, Sides
+from lagtop import LagtopError, Top, solve
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.motion.paper.imaginary_modulus import ImaginaryForm, imaginary_form
 
 chrapan = Register()

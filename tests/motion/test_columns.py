@@ -18,9 +18,9 @@ from arb_balls import exact_arb
 from ball_judge import Judge
 from balls.scene import arb_bits
 from exact_scenes import KINDS
+from lagtop import LagtopError, Motion, Top, solve
 from scenes import EVERY_KIND, NAMED, UNIT, period, random_scene, random_times
 
-from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.motion.over_time.columns import COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from frames import PICTURE, drawing
+from lagtop import LagtopError, Motion, Top, solve
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.inputs.rotations import body_rates, euler_rates
 
 TIMES = np.linspace(-3.0, 3.0, 25)

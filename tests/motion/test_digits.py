@@ -15,9 +15,8 @@ from balls.scene import arb_bits
 from chrapan_top import record_of, rows_of
 from conftest import Lagtop
 from flint import arb
+from lagtop import Top, solve
 from scenes import EVERY_KIND, UNIT
-
-from lagrange_cli import Top, solve
 
 
 def same(text: Any, true: Any, digits: int) -> bool:

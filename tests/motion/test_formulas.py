@@ -8,11 +8,11 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from lagtop import Motion, Top, solve
 from scenes import EVERY_KIND
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from lagrange_cli import Motion, Top, solve
 from lagrange_cli.motion.explanation import explanations, listed
 from lagrange_cli.motion.over_time.columns import COLUMNS, SCALARS, shown_columns
 from lagrange_cli.motion.record import TEXT_KEYS, all_keys, number_key

@@ -6,8 +6,7 @@ import random
 
 import pytest
 from free_top import free_record
-
-from lagrange_cli import Top, solve
+from lagtop import Top, solve
 
 BODY: dict[str, float] = {"m": 1, "A": 2, "C": 1.5, "s": 1, "g": 0, "theta0_deg": 40}
 STARTS: dict[str, dict[str, float]] = {

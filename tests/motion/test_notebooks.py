@@ -9,12 +9,12 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from ball_judge import Judge
+from lagtop import LagtopError, Top, compare, fit, solve
 from matplotlib.figure import Figure
 from scenes import EVERY_KIND
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Top, compare, fit, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import UnavailableError
 

@@ -15,8 +15,8 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from lagtop import LagtopError, Top, solve
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import csv_text, double_text, parse_number, value_text
 from lagrange_cli.cli.app import main
 from lagrange_cli.motion.numbers import record_in_range

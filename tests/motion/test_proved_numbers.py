@@ -13,9 +13,9 @@ from arb_balls import exact_arb, holds
 from ball_judge import Judge, assert_nearest
 from balls.scene import arb_bits
 from conftest import Lagtop
+from lagtop import Top, solve
 from scenes import EVERY_KIND, NAMED, random_scene
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.balls import balls
 from lagrange_cli.errors import OutOfRangeWarning

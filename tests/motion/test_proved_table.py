@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 from ball_judge import Judge
 from conftest import Lagtop, assert_one_line
+from lagtop import Top, solve
 from scenes import EVERY_KIND as SCENES
 from scenes import UNIT
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.rounding import rounding_of
 from lagrange_cli.motion.exact.rational_columns import known_column
 from lagrange_cli.motion.over_time.columns import SCALARS

@@ -8,8 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import process
+from lagtop import LagtopError, Top, solve, sweep
 
-from lagrange_cli import LagtopError, Top, solve, sweep
 from lagrange_cli.errors import OutOfRangeError, OutOfRangeWarning
 
 SCENE: dict[str, float] = {"r0": 2e-307, "theta0_deg": 30}

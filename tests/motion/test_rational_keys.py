@@ -9,9 +9,9 @@ from fractions import Fraction
 
 import pytest
 from exact_scenes import KINDS
+from lagtop import LagtopError, Motion, Top, solve
 from scenes import UNIT
 
-from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic.ball import Ball
 from lagrange_cli.bench.battery import judged_inputs
 from lagrange_cli.motion.exact import rational_keys as rational_keys_module

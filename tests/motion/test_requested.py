@@ -17,9 +17,9 @@ import pytest
 from chrapan_top import ar
 from conftest import Lagtop
 from errata import FIGURES, round_alike, true_values
+from lagtop import LagtopError, Top, solve, sweep
 from scenes import UNIT
 
-from lagrange_cli import LagtopError, Top, solve, sweep
 from lagrange_cli.motion.paper.requested import derivation_keys
 from lagrange_cli.motion.record import KEYS, all_keys, record_keys, requested_keys
 
@@ -124,7 +124,7 @@ def test_explain_lists_them(lagtop: Lagtop) -> None:
 
 def test_a_record_loads_none_of_their_modules() -> None:
     code = (
-        "import sys; from lagrange_cli import Top, solve; solve(Top()).record();"
+        "import sys; from lagtop import Top, solve; solve(Top()).record();"
         "names = 'requested', 'sections', 'rational_keys';"
         "print([x for x in sys.modules if x.endswith(names)])"
     )

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import Motion, Top, solve
 from scenes import UNIT
 
-from lagrange_cli import Motion, Top, solve
 from lagrange_cli.arithmetic.arrays import ROWS, workspace
 from lagrange_cli.motion.over_time import theta_sampler
 from lagrange_cli.motion.over_time.columns import COLUMNS, SCALARS, chosen_columns

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import LagtopError, Top, angle_sensitivities, sensitivities, solve
 from scenes import EPS, EVERY_KIND, UNIT
 from slopes import Slopes
-
-from lagrange_cli import LagtopError, Top, angle_sensitivities, sensitivities, solve
 
 SCENES: dict[str, dict[str, float]] = {
     **{x: EVERY_KIND[x] for x in ("worked example", "slow", "any start", "starts lowest")},

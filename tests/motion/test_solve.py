@@ -8,9 +8,9 @@ from typing import Any
 import mpmath
 import pytest
 from ball_judge import Judge, assert_nearest
+from lagtop import LagtopError, Top, solve
 from scenes import UNIT
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.motion.regime import Regime
 
 

@@ -6,8 +6,8 @@ import re
 
 import pytest
 from conftest import Lagtop
+from lagtop import Top, solve
 
-from lagrange_cli import Top, solve
 from lagrange_cli.motion.summary import summary
 
 SENTENCES = {

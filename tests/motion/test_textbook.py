@@ -16,9 +16,7 @@ import mpmath
 import pytest
 from ball_judge import assert_nearest
 from conftest import Lagtop, assert_one_line
-from scenes import EPS, UNIT
-
-from lagrange_cli import (
+from lagtop import (
     LagtopError,
     Regime,
     Top,
@@ -28,6 +26,8 @@ from lagrange_cli import (
     solve,
     sweep,
 )
+from scenes import EPS, UNIT
+
 from lagrange_cli.motion.over_time.columns import COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
 from lagrange_cli.motion.paper.requested import TEXTBOOK

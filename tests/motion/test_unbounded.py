@@ -11,8 +11,8 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from lagtop import LagtopError, Top, solve
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys

@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 from browsers import README_FRAGMENT, README_PICTURE, Browser
 from exact_scenes import KINDS
+from lagtop import LagtopError, Motion, Regime, Top, solve, view
 from numpy.typing import NDArray
 from pictures import REGIMES, sample_motion
 from scenes import NAMED, SAMPLES, UNIT
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Motion, Regime, Top, solve, view
 from lagrange_cli.motion.summary import summary
 from lagrange_cli.plot.browser import page_scene
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 from conftest import ROOT, Lagtop, process
+from lagtop import LagtopError, Top, solve
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.plot import draw_map
 from lagrange_cli.plot.kinds import help_lines
 

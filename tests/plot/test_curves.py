@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
+from lagtop import LagtopError, Top, solve
 from pictures import NUTATING, REGIMES, regime_motion, sample_motion
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.plot.curves import (
     checked_span,

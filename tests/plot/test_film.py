@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Lagtop
+from lagtop import LagtopError, Top, solve
 from matplotlib.figure import Figure
 from pictures import sample_motion
 from scenes import SAMPLES
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inputs.units import SYSTEMS
 from lagrange_cli.plot import film, globe

@@ -8,12 +8,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from lagtop import Motion, Top, solve
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from lagrange_cli import Motion, Top, solve
 from lagrange_cli.plot.cubic import cubic_curve
 from lagrange_cli.plot.globe import camera_at, draw_globe
 from lagrange_cli.plot.kinds import KINDS, PlotRequest

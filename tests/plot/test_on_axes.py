@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import LagtopError, Top, solve
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from pictures import drawn
 
 import lagrange_cli.plot
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.plot import draw_angles, draw_map, draw_remainders, draw_sphere
 from lagrange_cli.plot.kinds import KINDS, PlotRequest

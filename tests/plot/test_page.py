@@ -16,10 +16,10 @@ from colour_vision import VISIONS, seen
 from conftest import Lagtop
 from hypothesis import given
 from hypothesis import strategies as st
+from lagtop import LagtopError, Regime, Top, solve
 from matplotlib.figure import Figure
 from pictures import NUTATING, REGIMES, drawn, regime_motion, sample_motion
 
-from lagrange_cli import LagtopError, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.inputs.value import Stds

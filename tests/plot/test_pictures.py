@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from ball_judge import Judge
 from conftest import ROOT
+from lagtop import LagtopError, Top, solve
 from matplotlib.collections import LineCollection
 from matplotlib.text import Annotation
 from pictures import NUTATING, REGIMES, drawn, regime_motion, sample_motion
 from scenes import SAMPLES
 
-from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.plot.cubic import cubic_curve, phase_portrait, separatrix_orbit
 from lagrange_cli.plot.curves import sampled_columns, span, sphere_span, tilt_period, turn_span

@@ -10,8 +10,8 @@ from xml.etree import ElementTree
 
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
+from lagtop import LagtopError, Top, solve, view
 
-from lagrange_cli import LagtopError, Top, solve, view
 from lagrange_cli.plot.browser import joined_script
 
 FOLDER = ROOT / "lagrange_cli" / "plot" / "browser"

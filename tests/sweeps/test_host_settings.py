@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import Top, solve, sweep
 
-from lagrange_cli import Top, solve, sweep
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.elliptic.carlson import carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import nome

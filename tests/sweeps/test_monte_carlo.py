@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lagtop import LagtopError, Top, solve, sweep
 from scenes import UNIT
 
-from lagrange_cli import LagtopError, Top, solve, sweep
 from lagrange_cli.inputs.value import Stds
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder

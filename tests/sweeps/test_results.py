@@ -13,9 +13,9 @@ import pint
 import polars
 import pytest
 import xarray
+from lagtop import LagtopError, Top, sensitivities, solve, sweep, sweep_angles
 from uncertainties import ufloat
 
-from lagrange_cli import LagtopError, Top, sensitivities, solve, sweep, sweep_angles
 from lagrange_cli.errors import UnavailableError
 
 SPINS, TILTS = [20.0, 40.0, 60.0], [0.0, 30.0]

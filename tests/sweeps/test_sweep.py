@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Lagtop
+from lagtop import LagtopError, Motion, Top, solve
 from scenes import EPS, UNIT, random_scene
 
-from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.motion.gaps import state as state_of

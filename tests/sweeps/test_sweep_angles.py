@@ -10,8 +10,8 @@ import pytest
 from ball_judge import Judge
 from exact_scenes import KINDS
 from fuzz import inputs_of, period_of, times_of
+from lagtop import LagtopError, Top, solve, sweep_angles
 
-from lagrange_cli import LagtopError, Top, solve, sweep_angles
 from lagrange_cli.bench.hard_scenes import in_doubles
 from lagrange_cli.sweeps import angles
 

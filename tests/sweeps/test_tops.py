@@ -8,8 +8,8 @@ import json
 
 import pytest
 from conftest import Lagtop
+from lagtop import Top, solve
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.text import value_text
 
 

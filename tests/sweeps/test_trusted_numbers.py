@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from ball_judge import Judge
 from exact_scenes import KINDS
+from lagtop import Top, solve
 from scenes import UNIT
 
-from lagrange_cli import Top, solve
 from lagrange_cli.bench.battery import judged_inputs
 from lagrange_cli.bench.hard_scenes import in_doubles
 from lagrange_cli.motion.record import NUMBER_KEYS

@@ -26,9 +26,9 @@ from typing import Any
 
 import numpy as np
 import orjson
+from lagtop import Top, solve
 from scipy import special
 
-from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.arrays import ARRAYS, BLOCK
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
@@ -376,7 +376,7 @@ def columns(t: Array) -> None:
 FRESH = """
 import sys, time
 import numpy as np
-from lagrange_cli import Top, solve
+from lagtop import Top, solve
 sampler, n = solve(Top()).sampler(), int(sys.argv[1])
 t, costs = np.sort(np.random.default_rng(0).uniform(0, 100, n)), []
 sampler.angles(t[:2])

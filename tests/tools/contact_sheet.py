@@ -21,10 +21,10 @@ ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT), str(ROOT / "tests")]
 
 from browsers import chromium  # noqa: E402
+from lagtop import view  # noqa: E402
 from pictures import sample_motion  # noqa: E402
 from scenes import SAMPLES  # noqa: E402
 
-from lagrange_cli import view  # noqa: E402
 from lagrange_cli.errors import NothingToDrawError  # noqa: E402
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, SHEET, PlotRequest  # noqa: E402
 from lagrange_cli.plot.page import Page, page_bytes  # noqa: E402

@@ -41,8 +41,8 @@ from balls.scene import Undecided
 from balls.scene import arb_bits as precision
 from exact_scenes import KINDS, as_decimals
 from flint import arb
+from lagtop import LagtopError, Motion, Top, solve, sweep
 
-from lagrange_cli import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.battery import HardScene
 from lagrange_cli.bench.hard_scenes import Scene

@@ -33,9 +33,9 @@ sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the
 
 from campaign import options
 from engines import Array, Body, dop853
+from lagtop import LagtopError, Top, fit
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Top, fit
 from lagrange_cli.fits.record import FAILED, Outcome
 
 CHANNELS = [("theta", "phi", "psi"), ("theta", "psi"), ("theta", "phi"), ("phi", "psi")]

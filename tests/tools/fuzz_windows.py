@@ -27,8 +27,8 @@ sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the
 
 from campaign import options
 from engines import Array
+from lagtop import LagtopError
 
-from lagrange_cli import LagtopError
 from lagrange_cli.fits.parameters import KnownInputs
 from lagrange_cli.fits.recording import recording_from
 from lagrange_cli.fits.windows import WindowedFit, fit_windows, split

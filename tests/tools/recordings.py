@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-
-from lagrange_cli import Top, solve
+from lagtop import Top, solve
 
 SAMPLES = Path(__file__).parents[2] / "sample_inputs"
 TOP = Top(
