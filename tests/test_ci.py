@@ -14,7 +14,7 @@ TOOLS = "bash sed tar mktemp rm id dirname ln mkdir".split()
 NOTHING = ["python3", "true"]
 """Programs that do nothing."""
 COMMAND = """\
-python3 -m venv .venv && mkdir -p .venv/bin && for x in ruff mypy; do \
+python3 -m venv .venv && mkdir -p .venv/bin && for x in python ruff mypy; do \
 ln -s "$(type -P true)" .venv/bin/$x; done; echo pytest
 """
 """A command as that of the README, whose tests, lint and types do nothing."""

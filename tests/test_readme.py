@@ -62,12 +62,6 @@ def name(path: Path) -> str:
     return str(path.relative_to(ROOT))
 
 
-def prose(text: str) -> list[str]:
-    """Return the lines of a page that are neither a table nor inside a block of code."""
-    without_blocks = re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
-    return [line for line in without_blocks.splitlines() if not line.startswith(("|", "    "))]
-
-
 SESSIONS = [
     pytest.param(command, shown, id=f"{name(path)}: {command}"[:120])
     for path in PAGES
@@ -148,16 +142,6 @@ def test_table_that_is_made(table: Callable[[], list[str]], folder: str) -> None
     assert with_table(page, table()) == page
 
 
-@pytest.mark.parametrize("room", ["elliptic", "fits", "judge", "motion", "plot"])
-def test_the_readme_of_a_room_says_what_each_module_is_for(room: str) -> None:
-    folder = ROOT / "lagrange_cli" / room
-    page = (folder / "README.md").read_text()
-    modules = {path.name for path in folder.glob("*.py")} - {"__init__.py"}
-    named = set(re.findall(r"`(?:\w+/)?(\w+\.py)`", page))
-    assert len(modules) > 5
-    assert modules - named == set()
-
-
 def test_every_option_and_key_is_explained() -> None:
     text = "\n".join(path.read_text() for path in READMES)
     context = click.Context(main)
@@ -174,22 +158,6 @@ def test_every_option_and_key_is_explained() -> None:
 def test_ci_runs_the_test_command_of_the_readme() -> None:
     assert (ROOT / ".ci" / "run").read_text().count("README.md") == 1
     assert len(re.findall(r"```sh\n(python3 -m venv .*pytest.*)\n```", README.read_text())) == 1
-
-
-def test_the_readme_is_short() -> None:
-    assert README.stat().st_size <= 9_000
-
-
-def test_lines_of_the_readme_are_short() -> None:
-    lines = README.read_text().splitlines()
-    long = [line for line in lines if len(line) > 100]
-    assert all(line.startswith("python3 -m venv") for line in long)  # set-up is one line each
-    assert len(long) <= 1
-
-
-@pytest.mark.parametrize("path", [path for path in PAGES if path != README], ids=name)
-def test_prose_of_the_other_readmes_is_short(path: Path) -> None:
-    assert [line for line in prose(path.read_text()) if len(line) > 100] == []
 
 
 def rewrite() -> None:

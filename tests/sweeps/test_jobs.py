@@ -76,8 +76,10 @@ def test_results_that_cannot_be_written_are_reported(
         list(in_order(number_and_place, MANY, 2))
 
 
-def test_a_missing_temporary_folder_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tempfile, "tempdir", "/nonexistent")
+def test_a_missing_temporary_folder_is_reported(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
     with pytest.raises(CannotWriteError, match=r"^cannot write temporary files: No such file"):
         list(in_order(number_and_place, MANY, 2))
 
