@@ -40,7 +40,7 @@ _MODULES = {
     "compare": "judge.compare",
     "draw": "plot",
     "draw_outcome": "plot.reports",
-    "find": "fits.find",
+    "find": "find",
     "fit": "fits.fit",
     "read_scene": "inputs.given",
     "sensitivities": "motion.sensitivity.sensitivities",

@@ -2,7 +2,7 @@
 
 from lagrange_cli.errors import LagtopError as LagtopError
 from lagrange_cli.errors import MixedBodyWarning as MixedBodyWarning
-from lagrange_cli.fits.find import find as find
+from lagrange_cli.find import find as find
 from lagrange_cli.fits.fit import fit as fit
 from lagrange_cli.inputs.given import read_scene as read_scene
 from lagrange_cli.inputs.top import Top as Top

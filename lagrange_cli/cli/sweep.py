@@ -170,7 +170,7 @@ CONDITION = opt.Parsed("CONDITION", str, _beginnings)
     """
     lagtop find --r0 10:200 T_precession=2
     lagtop find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43
-    lagtop find theta_min=3 theta_max=6 T_nutation=4 mean_precession_rate=5
+    lagtop find --psidot0 0:20 theta_max=60 'path=looping' --keys psidot0
     """,
 )
 def find_command(
@@ -178,7 +178,7 @@ def find_command(
         value_type("parse_number_or_span"), words("[SCENE] CONDITION...", CONDITION), units=False
     ),
     scan: int | None = opt.count(
-        "Number of values of each unknown.  [default: 1000, 60 or 20 for 1, 2 or 3 unknowns]",
+        "Number of values of each unknown.  [default: 4000, 60 or 20 for 1, 2 or 3 unknowns]",
     ),
     keys: list[str] | None = _KEYS,
     out: Output = opt.output("csv", "ndjson", "json", "table", "markdown", on_terminal="table"),
@@ -190,56 +190,22 @@ def find_command(
     too (T_precession=500ms); without one, it is in SI.  Conditions such as regime=regular,
     path=looping or 'theta_max<120' restrict the solutions.
 
-    With one unknown, every solution that the scan brackets is found, to the last bit.  With
-    several, Newton's method starts at the best points of the scan and can miss solutions.  The exit
-    code is 1 if no solution is found.
-
-    Without an unknown, give theta_min, theta_max, T_nutation and mean_precession_rate, and
-    mean_spin_rate if you know it.  They determine a = 2mgs/A and b = C r0/A.  You may also give
-    inputs of the body.  lagtop chooses those left open, such as A = 1 and C = A.  Each top found
-    starts at its least tilt.
+    With one unknown, find returns every solution that the scan brackets.  With several, it follows
+    the best points of the scan and can miss solutions.  The exit code is 1 if no solution is found.
     """
+    from ..find import find_tops, search_of
     from ..inputs.names import check_names
-    from ..inputs.ranges import Span
     from ..motion.record import all_keys, record_keys
 
-    radians = top.radians
-    chosen = record_keys(radians=radians)
+    chosen = record_keys(radians=top.radians)
     if keys is not None:
-        chosen = check_names("keys", keys, all_keys(radians=radians))
-    if scan is None and not any(isinstance(x.number, Span) for x in top.by_key().values()):
-        motions, system = _inverted(top)
-    else:
-        motions, system = _searched(top, scan)
-    _write_found(motions, system, chosen, radians, out)
-
-
-def _searched(top: TopOptions, count: int | None) -> tuple[list[Motion], System | None]:
-    from ..fits.find import find_tops
-    from ..fits.search import search_of
-
+        chosen = check_names("keys", keys, all_keys(radians=top.radians))
     search, given = search_of(top.by_key(), top.words, scene=top.scene, radians=top.radians)
-    motions, looked = find_tops(search, count, with_progress)
+    motions, looked = find_tops(search, scan)
     warn_missing(given)
     warn_unused(given.stds)
     complain(f"{len(motions)} found; {looked}")
-    return motions, given.system
-
-
-def _inverted(top: TopOptions) -> tuple[list[Motion], System | None]:
-    from ..fits.implied_body import BODY_INPUTS
-    from ..fits.invert import invert
-    from ..fits.search import system_asked
-
-    for name in top.by_key():
-        if name not in BODY_INPUTS:
-            flag = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
-            raise LagtopError(f"no input is unknown: give a range, such as --{flag} 10:200")
-    found = top.replace(units=system_asked(top.words)).given()
-    known = {name: float(x) for name, x in found.inputs.items() if name in BODY_INPUTS}
-    warn_unused(name for name in found.stds if name in known)
-    motions = invert(top.words, radians=top.radians, known=known, system=found.system)
-    return motions, found.system
+    _write_found(motions, given.system, chosen, top.radians, out)
 
 
 def _write_found(

@@ -16,25 +16,20 @@ Chrapan's.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.numbers import angle_unit, unit_in_radians
+from ..arithmetic.numbers import angle_unit
 from ..arithmetic.protocol import Numeric
 from ..arithmetic.types import Array
 from ..elliptic.complete import complete_k, period_mean
-from ..errors import AbsentError, LagtopError
-from ..inputs.top import Top
-from ..motion.quantity import unit_name
-from ..motion.solve import Motion, solve
-from .implied_body import completed_body
-from .search import read_conditions, targets_of
+from ..errors import LagtopError
 
 if TYPE_CHECKING:
-    from ..inputs.units import System
+    pass
 
 _SEEN = ("theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate")
 _SPIN = "mean_spin_rate"
@@ -168,92 +163,3 @@ def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> Candidates:
         found.append(candidates(nutation, high, signs))
     tops = Candidates.joined(found)
     return tops.at(np.argsort(-tops.u3_above, kind="stable"))
-
-
-def top_of(nutation: TurningPoints, found: Candidates, mean_spin: float | None = None) -> Top:
-    """Return a top that starts at u1, in units of A = 1 and m = s = 1.
-
-    C = A if no mean spin rate is given; a mean spin rate determines C.  Raises LagtopError if no
-    body has it.
-    """
-    a, b = float(found.a), float(found.b)
-    start = {
-        "theta0_rad": nutation.theta_min,
-        "psidot0": float(found.precession_rate(nutation.theta_min)),
-    }
-    body = {"m": 1.0, "s": 1.0, "g": a / 2, "A": 1.0}
-    top = Top(**body, **start, C=1.0, r0=b)
-    if mean_spin is None:
-        return top
-    r0 = mean_spin + b - solve(top).mean_spin_rate
-    if not 0 < b / r0 <= 2:
-        raise LagtopError(f"mean_spin_rate must give 0 < C/A <= 2, got C/A = {b / r0:.6g}")
-    return top.replace(C=b / r0, r0=r0)
-
-
-def invert(
-    seen: Sequence[str],
-    *,
-    radians: bool = False,
-    known: Mapping[str, float] | None = None,
-    system: System | None = None,
-) -> list[Motion]:
-    """Return the motions with these numbers; they start at their least tilt.
-
-    `seen` are texts KEY=NUMBER of theta_min, theta_max, T_nutation, mean_precession_rate and,
-    optionally, mean_spin_rate.  They determine a and b in closed form, except for one root, and C/A
-    if the spin is given.  `known` are inputs of the body; undetermined inputs are 1, or such that C
-    = A.  Numbers with units are converted to a system.  Raises LagtopError, AbsentError if no top
-    has this motion.
-    """
-    numbers = _numbers(seen, radians, system)
-    unit = unit_in_radians(radians=radians)
-    least, greatest, period, rate = (numbers[unit_name(key, radians=radians)] for key in _SEEN)
-    nutation = TurningPoints(least * unit, greatest * unit, period).checked(radians=radians)
-    known = known or {}
-    for name, value in known.items():
-        if not value:
-            raise LagtopError(f"{name} must not be 0 in a top that nutates: leave it out", name)
-    spin, found = known.get("r0"), with_mean_rate(nutation, rate)
-    if spin is not None:  # r0 has the sign of b
-        found = found.at(spin * found.b > 0)
-    if not found.a.size:
-        raise AbsentError(
-            f"no top with this nutation precesses at a mean rate of {rate:g}"
-            + ("" if spin is None else f" and has r0 = {spin:g}")
-        )
-    tops = [top_of(nutation, found.at(i), numbers.get(_SPIN)) for i in range(found.a.size)]
-    return [solve(_of_body(top, known, _SPIN in numbers)) for top in tops]
-
-
-def _numbers(seen: Sequence[str], radians: bool, system: System | None) -> Mapping[str, float]:
-    """Return the numbers by key.  Raises LagtopError for a wrong set of keys."""
-    conditions = read_conditions(seen, radians=radians, system=system)
-    needed = {unit_name(key, radians=radians) for key in _SEEN}
-    numbers = targets_of(conditions)
-    is_whole = needed <= numbers.keys() <= needed | {_SPIN}
-    if not is_whole or len(numbers) < len(conditions):
-        wanted = "=.. ".join([*_SEEN, ""]).replace("_deg", "")
-        shown = " ".join(seen)[:100] or "nothing"
-        raise LagtopError(
-            f"without an unknown input, such as r0 = 10:200, the conditions must be {wanted}and "
-            f"may include {_SPIN}=.., got {shown}"
-        )
-    return numbers
-
-
-def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:
-    """Return a top with this motion and the known inputs of the body."""
-    a, b, r0 = 2 * float(top.g), float(top.C) * float(top.r0), float(top.r0)
-    numbers = {"a": a, "b": b} | ({"r0": r0} if spins else {})
-    inputs = completed_body(numbers, known)
-    given = ", ".join(f"{name} = {value:g}" for name, value in known.items())
-    m, A, C, s, g = (inputs[name] for name in ("m", "A", "C", "s", "g"))
-    has = {"a": 2 * m * g * s / A, "b": C * inputs["r0"] / A, "r0": inputs["r0"]}
-    if not all(math.isclose(has[name], x, rel_tol=1e-9) for name, x in numbers.items()):
-        raise LagtopError(f"{given} must agree with the motion: leave one of them out")
-    if not 0 < C / A <= 2:
-        raise LagtopError(
-            f"the body with {given} and this motion must have 0 < C/A <= 2, got C/A = {C / A:.6g}"
-        )
-    return top.replace(**inputs)

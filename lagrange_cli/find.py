@@ -1,0 +1,432 @@
+"""`find`: inputs for which numbers of the record take target values.
+
+A scan by `sweep` supplies the starting points.  One unknown is found by Brent's method between
+neighbouring values of the scan, several unknowns by least squares from its best points.  Both
+refine with the numbers of `solve`, which are correctly rounded.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable, Mapping, Sequence
+from numbers import Integral
+from types import NoneType
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.ndimage import minimum_filter
+from scipy.optimize import brentq, least_squares
+
+from .arithmetic.text import double_text, quoted, shortened
+from .arithmetic.types import Array
+from .errors import AbsentError, LagtopError, check_type
+from .inputs.given import Given, gather
+from .inputs.input_keys import checked_double, overridden, warn_of
+from .inputs.names import check_names
+from .inputs.ranges import Span, parse_span
+from .inputs.top import INPUTS, Top
+from .inputs.units import CGS, UNITS, factor_of
+from .inputs.value import (
+    Value,
+    exact_number,
+    parse_value,
+    split_unit,
+    steady_refused,
+    value_of,
+    values_of,
+)
+from .motion.quantity import unit_name
+from .motion.record import all_keys, shown_keys
+from .motion.regime import Regime
+from .motion.solve import Motion, solve
+from .sweeps.records import sweep
+
+COUNTS = {1: 4000, 2: 60, 3: 20}
+"""Number of values of each unknown in a scan, by the number of unknowns."""
+_MOST_TOPS = 10_000_000
+_BLOCK = 65536
+_WORDS = {"regime": [x.value for x in Regime], "path": ["cusped", "looping", "wavy"]}
+"""Keys that hold a word, and the words."""
+_RELATIONS: Mapping[str, Callable[[Any, Any], bool]] = {
+    "=": operator.eq,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+_SWEPT = 2.0**-48
+"""Bound of the relative error of a number of a sweep."""
+_EXTREMA = 12
+"""Number of extrema nearest to the target around which the scan is refined."""
+_FINER = 100
+_LEAP = 1e-6
+"""Residual at a root, over the residuals at the ends of its bracket, that only a leap exceeds."""
+_STARTS = 16
+_CLOSE = 1e-10
+"""Largest residual of a solution for several unknowns, over the spread of the scanned numbers."""
+_APART = 1e-7
+"""Difference, over the range, below which two solutions count as one."""
+_FLAT = 1e-7
+"""Ratio of singular values of the Jacobian below which a solution is not isolated."""
+_CURVE = 3
+"""Number of such solutions from which the conditions count as insufficient."""
+
+
+class Condition(NamedTuple):
+    """A condition on the record of a top: a word, a target value or a bound."""
+
+    key: str
+    relation: str
+    value: float | str
+
+    def holds(self, record: Mapping[str, Any]) -> bool:
+        """Return whether a record meets the condition; a missing number does not."""
+        found = record[self.key]
+        return found is not None and _RELATIONS[self.relation](found, self.value)
+
+    def __str__(self) -> str:
+        value = self.value if isinstance(self.value, str) else double_text(self.value)
+        return f"{self.key}{self.relation}{value.removesuffix('.0')}"
+
+
+class Search(NamedTuple):
+    """Known inputs, ranges of unknown inputs, target values by key, and other conditions."""
+
+    fixed: Mapping[str, float]
+    spans: Mapping[str, Span]
+    targets: Mapping[str, float]
+    others: Sequence[Condition]
+    radians: bool
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """The first and the last value of each unknown."""
+        spans = self.spans.values()
+        return np.array([float(x.first) for x in spans]), np.array([float(x.last) for x in spans])
+
+    @property
+    def target_text(self) -> str:
+        """The conditions on numbers as text."""
+        return ", ".join(str(Condition(key, "=", x)) for key, x in self.targets.items())
+
+    def top(self, values: Sequence[float] | Array) -> Top:
+        """Return the top with these values of the unknowns.  Raises LagtopError."""
+        inputs = overridden(dict(self.fixed), dict(zip(self.spans, values, strict=True)))
+        return Top(**{key: float(value) for key, value in inputs.items()})
+
+    def residuals(self, values: Sequence[float] | Array) -> Array:
+        """Return numbers of `solve` minus their targets; NaN where a key has no number."""
+        try:
+            record = solve(self.top(values)).record(radians=self.radians, keys=list(self.targets))
+        except LagtopError:
+            return np.full(len(self.targets), np.nan)
+        return np.array([record[key] for key in self.targets], float) - [*self.targets.values()]
+
+    def swept(self, values: Array) -> Array:
+        """Return the same by `sweep`: a row for each row of values, shape (tops, unknowns)."""
+        rows = []
+        for block in np.array_split(values, len(values) // _BLOCK + 1):
+            inputs = overridden(dict(self.fixed), dict(zip(self.spans, block.T, strict=True)))
+            found = sweep(keys=list(self.targets), radians=self.radians, **inputs)
+            rows.append(
+                np.stack([np.asarray(found[k], float) - x for k, x in self.targets.items()])
+            )
+        return np.concatenate(rows, axis=1).T
+
+
+def search_of(
+    inputs: Mapping[str, Any],
+    conditions: Sequence[str],
+    *,
+    scene: str | None = None,
+    radians: bool = False,
+) -> tuple[Search, Given]:
+    """Return a search from inputs, conditions and a scene file, and the inputs that were given.
+
+    An unknown input is a `Span`, or a `Value` of one.  Raises LagtopError for bad options, and for
+    conditions that cannot have isolated solutions.
+    """
+    units = {split_unit(re.split("[<>=]+", text)[-1])[1] for text in conditions}
+    angles = {name for name, unit in UNITS.items() if not any(unit.dimensions)}
+    has_units = bool(units - angles - {"", "degree", "radian"})
+    given = gather(values_of(inputs), scene, system="si" if has_units else None)
+    found = _read_conditions(conditions, given, radians=radians)
+    targets = {x.key: x.value for x in found if x.relation == "=" and not isinstance(x.value, str)}
+    others = [x for x in found if x.relation != "=" or isinstance(x.value, str)]
+    spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
+    if not spans:
+        raise LagtopError("no input is unknown: give a range, such as --r0 10:200")
+    if len(spans) > max(COUNTS):
+        raise LagtopError(f"find takes 1 to {max(COUNTS)} unknown inputs, got {len(spans)}")
+    if len(targets) != len(spans):
+        raise LagtopError(
+            f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(targets)} for "
+            f"{len(spans)}: {', '.join(spans)}"
+        )
+    return Search(_known(given, spans), spans, targets, others, radians), given
+
+
+def _known(given: Given, spans: Mapping[str, Span]) -> dict[str, float]:
+    """Return the known inputs as doubles.  Raises LagtopError for an impossible one."""
+    known = {name: x for name, x in given.inputs.items() if name not in spans}
+    if isinstance(word := known.get("psidot0"), str):
+        raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
+    loose = set(spans)
+    if loose & {"A", "A_cm", "C"} or ("A_cm" in known and loose & {"m", "s"}):
+        loose |= {"A", "A_cm", "C"}  # because of C <= 2A
+    top = given.replace(inputs=known).top(without=loose).as_dict()
+    inputs = {name: float(x) for name, x in top.items() if x is not None}
+    inputs = overridden(inputs, {name: checked_double(name, x) for name, x in known.items()})
+    return {name: x for name, x in inputs.items() if name not in spans}
+
+
+def _read_conditions(texts: Sequence[str], given: Given, *, radians: bool) -> list[Condition]:
+    """Parse conditions `KEY=VALUE` and `KEY<VALUE`; the key of an angle may omit its unit."""
+    found: list[Condition] = []
+    for text in texts:
+        match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
+        if not match:
+            raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
+        name, relation, word = match.groups()
+        key, known = unit_name(f"{name}_deg", radians=radians), all_keys(radians=radians)
+        if key not in known:
+            (key,) = check_names("a condition", [name], known)
+        if any(x.key == key and x.relation == "=" for x in found):
+            raise LagtopError(f"a condition must name each key once, got {key} twice")
+        if key in _WORDS and (relation != "=" or word not in _WORDS[key]):
+            wanted, got = ", ".join(_WORDS[key]), f"{'' if relation == '=' else relation}{word}"
+            raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
+        number = word if key in _WORDS else _number(key, word, given, radians=radians)
+        found.append(Condition(key, relation, number))
+    return found
+
+
+def _number(key: str, text: str, given: Given, *, radians: bool) -> float:
+    try:
+        value = parse_value(text)
+    except LagtopError as error:
+        raise LagtopError(f"the value of {key} {error}") from None
+    unit = shown_keys(radians=radians, requested=True)[key].unit
+    factor = factor_of(key, value, unit, given.system or CGS) if value.unit else 1
+    return float(value.number * factor)
+
+
+def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], str]:
+    """Return the motions that meet the conditions, and a sentence on the scan.
+
+    Raises AbsentError if there is none; its message has the nearest point of the scan.
+    """
+    each = COUNTS[len(search.spans)] if count is None else count
+    if each < 3 or each ** len(search.spans) > _MOST_TOPS:
+        raise LagtopError(
+            f"scan must be 3 or more values of each unknown, and at most 1e7 tops, got {each}",
+            "scan",
+        )
+    axes = [_points(span, each) for span in search.spans.values()]
+    values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
+    off = search.swept(values)
+    solutions = _roots if len(axes) == 1 else _minima
+    points = solutions(search, values, off)
+    motions, broken = [], None
+    for point in points:
+        motion = solve(search.top(point))
+        keys = [x.key for x in search.others] or ["r0"]
+        record = motion.record(radians=search.radians, keys=keys)
+        fault = next((x for x in search.others if not x.holds(record)), None)
+        broken = broken or fault
+        motions += [motion] if fault is None else []
+    ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
+    caution = "solutions closer together may be missed"
+    if len(axes) > 1:
+        caution = "only the best points were followed"
+    looked = f"scanned {ranges} at {each} values{' each' * (len(axes) > 1)}: {caution}"
+    if not motions:
+        why = f"of {len(points)} with {search.target_text} none has {broken}"
+        raise AbsentError(
+            f"no top found: {why if broken else _nearest(search, values, off)}; {looked}"
+        )
+    return motions, looked
+
+
+def _points(span: Span, count: int) -> Array:
+    spaced = np.geomspace if span.logarithmic else np.linspace
+    points: Array = spaced(float(span.first), float(span.last), count)
+    return points
+
+
+def _nearest(search: Search, values: Array, off: Array) -> str:
+    """Return where the scan comes nearest to the targets, or why it has no numbers."""
+    known = np.isfinite(off).all(axis=1)
+    if not known.any():
+        try:
+            solve(search.top(values[0]))
+        except LagtopError as error:
+            return f"no top of the scan has {search.target_text} ({error})"
+        return f"no top of the scan has {search.target_text}"
+    size = np.maximum(np.abs([*search.targets.values()]), np.ptp(off[known], axis=0))
+    distance = np.linalg.norm(off / np.where(size > 0, size, 1.0), axis=1)
+    i = int(np.nanargmin(np.where(known, distance, np.nan)))
+    reached = ", ".join(
+        f"{key} = {_short(target + float(x), target)}"
+        for (key, target), x in zip(
+            search.targets.items(), search.residuals(values[i]), strict=True
+        )
+    )
+    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, values[i], strict=True))
+    return f"nearest to {search.target_text} is {reached} at {where}"
+
+
+def _short(value: float, target: float) -> str:
+    """Return a number in six digits, or in full if six digits equal those of the target."""
+    text = f"{value:.6g}"
+    return double_text(value) if text == f"{target:.6g}" else text
+
+
+def _roots(search: Search, values: Array, residuals: Array) -> list[list[float]]:
+    """Return where the number passes its target, in ascending order.
+
+    Raises LagtopError if a whole range of the unknown has the target value.
+    """
+    ((name, _),), (target,) = search.spans.items(), search.targets.values()
+
+    def off(at: float) -> float:
+        return float(search.residuals([at])[0])
+
+    x, y = _refined(search, values[:, 0], residuals[:, 0])
+    near = np.abs(y) <= _SWEPT * abs(target)
+    flat = near[:-2] & near[1:-1] & near[2:]
+    for i in np.flatnonzero(np.diff(flat, prepend=False) & flat).tolist():
+        last = i + int(np.argmin([*near[i:], False])) - 1
+        if not any(map(off, x[i : i + 3].tolist())):
+            raise LagtopError(
+                f"every {name} from {x[i]:g} to {x[last]:g} has {search.target_text}, which does "
+                f"not determine {name}: use another condition, or another unknown"
+            )
+        near[i : last + 1] = False  # a constant beside the target
+    roots = set()
+    for i in np.flatnonzero((y[:-1] * y[1:] <= 0) | near[:-1] | near[1:]).tolist():
+        low, high = float(x[i]), float(x[i + 1])
+        ends = off(low), off(high)
+        if not ends[0] * ends[1] <= 0:
+            continue
+        precision = {"xtol": 2e-16 * max(abs(low), abs(high)), "rtol": 8.9e-16, "maxiter": 200}
+        try:
+            root = float(brentq(off, low, high, **precision, disp=False))
+        except ValueError:  # no number between the ends
+            continue
+        if abs(off(root)) <= _LEAP * max(map(abs, ends)) + 4 * np.spacing(abs(target)):
+            roots.add(root)
+    return [[x] for x in sorted(roots)]
+
+
+def _refined(search: Search, x: Array, y: Array) -> tuple[Array, Array]:
+    """Return a scan with more points around its extrema, which may hide two solutions."""
+    size = np.abs(y)
+    inner = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
+    inner = inner[(y[inner - 1] * y[inner] > 0) & (y[inner] * y[inner + 1] > 0)]
+    inner = inner[np.argsort(size[inner])][:_EXTREMA]
+    if not inner.size:
+        return x, y
+    finer = np.linspace(x[inner - 1], x[inner + 1], 2 * _FINER + 1)[1:-1].ravel()
+    more = np.setdiff1d(finer, x)
+    order = np.argsort(both := np.concatenate([x, more]))
+    return both[order], np.concatenate([y, search.swept(more[:, np.newaxis])[:, 0]])[order]
+
+
+def _minima(search: Search, values: Array, residuals: Array) -> list[list[float]]:
+    """Return where all numbers have their targets, by least squares from minima of the scan.
+
+    Raises LagtopError if solutions are not single points.
+    """
+    low, high = search.ends
+    known = np.isfinite(residuals).all(axis=1)
+    if not known.any():
+        return []
+    scale = np.std(residuals[known], axis=0)
+    scale = np.where(scale > 0, scale, np.maximum(np.abs([*search.targets.values()]), 1e-300))
+    size = np.where(known, np.linalg.norm(residuals / scale, axis=1), np.inf)
+    each = round(len(size) ** (1 / len(low)))
+    cube = size.reshape((each,) * len(low))
+    least = (cube == minimum_filter(cube, 3, mode="constant", cval=np.inf)).ravel() & known
+    starts = np.flatnonzero(least)
+    found: list[Array] = []
+    flat = 0
+
+    def off(x: Array) -> Array:
+        missing = search.residuals(low + x * (high - low)) / scale
+        return np.where(np.isfinite(missing), missing, 1e6)
+
+    for start in starts[np.argsort(size[starts], kind="stable")][:_STARTS].tolist():
+        inside = np.clip((values[start] - low) / (high - low), 1e-9, 1 - 1e-9)
+        exact: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
+        ended = least_squares(off, inside, "3-point", (0, 1), **exact, max_nfev=40)
+        point = np.clip(low + ended.x * (high - low), low, high)
+        if np.max(np.abs(ended.fun)) > _CLOSE or any(
+            np.max(np.abs(point - x) / (high - low)) < _APART for x in found
+        ):
+            continue
+        found.append(point)
+        sizes = np.linalg.svd(ended.jac)[1]
+        flat += bool(sizes[-1] <= _FLAT * sizes[0])
+        if flat == _CURVE:
+            raise LagtopError(
+                f"the conditions do not determine {' and '.join(search.spans)}: many values give "
+                f"{search.target_text}; use another condition, or another unknown"
+            )
+    return sorted(x.tolist() for x in found)
+
+
+def find(
+    conditions: Mapping[str, Any] | Sequence[str],
+    *,
+    scan: int | None = None,
+    radians: bool = False,
+    **inputs: Any,
+) -> list[Motion]:
+    """Return the motions that meet all conditions: `find({"T_precession": 2}, r0=(10, 200))`.
+
+    An input is a number, or a pair (from, to) or a text `[log:]from:to` if it is unknown.  Pass up
+    to three unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER
+    discard motions.  The search starts from `scan` values of each unknown.  Angles are in degrees
+    or `radians`.  Quantities of pint are converted to SI, and uncertainties are ignored.  The list
+    may be empty.  Raises LagtopError, also if the conditions do not determine the unknowns.
+
+    >>> [x.top.r0 for x in find({"T_precession": 2.0}, r0=(10, 200), theta0_deg=30)]
+    [119.38669907271795]
+    """
+    check_type("scan", scan, Integral, NoneType)
+    check_names("inputs", list(inputs) or ["m"], INPUTS)
+    given = {name: _input(name, x) for name, x in inputs.items() if x is not None}
+    texts = conditions
+    if isinstance(conditions, Mapping):
+        texts = [f"{key}={_text(key, x)}" for key, x in conditions.items()]
+    search, found = search_of(given, list(texts), radians=radians)
+    if found.missing:
+        warn_of(found.missing, stacklevel=3)
+    try:
+        return find_tops(search, scan)[0]
+    except AbsentError:
+        return []
+
+
+def _text(key: str, given: Any) -> str:
+    """Return the target value of a condition as text.  Raises LagtopError."""
+    if isinstance(given, str):
+        return given
+    value = value_of(key, given)
+    return f"{float(exact_number(key, value.number))!r} {value.unit}"
+
+
+def _input(name: str, given: Any) -> Value:
+    """Return a number, or a pair as a range; a unit is kept.  Raises LagtopError."""
+    value = value_of(name, given, parse_span)
+    pair = value.number
+    if isinstance(pair, Span) or not isinstance(pair, tuple | list | np.ndarray):
+        return value
+    if (isinstance(pair, np.ndarray) and pair.ndim != 1) or len(pair) != 2:
+        raise LagtopError(f"{name} must be a real number or a pair, got {quoted(given)}", name)
+    first, last = (exact_number(name, x) for x in pair)
+    if not first < last:
+        raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
+    return value.replace(number=Span(first, last))

@@ -1,0 +1,264 @@
+"""`find`: inputs that give target values, checked by quadrature in mpmath and by dense sweeps."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pint
+import pytest
+from conftest import Lagtop, assert_one_line
+from lagtop import LagtopError, MixedBodyWarning, Top, find, solve, sweep
+
+
+def by_quadrature(top: Top) -> dict[str, float]:
+    """Return numbers of a top from Euler's cubic and its integrals over a half nutation.
+
+    With u = cos(theta), u'^2 = (1 - u^2)(E - a u) - (beta - b u)^2 and psi' = (beta - b u)/(1-u^2).
+    """
+    m, A, C, s, g, r0 = (mpmath.mpf(float(x)) for x in (top.m, top.A, top.C, top.s, top.g, top.r0))
+    a, b = 2 * m * g * s / A, C * r0 / A
+    u0 = mpmath.cos(mpmath.radians(top.theta0_deg or 0))
+    along = top.psidot0 * (1 - u0**2)
+    beta = along + b * u0
+    energy = top.thetadot0**2 + along * top.psidot0 + a * u0
+    cubic = [energy - beta**2, 2 * b * beta - a, -energy - b * b, a]
+    low, high, beyond = sorted(map(mpmath.re, mpmath.polyroots(cubic, maxsteps=200, asc=True)))
+    half = (high - low) / 2
+
+    def mean(rate: Any) -> Any:
+        def at(x: Any) -> Any:
+            u = low + half * (1 - mpmath.cos(x))
+            return rate(u) / mpmath.sqrt(a * (beyond - u))
+
+        return mpmath.quad(at, mpmath.linspace(0, mpmath.pi, 5))
+
+    period = 2 * mean(lambda u: mpmath.mpf(1))
+    precession = 2 * mean(lambda u: (beta - b * u) / (1 - u * u)) / period
+    return {
+        "T_nutation": float(period),
+        "mean_precession_rate": float(precession),
+        "T_precession": float(2 * mpmath.pi / abs(precession)),
+        "theta_max_deg": float(mpmath.degrees(mpmath.acos(low))),
+    }
+
+
+@pytest.mark.parametrize(
+    ("targets", "unknowns", "count"),
+    [
+        ({"T_precession": 2.0}, {"r0": "10:200"}, 1),
+        ({"T_nutation": 0.45}, {"r0": "10:200"}, 2),
+        ({"theta_max_deg": 90.0}, {"r0": "log:10:200"}, 1),
+        ({"T_precession": 0.8, "T_nutation": 0.43}, {"r0": "10:200", "theta0_deg": "5:150"}, 2),
+        (
+            {"mean_precession_rate": 7, "T_nutation": 0.5, "theta_max_deg": 70},
+            {"m": 1587, "s": 4, "C": 17458, "g": 981, "r0": "30:70", "A": "3e4:6e4"}
+            | {"theta0_deg": "10:50"},
+            1,
+        ),
+    ],
+)
+def test_solutions_have_the_target_values(
+    targets: dict[str, float], unknowns: dict[str, Any], count: int
+) -> None:
+    found = find(targets, **unknowns)
+    assert len(found) == count
+    for motion in found:
+        numbers = by_quadrature(motion.top)
+        assert {key: numbers[key] for key in targets} == pytest.approx(targets, rel=1e-11)
+        assert [getattr(motion, key) for key in targets] == pytest.approx(
+            [*targets.values()], rel=1e-13
+        )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_all_roots_of_a_dense_sweep_are_found_and_no_others(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    key = ["T_nutation", "mean_precession_rate", "theta_max_deg"][seed % 3]
+    known: Any = {"theta0_deg": rng.uniform(10, 160), "psidot0": rng.normal()}
+    r0 = np.linspace(-80, 80, 20_001)
+    numbers = np.asarray(sweep(keys=[key], r0=r0, **known)[key], float)
+    target = float(numbers[rng.integers(r0.size)])
+    off = numbers - target
+    passed = np.flatnonzero(off[:-1] * off[1:] <= 0)
+    leaps = np.abs(np.diff(numbers)) > 50 * np.median(np.abs(np.diff(numbers)))
+    roots = sorted({*np.round(r0[passed[~leaps[passed]]], 1).tolist()})
+    found = sorted({round(float(x.top.r0), 1) for x in find({key: target}, r0=(-80, 80), **known)})
+    assert len(found) >= 1
+    assert found == pytest.approx(roots, abs=0.11)
+
+
+def test_a_pair_of_roots_between_two_points_is_found() -> None:
+    """The greatest period is 0.452509: a millionth more is nowhere, a millionth less twice."""
+    most = max(solve(Top(r0=r0)).T_nutation or 0 for r0 in np.linspace(37.1, 37.4, 61))
+    assert find({"T_nutation": most * (1 + 1e-6)}, r0=(10, 200)) == []
+    assert len(find({"T_nutation": most * (1 - 1e-6)}, r0=(10, 200))) == 2
+    assert len(find({"T_nutation": 0.4525}, r0=(10, 200), scan=7)) == 2
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("--theta0 30:60 spin_rate_start=50", "every theta0_deg from 30 to 60 has"),
+        ("--m 1:1e4 theta_min_deg=30", "every m from 1 to 10000 has theta_min_deg=30, which"),
+        ("--psidot0 -5:5 path=wavy r0=50", "every psidot0 from -5 to 5 has r0=50, which does"),
+        (
+            "--m 1000:2000 --g 900:1000 T_nutation=0.43 theta_min_deg=30",
+            "the conditions do not determine m and g: many values give ",
+        ),
+    ],
+)
+def test_a_plateau_or_a_curve_is_refused(line: str, message: str, lagtop: Lagtop) -> None:
+    assert_one_line(lagtop("find", *line.split()), 2, message)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("--r0 10:60 T_nutation=0.46", "nearest to T_nutation=0.46 is T_nutation = 0.452509 at"),
+        ("--psidot0 1:2 a=319.0914121746259", "is a = 319.09141217462593 at psidot0"),
+        ("--A 1:2 T_nutation=1", "no top of the scan has T_nutation=1 (C must be <= 2"),
+        ("--r0=-50:60 --theta0 60 mean_spin_rate=0", "nearest to mean_spin_rate=0 is"),  # a leap
+        ("--r0 10:60 T_nutation=0.45 path=looping", "of 2 with T_nutation=0.45 none has path=loo"),
+    ],
+)
+def test_nothing_found(line: str, message: str, lagtop: Lagtop) -> None:
+    result = lagtop("find", *line.split())
+    assert result.exit_code == 1
+    assert result.stdout == ""
+    assert result.stderr.splitlines()[-1].startswith("Error: no top found: ")
+    assert message in result.stderr
+
+
+def test_a_leap_is_no_root() -> None:
+    """The mean spin leaps by a turn per period where the axis starts to pass round a pole."""
+    found = find({"mean_spin_rate": 46}, psidot0=(-40, 40))
+    assert [x.mean_spin_rate for x in found] == pytest.approx([46], rel=1e-13)
+    (behind,) = find({"mean_precession_rate": -11.5}, r0=(-60, 60), theta0_deg=120)
+    assert by_quadrature(behind.top)["mean_precession_rate"] == pytest.approx(-11.5)
+
+
+@pytest.mark.parametrize(
+    ("condition", "kept"),
+    [
+        ("theta_max<100", [1]),
+        ("theta_max_deg>=100", [0]),
+        ("path=cusped", [0, 1]),
+        ("regime=regular", [0, 1]),
+        ("r0<=42.40777084888782", [0, 1]),
+        ("r0>42.41", []),
+    ],
+)
+def test_words_and_bounds(condition: str, kept: list[int]) -> None:
+    both = find(["T_nutation=0.45"], r0="10:60")
+    assert find(["T_nutation=0.45", condition], r0="10:60") == [both[i] for i in kept]
+
+
+@pytest.mark.parametrize(
+    ("conditions", "unknowns", "message"),
+    [
+        (["T_nutation=0.4"], {}, "no input is unknown: give a range, such as --r0 10:200"),
+        (["T_nutation=0.4"], {"r0": 5, "m": 2}, "no input is unknown"),
+        (["g=1"], dict.fromkeys(("m", "g", "s", "r0"), "1:2"), "takes 1 to 3 unknown inputs, got"),
+        (["T_nutation=0.4"], {"r0": "1:2", "scan": 2}, "scan must be 3 or more values"),
+        (["T_nutation=0.4"], {"r0": "1:2", "scan": 20_000_000}, "at most 1e7 tops"),
+        ([], {"r0": "1:2"}, "find needs as many conditions KEY=NUMBER as unknown inputs, got 0"),
+        (["T_nutation~3"], {"r0": "1:2"}, "a condition must be KEY=VALUE"),
+        (["T_nutation=1", "T_nutation=2"], {"r0": "1:2", "m": "1:2"}, "each key once"),
+        (["T_nutation=0.4", "path=straight"], {"r0": "1:2"}, "path= must be one of cusped"),
+        (["T_nutation=nan"], {"r0": "1:2"}, "the value of T_nutation must be a finite"),
+        (["T_nut=3"], {"r0": "1:2"}, "did you mean .T_nutation"),
+        (["T_nutation=1"], {"r0": "2:1"}, "r0 must be a range whose first end is the smaller one"),
+        (["T_nutation=1"], {"r0": "log:-1:1"}, "must have two ends of one sign"),
+        (["T_nutation=1"], {"A": "1:2", "C": [3]}, "C must be a real number"),
+        (["T_nutation=1"], {"r0": "1:2", "phidot0": 3}, "phidot0 and r0 are both given"),
+        (["T_nutation=1"], {"r0": "1:2", "psidot0": "steady"}, "psidot0 must be"),
+        ({"T_precession": None}, {"r0": (10, 200)}, "T_precession must be a finite number"),
+        ({"T_precession": 2}, {"r0": (10, 20, 30)}, "r0 must be a real number or a pair"),
+        ({"T_precession": 2}, {"r0": (200, 10)}, "r0 must have its smaller end first"),
+    ],
+)
+def test_bad_searches(conditions: Any, unknowns: dict[str, Any], message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
+        find(conditions, **unknowns)
+
+
+def test_a_tilt_may_be_in_radians() -> None:
+    wanted = solve(Top(theta0_rad=0.5)).theta_max_deg
+    (found,) = find({"theta_max": math.radians(wanted)}, theta0_rad=(0.1, 1), radians=True)
+    assert found.top.theta0_rad == pytest.approx(0.5, rel=1e-13)
+
+
+def test_a_warning_names_the_defaults_of_the_body() -> None:
+    with pytest.warns(MixedBodyWarning, match="A, C, s and g default to the worked") as said:
+        find(["T_nutation=0.45"], m=1600, r0="10:60", scan=20)
+    assert [x.filename for x in said] == [__file__]
+
+
+LAB = ["--m", "0.35kg", "--A", "8.5e-4 kg m^2", "--C", "4e-4 kg m^2", "--s", "3cm"]
+LAB += ["--g", "9.81 m/s^2", "--theta0", "60deg", "--r0", "1000:20000 rpm"]
+
+
+@pytest.mark.parametrize(
+    ("united", "plain"),
+    [
+        ("T_precession=5000ms", "T_precession=5"),
+        ("mean_precession_rate=12rpm", f"mean_precession_rate={0.4 * math.pi}"),
+        ("theta_max=1.1rad", f"theta_max={math.degrees(1.1)}"),
+        ("Lz=0.06 kg m^2/s", "Lz=0.06"),
+    ],
+)
+def test_conditions_with_units(united: str, plain: str, lagtop: Lagtop) -> None:
+    found = [lagtop("find", *LAB, x, "--scan", 200, "--keys", "r0").stdout for x in (united, plain)]
+    rates = [float(text.splitlines()[1]) for text in found]
+    assert rates[0] == pytest.approx(rates[1], rel=1e-13)
+
+
+def test_units_that_do_not_belong(lagtop: Lagtop) -> None:
+    message = "T_nutation must have a unit as in 2s, got the unit 'rad'"
+    assert_one_line(lagtop("find", *LAB, "T_nutation=50rad"), 2, message)
+    message = "--r0 must have a unit such as '50 rad/s' or 480rpm, as a time, a condition or"
+    assert_one_line(lagtop("find", "--r0", "10:200", "T_precession=500ms"), 2, message)
+    tilts = [lagtop("find", "--r0", "10:60", f"theta_max={x}") for x in ("90deg", "0.25turn")]
+    assert tilts[0].stdout == tilts[1].stdout != ""
+
+
+def test_quantities_of_pint() -> None:
+    unit: Any = pint.UnitRegistry()
+    body = {"m": "1587 g", "A": "39032 g cm^2", "C": "17458 g cm^2", "s": "4 cm", "g": "981 cm/s^2"}
+    known = {name: unit.Quantity(text) for name, text in body.items()}
+    period = {"T_precession": unit.Quantity(2000.0, "ms")}
+    (found,) = find(period, r0=unit.Quantity((100, 1900), "rpm"), scan=100, **known)
+    (plain,) = find({"T_precession": 2}, r0=(10, 200), scan=100)
+    assert (found.top.r0, found.top.m) == pytest.approx((plain.top.r0, 1.587), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        ("T_nutation=1", 2, "no input is unknown: give a range, such as --r0 10:200"),
+        ("--r0 200:10 T_nutation=1", 2, "--r0 must be a range whose first end"),
+        ("--r0 1:2 T_nutation=1 --scan 2", 2, "--scan must be 3 or more values"),
+        ("none.toml --r0 1:2 T_nutation=1", 65, "none.toml: No such file"),
+    ],
+)
+def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:
+    assert_one_line(lagtop("find", *words.split()), code, message)
+
+
+def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:
+    options = ("find", "--r0", "10:60", "T_nutation=0.45", "--scan", 300)
+    result = lagtop(*options)
+    rows = list(csv.DictReader(io.StringIO(result.stdout)))
+    assert list(rows[0]) == [*solve(Top()).record()]
+    assert [float(row["T_nutation"]) for row in rows] == pytest.approx([0.45, 0.45], rel=1e-15)
+    assert "2 found; scanned r0 from 10 to 60 at 300 values" in result.stderr
+    scene = tmp_path / "lab.toml"
+    scene.write_text("theta0_deg = 30\nr0 = 7\n")
+    same = lagtop("find", scene, *options[1:])
+    assert same.stdout == result.stdout
