@@ -1,11 +1,14 @@
 """Break the package on purpose, one small change at a time, and count which tests see it.
 
-    python tests/tools/mutations.py 100 --seed 1 --out mutations.csv
+    python tests/tools/mutations.py 40 --seed 1 --out mutations.csv
 
-Each mutation is made in a temporary clone of the last commit and meets the tests of its room,
-the quick ones before the slow ones; only if it lives there, the quick tests of the whole suite.
-Results are added to the file as they come, and a run with the same seed goes on where the last one
-ended.
+Each mutation is made in a temporary clone of the last commit.  It meets the quick tests of its
+folder, but only the test files that run the changed line.  The folders take turns.  Results are
+added to the file as they come, and a run with the same seed goes on where the last one ended.
+A mutation that uses much more CPU than the tests usually do hangs, and counts as seen.  A test that
+fails again without the mutation proves nothing: the result is then undecided.
+
+Needs the package `coverage`.
 """
 
 from __future__ import annotations
@@ -13,33 +16,37 @@ from __future__ import annotations
 import argparse
 import ast
 import csv
+import json
 import os
-import queue
 import random
+import resource
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
-from itertools import accumulate
+from contextlib import suppress
+from itertools import accumulate, zip_longest
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parents[2]
-ROOM_TESTS = {
-    "arithmetic": ["tests/elliptic", "tests/motion"],
-    "inputs": ["tests/sweeps", "tests/cli"],
-    "output": ["tests/cli", "tests/sweeps"],
-    "top": ["tests/cli"],
-}
-"""Tests of rooms that have no folder of their own, where none appeared since."""
+FOLDERS = (
+    *("arithmetic", "elliptic", "inputs", "output", "motion", "sweeps", "fits", "plot", "judge"),
+    *("bench", "cli", "sweep", "fit", "compare"),
+)
+MODULES = {"fit": ["fit", "find.py"]}
+"""Modules of a folder, if not those of the same name."""
+TESTS = {"output": ["output", "cli"], "fit": ["fit", "find"]}
+"""Folders of tests of a folder, if not the one of the same name."""
+OTHER_PROCESSES = ("subprocess", "process(", "forked(")
+"""Words of test files that run the package in other processes, whose lines are not recorded."""
 
-ROOM_SECONDS, SUITE_SECONDS = 900, 3600
-"""Limits of time; a mutation that exceeds one hangs, and counts as killed."""
+WALL_SECONDS = 3600
+"""Limit for the tests of a mutation on a busy machine; a mutation that exceeds it is undecided."""
 
 
 class Mutation(NamedTuple):
@@ -60,11 +67,21 @@ class Mutation(NamedTuple):
 class Outcome(NamedTuple):
     """The result of a mutation."""
 
+    folder: str
     number: int
     mutation: str
     result: str
     by: str
     seconds: str
+
+
+class Run(NamedTuple):
+    """The end of a run of tests."""
+
+    failed: str
+    """The first test that fails, or why the run ended; empty if all tests pass."""
+    cpu: float
+    is_decided: bool = True
 
 
 def mutations(root: Path, path: Path) -> list[Mutation]:
@@ -203,10 +220,13 @@ def shortened(text: str) -> str:
     return f"`{line if len(line) <= 40 else line[:37] + '...'}`"
 
 
-def chosen(root: Path, count: int, seed: int, room: str) -> list[Mutation]:
-    """Return random mutations of a room or of all; every module is as likely as every other."""
+def chosen(root: Path, folder: str, count: int, seed: int) -> list[Mutation]:
+    """Return random mutations of a folder; every module is as likely as every other."""
     rng = random.Random(seed)
-    paths = sorted((root / "lagrange_cli" / room).rglob("*.py"))
+    places = [root / "lagrange_cli" / name for name in MODULES.get(folder, [folder])]
+    paths = sorted(
+        path for x in places for path in ([x] if x.suffix else x.rglob("*.py")) if path.exists()
+    )
     by_module = [found for path in paths if (found := mutations(root, path))]
     picked: dict[Mutation, None] = {}
     total = sum(map(len, by_module))
@@ -215,136 +235,228 @@ def chosen(root: Path, count: int, seed: int, room: str) -> list[Mutation]:
     return list(picked)
 
 
-def tests_of(root: Path, mutation: Mutation) -> list[str]:
-    """Return the folders of tests that stand for the room of a module."""
-    parts = Path(mutation.path).parts
-    room = parts[1] if len(parts) > 2 else "top"
-    folder = f"tests/{room}"
-    return [folder] if (root / folder).is_dir() else ROOM_TESTS[room]
+class FirstFailure:
+    """A plugin of pytest that keeps the name of the first test that fails."""
+
+    name = ""
+
+    def keep(self, report: Any) -> None:
+        """Keep the name of a failed test, or of a file that cannot be read."""
+        if report.failed and not self.name:
+            self.name = report.nodeid or "collection"
+
+    pytest_runtest_logreport = pytest_collectreport = keep
 
 
-def run_tests(clone: Path, folders: list[str], seconds: float, kind: str) -> str | None:
-    """Return the first test of a kind that fails, "time" where none ends in time, or None."""
-    command = ["nice", sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
-    command += ["--hypothesis-seed=0"]  # what it finds by luck is not the mutation's
+def run_tests(clone: Path, tests: list[str], limit: float, lines: Path | None = None) -> Run:
+    """Run quick tests in a fork of this process, with a limit of CPU seconds.
+
+    Write the lines of the package that run to a file, if it is given.
+    """
     shutil.rmtree(clone / ".hypothesis", ignore_errors=True)
-    running = subprocess.Popen(
-        [*command, "-m", kind, *folders],
-        cwd=clone,
-        env=os.environ | {"PYTHONPATH": str(clone), "PYTHONDONTWRITEBYTECODE": "1"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        start_new_session=True,
-    )
-    try:
-        output, _ = running.communicate(timeout=seconds)
-    except subprocess.TimeoutExpired:
-        with suppress(ProcessLookupError):
-            os.killpg(running.pid, signal.SIGKILL)
-        running.communicate()
-        return "time"
-    if running.returncode in (0, 5):  # 5: there are no tests of this kind
-        return None
-    lines = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
-    return lines[0].split(" - ")[0] if lines else f"exit code {running.returncode}"
+    shutil.rmtree(clone / ".tmp", ignore_errors=True)
+    answer, begin = clone / ".answer", time.monotonic()
+    answer.unlink(missing_ok=True)
+    child = os.fork()
+    if not child:
+        with suppress(BaseException):
+            os.setsid()
+            os.chdir(clone)
+            resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit) + 10))
+            resource.setrlimit(resource.RLIMIT_AS, (16 << 30, 16 << 30))
+            tested(clone, tests, answer, lines)
+        os._exit(0)
+    status, usage = 0, None
+    while usage is None:
+        ended, status, used = os.wait4(child, os.WNOHANG)
+        usage = used if ended else None
+        if usage is None and time.monotonic() - begin > WALL_SECONDS:
+            break
+        time.sleep(0.05)
+    with suppress(ProcessLookupError):
+        os.killpg(child, signal.SIGKILL)
+    if usage is None:
+        os.waitpid(child, 0)
+        return Run("no end on a busy machine", 0.0, is_decided=False)
+    cpu = usage.ru_utime + usage.ru_stime
+    if not answer.exists():
+        return Run("hangs" if cpu >= int(limit) - 1 else f"ends with status {status}", cpu)
+    return Run(json.loads(answer.read_text()), cpu)
 
 
-def judged(clone: Path, number: int, mutation: Mutation) -> Outcome:
+def tested(clone: Path, tests: list[str], answer: Path, lines: Path | None) -> None:
+    """Run tests in this process and write the name of the first failure."""
+    import pytest
+
+    with open(os.devnull, "w") as nothing:
+        for number in (1, 2):
+            os.dup2(nothing.fileno(), number)
+    os.environ["PYTHONPATH"] = str(clone)
+    sys.path.insert(0, str(clone))
+    recorder: Any = None
+    if lines is not None:
+        from coverage import Coverage
+
+        recorder = Coverage(data_file=None, source=[str(clone / "lagrange_cli")])
+        recorder.start()
+    first = FirstFailure()
+    options = ["-x", "-q", "-p", "no:cacheprovider", "-m", "not slow", "--hypothesis-seed=0"]
+    code = pytest.main([*options, f"--basetemp={clone / '.tmp'}", *tests], plugins=[first])
+    if recorder is not None and lines is not None:
+        recorder.stop()
+        data = recorder.get_data()
+        found = {str(Path(x).relative_to(clone)): data.lines(x) for x in data.measured_files()}
+        lines.write_text(json.dumps(found))
+    answer.write_text(json.dumps("" if code in (0, 5) else first.name or f"exit code {int(code)}"))
+
+
+class TestFile(NamedTuple):
+    """A file of tests: the lines of the package that it runs, and its CPU seconds."""
+
+    name: str
+    lines: dict[str, set[int]]
+    cpu: float
+    """Infinite if the file fails without any mutation."""
+    forks: bool
+    """Whether it runs the package in other processes."""
+
+
+def test_files(clone: Path, folder: str, store: Path) -> list[TestFile]:
+    """Run the test files of a folder without any mutation, once for all runs of this program."""
+    found = []
+    names = [clone / "tests" / name for name in TESTS.get(folder, [folder])]
+    for path in sorted(x for name in names for x in name.rglob("test_*.py")):
+        name = str(path.relative_to(clone))
+        kept = store / (name.replace("/", "-") + ".json")
+        if not kept.exists():
+            lines = clone / ".lines"
+            lines.write_text("{}")
+            run = run_tests(clone, [name], WALL_SECONDS, lines)
+            if run.failed:
+                print(f"{name} is left out: {run.failed} fails without any mutation", flush=True)
+            cpu = float("inf") if run.failed else run.cpu
+            kept.write_text(json.dumps([json.loads(lines.read_text()), cpu]))
+        lines_of, cpu = json.loads(kept.read_text())
+        forks = any(word in path.read_text() for word in OTHER_PROCESSES)
+        found.append(TestFile(name, {x: set(y) for x, y in lines_of.items()}, cpu, forks))
+    return [file for file in found if file.cpu < float("inf")]
+
+
+def statement_lines(text: str, line: int) -> set[int]:
+    """Return the lines of the statement at a line; of a block, those before its body."""
+    found: set[int] = set()
+    for node in ast.walk(ast.parse(text)):  # inner statements come later
+        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno):
+            body = getattr(node, "body", None) or getattr(node, "cases", None)
+            end = body[0].lineno - 1 if isinstance(node, ast.stmt) and body else node.end_lineno
+            found = set(range(node.lineno, max(node.lineno, end or 0) + 1))
+    return found
+
+
+def judged(clone: Path, files: list[TestFile], number: int, mutation: Mutation) -> tuple[str, str]:
     """Return what became of a mutation in a clone, which is left as it was."""
-    path, begin = clone / mutation.path, time.monotonic()
+    lines = statement_lines((clone / mutation.path).read_text(), mutation.line)
+    wanted = [x for x in files if x.forks or lines & x.lines.get(mutation.path, set())]
+    if not wanted:
+        return "LIVED", "no test runs the line"
+    wanted.sort(key=lambda x: x.cpu)
+    path, before = clone / mutation.path, (clone / mutation.path).stat()
     text = path.read_bytes()
     path.write_bytes(mutated(text, mutation))
+    os.utime(path, (10**9 + number, 10**9 + number))  # no bytecode of another text fits
     try:
-        result, by = killed(clone, tests_of(clone, mutation))
+        run = run_tests(clone, [x.name for x in wanted], 60 + 20 * sum(x.cpu for x in wanted))
     finally:
         path.write_bytes(text)
-    return Outcome(number, str(mutation), result, by, f"{time.monotonic() - begin:.0f}")
+        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+    if not run.failed:
+        return "LIVED", ""
+    forks = any(run.failed.startswith(x.name) for x in wanted if x.forks)
+    if not run.is_decided or (forks and run_tests(clone, [run.failed], WALL_SECONDS).failed):
+        return "undecided", run.failed
+    return "seen", run.failed
 
 
-def killed(clone: Path, room: list[str]) -> tuple[str, str]:
-    """Return what became of the mutation in a clone, and the first test that sees it."""
-    for kind in ("not slow", "slow"):
-        if by := run_tests(clone, room, ROOM_SECONDS, kind):
-            return "killed by its room", by
-    if by := run_tests(clone, ["tests"], SUITE_SECONDS, "not slow"):
-        return "killed by the suite", by
-    return "LIVED", ""
+def preload() -> None:
+    """Import the packages that tests use, so that a fork need not do it again."""
+    import click.testing
+    import mpmath
+    import numpy
+    import pytest
+    import rich.table
+    import scipy.integrate
+    import scipy.optimize
+    import scipy.spatial.transform
+    import scipy.special
+
+    assert all((click, mpmath, numpy, pytest, rich, scipy))
 
 
 def main() -> None:
-    """Make the mutations that are not yet in the file, then print the table."""
+    """Make the mutations that are not yet in the file, then print the share that is seen."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", type=int)
+    parser.add_argument("count", type=int, help="mutations of each folder")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--room", default="", help="only modules of this room")
+    parser.add_argument("--folder", choices=FOLDERS, help="only this folder")
     parser.add_argument("--out", type=Path, default=Path("mutations.csv"))
+    parser.add_argument("--commit", default="HEAD", help="the program and its tests")
     parser.add_argument("--list", action="store_true", help="print the mutations and run nothing")
-    parser.add_argument("--jobs", type=int, choices=[1, 2], default=2)
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="mutations-") as folder:
-        clones: queue.Queue[Path] = queue.Queue()
-        for i in range(options.jobs):
-            clones.put(Path(folder) / str(i))
-            subprocess.run(["git", "clone", "-q", ROOT, Path(folder) / str(i)], check=True)
-        picked = chosen(Path(folder) / "0", options.count, options.seed, options.room)
-        wanted = list(enumerate(picked, 1))
+    store = options.out.with_suffix(".lines")
+    store.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="mutations-") as place:
+        clone = Path(place) / "clone"
+        subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)
+        subprocess.run(["git", "checkout", "-q", options.commit], cwd=clone, check=True)
+        folders = [options.folder] if options.folder else list(FOLDERS)
+        picked = {x: chosen(clone, x, options.count, options.seed) for x in folders}
+        turns = [
+            (folder, number, mutation)
+            for number, row in enumerate(zip_longest(*picked.values()), 1)
+            for folder, mutation in zip(picked, row, strict=True)
+            if mutation is not None
+        ]
         if options.list:
-            print(*(mutation for _, mutation in wanted), sep="\n")
+            print(*(f"{folder} {mutation}" for folder, _, mutation in turns), sep="\n")
             return
-        done = known(options.out)
-
-        @contextmanager
-        def free_clone() -> Iterator[Path]:
-            """Yield a clone that no other task uses."""
-            clone = clones.get()
-            try:
-                yield clone
-            finally:
-                clones.put(clone)
-
-        def judge(task: tuple[int, Mutation]) -> None:
-            """Judge one mutation and add it to the file."""
-            with free_clone() as clone:
-                add(options.out, judged(clone, *task))
-
-        def prove(folders: tuple[str, ...]) -> None:
-            """End the run if the tests of a room fail without any mutation."""
-            with free_clone() as clone:
-                if failed := run_tests(clone, list(folders), ROOM_SECONDS, "not slow"):
-                    raise SystemExit(f"Error: {failed} fails without any mutation")
-
-        left = [(i, mutation) for i, mutation in wanted if str(mutation) not in done]
-        rooms = {tuple(tests_of(clones.queue[0], mutation)) for _, mutation in left}
-        with ThreadPoolExecutor(options.jobs) as pool:
-            list(pool.map(prove, sorted(rooms)))
-            list(pool.map(judge, left))
-    print_table(known(options.out))
+        os.environ["OPENBLAS_NUM_THREADS"] = "1"
+        preload()
+        done = {(x.folder, x.number) for x in known(options.out)}
+        for folder, number, mutation in turns:
+            if (folder, number) not in done:
+                begin, files = time.monotonic(), test_files(clone, folder, store)
+                result = judged(clone, files, number, mutation)
+                seconds = f"{time.monotonic() - begin:.0f}"
+                add(options.out, Outcome(folder, number, str(mutation), *result, seconds))
+    print_shares(known(options.out))
 
 
-def known(path: Path) -> dict[str, Outcome]:
-    """Return the outcomes that a file holds already, by mutation."""
+def known(path: Path) -> list[Outcome]:
+    """Return the outcomes that a file holds already."""
     if not path.exists():
-        return {}
+        return []
     with path.open(newline="") as file:
-        outcomes = [Outcome(int(row[0]), *row[1:]) for row in csv.reader(file)]
-    return {outcome.mutation: outcome for outcome in outcomes}
+        return [Outcome(row[0], int(row[1]), *row[2:]) for row in csv.reader(file)]
 
 
 def add(path: Path, outcome: Outcome) -> None:
-    """Append an outcome to the file and say it."""
+    """Append an outcome to the file and print it."""
     with path.open("a", newline="") as file:
         csv.writer(file).writerow(outcome)
     print(*outcome, flush=True)
 
 
-def print_table(outcomes: dict[str, Outcome]) -> None:
-    """Print all outcomes as a table in Markdown, and how many lived."""
-    print("| | mutation | result | by | s |", "|---|---|---|---|---|", sep="\n")
-    for outcome in sorted(outcomes.values()):
-        print("|", " | ".join(str(x).replace("|", "\\|") for x in outcome), "|")
-    lived = sum(outcome.result == "LIVED" for outcome in outcomes.values())
-    print(f"\n{len(outcomes)} mutations, {lived} lived")
+def print_shares(outcomes: list[Outcome]) -> None:
+    """Print how many mutations of each folder are seen, as a table in Markdown."""
+    counts = Counter((x.folder, x.result) for x in outcomes)
+    print("| folder | mutations | seen | lived | undecided |", "|---|---|---|---|---|", sep="\n")
+    for folder in [*FOLDERS, ""]:
+        row = [
+            sum(n for (x, y), n in counts.items() if folder in {x, ""} and y == result)
+            for result in ("seen", "LIVED", "undecided")
+        ]
+        if sum(row):
+            print(f"| {folder or 'all'} | {sum(row)} |", " | ".join(map(str, row)), "|")
 
 
 if __name__ == "__main__":
