@@ -99,7 +99,7 @@ They are in the order of preference for the attitude.
 
 _SPELLINGS = """
 t | t time timestamp times simtime xvalue | |
-quaternion | quaternion quat q orientation attitude xquat | w x y z | wxyz
+quaternion | quaternion quat q orientation attitude xquat rot rotation | w x y z | wxyz
 quaternion | | w x y z | wxyz
 quaternion | quaternion quat q orientation attitude | 0 1 2 3 |
 quaternion | qpos u | 3 4 5 6 | wxyz
