@@ -27,6 +27,8 @@ from ..arithmetic.protocol import Numeric
 from ..arithmetic.types import Array
 from ..elliptic.complete import complete_k, period_mean
 from ..errors import LagtopError
+from ..inputs.top import Top
+from ..motion.solve import solve
 
 if TYPE_CHECKING:
     pass
@@ -163,3 +165,24 @@ def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> Candidates:
         found.append(candidates(nutation, high, signs))
     tops = Candidates.joined(found)
     return tops.at(np.argsort(-tops.u3_above, kind="stable"))
+
+
+def top_of(nutation: TurningPoints, found: Candidates, mean_spin: float | None = None) -> Top:
+    """Return a top that starts at u1, in units of A = 1 and m = s = 1.
+
+    C = A if no mean spin rate is given; a mean spin rate determines C.  Raises LagtopError if no
+    body has it.
+    """
+    a, b = float(found.a), float(found.b)
+    start = {
+        "theta0_rad": nutation.theta_min,
+        "psidot0": float(found.precession_rate(nutation.theta_min)),
+    }
+    body = {"m": 1.0, "s": 1.0, "g": a / 2, "A": 1.0}
+    top = Top(**body, **start, C=1.0, r0=b)
+    if mean_spin is None:
+        return top
+    r0 = mean_spin + b - solve(top).mean_spin_rate
+    if not 0 < b / r0 <= 2:
+        raise LagtopError(f"mean_spin_rate must give 0 < C/A <= 2, got C/A = {b / r0:.6g}")
+    return top.replace(C=b / r0, r0=r0)
