@@ -100,7 +100,7 @@ def csv_text(value: Any) -> str:
     """Return a CSV cell, in quotes if necessary; anything but text and numbers is JSON."""
     if type(value) is str:
         return f'"{value.replace(_QUOTE, _QUOTE * 2)}"' if set(value) & _SPECIAL else value
-    if value is None or isinstance(value, float):
+    if value is None or isinstance(value, float | NumberText):
         return value_text(value)
     return csv_text(json_text(value))
 

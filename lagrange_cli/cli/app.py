@@ -31,33 +31,23 @@ COMMANDS = {
 NAMES = [name for names in COMMANDS.values() for name in names]
 _MODULES = {"view": "plot", "scenes": "explain", "find": "sweep", "stability": "bench"}
 """Commands that share the module of another command."""
-_COLOURS = {"Error": "red", "Warning": "yellow"}
 _CLOSED_PIPE = 13
 """The number of SIGPIPE, which not every system has."""
 
 
 def complain(line: str) -> None:
-    """Write one line to standard error, safe for any terminal; ignore failures.
+    """Write one line to standard error, safe for any terminal; ignore failures."""
+    from ..output.terminal import one_line
 
-    A terminal with colours shows the first word, `Error:` or `Warning:`, in colour.
-    """
-    from ..output.terminal import has_colours, one_line
-
-    line = one_line(line)
-    word, colon, rest = line.partition(":")
-    if word in _COLOURS and has_colours(sys.stderr):
-        line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
-        click.echo(line, err=True)
+        click.echo(one_line(line), err=True)
 
 
 def say(text: str) -> None:
     """Write a text of lagtop to standard output.  Raises CannotWriteError."""
-    from ..output.terminal import spelt, view_of
-
     try:
         with opened("-") as stream:
-            stream.write(f"{spelt(text, view_of('-'))}\n".encode())
+            stream.write(f"{text}\n".encode())
     except BrokenPipeError:  # click would turn it into exit code 1
         _die_by(_CLOSED_PIPE)
 
@@ -208,9 +198,6 @@ class LagtopGroup(Command, click.Group):
             with _interrupts():
                 return super().invoke(ctx)
         except BaseException as error:
-            from ..output.terminal import end_progress
-
-            end_progress()
             number = _signal_of(error)
             if number is None:
                 raise

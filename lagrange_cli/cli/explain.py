@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..arithmetic.text import value_text
 from ..inputs.scene_file import scene_names, scene_remark
 from ..output.report import Field, Report
-from ..output.terminal import View, spelt, view_of
+from ..output.terminal import width_of
 from . import options as opt
 from .top import UNCERTAIN, TopOptions, motion_of, top_options, words
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..motion.explanation import Explained
     from ..output.destination import Output
 
-_FORMATS = ("table", "json", "csv", "ndjson", "markdown")
+_FORMATS = ("table", "json", "csv", "ndjson")
 
 
 def _names() -> list[str]:
@@ -58,7 +58,7 @@ def explain_command(
     else:
         rows = listed(radians=top.radians, named=named)
     if out.fmt == "table":
-        view = view_of(out.path)
+        view = width_of(out.path)
         out.text("\n".join((_block(row, view) for row in rows) if names else _lists(rows, view)))
     else:
         out.report(lambda: Report({}, _EXPLAINED if names else _LISTED, rows, []))
@@ -71,7 +71,7 @@ _HEADINGS = {
 }
 
 
-def _lists(rows: Sequence[Explained], view: View) -> Iterator[str]:
+def _lists(rows: Sequence[Explained], view: int | None) -> Iterator[str]:
     """Yield the list of each kind: names, and beside them symbol, meaning, unit and equation."""
     for kind, heading in _HEADINGS.items():
         lines = [f"{heading}:"]
@@ -83,7 +83,7 @@ def _lists(rows: Sequence[Explained], view: View) -> Iterator[str]:
         yield "\n".join([*lines, ""])
 
 
-def _block(row: Explained, view: View) -> str:
+def _block(row: Explained, view: int | None) -> str:
     """Return the lines of one key or column; each equation of a formula has a line of its own."""
     title = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))
     texts = {
@@ -92,7 +92,7 @@ def _block(row: Explained, view: View) -> str:
         "value": "" if row.value is None else f"{value_text(row.value)} {row.unit}".rstrip(),
         "missing": row.missing,
     }
-    lines = [spelt(f"{row.name}: {title}", view)]
+    lines = [f"{row.name}: {title}"]
     for name, text in texts.items():
         for i, part in enumerate(re.split(r" where |, (?=\w+ = )", text)):
             if part:
@@ -100,10 +100,10 @@ def _block(row: Explained, view: View) -> str:
     return "\n".join([*lines, ""])
 
 
-def _filled(name: str, text: str, view: View, width: int) -> str:
+def _filled(name: str, text: str, view: int | None, width: int) -> str:
     """Return a name and a text beside it, in lines that fit; names are `width` characters wide."""
-    line, indent = spelt(f"  {name:{width}}{text}", view), " " * (width + 2)
-    return fill(line, view.width or 80, subsequent_indent=indent, break_on_hyphens=False)
+    line, indent = f"  {name:{width}}{text}", " " * (width + 2)
+    return fill(line, view or 80, subsequent_indent=indent, break_on_hyphens=False)
 
 
 def _text(key: str, heading: str) -> Field:

@@ -185,7 +185,7 @@ def _write(found: list[Outcome], source: str, system: System | None, out: Output
     """Write a report, or one record for each recording, with units if known inputs have any."""
     from ..fits.report import fit_report, outcome_units
 
-    if out.fmt in {"table", "markdown"}:
+    if out.fmt == "table":
         write_report(out, lambda: fit_report(found, source, system))
         return
     records: list[dict[str, Any]] = [outcome.record() for outcome in found]
@@ -210,7 +210,7 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
     from ..fits.report import windows_report
 
     rows = [window.row() for window in found.windows]
-    if out.fmt in {"table", "markdown"}:
+    if out.fmt == "table":
         write_report(out, lambda: windows_report(found, source, system))
     elif out.fmt == "json":
         out.text(f"{json_text(found.record())}\n")

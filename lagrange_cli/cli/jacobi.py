@@ -80,7 +80,7 @@ def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
 
 def write_functions(table: TableOfFunctions, digits: int | None, out: Output) -> None:
     """Write a table of functions, with its progress."""
-    if digits is not None and out.fmt in {"npy", "parquet"}:
+    if digits is not None and out.fmt == "parquet":
         raise LagtopError(f"--format {out.fmt} holds doubles: with --digits use csv or json")
     header, blocks = table.rows(digits)
     out.table(header, with_progress(blocks, "rows", table.count or None, len), table.count)
@@ -106,7 +106,7 @@ _FUNCTIONS: Any = opt.Group(
     ],
 )
 """The option --functions, and flags such as --omega, which mean the same."""
-function_formats = opt.output("table", "csv", "json", "ndjson", "markdown", "parquet", "npy")
+function_formats = opt.output("table", "csv", "json", "ndjson", "parquet")
 
 
 @opt.command(
@@ -228,7 +228,7 @@ def _constants(given: ModulusInput | ExactComplex, digits: int | None) -> dict[s
 
 def write_constants(record: dict[str, Any], group: str, table: str, out: Output) -> None:
     """Write the constants of a modulus or of a quadrature."""
-    if out.fmt in {"npy", "parquet"}:
+    if out.fmt == "parquet":
         raise LagtopError(f"--format {out.fmt} holds tables: use json or csv for constants")
     out.record(record, lambda: constant_keys(group, table))
 

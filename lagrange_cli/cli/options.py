@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
-BINARY = ("parquet", "npy")
+BINARY = ("parquet",)
 """Formats that are not written to a terminal."""
-REPORT_FORMATS = ("table", "csv", "json", "ndjson", "markdown")
+REPORT_FORMATS = ("table", "csv", "json", "ndjson")
 
 
 def late(module: str, name: str, **how: Any) -> Callable[..., Any]:
@@ -242,7 +242,6 @@ def output(*formats: str, extensions: Iterable[str] = (), on_terminal: str = "")
         ending = extension(path)
         if fmt is None and ending in {"", "txt", *extensions}:
             return on_terminal if on_terminal and is_screen(path) else formats[0]
-        ending = "markdown" if ending == "md" else ending
         if fmt is None and (ending == "table" or ending not in formats):
             name = click.get_current_context().command.name
             raise LagtopError(

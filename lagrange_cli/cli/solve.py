@@ -47,7 +47,7 @@ def solve_command(
     ),
     samples: int | None = opt.count("Check linear propagation with N random tops."),
     seed: int | None = opt.count("Seed of the random tops."),
-    out: Output = opt.output("table", "json", "csv", "ndjson", "markdown"),
+    out: Output = opt.output("table", "json", "csv", "ndjson"),
 ) -> None:
     """Compute the periods, turning points and mean rates of one top.
 
@@ -80,7 +80,7 @@ def solve_command(
     named = str if found.system is None else found.system.named
     summed = _summary(record, motion, named) if is_summed else {}
     if found.stds:
-        drawn = out.fmt in {"table", "markdown"} and (keys is None or out.is_named)
+        drawn = out.fmt == "table" and (keys is None or out.is_named)
         record = uncertainty.with_stds(found, motion, record, drawn)
 
     def shown() -> _Keys:

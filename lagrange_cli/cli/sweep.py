@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..output.destination import Output
     from ..sweeps.plan import Make
 
-_FORMATS = ("csv", "ndjson", "json", "parquet", "table", "markdown")
+_FORMATS = ("csv", "ndjson", "json", "parquet", "table")
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
 _KEYS = opt.key_names("Compute and print only these keys (see lagtop explain).")
@@ -77,7 +77,7 @@ def sweep_command(
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.
     """
-    from ..output.rows import check_parquet
+    from ..output.formats import check_parquet
     from ..sweeps.cluster import computed, connected
     from ..sweeps.folder import Folder
     from ..sweeps.plan import Tally, plan, shard_of
@@ -85,7 +85,7 @@ def sweep_command(
     opt.exclude({"--parts": folder, "--output": out.path != "-"})
     if folder is not None:
         out = out.replace(fmt="csv") if not out.is_named else out
-        if out.fmt in {"json", "table", "markdown"}:
+        if out.fmt in {"json", "table"}:
             raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
     if out.fmt == "parquet":
         check_parquet()
@@ -145,7 +145,7 @@ def _headings(
     names: Sequence[str], system: System | None, fmt: str, *, radians: bool
 ) -> Sequence[str]:
     """Return the headings of keys: with units in a table for people, if inputs have units."""
-    if system is None or fmt not in {"table", "markdown"}:
+    if system is None or fmt != "table":
         return names
     from ..motion.record import shown_keys
     from ..output.report import with_unit
@@ -181,7 +181,7 @@ def find_command(
         "Number of values of each unknown.  [default: 4000, 60 or 20 for 1, 2 or 3 unknowns]",
     ),
     keys: list[str] | None = _KEYS,
-    out: Output = opt.output("csv", "ndjson", "json", "table", "markdown", on_terminal="table"),
+    out: Output = opt.output("csv", "ndjson", "json", "table", on_terminal="table"),
 ) -> None:
     """Find the inputs for which results take given values.
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 MAX_DRAWN_ROWS = 10_000
 """Largest number of rows that are drawn; nobody reads more, and drawing them is slow."""
-_DRAWN = ("table", "markdown")
+_DRAWN = ("table",)
 
 
 @opt.command(
@@ -63,7 +63,7 @@ def table_command(
     certify: bool = opt.certify,
     dialect: Dialect = text_options,
     header_comments: bool = header_comments_option,
-    out: Output = opt.output("csv", "json", "ndjson", "table", "markdown", "parquet", "npy"),
+    out: Output = opt.output("csv", "json", "ndjson", "table", "parquet"),
 ) -> None:
     """Tabulate tilt, spin and precession, or other columns, over time.
 
@@ -115,16 +115,13 @@ def _check_format(
     fmt: str, times: str | None, tops: str | None, digits: int | None, certify: bool
 ) -> None:
     """Raise LagtopError for a format that cannot hold the table."""
-    if tops is not None and fmt in {*_DRAWN, "npy"}:
-        holds = "holds numbers of one top" if fmt == "npy" else "shows one top"
-        raise LagtopError(f"--format {fmt} {holds}: with --tops use csv, json, ndjson or parquet")
+    if tops is not None and fmt in _DRAWN:
+        raise LagtopError(f"--format {fmt} shows one top: with --tops use csv, json or parquet")
     if (digits is not None or certify) and fmt in opt.BINARY:
         texts = "--certify" if certify else "--digits"
         raise LagtopError(f"--format {fmt} holds doubles: with {texts} use csv, json or table")
-    if times == "-" and fmt == "npy":
-        raise LagtopError("--format npy begins with the number of rows: give --times a file")
     if fmt == "parquet":
-        from ..output.rows import check_parquet
+        from ..output.formats import check_parquet
 
         check_parquet()
 
@@ -140,7 +137,7 @@ def _listed(
         return None
     from ..inputs.trajectory import TimesFile
 
-    file = TimesFile(times, counted=fmt == "npy", dialect=dialect)
+    file = TimesFile(times, counted=False, dialect=dialect)
     if tops is None and fmt not in _DRAWN:
         return partial(_same, file)
     return partial(_same, file.listed(None if tops is not None else MAX_DRAWN_ROWS + 1))

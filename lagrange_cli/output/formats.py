@@ -1,181 +1,187 @@
-"""The formats of rows: csv, json, ndjson, parquet, npy, table and markdown.
+"""The formats of rows: csv, json, ndjson, parquet, and a table for people.
 
 A double has the same text in all formats (see `arithmetic.text`).  Any process may format a block
-of rows as bytes (`block_text`); one process writes all blocks (`Output.blocks`).
+of rows as bytes (`block_text`); one process writes all blocks (`write`).
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Sequence
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
+from itertools import chain
+from typing import TYPE_CHECKING, Any, BinaryIO
 
-from ..arithmetic.text import csv_text
-from .terminal import View
+import orjson
+
+from ..arithmetic.text import NumberText, csv_text, json_text
+from ..errors import UnavailableError
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .rows import Columns
 
 Texts = Sequence[Sequence[str]]
 """A block of rows with numbers as text; an empty text is a missing number."""
+Columns = Sequence[Any]
+"""The columns of a block, in one of two types.
+
+Arrays hold numbers, with one or several columns each and NaN for missing values.  Lists hold texts
+and JSON values.
+"""
 Names = Sequence[str]
 
 
 class Header(list[str]):
     """The names of columns, with a description of their numbers."""
 
-    def __init__(self, names: Iterable[str], description: Mapping[str, str]) -> None:
+    def __init__(self, names: Iterable[str], description: object) -> None:
         super().__init__(names)
-        self.description = description
 
 
-def description_of(names: Names) -> Mapping[str, str]:
-    """Return the description that belongs to the names of columns, if any."""
-    return names.description if isinstance(names, Header) else {}
-
-
-class Format(NamedTuple):
-    """A format: the bytes before, between and after blocks of rows, and of a block itself."""
-
-    block: Callable[[Columns, Names], bytes]
-    """Makes the bytes of rows of numbers and JSON values, from their columns."""
-    texts: Callable[[Texts, Names], bytes] | None = None
-    """Makes the bytes of numbers as text.  A format without this function holds doubles."""
-    opening: Callable[..., bytes] = lambda names, count=0: b""
-    """Makes the bytes before the rows, whose number is 0 if it is unknown."""
-    between: bytes = b""
-    closing: bytes = b""
-    whole: Callable[[Names, Iterable[bytes], View, BinaryIO], None] | None = None
-    """Writes all blocks as one document, if this is not the mere sequence of the blocks."""
-
-    def rows(self, block: Array | Texts, names: Names) -> bytes:
-        """Return the bytes of an array, or of numbers as text."""
-        if not isinstance(block, list):
-            return self.block([block], names)
-        return self.texts(block, names) if self.texts else self.block([_doubles(block)], names)
-
-    def write(
-        self, stream: BinaryIO, names: Names, blocks: Iterable[bytes], view: View, count: int
-    ) -> None:
-        """Write blocks of rows, with the bytes before, between and after them."""
-        blocks = filter(None, blocks)
-        if self.whole:
-            self.whole(names, blocks, view, stream)
-            return
-        first = next(blocks, b"")  # before anything is written, because most errors occur here
-        stream.write(self.opening(names, count) + first)
-        for block in blocks:
-            stream.write(self.between + block)
-        stream.write(self.closing)
-
-
-def _of_rows(function: str, **how: Any) -> Callable[..., Any]:
-    """Return a function of the module `rows`, which a call imports with NumPy and orjson."""
-
-    def call(*args: Any) -> Any:
-        from . import rows  # start-up
-
-        return getattr(rows, function)(*args, **how)
-
-    return call
-
-
-def _csv_header(names: Names, count: int = 0) -> bytes:
-    """Return the header, below comments that describe it."""
-    comments = "".join(f"# {key}: {text}\n" for key, text in description_of(names).items())
-    return f"{comments}{','.join(map(csv_text, names))}\n".encode()
-
-
-def _csv_texts(rows: Texts, names: Names) -> bytes:
-    """Return a line per row; readers would skip an empty line."""
-    return "".join(f"{','.join(row) or _EMPTY}\n" for row in rows).encode()
-
-
-def _json_texts(rows: Texts, names: Names, between: str, end: str) -> bytes:
-    """Return the JSON objects of rows of numbers as text, as orjson would write them."""
-    keys = [f'"{name}":' for name in names]
-    members = ([f"{key}{x or 'null'}" for key, x in zip(keys, row, strict=True)] for row in rows)
-    return between.join(f"{{{','.join(few)}}}{end}" for few in members).encode()
-
-
-def _npy_header(names: Names, count: int) -> bytes:
-    """Return the header of a structured array with a field of doubles per column."""
-    import numpy as np
-
-    stream, row = BytesIO(), np.dtype([(name, "<f8") for name in names])
-    header = {"descr": row.descr, "fortran_order": False, "shape": (count,)}
-    np.lib.format.write_array_header_1_0(stream, header)
-    return stream.getvalue()
-
-
-def _npy_rows(columns: Columns, names: Names) -> bytes:
-    import numpy as np
-
-    (block,) = columns
-    return np.ascontiguousarray(block, dtype="<f8").tobytes()
-
-
-def _doubles(rows: Texts) -> Array:
-    """Return rows of numbers as text as an array, with NaN for an empty text."""
-    import numpy as np
-
-    return np.array([[float(x or "nan") for x in row] for row in rows])
-
-
-def _write_parquet(names: Names, blocks: Iterable[bytes], view: View, stream: BinaryIO) -> None:
-    """Write a row group per block, an Arrow stream."""
-    from .rows import write_parquet  # start-up
-
-    write_parquet(stream, names, blocks, description_of(names))
-
-
-def _draw(fmt: str, names: Names, blocks: Iterable[bytes], view: View, stream: BinaryIO) -> None:
-    """Write a table or markdown, drawn when all rows are known, from blocks of CSV."""
-    from .report import rows_text  # start-up
-
-    rows = list(csv.reader(b"".join(blocks).decode().splitlines()))
-    stream.write(rows_text(names, rows, fmt, view))
-
-
-_EMPTY = '""'
-_CSV = Format(_of_rows("csv_lines"), _csv_texts, _csv_header)
-FORMATS = {
-    "table": _CSV._replace(whole=partial(_draw, "table")),
-    "markdown": _CSV._replace(whole=partial(_draw, "markdown")),
-    "csv": _CSV,
-    "json": Format(
-        _of_rows("json_objects", between=b",\n"),
-        partial(_json_texts, between=",\n", end=""),
-        lambda names, count=0: b"[",
-        b",\n",
-        b"]\n",
-    ),
-    "ndjson": Format(
-        _of_rows("json_objects", between=b"\n", end=b"\n"),
-        partial(_json_texts, between="", end="\n"),
-    ),
-    "parquet": Format(_of_rows("arrow_block"), whole=_write_parquet),
-    "npy": Format(_npy_rows, opening=_npy_header),
-}
-"""The formats by name."""
+def text_columns(rows: Texts) -> list[list[NumberText]]:
+    """Return the columns of rows of numbers as text."""
+    return [list(map(NumberText, column)) for column in zip(*rows, strict=True)]
 
 
 def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
-    """Return a block of rows in a format, for `Output.blocks`."""
-    return FORMATS[fmt].block(columns, names)
+    """Return a block of rows in a format; NaN, None and an empty number are missing values."""
+    if not len(columns[0]):
+        return b""
+    if fmt == "parquet":
+        return _arrow(columns, names)
+    if fmt in {"json", "ndjson"}:
+        rows = _json_rows(columns, names)
+        return b",\n".join(rows) if fmt == "json" else b"".join(row + b"\n" for row in rows)
+    if len(columns) == 1 and len(names) > 1 and not _is_list(columns[0]):
+        return _array_lines(columns[0])
+    lines = map(b",".join, zip(*map(_csv_cells, columns), strict=True))
+    return b"".join((line or b'""') + b"\n" for line in lines)  # readers skip an empty line
+
+
+def _is_list(column: Any) -> bool:
+    return isinstance(column, Sequence)
+
+
+def _array_lines(rows: Array) -> bytes:
+    """Return an array of numbers as CSV, a line per row and an empty cell for NaN."""
+    import numpy as np
+
+    text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
+    if b"n" in text:
+        text = text.replace(b"null", b"")
+    # Commas at the ends of rows are replaced in place: a search for `],[` takes twice as long.
+    view = np.frombuffer(text, dtype=np.uint8)
+    commas = np.flatnonzero(view == ord(","))
+    view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
+    view[-1] = ord("\n")
+    return bytes(view[1:])
+
+
+def _csv_cells(column: Any) -> Sequence[bytes]:
+    """Return the cells of columns, a text per row."""
+    if _is_list(column):
+        return [csv_text(x).encode() for x in column]
+    text = orjson.dumps(column.reshape(len(column), -1).copy(), option=orjson.OPT_SERIALIZE_NUMPY)
+    return text[2:-2].replace(b"null", b"").split(b"],[")
+
+
+def _json_rows(columns: Columns, names: Names) -> list[bytes]:
+    """Return a JSON object per row."""
+    lists = chain.from_iterable(
+        [x] if _is_list(x) else x.reshape(len(x), -1).T.tolist() for x in columns
+    )
+    rows = (dict(zip(names, row, strict=True)) for row in zip(*lists, strict=True))
+    return [_json(row) for row in rows]
+
+
+def _json(value: Any) -> bytes:
+    """Return a JSON value; numbers that are written out already keep their digits."""
+    return orjson.dumps(value, default=_fragment, option=orjson.OPT_PASSTHROUGH_SUBCLASS)
+
+
+def _fragment(value: Any) -> Any:
+    if isinstance(value, NumberText):
+        return orjson.Fragment(str(value) or "null")
+    return str(value) if isinstance(value, str) else float(value)
+
+
+def write(
+    stream: BinaryIO, names: Names, blocks: Iterable[bytes], fmt: str, width: int | None = None
+) -> None:
+    """Write blocks of rows, with the bytes before, between and after them.
+
+    A table is drawn when all rows are known, in the `width` of a terminal if there is one.
+    """
+    blocks = filter(None, blocks)
+    if fmt == "parquet":
+        _write_parquet(stream, names, blocks)
+        return
+    if fmt == "table":
+        from .report import drawn
+
+        rows = list(csv.reader(b"".join(blocks).decode().splitlines()))
+        stream.write(drawn(names, rows, range(len(names)), width).encode())
+        return
+    first = next(blocks, b"")  # before anything is written, because most errors occur here
+    stream.write({"json": b"[", "ndjson": b""}.get(fmt, _csv_header(names)) + first)
+    for block in blocks:
+        stream.write((b",\n" if fmt == "json" else b"") + block)
+    stream.write(b"]\n" if fmt == "json" else b"")
 
 
 def part_file(fmt: str, names: Names, number: int, text: bytes) -> bytes:
     """Return the content of the file of a part, from the text that `block_text` made.
 
-    The concatenation of the files is the output of `Output.blocks`.  Only part 0 begins with the
+    The concatenation of CSV or NDJSON files is the output of `write`: only part 0 begins with the
     header.  A Parquet file is complete by itself.
     """
-    form, stream = FORMATS[fmt], BytesIO()
-    if not form.whole:
-        return text if number else form.opening(names) + text
-    form.write(stream, names, [text], View(), 0)
-    return stream.getvalue()
+    if fmt == "parquet":
+        write(stream := BytesIO(), names, [text], fmt)
+        return stream.getvalue()
+    return text if number or fmt != "csv" else _csv_header(names) + text
+
+
+def _csv_header(names: Names) -> bytes:
+    return f"{','.join(map(csv_text, names))}\n".encode()
+
+
+def check_parquet() -> None:
+    """Raise UnavailableError if pyarrow is not installed."""
+    try:
+        import pyarrow.parquet  # noqa: F401
+    except ImportError:
+        raise UnavailableError(
+            "format parquet needs pyarrow: pip install 'lagtop[parquet]'", "format"
+        ) from None
+
+
+def _arrow(columns: Columns, names: Names) -> bytes:
+    """Return columns as one Arrow stream: numbers with null for NaN, and texts."""
+    import pyarrow as pa
+
+    arrays = []
+    for column in columns:
+        if _is_list(column):
+            texts = [x if x is None or type(x) is str else json_text(x) for x in column]
+            arrays.append(pa.array(texts, pa.string()))
+        else:
+            numbers = column.reshape(len(column), -1).T.copy()
+            arrays += [pa.array(x, from_pandas=True) for x in numbers]
+    table = pa.table(arrays, names=list(names))
+    with pa.BufferOutputStream() as stream:
+        with pa.ipc.new_stream(stream, table.schema) as writer:
+            writer.write_table(table)
+        return bytes(stream.getvalue())
+
+
+def _write_parquet(stream: BinaryIO, names: Names, blocks: Iterable[bytes]) -> None:
+    """Write Arrow streams as one Parquet file, a row group per stream."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    tables = (pa.ipc.open_stream(block).read_all() for block in blocks)
+    first = next(tables, pa.table({name: pa.nulls(0) for name in names}))
+    # closed in any case, because a writer that is collected later writes to a closed file
+    with parquet.ParquetWriter(stream, first.schema) as writer:
+        for table in chain([first], tables):
+            writer.write_table(table)

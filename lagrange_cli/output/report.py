@@ -1,21 +1,25 @@
-"""Output for people: records, rows and reports as cells, drawn as a table or as markdown.
+"""Output for people: records, rows and reports, drawn as tables by rich.
 
-`Report` is the class of all reports: budget, Monte Carlo, compare, fit, stability and bench.
+`Report` is the class of all reports: budget, compare, fit, explain, stability and bench.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
-from typing import Any, NamedTuple
+from io import StringIO
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.text import csv_text, double_text, value_text
 from ..arithmetic.values import Key
-from .terminal import View, spelt
+from .terminal import printable
+
+if TYPE_CHECKING:
+    from rich.text import Text
 
 Keys = Mapping[str, Key]
 """Keys of a record by name, in the order of a table."""
-RECORD_HEADINGS = ("Symbol", "Name", "Value", "Unit", "Equation")
 
 
 class Field(NamedTuple):
@@ -27,7 +31,6 @@ class Field(NamedTuple):
     show: Callable[[Any], str] = str
     is_text: bool = False
     names_the_row: bool = False
-    """Whether every block of a folded table begins with this column."""
 
     def cell(self, row: Any) -> str:
         """Return the text in a table, for the object of a row."""
@@ -57,99 +60,103 @@ class Report(NamedTuple):
         """Return every row by key."""
         return [{field.key: getattr(row, field.key) for field in self.fields} for row in self.rows]
 
-    def text(self, fmt: str, view: View) -> bytes:
-        """Return the report in a format.
+    def text(self, fmt: str, width: int | None = None) -> bytes:
+        """Return the report in a format, in the `width` of a terminal if there is one.
 
-        CSV and ndjson hold only the rows.  JSON is one object, in which infinite numbers are null.
+        CSV and NDJSON hold only the rows.  JSON is one object, in which infinite numbers are null.
         """
-        if fmt in {"table", "markdown"}:
-            return self._shown(fmt, view)
+        if fmt == "table":
+            return self._drawn(width).encode()
         if fmt == "csv":
             lines = [[field.key for field in self.fields], *(row.values() for row in self.values())]
-            return "".join(",".join(map(csv_text, line)) + "\n" for line in lines).encode()
+            text = "".join(",".join(map(csv_text, line)) + "\n" for line in lines)
+            return (printable(text) if width else text).encode()
         import orjson
 
         if fmt == "ndjson":
             return b"".join(orjson.dumps(row) + b"\n" for row in self.values())
-        whole: dict[str, Any] = {
-            "conditions": self.conditions,
-            "rows": self.values(),
-            "conclusions": self.conclusions,
-        }
-        if self.units:
-            whole["units"] = self.units
+        whole = self._asdict() | {"rows": self.values(), "units": dict(self.units)}
+        del whole["fields"]
+        if not self.units:
+            del whole["units"]
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
-    def _shown(self, fmt: str, view: View) -> bytes:
+    def _drawn(self, width: int | None) -> str:
+        """Return the rows as a table between conditions and conclusions."""
         shown = [field for field in self.fields if field.heading]
         rows = [[field.cell(row) for field in shown] for row in self.rows]
-        if fmt == "table":
-            return _drawn(shown, rows, view, self.conditions, self.conclusions)
-        conditions = "".join(f"- {name}: {text}\n" for name, text in self.conditions.items())
-        table = markdown([field.heading for field in shown], rows)
-        conclusions = "".join(f"\n{line}\n" for line in self.conclusions)
-        return f"{conditions}\n{table}{conclusions}".encode()
+        numbers = [i for i, field in enumerate(shown) if not field.is_text]
+        table = drawn([field.heading for field in shown], rows, numbers, width) if rows else ""
+        conditions = [_filled(f"{x:11}{y}", width or 100, 11) for x, y in self.conditions.items()]
+        conclusions = [_filled(text, width) for text in self.conclusions]
+        texts = ["\n".join(conditions), table.rstrip("\n"), "\n".join(conclusions)]
+        return "\n\n".join(filter(None, texts)) + "\n"
 
 
-def _drawn(
-    fields: Sequence[Field],
-    rows: Sequence[Sequence[str]],
-    view: View,
-    conditions: Mapping[str, str],
-    conclusions: Sequence[str],
-) -> bytes:
-    """Return rows of cells as a table between conditions and conclusions."""
-    from .tables import DrawnColumn, drawn_table  # start-up
-
-    columns: dict[bool, list[DrawnColumn]] = {True: [], False: []}
-    for i, field in enumerate(fields):
-        cells = [spelt(row[i], view) for row in rows]
-        column = DrawnColumn(spelt(field.heading, view), cells, not field.is_text)
-        columns[field.names_the_row].append(column)
-    return drawn_table(conditions, columns[True], columns[False], conclusions, view)
+def _filled(text: str, width: int | None, indent: int = 0) -> str:
+    """Return running text, in lines that fit if there is a width."""
+    text = printable(text)
+    if width is None:
+        return text
+    return fill(text, width, subsequent_indent=" " * indent, break_on_hyphens=False)
 
 
-def record_cells(record: Mapping[str, Any], keys: Keys, view: View) -> dict[str, list[list[str]]]:
-    """Return five cells for each key that has a value, by group; a remark is no cell.
+def record_text(record: Mapping[str, Any], keys: Keys, width: int | None) -> str:
+    """Return a record as a table: its summary, a line for each key with a value, and its remark.
 
     If there is a radius, it replaces the equation.
     """
-    groups: dict[str, list[list[str]]] = {}
+    from rich.text import Text
+
+    rows: list[list[str | Text]] = []
+    group = None
     for name, key in keys.items():
         if record.get(name) is not None and name != "remark":
+            if key.group != group:
+                group = key.group
+                rows.append(["", Text(group, "bold"), "", "", ""])
             last = record.get(f"{name}_radius") or key.equation
-            cells = (key.symbol, key.meaning, value_text(record[name]), key.unit, last)
-            groups.setdefault(key.group, []).append([spelt(cell, view) for cell in cells])
-    return groups
+            rows.append([key.symbol, key.meaning, value_text(record[name]), key.unit, last])
+    table = drawn(("Symbol", "Name", "Value", "Unit", "Equation"), rows, (2,), width)
+    summary, remark = record.get("summary"), record.get("remark")
+    texts = [summary and fill(summary, width or 80), table.rstrip("\n"), remark and f"{remark}"]
+    return "\n\n".join(filter(None, texts)) + "\n"
 
 
-def record_text(record: Mapping[str, Any], keys: Keys, fmt: str, view: View) -> bytes:
-    """Return a record as a `table` or as `markdown`: its summary, its groups, and its remark."""
-    groups = record_cells(record, keys, view)
-    if fmt == "table":
-        from .tables import drawn_record  # start-up
+def drawn(
+    headings: Sequence[str],
+    rows: Sequence[Sequence[str | Text]],
+    numbers: Container[int],
+    width: int | None = None,
+) -> str:
+    """Return a table drawn by rich; `numbers` are the places of columns that hold numbers.
 
-        return drawn_record(record, RECORD_HEADINGS, groups, view)
-    rows = []
-    for group, lines in groups.items():
-        rows += [["", f"**{group}**", "", "", ""], *lines]
-    texts = [record.get("summary"), markdown(RECORD_HEADINGS, rows).rstrip(), record.get("remark")]
-    return ("\n\n".join(filter(None, texts)) + "\n").encode()
+    On a terminal of a `width`, texts are wrapped and headings are bold.  No digit is ever cut.
+    """
+    from rich import box
+    from rich.console import Console
+    from rich.measure import Measurement
+    from rich.table import Table
+    from rich.text import Text
 
-
-def rows_text(names: Sequence[str], rows: Sequence[Sequence[str]], fmt: str, view: View) -> bytes:
-    """Return rows as a `table` or as `markdown`."""
-    if fmt == "markdown":
-        return markdown(names, rows).encode()
-    fields = [Field(name, name, names_the_row=not i) for i, name in enumerate(names)]
-    return _drawn(fields, rows, view, {}, ())
-
-
-def markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table in GitHub's markdown."""
-    lines = [headings, ["---"] * len(headings), *rows]
-    escaped = ([cell.replace("|", "\\|") for cell in line] for line in lines)
-    return "".join(f"| {' | '.join(line)} |\n" for line in escaped)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    for i, heading in enumerate(headings):
+        is_number = i in numbers
+        justify: Any = "right" if is_number else "left"
+        table.add_column(Text(printable(heading)), justify=justify, no_wrap=is_number)
+    texts = [[x if isinstance(x, Text) else Text(printable(x)) for x in row] for row in rows]
+    columns = list(zip(*texts, strict=True))
+    spaces = 3 * (len(headings) - 1)
+    if sum(max(x.cell_len for x in column) for column in columns) + spaces <= (width or 10**6):
+        texts = [[Text("\n").join(column) for column in columns]]  # rich is slow for many cells
+    for row in texts:
+        table.add_row(*row)
+    console = Console(file=StringIO(), width=10**6, force_terminal=width is not None)
+    least = Measurement.get(console, console.options, table).minimum
+    console.width = max(width or 10**6, least)
+    with console.capture() as captured:
+        console.print(table, crop=False)
+    return "".join(f"{line.rstrip()}\n" for line in captured.get().splitlines())
 
 
 def with_unit(text: str, unit: str | None) -> str:
@@ -178,21 +185,15 @@ def uncertain_text(value: float, std: float) -> str:
     with localcontext() as context:
         context.prec = 800
         context.rounding = ROUND_HALF_EVEN
-        last = last_place(std)
+        exact = Decimal(repr(std))
+        leading = exact.adjusted()
+        last = leading - 1 if int(exact.scaleb(2 - leading)) <= 354 else leading
         number, spread = (Decimal(repr(x)).quantize(Decimal(1).scaleb(last)) for x in (value, std))
         leading = max(x.adjusted() for x in (number, spread) if x)
         if leading >= _LEAST_EXPONENT and last <= 0:
             return _in_brackets(number, spread, last)
         number, spread = number.scaleb(-leading), spread.scaleb(-leading)
         return f"{_in_brackets(number, spread, last - leading)}e{leading:+03d}"
-
-
-def last_place(std: float) -> int:
-    """Return the power of ten of the last digit that an uncertainty keeps."""
-    exact = Decimal(repr(std))
-    leading = exact.adjusted()
-    first_three = int(exact.scaleb(2 - leading))
-    return leading - 1 if first_three <= 354 else leading  # beyond 949 rounding makes it 1000
 
 
 def _in_brackets(number: Decimal, spread: Decimal, last: int) -> str:

@@ -26,8 +26,7 @@ from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import Lines, open_tops
 from ..inputs.value import Stds, Value, steady_refused, values_of
-from ..output.formats import Header, block_text
-from ..output.rows import Columns
+from ..output.formats import Columns, Header, block_text
 from .records import BLOCK_ROWS, check_keys, column_keys, records
 from .results import ResultColumn, std_columns, std_keys
 from .top_arrays import top_arrays

@@ -96,14 +96,6 @@ def test_the_remark_stands_below_the_table(lagtop: Lagtop) -> None:
     assert max(map(len, shown.splitlines())) <= 80
 
 
-@pytest.mark.parametrize("line", ["solve", "--help", *(f"{name} --help" for name in COMMANDS)])
-def test_texts_in_ascii(lagtop: Lagtop, line: str) -> None:
-    shown = lagtop(*line.split(), charset="ascii").stdout
-    assert shown.isascii()
-    assert "?" not in shown
-    assert ("theta max" in shown) is (line == "solve")
-
-
 def test_record_agrees_with_the_library(solved: Solved) -> None:
     record = solved("--r0", "-20", "--theta0", "100")
     motion = solve(Top(r0=-20, theta0_deg=100))

@@ -47,9 +47,6 @@ def test_an_uncertainty_on_request_is_in_every_format(lagtop: Lagtop) -> None:
     assert lagtop(*uncertain, "--format", "csv").stdout.splitlines()[1] == f"{value},{std}"
     shown = uncertain_text(float(value), float(std))
     assert lagtop(*uncertain, "--format", "table").stdout == f"{shown}\n{std}\n"
-    markdown = lagtop(*uncertain, "--format", "markdown").stdout
-    assert f"| {shown} | time |" in markdown
-    assert f"| uncertainty of T_nutation | {std} | time |" in markdown
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from lagrange_cli.arithmetic.text import csv_text, double_text, parse_number, va
 from lagrange_cli.cli.app import main
 from lagrange_cli.motion.numbers import record_in_range
 from lagrange_cli.motion.record import NUMBER_KEYS
-from lagrange_cli.output.formats import FORMATS, block_text
+from lagrange_cli.output.formats import block_text, part_file
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)
 spins = st.floats(-1e6, 1e6)
@@ -57,7 +57,7 @@ def test_csv_and_json_read_back_as_they_were(rows: list[tuple[Any, float, Any]])
         lines = text.rstrip("\n").split("\n") if style == "ndjson" else json.loads(f"[{text}]")
         found = [json.loads(line) if isinstance(line, str) else line for line in lines]
         assert [tuple(row.values()) for row in found] == rows
-    text = (FORMATS["csv"].opening(names) + block_text(columns, names, "csv")).decode()
+    text = part_file("csv", names, 0, block_text(columns, names, "csv")).decode()
     header, *found = csv.reader(io.StringIO(text, newline=""))
     assert header == names
     wanted = [["" if x is None else x if type(x) is str else str(x) for x in row] for row in rows]

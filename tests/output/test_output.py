@@ -1,0 +1,292 @@
+"""Formats of rows, reports, files that are replaced, and texts on a terminal."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+import stat
+from contextlib import suppress
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from lagtop import LagtopError, Top, solve
+from pyarrow import parquet
+
+from lagrange_cli.arithmetic.text import NumberText
+from lagrange_cli.arithmetic.values import Key
+from lagrange_cli.errors import CannotWriteError
+from lagrange_cli.motion.record import shown_keys
+from lagrange_cli.output import terminal
+from lagrange_cli.output.destination import Output, opened
+from lagrange_cli.output.formats import block_text, part_file, text_columns, write
+from lagrange_cli.output.report import Field, Report, drawn, record_text, uncertain_text
+
+NAMES = ["a", "text", 'b,"', "c", "more"]
+
+
+def rows_of(count: int) -> tuple[list[Any], list[list[Any]]]:
+    """Return the columns of a block, and its rows as Python values."""
+    rng = np.random.default_rng(count)
+    numbers = rng.normal(size=(count, 3)) * 10.0 ** rng.integers(-300, 300, (count, 3))
+    numbers[rng.random((count, 3)) < 0.2] = np.nan
+    texts = [(None, "re]g,[ular", 'a "b"\n', "ü")[i] for i in rng.integers(0, 4, count)]
+    more = [(True, 1, 1.0, {"x": [1]}, "null")[i] for i in rng.integers(0, 5, count)]
+    cells = [[None if math.isnan(x) else x for x in row] for row in numbers.tolist()]
+    rows = [[x[0], y, *x[1:], z] for x, y, z in zip(cells, texts, more, strict=True)]
+    return [numbers[:, :1], texts, numbers[:, 1:], more], rows
+
+
+def text_of(fmt: str, names: list[str], *blocks: Any) -> str:
+    stream = io.BytesIO()
+    write(stream, names, [block_text(columns, names, fmt) for columns in blocks], fmt)
+    return stream.getvalue().decode()
+
+
+def test_two_blocks_read_back_as_the_rows() -> None:
+    (columns, rows), (more, others) = rows_of(3), rows_of(50)
+    expected = [dict(zip(NAMES, row, strict=True)) for row in rows + others]
+    assert json.loads(text_of("json", NAMES, columns, more)) == expected
+    lines = text_of("ndjson", NAMES, columns, more).splitlines()
+    assert [json.loads(line) for line in lines] == expected
+    header, *cells = csv.reader(io.StringIO(text_of("csv", NAMES, columns, more), newline=""))
+    assert header == NAMES
+    for found, row in zip(cells, rows + others, strict=True):
+        for cell, value in zip(found, row, strict=True):
+            if isinstance(value, str | None):
+                assert cell == (value or "")
+            else:
+                assert json.loads(cell) == value
+
+
+@pytest.mark.parametrize("width", [1, 2, 9])
+def test_arrays_read_back_as_the_same_doubles(width: int) -> None:
+    numbers = np.random.default_rng(width).normal(size=(50, width)) * 1e-7
+    numbers[::7, 0] = np.nan
+    names = [f"x{i}" for i in range(width)]
+    text = text_of("csv", names, [numbers])
+    assert len(text.split()) == 51  # a reader would skip an empty line
+    cells = [[float(x or "nan") for x in row] for row in csv.reader(text.splitlines()[1:])]
+    assert np.array_equal(np.array(cells), numbers, equal_nan=True)
+
+
+def test_numbers_that_are_written_out_keep_their_digits() -> None:
+    columns = text_columns([["1.50", ""], ["", "2e-9"]])
+    assert text_of("csv", ["a", "b"], columns) == "a,b\n1.50,\n,2e-9\n"
+    assert text_of("json", ["a", "b"], columns) == '[{"a":1.50,"b":null},\n{"a":null,"b":2e-9}]\n'
+    assert text_of("csv", ["a"], text_columns([[""]])) == 'a\n""\n'
+
+
+def test_no_rows() -> None:
+    assert text_of("csv", ["a", "b"]) == "a,b\n"
+    assert text_of("json", ["a"]) == "[]\n"
+    assert text_of("ndjson", ["a"]) == ""
+
+
+def test_parquet_holds_numbers_and_texts(tmp_path: Path) -> None:
+    (columns, rows), file = rows_of(40), tmp_path / "x.parquet"
+    block = block_text(columns, NAMES, "parquet")
+    file.write_bytes(part_file("parquet", NAMES, 1, block))
+    found = [[*row.values()][:4] for row in parquet.read_table(file).to_pylist()]
+    assert found == [row[:4] for row in rows]
+
+
+def test_parts_of_csv_are_one_file() -> None:
+    blocks = [block_text([np.eye(2)], ["a", "b"], "csv")] * 2
+    files = [part_file("csv", ["a", "b"], i, block) for i, block in enumerate(blocks)]
+    assert b"".join(files).decode() == text_of("csv", ["a", "b"], [np.eye(2)], [np.eye(2)])
+
+
+RECORD = {"name": 'a "b"\\\tθ', "a": 1e-7, "b": None, "c": NumberText("1.50"), "u": {"x": "y"}}
+
+
+def test_a_record_in_json_and_csv(tmp_path: Path) -> None:
+    path = tmp_path / "record"
+    Output(str(path), "json").record(RECORD, dict)
+    text = path.read_text(encoding="utf-8")
+    assert '"a":1e-7,"b":null,"c":1.50' in text
+    assert json.loads(text) == RECORD | {"c": 1.5}
+    Output(str(path), "csv").record({x: RECORD[x] for x in "abc"}, dict)
+    assert path.read_text() == "a,b,c\n1e-7,,1.50\n"
+
+
+# tables and reports
+
+
+def test_a_table_cuts_no_digit_however_narrow_the_terminal() -> None:
+    record = solve(Top(theta0_deg=0)).record()
+    digits = {str(x) for x in record.values() if isinstance(x, float)}
+    for width in (None, 200, 80, 40, 10):
+        shown = record_text(record, shown_keys(), width)
+        assert digits <= set(shown.split()), width
+    wide = record_text(record, shown_keys(), None)
+    assert max(map(len, wide.splitlines())) <= 80
+
+
+def test_brackets_in_cells_are_no_markup_and_control_characters_are_escaped() -> None:
+    shown = drawn(["[bold]x"], [["[red]y\x1b[31m\x9b\u202e"]], (), None)
+    assert shown.split() == ["[bold]x", "─" * 24, "[red]y\\x1b[31m\\x9b\\u202e"]
+
+
+def test_keys_of_a_record_have_groups() -> None:
+    keys = {"a": Key("One", "α", "first"), "b": Key("Two", "β", "second", "kg", "(1)")}
+    shown = record_text({"a": 1.0, "b": 2.0, "remark": "note", "summary": "Sum."}, keys, None)
+    summary, _, _, *lines, remark = [line.split() for line in shown.splitlines() if line]
+    assert (summary, remark) == (["Sum."], ["note"])
+    rows = [["α", "first", "1.0"], ["β", "second", "2.0", "kg", "(1)"]]
+    assert lines == [["One"], rows[0], ["Two"], rows[1]]
+
+
+def test_a_report_in_every_format() -> None:
+    fields = [Field("key", "key", is_text=True), Field("value", "value"), Field("hidden")]
+    rows = [SimpleNamespace(key="x,y", value=1.5, hidden=math.inf)]
+    report = Report({"samples": "3"}, fields, rows, ["Fine."], {"x": "kg"})
+    assert report.text("csv") == b'key,value,hidden\n"x,y",1.5,inf\n'
+    row = {"key": "x,y", "value": 1.5, "hidden": None}
+    assert json.loads(report.text("ndjson")) == row
+    whole = {"conditions": {"samples": "3"}, "rows": [row], "conclusions": ["Fine."]}
+    assert json.loads(report.text("json")) == whole | {"units": {"x": "kg"}}
+    shown = [line.split() for line in report.text("table").decode().splitlines() if line]
+    assert shown == [["samples", "3"], ["key", "value"], ["─" * 10], ["x,y", "1.5"], ["Fine."]]
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "shown"),
+    [
+        *((5.0, 0.1, "5.00(10)"), (5.0, 0.3549, "5.00(35)"), (5.0, 0.355, "5.0(4)")),
+        *((5.0, 0.9494, "5.0(9)"), (5.0, 0.95, "5.0(1.0)"), (5.0, 0.9949, "5.0(1.0)")),
+        *((73.92, 1.2, "73.9(1.2)"), (0.0, 0.02, "0.000(20)"), (2e300, 1e295, "2.000000(10)e+300")),
+        *((1234.5, 0.0, "1234.5"), (1.2345e-7, 2e-9, "1.234(20)e-07"), (-3e9, 5e7, "-3.00(5)e+09")),
+    ],
+)
+def test_uncertainties_are_rounded_as_the_particle_data_group_does(
+    value: float, std: float, shown: str
+) -> None:
+    assert uncertain_text(value, std) == shown
+
+
+# files
+
+
+def test_a_file_is_replaced_only_on_success(tmp_path: Path) -> None:
+    target, link = tmp_path / "out.csv", tmp_path / "link.csv"
+    target.write_text("old")
+    target.chmod(0o640)
+    link.symlink_to(target)
+    with suppress(KeyboardInterrupt), opened(str(link)) as stream:
+        stream.write(b"half")
+        raise KeyboardInterrupt
+    assert (target.read_text(), sorted(tmp_path.iterdir())) == ("old", [link, target])
+    with opened(str(link)) as stream:
+        stream.write(b"new")
+        assert target.read_text() == "old"
+    assert (target.read_text(), link.is_symlink()) == ("new", True)
+    assert stat.S_IMODE(target.stat().st_mode) == 0o640
+    assert sorted(tmp_path.iterdir()) == [link, target]
+
+
+def test_a_new_file_has_the_usual_mode(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to("target")
+    with opened(str(tmp_path / "link")):
+        pass
+    (tmp_path / "usual").touch()
+    modes = {(tmp_path / name).stat().st_mode for name in ("target", "usual")}
+    assert len(modes) == 1
+
+
+@pytest.mark.parametrize(
+    ("path", "why"),
+    [
+        ("folder", "Is a directory"),
+        ("nofile/", "Is a directory"),
+        ("loop", "Too many levels of symbolic links"),
+        ("", "No such file or directory"),
+        ("none/x", "No such file or directory"),
+        ("file/x", "Not a directory"),
+    ],
+)
+def test_places_that_a_shell_refuses(
+    path: str, why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
+    before = sorted(tmp_path.rglob("*"))
+    with pytest.raises(CannotWriteError) as error:
+        Output(path, "csv").text("x")
+    assert str(error.value) == f"cannot write {path or repr(path)}: {why}"
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_fifo_and_a_device_are_written_in_place(tmp_path: Path) -> None:
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
+    Output(str(fifo), "csv").text("x")
+    assert os.read(reader, 9) == b"x"
+    os.close(reader)
+    Output("/dev/null", "csv").text("x")
+    assert stat.S_ISFIFO(fifo.stat().st_mode)
+    with pytest.raises(CannotWriteError, match="No space left"):
+        Output("/dev/full", "csv").text("x")
+
+
+# the terminal
+
+
+def test_messages_are_one_printable_line() -> None:
+    hostile = "a\x1b[31m\x9b\x7f\u202e\u200b\udcff\n b"
+    assert terminal.one_line(hostile) == "a\\x1b[31m\\x9b\\x7f\\u202e\\u200b\\udcff b"
+    long = terminal.one_line("x" * 50_000)
+    assert len(long) <= terminal.MOST_CHARACTERS
+    assert "characters ...]" in long
+
+
+class Screen(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_progress_is_a_line_that_vanishes(monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = Screen()
+    monkeypatch.setattr("sys.stderr", screen)
+    assert list(terminal.with_progress([1, 2], "rows")) == [1, 2]
+    assert screen.getvalue() == ""  # because the work took less than a second
+    monkeypatch.setattr(terminal, "DELAY", -1.0)
+    parts: Any = terminal.with_progress([30, 10], "rows", size=int)
+    assert next(parts) == 30
+    assert next(parts) == 10
+    assert screen.getvalue() == "\r\rrows: 75 %\r          \r"
+    with pytest.raises(LagtopError):
+        parts.throw(LagtopError("x"))
+    assert list(terminal.with_progress(iter([5]), "rows")) == [5]
+    assert screen.getvalue().endswith("\r\rrows: 1 done\r            \r")
+
+
+def test_no_progress_unless_standard_error_is_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(terminal, "DELAY", -1.0)
+    for stream in (io.StringIO(), None):  # None is a closed stream
+        monkeypatch.setattr("sys.stderr", stream)
+        assert list(terminal.with_progress([1, 2], "rows")) == [1, 2]
+        assert not (stream and stream.getvalue())
+
+
+@pytest.mark.parametrize("is_screen", [False, True])
+@pytest.mark.parametrize("fmt", ["csv", "ndjson", "table"])
+def test_data_do_not_control_a_terminal(
+    fmt: str, is_screen: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hostile = "\x1b]0;evil\x07"
+    stdout = io.TextIOWrapper(io.BytesIO())
+    monkeypatch.setattr("sys.stdout", stdout)
+    monkeypatch.setattr("lagrange_cli.output.destination.is_screen", lambda _: is_screen)
+    Output("-", fmt).rows([{"id": hostile, "r0": 1.0}], ["id", "r0"])
+    text = stdout.buffer.getvalue().decode()
+    assert (hostile in text) is (fmt == "csv" and not is_screen)
+    assert "evil" in text
