@@ -1,0 +1,206 @@
+"""Compare today's numbers with those of commit eec8223, which proved them by another arithmetic.
+
+`frozen.json` was written once by `tools/freeze.py`.  A later commit may only remove names from it,
+or replace the branch of a complex function that mpmath shows to be wrong; DIGEST changes with it.
+A key that is null in the lists `keys` and `radian_keys` is not compared.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import math
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import Lagtop, Solved
+from lagtop import LagtopError, Motion, Top, sensitivities, solve, sweep
+
+PATH = Path(__file__).parent / "frozen.json"
+DIGEST = "14add8e54000a42963c8300aaf7af9e2f6af434a2df9c83e3f558e337516e039"
+FROZEN: dict[str, Any] = json.loads(PATH.read_bytes())
+KEYS: list[str | None] = FROZEN["keys"]
+IN_RECORD = KEYS.index("precession_rate_half") + 1
+"""Number of the keys that every record has; the others are computed on request."""
+
+EPS = Fraction(1, 2**52)
+HAIR = Fraction(1, 10**29)
+"""Relative error of a number with 30 digits, rounded up."""
+LARGEST, SMALLEST = Fraction(2) ** 1024, Fraction(1, 2**1074)
+RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
+ANGLES = ("theta", "phi", "psi", "dphi", "dpsi")
+COSINES = ("u1", "u2", "u_quarter")
+SWEEP_EPS = 10
+
+
+def test_the_file_is_the_frozen_one() -> None:
+    """A new digest needs a reason in the message of its commit."""
+    assert hashlib.sha256(PATH.read_bytes()).hexdigest() == DIGEST
+
+
+def top_of(inputs: dict[str, Any]) -> Top:
+    """Return a top whose inputs are doubles, words, or texts of decimals."""
+    exact: dict[str, Any] = {
+        name: Fraction(x) if isinstance(x, str) and not x.startswith("steady") else x
+        for name, x in inputs.items()
+    }
+    return Top(**exact)
+
+
+def assert_double(motion: Motion, key: str, text: str | None) -> None:
+    """Check that a number of a motion is its 30 digits, rounded to the nearest double."""
+    exact = Fraction(text or 0)
+    if exact and not SMALLEST <= abs(exact) < LARGEST:
+        with pytest.raises(LagtopError):
+            getattr(motion, key)
+        return
+    value = getattr(motion, key)
+    if value is None or text is None:
+        assert value is text, (key, motion.top)
+    elif value != float(exact):  # perhaps almost midway between two doubles
+        near = {float(exact * (1 - HAIR)), float(exact * (1 + HAIR))}
+        assert value in near, (key, motion.top, text)
+
+
+def numbers_of(entry: dict[str, Any]) -> dict[str, str | None]:
+    """Return the numbers of a top by key."""
+    return {key: x for key, x in zip(KEYS, entry["numbers"], strict=True) if key}
+
+
+SHARES = [0, *(pytest.param(i, marks=pytest.mark.slow) for i in range(1, 4))]
+"""A quick run compares every fourth top, and a slow run the others."""
+
+
+@pytest.mark.parametrize("share", SHARES)
+def test_records(share: int) -> None:
+    """Words, and numbers with 30 digits, are the same."""
+    radian_keys = [key for key in FROZEN["radian_keys"] if key]
+    for entry in FROZEN["records"][share::4]:
+        motion, expected = solve(top_of(entry["top"])), numbers_of(entry)
+        assert [motion.regime, motion.path] == entry["words"], entry["top"]
+        assert motion.record(digits=30, keys=list(expected)) == expected, entry["top"]
+        if "radians" in entry:
+            found = motion.record(digits=30, radians=True, keys=radian_keys)
+            known = zip(FROZEN["radian_keys"], entry["radians"], strict=True)
+            assert found == {key: x for key, x in known if key}, entry["top"]
+
+
+@pytest.mark.parametrize("share", SHARES)
+def test_doubles(share: int) -> None:
+    """Each number of a motion is the nearest double to the number with 30 digits."""
+    for entry in FROZEN["records"][share::4]:
+        motion = solve(top_of(entry["top"]))
+        for key, text in numbers_of(entry).items():
+            assert_double(motion, key, text)
+
+
+def sweep_size(key: str, row: dict[str, Fraction | None], r0: float) -> Fraction | None:
+    """Return what 10 eps refer to: the number, 1 for a cosine, the larger part of a difference."""
+    if key in COSINES:
+        return Fraction(1)
+    turn, spin = row["precession_rate_half"], row["spin_rate_half"]
+    if key.endswith("_half") and turn is not None and spin is not None and row["b"] is not None:
+        apart = spin - Fraction(r0) + row["b"]
+        return max(abs(Fraction(r0)), abs(turn + apart) / 2, abs(turn - apart) / 2)
+    exact = row[key]
+    return None if exact is None else abs(exact)
+
+
+@pytest.mark.parametrize("tilt", ["theta0_deg", "theta0_rad"])
+def test_sweeps(tilt: str) -> None:
+    """Many tops at once have the same words, and numbers within 10 eps."""
+    numeric = [
+        (Top(**entry["top"]), entry)
+        for entry in FROZEN["records"]
+        if all(isinstance(x, float | int) for x in entry["top"].values())
+    ]
+    some = [(top, entry) for top, entry in numeric if getattr(top, tilt) is not None][:200]
+    names = ("m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0")
+    inputs: Any = {name: [getattr(top, name) for top, _ in some] for name in names}
+    keys = [key for key in KEYS[:IN_RECORD] if key]
+    columns = sweep(keys=["regime", "path", *keys, "error"], **inputs)
+    for i, (top, entry) in enumerate(some):
+        if columns["error"][i] is not None:  # a number beyond the range of doubles
+            continue
+        assert [columns["regime"][i], columns["path"][i]] == entry["words"], entry["top"]
+        texts = numbers_of(entry).items()
+        row = {key: None if text is None else Fraction(text) for key, text in texts if key in keys}
+        for key in keys:
+            value, size = float(columns[key][i]), sweep_size(key, row, float(top.r0))
+            exact = row[key]
+            if exact is None or size is None:
+                assert math.isnan(value), (key, entry["top"])
+            else:
+                assert abs(Fraction(value) - exact) <= SWEEP_EPS * EPS * size, (key, entry["top"])
+
+
+def options_of(inputs: dict[str, Any]) -> list[str]:
+    """Return a top as options of the command line, with all digits of its doubles."""
+    names = {"theta0_deg": "theta0", "theta0_rad": "theta0", "A_cm": "A-cm"}
+    options = ["--rad"] if "theta0_rad" in inputs else []
+    for key, x in inputs.items():
+        options.append(f"--{names.get(key, key)}={x if isinstance(x, str) else Decimal(x)}")
+    return options
+
+
+def columns_of(text: str) -> dict[str, list[str]]:
+    """Return the columns of a CSV by their headings."""
+    header, *rows = csv.reader(io.StringIO(text))
+    return dict(zip(header, map(list, zip(*rows, strict=True)), strict=True))
+
+
+def test_tables(lagtop: Lagtop, tmp_path: Path) -> None:
+    """Columns have the same 20 digits, and doubles are within the tolerance of each cell."""
+    path = tmp_path / "times.txt"
+    for entry in FROZEN["tables"]:
+        cells, times = entry["cells"], entry["times"]
+        path.write_text("".join(f"{Decimal(t)}\n" for t in times))
+        words = [*options_of(entry["top"]), "--times", path, "--columns", ",".join(cells)]
+        result = lagtop("table", *words, "--digits", 20, "--format", "csv")
+        assert result.exit_code == 0, result.stderr
+        degrees = "theta0_rad" not in entry["top"]
+        units = {name: ("_deg" if degrees else "_rad") * (name in ANGLES) for name in cells}
+        printed = {f"{name}{units[name]}": column for name, column in cells.items()}
+        assert columns_of(result.stdout) == printed, entry["top"]
+        computed = solve(Top(**entry["top"])).table(times, list(cells))
+        for name, column in cells.items():
+            unit = RADIAN if units[name] == "_deg" else 1
+            allowed = entry["tolerances"][name]
+            for t, text, value, most in zip(times, column, computed[name], allowed, strict=True):
+                error = abs(Fraction(float(value)) - Fraction(text) * unit)
+                assert error <= Fraction(most), (name, t, entry["top"])
+
+
+@pytest.mark.parametrize("entry", FROZEN["functions"], ids=lambda entry: " ".join(entry["command"]))
+def test_functions(lagtop: Lagtop, entry: dict[str, Any]) -> None:
+    """The functions of the two sources have the same 25 digits."""
+    result = lagtop(*entry["command"], "--format", "csv")
+    assert result.exit_code == 0, result.stderr
+    found = columns_of(result.stdout)
+    assert {name: found.get(name) for name in entry["columns"]} == entry["columns"]
+
+
+@pytest.mark.parametrize("entry", FROZEN["derivatives"], ids=lambda entry: str(entry["top"]))
+def test_derivatives(entry: dict[str, Any]) -> None:
+    """Derivatives are correctly rounded; null if one does not exist."""
+    derivatives = sensitivities(Top(**entry["top"])).derivatives
+    found = {
+        key: {name: None if math.isnan(x) else x for name, x in row.items()}
+        for key, row in derivatives.items()
+    }
+    assert found == entry["derivatives"]
+
+
+@pytest.mark.parametrize(
+    "entry", FROZEN["deviations"], ids=lambda entry: " ".join(entry["command"])
+)
+def test_standard_deviations(solved: Solved, entry: dict[str, Any]) -> None:
+    """Standard deviations of the numbers of a record are the same."""
+    found = solved(*entry["command"])
+    for key, known in entry["stds"].items():
+        assert found[key] == (known and pytest.approx(known, rel=1e-13, abs=0)), key
