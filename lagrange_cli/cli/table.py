@@ -135,12 +135,9 @@ def _listed(
     """
     if times is None:
         return None
-    from ..inputs.trajectory import TimesFile
+    from ..inputs.trajectory import read_times
 
-    file = TimesFile(times, counted=False, dialect=dialect)
-    if tops is None and fmt not in _DRAWN:
-        return partial(_same, file)
-    return partial(_same, file.listed(None if tops is not None else MAX_DRAWN_ROWS + 1))
+    return partial(_same, read_times(times, dialect.decimal))
 
 
 def _same(times: Points, _: Motion) -> Points:

@@ -1,4 +1,4 @@
-"""Input files, or standard input for `-`: their names and their bytes.
+"""Input files, or standard input for `-`: their names, bytes and text.
 
 Every error in reading an input file is a DataError, even if the file does not exist.
 """
@@ -8,125 +8,82 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
-from io import BufferedIOBase, BufferedReader, RawIOBase
-from typing import Any, BinaryIO, cast
+from contextlib import contextmanager, suppress
+from io import BytesIO
+from typing import BinaryIO
 
-from ..errors import CannotWriteError, DataError
-from .text_lines import NumberedLines
+from ..errors import CannotWriteError, DataError, LagtopError
 
-_AT_ONCE = 1 << 16
+LARGEST_FILE = 1 << 30
+"""Most bytes of an input file after decompression, because files are held in memory."""
+_AT_ONCE = 1 << 20
 _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 
 
-@contextmanager
-def reading(path: str) -> Iterator[BufferedIOBase]:
-    """Open a file for reading bytes, or standard input for `-`.
+def read_bytes(path: str, most: int = LARGEST_FILE) -> bytes:
+    """Return the contents of a file, or of standard input for `-`; gzip is decompressed.
 
-    Raises DataError if the file cannot be opened, or if reading fails inside the block.
+    Raises DataError for a file that cannot be read, or that has more than `most` bytes.
     """
     try:
-        if path == "-":
-            if sys.stdin is None:
-                raise OSError("it is closed: give a file in place of -")
-            yield cast(BufferedIOBase, sys.stdin.buffer)
-            return
-        with open(path, "rb") as file:
-            yield file
+        with _opened(path) as file:
+            content = _read_whole(file, most)
+        if content[:2] == _GZIP:
+            content = _decompressed(content, most)
     except OSError as error:
         raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
+    if len(content) > most:
+        raise DataError(f"{shown_path(path)} must have at most {most} bytes, has more")
+    return content
 
 
 @contextmanager
-def decoded_file(path: str, stream: BufferedIOBase | None = None) -> Iterator[BufferedReader]:
-    """Open a file like `reading`; gzip is decompressed, and marked UTF-16 becomes UTF-8.
-
-    An open `stream` is read in place of the path, and closed.  Raises DataError for a broken file,
-    here or while it is read.
-    """
-    name = shown_path(path)
-    with stream or reading(path) as file:
-        reader = found = BufferedReader(cast(Any, file), _AT_ONCE)
-        if found.peek(2)[:2] == _GZIP:
-            found = BufferedReader(_Chunks(_decompressed(found, name)), _AT_ONCE)
-        if found.peek(2)[:2] in _UTF16:
-            found = BufferedReader(_Chunks(_from_utf16(found, name)), _AT_ONCE)
-        try:
-            yield found
-        finally:
-            with suppress(ValueError):  # the stream may be closed
-                reader.detach()
+def _opened(path: str) -> Iterator[BinaryIO]:
+    """Open a file for reading bytes.  Standard input waits for all of its bytes."""
+    if path != "-":
+        with open(path, "rb") as file:
+            yield file
+        return
+    if sys.stdin is None:
+        raise OSError("it is closed: give a file in place of -")
+    with suppress(OSError):  # stand-ins of a test have no descriptor
+        os.set_blocking(sys.stdin.fileno(), True)
+    yield sys.stdin.buffer
 
 
-class _Chunks(RawIOBase):
-    """Forward-only stream over chunks of bytes."""
-
-    def __init__(self, chunks: Iterator[bytes]) -> None:
-        self._chunks, self._left = chunks, memoryview(b"")
-
-    def readable(self) -> bool:
-        """Return True: the stream is readable."""
-        return True
-
-    def readinto(self, buffer: Any) -> int:
-        """Fill a buffer with the next bytes, and return their number."""
-        if not self._left:
-            self._left = memoryview(next(filter(None, self._chunks), b""))
-        count = min(len(buffer), len(self._left))
-        buffer[:count], self._left = self._left[:count], self._left[count:]
-        return count
+def _read_whole(file: BinaryIO, most: int) -> bytes:
+    """Return the bytes of a file, or a little more than `most` of them."""
+    chunks, size = list[bytes](), 0
+    while size <= most and (chunk := file.read(_AT_ONCE)):
+        chunks.append(chunk)
+        size += len(chunk)
+    return b"".join(chunks)
 
 
-def _decompressed(stream: BufferedReader, name: str) -> Iterator[bytes]:
+def _decompressed(content: bytes, most: int) -> bytes:
+    """Return the contents of a gzip file.  Raises OSError for a broken one."""
     import gzip  # for few files only, like zlib
     import zlib
 
     try:
-        with gzip.GzipFile(fileobj=stream) as file:
-            while chunk := file.read(_AT_ONCE):
-                yield chunk
-    except (gzip.BadGzipFile, EOFError, zlib.error) as error:
-        raise DataError(f"{name}: not a gzip file: {error}") from None
+        with gzip.open(BytesIO(content)) as file:
+            return _read_whole(file, most)  # type: ignore[arg-type]
+    except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+        raise OSError(f"not a gzip file: {error}") from None
 
 
-def _from_utf16(stream: BufferedReader, name: str) -> Iterator[bytes]:
-    from codecs import getincrementaldecoder
+def decoded(content: bytes, name: str) -> str:
+    r"""Return UTF-8 text, or marked UTF-16 text, with `\n` as the only line end.
 
-    decoder = getincrementaldecoder("utf-16")()
-    try:
-        while chunk := stream.read(_AT_ONCE):
-            yield decoder.decode(chunk).encode()
-        decoder.decode(b"", True)
-    except UnicodeError as error:
-        raise DataError(f"{name}: not UTF-16 text: {error}") from None
-
-
-@contextmanager
-def temporary_files() -> Iterator[None]:
-    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
-    try:
-        yield
-    except OSError as error:
-        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
-
-
-@contextmanager
-def temporary_copy(stream: BufferedIOBase) -> Iterator[BinaryIO]:
-    """Copy the unread part of a stream to a temporary file, deleted at the end of the block.
-
-    Raises CannotWriteError if there is no space for the file.
+    Raises DataError for other bytes, with their line.
     """
-    from tempfile import TemporaryFile
-
-    with ExitStack() as stack:
-        with temporary_files():
-            copy = stack.enter_context(TemporaryFile())
-        while chunk := stream.read(1 << 20):
-            with temporary_files():
-                copy.write(chunk)
-        with temporary_files():
-            copy.seek(0)
-        yield cast(BinaryIO, copy)
+    try:
+        text = content.decode("utf-16" if content[:2] in _UTF16 else "utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        wrong = "the text must be UTF-8 or UTF-16: save the file as UTF-8"
+        raise DataError(f"{name}, line {line}: {wrong}") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 
 def utf8_path(path: str) -> str:
@@ -139,20 +96,24 @@ def shown_path(path: str) -> str:
     return "standard input" if path == "-" else utf8_path(path) or "''"
 
 
-def digested(path: str) -> tuple[BufferedIOBase | None, str]:
-    """Return the digest of a file, and a copy of it on disk if it can be read only once."""
-    with reading(path) as file:
-        if file.seekable():
-            next(iter(NumberedLines(file, shown_path(path))), None)  # /dev/zero has no digest
-            return None, _digest(file)
-        with temporary_copy(file) as copy:
-            return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(cast(BufferedIOBase, copy))
+def digest_of(path: str) -> str:
+    """Return the SHA-256 digest of a file.  Raises LagtopError for standard input."""
+    from hashlib import sha256  # for sweeps in parts only
+
+    if path == "-":
+        raise LagtopError("--parts needs a file of tops that can be read again, got -")
+    return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
 
 
-def _digest(stream: BufferedIOBase) -> str:
-    from hashlib import file_digest  # for sweeps in parts only
+@contextmanager
+def temporary_files() -> Iterator[None]:
+    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
+    try:
+        yield
+    except OSError as error:
+        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
 
-    stream.seek(0)
-    digest = file_digest(stream, "sha256").hexdigest()
-    stream.seek(0)
-    return f"sha256:{digest}"
+
+def digested(path: str) -> tuple[None, str]:
+    """Return nothing, and the digest of a file, for the old sweeps."""
+    return None, digest_of(path)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import parse_number, quoted, shortened
 from ..errors import DataError, LagtopError, SceneError
-from .files import reading, shown_path
+from .files import read_bytes, shown_path
 from .input_keys import TILT
 from .names import ANGLES, suggestion
 from .top import INPUTS, Top
@@ -73,12 +73,9 @@ class SceneFile:
 
         self.name, self.text = shown_path(path), ""
         try:
-            with reading(scene_path(path)) as file:
-                raw = file.read(_MOST_BYTES + 1)
+            raw = read_bytes(scene_path(path), _MOST_BYTES)
         except DataError as error:
             raise SceneError(f"{error}{suggestion(path, scene_names())}") from None
-        if len(raw) > _MOST_BYTES:
-            raise SceneError(f"{self.name}: a scene file must have at most 64 KiB")
         try:
             self.text = raw.decode("utf-8-sig")
             _check_dots(self.text)

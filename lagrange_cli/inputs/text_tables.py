@@ -1,297 +1,412 @@
-"""Text tables: the common grammar of files of tops, trajectories, recordings and times.
+"""Text tables: the one reader of files of tops, trajectories, recordings and times.
 
-A row is one line: a JSON object, or cells separated by commas, semicolons, tabs or white space.
-The delimiter and the decimal mark are decided once per file, from its headings and its first rows.
-A comma is a decimal mark only if it is not the delimiter.  A file that can be read in two ways, or
-that has thousands separators, is refused.
+A row is one line: cells separated by tabs, semicolons, commas or blanks, or a JSON object.  The
+delimiter, the headings and the decimal mark are decided once per file, from its first rows.
 """
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
-from io import BufferedIOBase
-from itertools import chain
-from typing import BinaryIO, NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.text import quoted
+from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
-from .text_lines import (
-    DIGITS,
-    UNDECIDED,
-    Dialect,
-    Numbered,
-    NumberedLines,
-    at_line,
-    decimal_mark,
-    decoded_row,
-    has_row,
-    is_number,
-)
+from .files import decoded
 
-SAMPLE_ROWS, _SAMPLE_BYTES = 1000, 1 << 22
-"""The number of rows that decide how a file is read, and their most bytes."""
-_MOST_TITLES = 5
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+_SAMPLE = 1000
+"""Number of rows that decide whether numbers have decimal commas."""
+_TITLES = 5
 """The headings are within these first rows, perhaps below a title such as Tracker's `mass A`."""
-_SEPARATORS = "\t;,"
-_NUMBERS = re.compile(rf"[+-]?{DIGITS}(?:\s+[+-]?{DIGITS})+", re.ASCII)
+_LINES_AT_ONCE = 50_000
+_SWAPPED = str.maketrans(",.", ".,")
+_DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
+_MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
-_LABVIEW, _END_OF_HEADER = "LabVIEW Measurement", b"***End_of_Header***"
+_LABVIEW, _END_OF_HEADER = "LabVIEW Measurement", "***End_of_Header***"
+"""The first and the last line of a header of LabVIEW."""
+Known = Callable[[Sequence[str]], int]
+"""Returns the number of known headings in a row, which distinguishes headings from titles."""
 
 
-class TextTable(NamedTuple):
-    """A table whose beginning was read: its headings, its dialect and its rows."""
+class Table:
+    """The rows of a file in memory: cells of text, values of JSON, or numbers."""
 
-    lines: NumberedLines
-    """The unread lines."""
-    first: Sequence[Numbered]
-    """The rows already read, below the headings."""
-    comments: Sequence[str] = ()
-    """The comments above the first row."""
-    headings: Sequence[str] | None = None
-    """The headings; None without headings, or if the rows are JSON objects."""
-    place: int = 1
-    """The line number of the headings, or else of the first row."""
-    dialect: Dialect = UNDECIDED
-    around: bytes | None = None
-    """The characters that may surround a JSON object; None for a table of cells."""
+    place = "line"
+    """The unit of the places of rows in messages: `line` or `row`."""
 
-    def rows(self) -> Iterator[Numbered]:
-        """Yield the rows, once, as soon as they are read."""
-        yield from self.first
-        for line in self.lines:
-            yield from self.rows_in([line])
+    def __init__(self, name: str, headings: Sequence[str] | None, width: int) -> None:
+        """Take the name of the file for messages, the names of its columns, and their number."""
+        self.name, self.headings, self.width = name, headings, width
 
-    def blocks(self) -> Iterator[list[Numbered]]:
-        """Yield the rows, once, many at a time and without blanks around them."""
-        for lines in chain([self.first], self.lines.blocks()):
-            if rows := self.rows_in(lines, self.around or b" \r\n"):
-                yield rows
+    def rows(self) -> Sequence[Sequence[Any]]:
+        """Return the cells of all rows, or the values of JSON.  Raises DataError."""
+        raise NotImplementedError
 
-    def rows_in(self, lines: Iterable[Numbered], around: bytes = b"") -> list[Numbered]:
-        """Return the lines that hold a row, without the characters `around` them."""
-        around = self.around or around
-        return [(i, row) for i, x in lines if has_row(row := x.strip(around))]
+    def column(self, index: int) -> list[Any]:
+        """Return the cells of one column.  Raises DataError for a row of another width."""
+        return [row[index] for row in self.rows()]
 
-    def decided(self, columns: Iterable[int]) -> Dialect:
-        """Return the dialect with the decimal mark found in some columns.
+    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
+        """Return columns of numbers, shape (rows, columns), with NaN for empty cells.
 
-        Raises DataError for thousands separators, and for ambiguous numbers.
+        `names` are the names of all columns in messages.  Raises DataError with the place of a cell
+        that is no number.
         """
-        if self.dialect.decimal:
-            return self.dialect
-        if self.dialect.delimiter == ",":
-            return self.dialect._replace(decimal=".")
-        wanted = set(columns)
-        seen: dict[str, tuple[int, str]] = {}
-        for number, line in self.first:
-            for i, cell in enumerate(_cells((number, line), self.dialect)):
-                if i in wanted:
-                    seen.setdefault(decimal_mark(cell.strip()), (number, cell.strip()))
-        commas = [seen[x] for x in (",", "perhaps") if x in seen]
-        if "thousands" in seen:
-            raise self._refused(seen["thousands"], "a number must have no thousands separators")
-        if commas and "." in seen:
-            raise self._refused(max(*commas, seen["."]), "a file must have one decimal mark")
-        if commas and "," not in seen:
-            raise self._refused(commas[0], "a comma may be a decimal mark or separate thousands")
-        return self.dialect._replace(decimal="," if commas else ".")
+        raise NotImplementedError
 
-    def _refused(self, where: tuple[int, str], wanted: str) -> DataError:
-        number, cell = where
-        return DataError(
-            f"{self.lines.name}, line {number}: {wanted}, got {quoted(cell)}: "
-            "pass --decimal point or --decimal comma"
-        )
+    def number(self, cell: Any) -> Fraction:
+        """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
+        raise NotImplementedError
+
+    @property
+    def lines(self) -> Sequence[int]:
+        """The line of each row, or its number, from 1."""
+        raise NotImplementedError
+
+    def where(self, row: int) -> str:
+        """Return the name of the file and the place of a row."""
+        return f"{self.name}, {self.place} {self.lines[row]}"
+
+
+class TextTable(Table):
+    """Rows of cells."""
+
+    def __init__(
+        self,
+        name: str,
+        lines: Sequence[str],
+        first: int,
+        headings: Sequence[str] | None,
+        *,
+        delimiter: str,
+        decimal: str = "",
+        comments: Sequence[str] = (),
+    ) -> None:
+        """Take all lines, and the index of the `first` one below the headings.
+
+        `decimal` is a point or a comma, or empty if the first rows decide.  `comments` are the
+        texts of comments above the headings.
+        """
+        self._all, self._first, self.comments = lines, first, comments
+        self.texts = [x for x in lines[first:] if _is_row(x)]
+        self.delimiter, self.decimal = delimiter, "." if delimiter == "," else decimal
+        width = len(headings or (self._cells(0) if self.texts else ()))
+        super().__init__(name, headings, width)
+
+    @cached_property
+    def lines(self) -> Sequence[int]:
+        """The line of each row, from 1."""
+        return [i + 1 for i in range(self._first, len(self._all)) if _is_row(self._all[i])]
+
+    def rows(self) -> Sequence[Sequence[str]]:
+        """Return the cells of all rows.  Raises DataError for a row of another width."""
+        return list(map(self.row, range(len(self.texts))))
+
+    def row(self, index: int) -> list[str]:
+        """Return the cells of a row.  Raises DataError for a row of another width."""
+        cells = self._cells(index)
+        if len(cells) != self.width:
+            wrong = f"a row must have {self.width} cells, got {len(cells)}"
+            raise DataError(f"{self.where(index)}: {wrong}")
+        return cells
+
+    def _cells(self, index: int) -> list[str]:
+        try:
+            return cells_of(self.texts[index], self.delimiter)
+        except LagtopError as error:
+            raise DataError(f"{self.where(index)}: {error}") from None
+
+    def decide(self, columns: Iterable[int]) -> None:
+        """Set the decimal mark from the first rows of some columns, unless it is set.
+
+        Raises DataError if a comma may be a decimal mark or separate thousands.
+        """
+        if self.decimal:
+            return
+        wanted, places = set(columns), dict[str, int]()
+        for i, text in enumerate(self.texts[:_SAMPLE]):
+            for j, cell in enumerate(self._cells(i) if "," in text else ()):
+                if j in wanted and "," in cell and _NUMBER.fullmatch(cell):
+                    places.setdefault(cell, i)
+        if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
+            cell, i = next(iter(places.items()))
+            wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
+            raise DataError(f"{self.where(i)}: {wrong}: pass --decimal point or --decimal comma")
+        self.decimal = "," if places else "."
+
+    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
+        """Return columns of numbers, shape (rows, columns), with NaN for empty cells."""
+        import numpy as np
+
+        self.decide(columns)
+        blocks = []
+        for first in range(0, len(self.texts), _LINES_AT_ONCE):
+            texts = self.texts[first : first + _LINES_AT_ONCE]
+            values = self._plain(texts)
+            if values is None:
+                rows = range(first, first + len(texts))
+                blocks.append(np.array([self._doubles(i, columns, names) for i in rows]))
+            else:
+                blocks.append(values[:, columns])
+        return np.concatenate(blocks) if blocks else np.empty((0, len(columns)))
+
+    def _plain(self, texts: Sequence[str]) -> Array | None:
+        """Return all columns of some rows, or None if NumPy does not read them."""
+        import numpy as np
+
+        text = "\n".join(texts)
+        if not text.isascii() or '"' in text or "\0" in text:
+            return None
+        if self.decimal == ",":
+            texts = text.translate(_SWAPPED).split("\n")
+        delimiter = None if self.delimiter == " " else self.delimiter
+        try:
+            values = np.loadtxt(texts, delimiter=delimiter, ndmin=2, comments=None)
+        except ValueError:
+            return None
+        return values if values.shape == (len(texts), self.width) else None
+
+    def _doubles(self, index: int, columns: Sequence[int], names: Sequence[str]) -> list[float]:
+        cells = self.row(index)
+        return [self._double(index, i, names[i], cells[i]) for i in columns]
+
+    def _double(self, index: int, column: int, name: str, cell: str) -> float:
+        plain = self.plain(cell)
+        if plain and ("," in plain or not _NUMBER.fullmatch(plain)):
+            wrong = f"{name} must be a number, got {quoted(cell)}{self._hint(cell)}"
+            raise DataError(f"{self.where(index)}, column {column + 1}: {wrong}")
+        return float(plain or "nan")
+
+    def plain(self, cell: str) -> str:
+        """Return a cell with a decimal point; a number with the other mark then fails to parse."""
+        return cell.translate(_SWAPPED) if self.decimal == "," else cell
+
+    def number(self, cell: str) -> Fraction:
+        """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
+        try:
+            return parse_number(self.plain(cell))
+        except LagtopError as error:
+            hint = self._hint(cell)
+            if hint or self.decimal == ",":
+                wrong = f"must be a finite decimal number, got {quoted(cell)}{hint}"
+                raise LagtopError(wrong) from None
+            raise error from None
+
+    def _hint(self, cell: str) -> str:
+        """Return a hint in parentheses if a cell is a number with the other decimal mark."""
+        other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
+        fits = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
+        return f" (use --decimal {other})" if fits else ""
+
+
+class JsonTable(Table):
+    """JSON objects as rows; a list of numbers becomes several columns."""
+
+    def __init__(self, name: str, objects: Sequence[dict[str, Any]], lines: Sequence[int]) -> None:
+        """Take the objects, and the line of each; no lines if they are parts of one array."""
+        self._lines = lines or range(1, len(objects) + 1)
+        self.place = "line" if lines else "row"
+        self._sizes: dict[str, int] = {}
+        for row in objects:
+            for key, value in row.items():
+                if not self._sizes.get(key):
+                    self._sizes[key] = len(value) if isinstance(value, list) else 0
+        self._objects = objects
+        headings = [part for key, size in self._sizes.items() for part in parts(key, size)]
+        super().__init__(name, headings, len(headings))
+
+    @property
+    def lines(self) -> Sequence[int]:
+        """The line of each object, or its number in the array, from 1."""
+        return self._lines
+
+    def rows(self) -> Sequence[Sequence[Any]]:
+        """Return the values of all objects.  Raises DataError for a list of another length."""
+        return self._values
+
+    @cached_property
+    def _values(self) -> list[list[Any]]:
+        return [self._row(i, x) for i, x in enumerate(self._objects)]
+
+    def _row(self, index: int, entries: dict[str, Any]) -> list[Any]:
+        row: list[Any] = []
+        for key, size in self._sizes.items():
+            value = entries.get(key)
+            if size and value is not None and not (isinstance(value, list) and len(value) == size):
+                wrong = f"must be {size} numbers, got {quoted(value)}"
+                raise DataError(f"{self.where(index)}, column {key}: {wrong}")
+            row += value or [None] * size if size else [value]
+        return row
+
+    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
+        """Return columns of numbers, shape (rows, columns), with NaN for null."""
+        import numpy as np
+
+        rows = self.rows()
+        for i in columns:
+            for j, row in enumerate(rows):
+                if type(row[i]) not in {int, float, type(None)}:
+                    wrong = f"{names[i]} must be a number, got {quoted(row[i])}"
+                    raise DataError(f"{self.where(j)}, column {self.headings[i]}: {wrong}")  # type: ignore[index]
+        chosen = [[row[i] for i in columns] for row in rows]
+        return np.array(chosen, np.float64).reshape(-1, len(columns))
+
+    def number(self, cell: Any) -> Fraction:
+        """Return a number exactly, as the shortest decimal of its double.
+
+        Raises LagtopError for anything else.
+        """
+        if type(cell) not in {int, float}:
+            raise LagtopError(f"must be a finite number, got {quoted(cell)}")
+        return parse_number(repr(cell))
 
 
 def read_table(
-    stream: BufferedIOBase | BinaryIO,
-    name: str,
-    asked: Dialect,
-    known: Callable[[Sequence[str]], int],
-    width: int | None = None,
-) -> TextTable:
-    """Read the beginning of a table.
+    content: bytes, name: str, known: Known, decimal: str = "", width: int | None = None
+) -> TextTable | JsonTable:
+    """Read a text table.
 
-    `known` returns the number of known headings in a row, which distinguishes headings from titles.
-    `width` is the number of columns if their names are given; headings in the file are then
-    optional, and ignored.  Raises DataError for a file that can be read with two delimiters.
+    `known` distinguishes headings from titles.  `decimal` is a point, a comma, or empty if the
+    first rows decide.  `width` is the number of columns if their names are given; headings in the
+    file are then ignored.  Raises DataError.
     """
-    lines = NumberedLines(stream, name)
-    kept = _sample(lines)
-    above = next((i for i, x in enumerate(kept) if has_row(x[1])), len(kept))
-    comments = [_decoded(x, name).strip("# \t") for x in kept[:above] if x[1].strip()]
-    start = kept[above][1].lstrip()[:1] if kept[above:] else b""
-    around = {b"{": b" \t\r\n", b"[": b"[], \t\r\n"}.get(start)
-    table = TextTable(lines, (), comments, dialect=asked, around=around)
-    rows = table.rows_in(kept[above:])
-    if not rows or around is not None:
-        return table._replace(first=rows, place=rows[0][0] if rows else 1)
-    rows, asked = _without_preamble(rows, name, asked)
-    return _with_headings(table._replace(first=rows, dialect=asked), known, width)
+    lines = decoded(content, name).split("\n")
+    start = 0
+    if lines[0].startswith(_LABVIEW):
+        start = 1 + max(
+            (i for i, x in enumerate(lines) if x.startswith(_END_OF_HEADER)), default=-1
+        )
+    rows = [i for i in range(start, len(lines)) if _is_row(lines[i])][: _TITLES + 1]
+    if rows and re.fullmatch('"?sep=."?', lines[rows[0]].strip()):
+        del rows[0]
+    if not rows:
+        return TextTable(name, lines, len(lines), None, delimiter=" ", decimal=decimal)
+    comments = [x.strip("# \t") for x in lines[start : rows[0]] if x.lstrip().startswith("#")]
+    if lines[rows[0]].lstrip()[0] in "{[":
+        return _json_table(name, lines, rows[0])
+    at, delimiter = _layout([lines[i] for i in rows], known, decimal, width)
+    headings, first = None, rows[0]
+    if at is not None:
+        first = rows[at] + 1
+        headings = None if width else _headings(name, lines, rows[at], delimiter)
+    more = {"delimiter": delimiter, "decimal": decimal}
+    return TextTable(name, lines, first, headings, comments=comments, **more)
 
 
-def _with_headings(
-    table: TextTable, known: Callable[[Sequence[str]], int], width: int | None
-) -> TextTable:
-    """Return a table of cells whose first rows have been read, with its headings and delimiter."""
-    rows, asked, name = table.first, table.dialect, table.lines.name
-    texts, numbers = list[str](), list[bool]()
-    for number, row in rows[:_MOST_TITLES]:
-        with at_line(name, number):
-            texts.append(decoded_row(row))
-            numbers.append(_has_number(texts[-1], asked))
-    at, delimiters = _find_headings(texts, numbers, asked, known)
-    below = rows if at is None else rows[at + 1 :]
-    headings, place = None, below[0][0] if below else table.lines.number + 1
-    if at is not None and width is None:
-        place = rows[at][0]
-        delimiter = _fitting(delimiters, texts[at], below, f"{name}, line {place}")
-        headings = _headings(texts[at], delimiter)
-        if delimiter == " " and below and all(len(_cells(x, Dialect(" "))) == 1 for x in below):
-            headings = [texts[at].strip()]
-    elif at is not None and len(delimiters) == 1 and delimiters != [" "]:
-        delimiter = delimiters[0]
-    else:
-        delimiter = asked.delimiter or _delimiter_of_rows(below, name, asked, width)
-    dialect = asked._replace(delimiter=delimiter)
-    return table._replace(first=below, headings=headings, place=place, dialect=dialect)
+def _headings(name: str, lines: Sequence[str], at: int, delimiter: str) -> list[str]:
+    """Return the headings in a line.  Raises DataError for a quoted one that does not end."""
+    if delimiter != " ":
+        try:
+            return cells_of(lines[at], delimiter)
+        except LagtopError as error:
+            raise DataError(f"{name}, line {at + 1}: {error}") from None
+    widths = {len(x.split()) for x in lines[at + 1 :] if _is_row(x)}
+    return [lines[at].strip()] if widths == {1} else _split(lines[at], delimiter)
 
 
-def _sample(lines: NumberedLines) -> list[Numbered]:
-    """Return the first lines, with up to `SAMPLE_ROWS` rows."""
-    kept, rows, size = [], 0, 0
-    for number, line in lines:
-        kept.append((number, line))
-        rows, size = rows + has_row(line), size + len(line)
-        if rows == SAMPLE_ROWS or size > _SAMPLE_BYTES:
-            break
-    return kept
+def _is_row(line: str) -> bool:
+    """Return whether a line has a row: it is not blank, a comment, or a rule of a drawn table."""
+    bare = line.strip()
+    return bool(bare) and bare[0] not in "#\u2500"
 
 
-def _without_preamble(
-    kept: list[Numbered], name: str, asked: Dialect
-) -> tuple[list[Numbered], Dialect]:
-    """Return the lines below Excel's `sep=;` or LabVIEW's header, and the declared dialect."""
-    first = _decoded(kept[0], name).strip()
-    if found := re.fullmatch(r'"?sep=(.)"?', first):
-        return kept[1:], asked._replace(delimiter=asked.delimiter or found[1])
-    if not first.startswith(_LABVIEW):
-        return kept, asked
-    ends = [i for i, x in enumerate(kept) if x[1].startswith(_END_OF_HEADER)]
-    end = ends[-1] + 1 if ends else 0
-    mark = next((x for _, x in kept[:end] if x.startswith(b"Decimal_Separator")), b"").strip()
-    decimal = asked.decimal or {b",": ",", b".": "."}.get(mark[-1:], "")
-    return kept[end:], asked._replace(decimal=decimal)
+def _layout(
+    texts: Sequence[str], known: Known, decimal: str, width: int | None
+) -> tuple[int | None, str]:
+    """Return the index of the row with the headings, or None, and the delimiter.
 
-
-def _find_headings(
-    titles: Sequence[str],
-    numbers: Sequence[bool],
-    asked: Dialect,
-    known: Callable[[Sequence[str]], int],
-) -> tuple[int | None, list[str]]:
-    """Return the index of the row with the headings, or None, and its possible delimiters.
-
-    Among the first rows without `numbers` it is the one with most known headings, or else the last.
+    The row with most known headings has them, or else the row above the first number.
     """
-    found, most = None, 0
-    end = numbers.index(True) if True in numbers else len(titles)
-    for i, text in enumerate(titles[: max(end, 1)]):
-        counts = {x: known(_headings(text, x)) for x in _delimiters_in(text, asked)}
-        if max(counts.values()) > most:
-            found, most = (i, [x for x, count in counts.items() if count]), max(counts.values())
-    if found is not None:
+    best, found = 0, (0, _delimiters(texts[0], decimal)[0])
+    for i, text in enumerate(texts):
+        for delimiter in _delimiters(text, decimal):
+            if (count := known(_split(text, delimiter))) > best:
+                best, found = count, (i, delimiter)
+    numeric = (i for i, x in enumerate(texts) if _has_number(x, decimal))
+    first = found[0] + 1 if best else next(numeric, len(texts))
+    if first == len(texts) or (best and (width is None or found[1] != " ")):
         return found
-    above = end - 1 if True in numbers else min(end, 1) - 1
-    return (above, _delimiters_in(titles[above], asked)[:1]) if above >= 0 else (None, [])
+    return first - 1 if first else None, _delimiter_of(texts[first], decimal, width)
 
 
-def _delimiters_in(text: str, asked: Dialect) -> list[str]:
-    """Return the possible delimiters of a row: those in it, or white space."""
+def _delimiters(text: str, decimal: str) -> list[str]:
+    """Return the possible delimiters of a row, the most probable one first."""
     bare = _ENCLOSED.sub("", text)
-    return [asked.delimiter] if asked.delimiter else [x for x in _SEPARATORS if x in bare] or [" "]
+    return [x for x in "\t;," if x in bare and x != decimal] or [" "]
 
 
-def _has_number(text: str, asked: Dialect) -> bool:
-    return any(is_number(x) for d in _delimiters_in(text, asked) for x in _headings(text, d))
+def _has_number(text: str, decimal: str) -> bool:
+    """Return whether some cell of a row is a number."""
+    return any(_NUMBER.fullmatch(x) for d in _delimiters(text, decimal) for x in _split(text, d))
 
 
-def _headings(text: str, delimiter: str) -> list[str]:
-    """Return the headings in a row; white space before a unit in brackets is not a delimiter."""
+def _delimiter_of(text: str, decimal: str, width: int | None) -> str:
+    """Return the delimiter with which most cells are numbers and the row has `width` cells."""
+
+    def fits(delimiter: str) -> tuple[bool, bool]:
+        cells = _split(text, delimiter)
+        return width in {None, len(cells)}, all(_NUMBER.fullmatch(x) for x in cells if x)
+
+    return max([*_delimiters(text, decimal), " "], key=fits)
+
+
+def _split(text: str, delimiter: str) -> list[str]:
+    """Return the headings in a row; a blank before a unit in brackets is not a delimiter."""
     if delimiter == " ":
         return [x.strip('"') for x in _HEADING.findall(text)]
-    return [x.strip() for x in Dialect(delimiter).cells(text)]
+    try:
+        return cells_of(text, delimiter)
+    except LagtopError:
+        return [x.strip() for x in text.split(delimiter)]
 
 
-def _fitting(delimiters: Sequence[str], text: str, rows: Sequence[Numbered], where: str) -> str:
-    """Return the delimiter that gives rows and headings the same number of cells.
-
-    Raises DataError if several delimiters do.
-    """
-    if len(delimiters) == 1:
-        return delimiters[0]
-    widths = {x: len(_headings(text, x)) for x in delimiters}
-    fitting = [
-        x for x, width in widths.items() if any(len(_cells(r, Dialect(x))) == width for r in rows)
-    ]
-    if len(fitting) != 1:
-        raise _two_delimiters(where, text)
-    return fitting[0]
+def cells_of(text: str, delimiter: str) -> list[str]:
+    """Return the cells of a line.  Raises LagtopError for a quoted cell that does not end on it."""
+    if '"' not in text:
+        return text.split() if delimiter == " " else [x.strip() for x in text.split(delimiter)]
+    try:
+        rows = csv.reader([text.strip()], delimiter=delimiter, strict=True, skipinitialspace=True)
+        return [x.strip() for x in next(rows)]
+    except csv.Error as error:
+        wrong = "a quoted cell must end with its quote, and on its line"
+        raise LagtopError(f"{wrong}: {error}") from None
 
 
-def _delimiter_of_rows(
-    rows: Sequence[Numbered], name: str, asked: Dialect, width: int | None
-) -> str:
-    """Return the delimiter of rows without headings: no cell may then hold several numbers.
-
-    Raises DataError if several delimiters fit, or none.
-    """
-    texts = [_decoded(row, name) for row in rows]
-    possible = [x for text in texts if (x := _delimiters_of_row(text, asked, width))]
-    if width is not None and not possible:  # the reader of the rows reports the width
-        return _delimiters_in(texts[0], asked)[0] if texts else " "
-    common = set.intersection(*possible) if possible else {" "}
-    if len(common) != 1:
-        raise _two_delimiters(f"{name}, line {rows[0][0]}", texts[0].strip())
-    return common.pop()
+def _json_table(name: str, lines: Sequence[str], first: int) -> JsonTable:
+    """Return JSON objects, one per line or in one array, as a table.  Raises DataError."""
+    if lines[first].lstrip()[0] == "[":
+        rows = _parsed(name, "\n".join(lines[first:]), first)
+        wrong = [f"row {i}" for i, x in enumerate(rows, 1) if not isinstance(x, dict)]
+        numbers: list[int] = []
+    else:
+        numbers = [i for i in range(first, len(lines)) if _is_row(lines[i])]
+        rows = [_parsed(name, lines[i], i) for i in numbers]
+        wrong = [f"line {i + 1}" for i, x in zip(numbers, rows, strict=True) if type(x) is not dict]
+    if wrong:
+        raise DataError(f"{name}, {wrong[0]}: a row must be a JSON object")
+    return JsonTable(name, rows, [i + 1 for i in numbers])
 
 
-def _delimiters_of_row(text: str, asked: Dialect, width: int | None) -> set[str]:
-    """Return the delimiters with which no cell of a row holds several numbers or a delimiter."""
-    present = [x for x in _SEPARATORS if x in text and x != asked.decimal]
-    present += [] if "\t" in present else [" "]
-    found = set()
-    for delimiter in present:
-        with suppress(LagtopError):
-            cells = [x.strip() for x in Dialect(delimiter).cells(text)]
-            if width in {None, len(cells)} and not any(map(_is_several, cells)):
-                found.add(delimiter)
-    return found
+def _parsed(name: str, text: str, first: int) -> Any:
+    """Return parsed JSON that begins in the line with index `first`.  Raises DataError."""
+    import orjson
+
+    try:
+        return orjson.loads(text)
+    except orjson.JSONDecodeError as error:
+        wrong = f"not JSON: {error.msg} at character {error.colno}"
+        raise DataError(f"{name}, line {first + error.lineno}: {wrong}") from None
 
 
-def _is_several(cell: str) -> bool:
-    several = set(cell) & set(_SEPARATORS) or _NUMBERS.fullmatch(cell)
-    return bool(several) and not is_number(cell)
-
-
-def _two_delimiters(where: str, text: str) -> DataError:
-    return DataError(
-        f"{where}: the delimiter must be clear, got {quoted(text)}: pass --delimiter, "
-        "or --decimal comma for decimal commas"
-    )
-
-
-def _cells(row: Numbered, dialect: Dialect) -> list[str]:
-    """Return the cells of a row; none if it cannot be read, which its reader reports later."""
-    with suppress(LagtopError):
-        return dialect.cells(decoded_row(row[1]))
-    return []
-
-
-def _decoded(row: Numbered, name: str) -> str:
-    with at_line(name, row[0]):
-        return decoded_row(row[1])
+def parts(name: str, size: int) -> list[str]:
+    """Return the names of the columns of an entry with `size` numbers; 0 means a single number."""
+    return [f"{name}_{i}" for i in range(size)] if size else [name]

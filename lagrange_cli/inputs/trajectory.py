@@ -1,25 +1,23 @@
-"""Trajectories from files or from standard input, a block of rows at a time.
+"""Trajectories and times from files or from standard input, held in memory as whole columns.
 
-The first bytes of a file determine its format, not its name: Parquet, npy, npz, JSON lines, or else
-text with a row per line.  Times alone are read exactly, from text only.
+The first bytes of a file determine its format, not its name: Parquet, npy, npz, or else text.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
-from itertools import chain, islice
-from typing import TYPE_CHECKING
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
-from ..arithmetic.text import NumberText, shortened
-from ..errors import DataError, LagtopError
-from .files import decoded_file, shown_path, temporary_copy
-from .names import ANGLES
-from .text_lines import UNDECIDED, Dialect, at_line, decoded_row, json_object
-from .text_tables import TextTable, read_table
+from ..arithmetic.points import ListedPoints
+from ..arithmetic.text import quoted, shortened
+from ..errors import DataError, LagtopError, UnavailableError
+from .files import LARGEST_FILE, read_bytes, shown_path
+from .names import ANGLES, repeated
+from .text_lines import UNDECIDED, Dialect
+from .text_tables import Table, TextTable, parts, read_table
 from .trajectory_columns import (
     QUANTITIES,
     FoundQuantity,
@@ -27,26 +25,26 @@ from .trajectory_columns import (
     in_known_unit,
     known_quantities,
     named_twice,
-    numeric_columns,
     plain_name,
     quantities_in,
 )
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .trajectory_text import Table
 
-_MAGIC = {b"PAR1": "parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
+_MAGIC = {b"PAR1": "Parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
 
 
 class Trajectory:
-    """An open trajectory: its quantities and its rows."""
+    """The columns of a file: times and quantities of a motion, and other columns."""
 
-    def __init__(self, path: str, table: Table, columns: Sequence[str] | None) -> None:
-        """Find the quantities.  Raises DataError without a time, or with nothing but times."""
-        self.name, self._table = shown_path(path), table
-        self.description = table.description
-        self.names = self._column_names(columns)
+    def __init__(self, table: Table, columns: Sequence[str] | None = None) -> None:
+        """Find the quantities; `columns` names all columns from the left.
+
+        Raises DataError without a time or a quantity besides, LagtopError for wrong `columns`.
+        """
+        self.name, self.table = table.name, table
+        self.names = list(_column_names(table, columns))
         found = quantities_in(self.names)
         if "t" not in found or len(found) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
@@ -65,34 +63,63 @@ class Trajectory:
         except LagtopError as error:
             raise DataError(f"{self.name}: {error}") from None
 
-    def _column_names(self, columns: Sequence[str] | None) -> list[str]:
-        if columns is not None:
-            if len(columns) != self._table.width:
-                raise LagtopError(
-                    f"columns must name all {self._table.width} columns of {self.name} "
-                    f"(_ leaves one out), got {len(columns)} names",
-                    "columns",
-                )
-            return list(columns)
-        if self._table.names is None:
-            raise DataError(
-                f"{self.name} has no header: name its {self._table.width} columns with --columns, "
-                "such as t,quaternion"
-            )
-        return list(self._table.names)
-
     def _in_known_unit(self, key: str, quantity: FoundQuantity) -> FoundQuantity:
         """Return a quantity in radians, degrees or no unit, with the factor that converts it.
 
         Times are then in seconds, and rates in radians per second.  Raises LagtopError for a unit
         that the quantity cannot have, and for parts in different units.
         """
-        parts = [self.names[i] for i in quantity.columns]
-        if len({plain_name(part)[1] for part in parts}) > 1:
-            shown = " and ".join(map(repr, parts[:2]))
+        named = [self.names[i] for i in quantity.columns]
+        if len({plain_name(part)[1] for part in named}) > 1:
+            shown = " and ".join(map(repr, named[:2]))
             raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
         unit, factor = in_known_unit(key, quantity.unit)
         return quantity._replace(unit=unit, factor=factor)
+
+    def values(self) -> dict[str, Array]:
+        """Return every quantity as an array of shape (rows, parts), with NaN for missing numbers.
+
+        Raises DataError for a cell that is not a number.
+        """
+        wanted = [i for found in self.quantities.values() for i in found.columns]
+        numbers = self.table.numbers(wanted, self.names)
+        return {
+            key: found.scaled(numbers[:, [wanted.index(i) for i in found.columns]])
+            for key, found in self.quantities.items()
+        }
+
+    def words(self, column: str) -> list[str]:
+        """Return the cells of a column as texts; numbers have their shortest form."""
+        cells = self.table.column(self.names.index(column))
+        return [f"{x:.17g}" if isinstance(x, float) else str(x) for x in cells]
+
+    def check_times(
+        self, t: Array, rows: Sequence[int] | None = None, *, repeats: bool = False
+    ) -> None:
+        """Raise DataError for a time that is not finite, or that turns back.
+
+        A repeated time is an error too, unless `repeats` is true.  `rows` are the indices of the
+        times among all rows (default: all).
+        """
+        import numpy as np
+
+        before, after = t[:-1], t[1:]
+        ways = (after > before) * 1.0 - (after < before)  # a difference may be beyond all doubles
+        moving = ways[ways != 0]
+        back = ways * (moving[0] if moving.size else 0.0) < 0
+        for wrong, wanted in (
+            (~np.isfinite(t), "t must be a finite number, got {1}"),
+            (np.r_[False, back], "t must not turn back, got {1} after {0}"),
+            (np.r_[False, (ways == 0) & (not repeats)], "t must not repeat, got {1} twice"),
+        ):
+            if (found := np.flatnonzero(wrong)).size:
+                i = int(found[0])
+                place = self.table.where(i if rows is None else rows[i])
+                raise DataError(f"{place}: {wanted.format(float(t[i - 1]), float(t[i]))}")
+
+    # The interface of the old fits and judge; it goes with them.
+
+    description: Mapping[str, str] = {}
 
     def add_angle(self, key: str, column: str, unit: str | None) -> str | None:
         """Read one more column of angles, as a quantity named `key`, and return their unit."""
@@ -105,185 +132,227 @@ class Trajectory:
 
     def add_words(self, key: str, column: str) -> Callable[[float], str]:
         """Read one more column, of words, as numbers; return the word of a number."""
-        index = self.names.index(column)
-        self.quantities[key] = FoundQuantity([index])
-        return self._table.word_of(index)
+        import numpy as np
+
+        words = self.words(column)
+        known = list(dict.fromkeys(words))
+        numbers = {word: float(i) for i, word in enumerate(known)}
+        self._added = {key: np.array([[numbers[x]] for x in words])}
+        return lambda number: known[int(number)]
+
+    _added: Mapping[str, Array] = {}
 
     def blocks(self, *, repeats: bool = False) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
-        """Yield the quantities, once, as arrays of shape (rows, parts), and the places of rows.
-
-        Raises DataError for a cell that is not a number, and for a time that is missing or turns
-        back.  A repeated time is an error too, unless `repeats` is true.
-        """
-        clock = Clock(self, repeats=repeats)
-        for found, places in self.rows():
-            clock.advance(found["t"][:, 0], places)
-            yield found, places
+        """Yield all quantities at once, with checked times, and the indices of rows."""
+        for values, rows in self.rows():
+            self.check_times(values["t"][:, 0], repeats=repeats)
+            yield values, rows
 
     def rows(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
-        """Yield blocks without checking the times (for files that hold several recordings)."""
-        wanted = sorted(i for found in self.quantities.values() for i in found.columns)
-        for values, places in self._table.blocks(wanted, [self.names[i] for i in wanted]):
-            block = {
-                key: found.scaled(values[:, [*map(wanted.index, found.columns)]])
-                for key, found in self.quantities.items()
-            }
-            yield block, places
-
-    def where(self, place: int) -> str:
-        """Return the name of the file and the place of a row."""
-        return f"{self.name}, {self._table.place} {place}"
+        """Yield all quantities at once, and the indices of rows."""
+        values = self.values() | dict(self._added)
+        if len(values["t"]):
+            yield values, range(len(values["t"]))
 
 
 class Clock:
-    """The check that times proceed in one direction, with or without repetitions."""
+    """The check of times of the old fits."""
 
     def __init__(self, trajectory: Trajectory, *, repeats: bool) -> None:
-        self.trajectory, self.repeats, self.direction = trajectory, repeats, 0.0
-        self.last: float | None = None
+        self.trajectory, self.repeats = trajectory, repeats
 
-    def advance(self, t: Array, places: Sequence[int]) -> None:
+    def advance(self, t: Array, rows: Sequence[int]) -> None:
         """Raise DataError for a time that is not finite, turns back, or repeats."""
-        import numpy as np
-
-        if bad := np.flatnonzero(~np.isfinite(t)).tolist():
-            raise self._error(places[bad[0]], f"t must be a finite number, got {t[bad[0]]}")
-        before = np.concatenate([t[:1] if self.last is None else [self.last], t[:-1]])
-        ways = (t > before) * 1.0 - (t < before)  # a difference may be beyond all doubles
-        moving = ways[ways != 0]
-        if not self.direction and moving.size:
-            self.direction = float(moving[0])
-        if bad := np.flatnonzero(ways * self.direction < 0).tolist():
-            i = bad[0]
-            wrong = f"t must not turn back, got {float(t[i])} after {float(before[i])}"
-            raise self._error(places[i], wrong)
-        still = np.flatnonzero(ways == 0)[self.last is None :]  # the first row has no step
-        if still.size and not self.repeats:
-            wrong = f"t must not repeat, got {float(t[still[0]])} twice"
-            raise self._error(places[int(still[0])], wrong)
-        self.last = float(t[-1])
-
-    def _error(self, place: int, wrong: str) -> DataError:
-        return DataError(f"{self.trajectory.where(place)}: {wrong}")
+        self.trajectory.check_times(t, rows, repeats=self.repeats)
 
 
 @contextmanager
 def open_trajectory(
     path: str, columns: Sequence[str] | None = None, dialect: Dialect = UNDECIDED
 ) -> Iterator[Trajectory]:
-    """Open the trajectory of a file, or of standard input for `-`.
+    """Return `read_trajectory` as a context manager, for the old fits and judge."""
+    yield read_trajectory(path, columns, dialect.decimal)
 
-    `columns` names all columns from the left and overrides the names in the file.  Raises DataError
-    for a file that cannot be read or holds no trajectory.
+
+def _column_names(table: Table, columns: Sequence[str] | None) -> Sequence[str]:
+    if columns is not None and len(columns) != table.width:
+        raise LagtopError(
+            f"columns must name all {table.width} columns of {table.name} "
+            f"(_ leaves one out), got {len(columns)} names",
+            "columns",
+        )
+    names = table.headings if columns is None else columns
+    if names is None and isinstance(table, TextTable):
+        names = _names_in_comments(table.comments, table.width)
+    if names is None:
+        raise DataError(
+            f"{table.name} has no header: name its {table.width} columns with --columns, "
+            "such as t,quaternion"
+        )
+    return names
+
+
+def _names_in_comments(comments: Sequence[str], width: int) -> list[str] | None:
+    """Return names of columns from the last comment that has them, as numpy.savetxt writes it."""
+    split = (x.replace(",", " ").replace(";", " ").split() for x in reversed(comments))
+    return next((x for x in split if len(x) == width and known_quantities(x)), None)
+
+
+def read_trajectory(
+    path: str, columns: Sequence[str] | None = None, decimal: str = ""
+) -> Trajectory:
+    """Return the trajectory in a file, or in standard input for `-`.
+
+    `columns` names all columns from the left and overrides the names in the file.  `decimal` is a
+    point or a comma, or empty if the file decides.  Raises DataError for a file that cannot be read
+    or holds no trajectory.
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
-    with decoded_file(path) as stream:
-        kind = _MAGIC.get(stream.peek(4)[:4])
-        if kind is None:
-            from .trajectory_text import read_text  # start-up
-
-            width = None if names is None else len(names)
-            yield Trajectory(path, read_text(stream, name, dialect, width), names)
-            return
-        from .trajectory_arrays import read_arrays  # start-up
-
-        with nullcontext(stream) if stream.seekable() else temporary_copy(stream) as content:
-            yield Trajectory(path, read_arrays(content, name, kind), names)
+    content = read_bytes(path)
+    if kind := _MAGIC.get(content[:4]):
+        return Trajectory(_read_arrays(content, name, kind), names)
+    table = read_table(content, name, known_quantities, decimal, len(names or ()) or None)
+    if table.headings is None and not table.width:
+        raise DataError(f"{name} must hold a trajectory, got no row")
+    return Trajectory(table, names)
 
 
-class TimesFile(Points):
-    """The times of a file, which can be iterated once and are not held in memory."""
+class ArrayTable(Table):
+    """Columns of numbers from an npy, npz or Parquet file."""
 
-    count = 0
+    place = "row"
 
-    def __init__(self, path: str, *, counted: bool = False, dialect: Dialect = UNDECIDED) -> None:
-        """Open the file (standard input for `-`) and read its first block of lines.
+    def __init__(self, name: str, names: Sequence[str] | None, columns: Sequence[Array]) -> None:
+        super().__init__(name, names, len(columns))
+        self._columns = columns
 
-        `counted` reads the file twice to count the times; otherwise their count is 0.  Raises
-        DataError for a file that cannot be read and for a row without a time, here or during
-        iteration.
-        """
-        if counted:
-            self.count = sum(1 for _ in _times_in(path, dialect))
-        times = _times_in(path, dialect)
-        first = list(islice(times, POINTS_AT_ONCE))
-        if not first:
-            raise DataError(f"{shown_path(path)} must hold at least one time, got none")
-        self._times = chain(first, times)
+    @property
+    def lines(self) -> Sequence[int]:
+        """The number of each row, from 1."""
+        return range(1, len(self._columns[0]) + 1)
 
-    def decimals(self) -> Iterator[Fraction]:
-        """Yield the times exactly, once."""
-        return self._times
+    def column(self, index: int) -> list[float]:
+        """Return one column as a list."""
+        numbers: list[float] = self._columns[index].tolist()
+        return numbers
 
-    def bounds(self) -> list[float]:
-        """Return an empty list: the bounds are not known before the end of the file."""
-        return []
-
-    def blocks(self) -> Iterator[Array]:
-        """Yield the times, once, as arrays of at most `POINTS_AT_ONCE`."""
+    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
+        """Return columns as doubles, shape (rows, columns)."""
         import numpy as np
 
-        while block := [float(time) for time in islice(self._times, POINTS_AT_ONCE)]:
-            yield np.array(block)
-
-    def listed(self, most: int | None = None) -> ListedPoints:
-        """Return at most `most` times as a list (default: all)."""
-        return ListedPoints(list(islice(self._times, most)))
+        return np.stack([self._columns[i] for i in columns], axis=1).astype(np.float64)
 
 
-def _times_in(path: str, dialect: Dialect) -> Iterator[Fraction]:
-    """Yield the times of a file, from its column `t` or its only column."""
-    name = shown_path(path)
-    with decoded_file(path) as stream:
-        table = read_table(stream, name, dialect, known_quantities)
-        with at_line(name, table.place):
-            time_of = _time_reader(table)
-        for number, row in table.rows():
-            with at_line(name, number):
-                time = time_of(row)
-            yield time
+def _read_arrays(content: bytes, name: str, kind: str) -> ArrayTable:
+    """Return the columns of real numbers that are as long as the column of times.
 
-
-def _time_reader(table: TextTable) -> Callable[[bytes], Fraction]:
-    """Return the function that reads the time in a row.  Raises LagtopError if there is none."""
-    if not table.first and table.headings is None:
-        return lambda _: Fraction()
-    if table.around is not None:
-        key, factor = _time_among(list(json_object(table.first[0][1])))
-        return lambda row: factor * _time_in_object(row, key)
-    headings, place, factor = table.headings, 0, Fraction(1)
-    if headings is not None:
-        name, factor = _time_among(headings)
-        place = list(headings).index(name)
-    width = len(headings or table.dialect.cells(decoded_row(table.first[0][1])))
-    if width > 1 and headings is None:
-        raise LagtopError(f"{width} columns must have headings, t among them, got none")
-    dialect = table.decided(numeric_columns(headings or ["t"]))
-
-    def time_of(row: bytes) -> Fraction:
-        return factor * _time_of(dialect.row(row, width)[place].strip(), dialect)
-
-    return time_of
-
-
-def _time_among(names: Sequence[str]) -> tuple[str, Fraction]:
-    """Return the name of the column of times, and the size of its unit in seconds."""
-    found = quantities_in(names)
-    if "t" not in found:
-        shown = shortened(", ".join(map(repr, names)))
-        raise LagtopError(f"the time must be a number below the heading t or time, got {shown}")
-    _, factor = in_known_unit("t", found["t"].unit)
-    return names[found["t"].columns[0]], factor or Fraction(1)
-
-
-def _time_in_object(row: bytes, key: str) -> Fraction:
-    json_object(row)  # for its errors
-    value = json.loads(row, parse_float=NumberText, parse_int=NumberText).get(key)
-    return _time_of(value if isinstance(value, NumberText) else repr(value), Dialect())
-
-
-def _time_of(text: str, dialect: Dialect) -> Fraction:
+    Raises DataError for a broken file; pickles are never loaded.
+    """
     try:
-        return dialect.number(text)
+        found = {"npy": _npy, "npz": _npz, "Parquet": _parquet}[kind](content)
+    except ImportError:
+        raise UnavailableError(
+            f"{name}: Parquet needs pyarrow: pip install 'lagtop[parquet]'"
+        ) from None
+    except Exception as error:  # no library lists its exceptions
+        why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
+        raise DataError(
+            f"{name}: not {'a' if kind == 'Parquet' else 'an'} {kind} file: {why}"
+        ) from None
+    real = {x: y for x, y in found.items() if y.dtype.kind in "iuf" and y.ndim in {1, 2}}
+    time = next((x for x in real if "t" in quantities_in([x])), next(iter(real), None))
+    if time is None:
+        shown = shortened(", ".join(f"{x} {y.dtype} {y.shape}".strip() for x, y in found.items()))
+        raise DataError(f"{name} must have real numbers in 1 or 2 dimensions, got {shown or None}")
+    tables = {x: y.reshape(len(y), -1).T for x, y in real.items() if len(y) == len(real[time])}
+    names = [
+        part for x, y in tables.items() for part in parts(x, len(y) if real[x].ndim > 1 else 0)
+    ]
+    if (twice := repeated(names)) is not None:
+        raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
+    columns = [column for table in tables.values() for column in table]
+    return ArrayTable(name, None if [*tables] == [""] else names, columns)
+
+
+def _npy(content: bytes) -> Mapping[str, Any]:
+    """Return the fields of a structured array, or the whole array under an empty name."""
+    import numpy as np
+
+    array = np.load(BytesIO(content), allow_pickle=False)
+    return {x: array[x] for x in array.dtype.names} if array.dtype.names else {"": array}
+
+
+def _npz(content: bytes) -> Mapping[str, Any]:
+    """Return the arrays of an archive.  Raises ValueError if they are too large."""
+    from zipfile import ZipFile
+
+    import numpy as np
+
+    _check_size(sum(x.file_size for x in ZipFile(BytesIO(content)).infolist()))
+    with np.load(BytesIO(content), allow_pickle=False) as archive:
+        return dict(archive)
+
+
+def _parquet(content: bytes) -> Mapping[str, Any]:
+    """Return the numeric columns, and lists of a fixed size as matrices; null becomes NaN."""
+    import numpy as np
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    file = parquet.ParquetFile(BytesIO(content))
+    _check_size(8 * file.metadata.num_rows * file.metadata.num_columns)
+    table = file.read()
+    if (twice := repeated(table.column_names)) is not None:
+        raise ValueError(f"the column {twice!r} comes twice")
+    found: dict[str, Any] = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        kind, size = column.type, getattr(column.type, "list_size", 0)
+        if size and (pa.types.is_floating(kind.value_type) or pa.types.is_integer(kind.value_type)):
+            rows = [x or [None] * size for x in column.to_pylist()]
+            found[name] = np.array(rows, np.float64).reshape(-1, size)
+        elif pa.types.is_floating(kind) or pa.types.is_integer(kind):
+            found[name] = column.to_numpy().astype(np.float64)
+    return found
+
+
+def _check_size(size: int) -> None:
+    if size > LARGEST_FILE:
+        raise ValueError(f"it must have at most {LARGEST_FILE} bytes of numbers, has {size}")
+
+
+def read_times(path: str, decimal: str = "") -> ListedPoints:
+    """Return the times in a file exactly, from its column `t` or its only column.
+
+    `decimal` is a point or a comma, or empty if the file decides.  Raises DataError for a file that
+    cannot be read, and for a row without a time.
+    """
+    table = read_table(read_bytes(path), shown_path(path), known_quantities, decimal)
+    column, factor = _time_column(table)
+    times = []
+    for i, cell in enumerate(table.column(column)):
+        try:
+            times.append(factor * table.number(cell))
+        except LagtopError as error:
+            raise DataError(f"{table.where(i)}: the time {error}") from None
+    if not times:
+        raise DataError(f"{table.name} must hold at least one time, got none")
+    return ListedPoints(times)
+
+
+def _time_column(table: Table) -> tuple[int, Fraction]:
+    """Return the index of the column of times, and the size of its unit in seconds."""
+    if table.headings is None:
+        if table.width > 1:
+            wanted = f"{table.width} columns must have headings, t among them"
+            raise DataError(f"{table.where(0)}: {wanted}, got none")
+        return 0, Fraction(1)
+    found = quantities_in(table.headings)
+    if "t" not in found:
+        shown = shortened(", ".join(map(repr, table.headings)))
+        wanted = "the time must be a number below the heading t or time"
+        raise DataError(f"{table.name}: {wanted}, got {shown}")
+    try:
+        _, factor = in_known_unit("t", found["t"].unit)
     except LagtopError as error:
-        raise LagtopError(f"the time {error}") from None
+        raise DataError(f"{table.name}: {error}") from None
+    return found["t"].columns[0], factor or Fraction(1)

@@ -162,16 +162,6 @@ _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITI
 _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
 """Units that mean those of the scene, as in a drawn table."""
 
-_EXUDYN = {
-    "RotationMatrix": ["t", "matrix"],
-    "Rotation": ["t", "rotxyz0_rad", "rotxyz1_rad", "rotxyz2_rad"],
-    "AngularVelocity": ["t", "omega_space_x", "omega_space_y", "omega_space_z"],
-    "AngularVelocityLocal": ["t", "omega_body_x", "omega_body_y", "omega_body_z"],
-    "Position": ["t", "position"],
-    "Displacement": ["t", "position"],
-}
-"""The columns of an EXUDYN sensor file by the kind of output in its comments."""
-
 
 def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     """Return the quantities of some columns; a column belongs to the first quantity that fits."""
@@ -193,11 +183,6 @@ def known_quantities(names: Sequence[str]) -> int:
     """Return the number of quantities that some headings name; 0 without a time."""
     found = quantities_in(names)
     return len(found) if "t" in found else 0
-
-
-def numeric_columns(names: Sequence[str]) -> list[int]:
-    """Return the columns of all quantities."""
-    return [i for found in quantities_in(names).values() for i in found.columns]
 
 
 def named_twice(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> tuple[str, str] | None:
@@ -238,7 +223,7 @@ def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | No
         return None, None
     if own == "angle" and unit in {"deg", "rad"}:
         return unit, None
-    if own not in {"angle", "time", "rad/time"}:
+    if not own:
         raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
     from .units import factor_of  # for few files only
 
@@ -276,15 +261,3 @@ def expanded(names: Sequence[str]) -> list[str]:
                 "columns",
             )
     return single
-
-
-def names_in_comments(comments: Sequence[str], cells: int) -> list[str] | None:
-    """Return the names of `cells` columns from the comments above them, or None."""
-    for comment in reversed(comments):
-        if kind := re.fullmatch(r"OutputVariableType\s*=\s*(\w+)", comment):
-            names = _EXUDYN.get(kind[1])
-            return None if names is None else expanded(names)
-        words = re.split(r"[\s,;]+", comment.strip())
-        if len(words) == cells and "t" in quantities_in(words):
-            return words
-    return None

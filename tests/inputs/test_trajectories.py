@@ -17,7 +17,7 @@ from lagtop import LagtopError
 from pyarrow import parquet
 
 from lagrange_cli.errors import DataError
-from lagrange_cli.inputs import text_lines, trajectory_arrays
+from lagrange_cli.inputs import text_tables as text_lines
 from lagrange_cli.inputs.trajectory import open_trajectory
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES, expanded, quantities_in
 
