@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.text import parse_number, quoted
+from ..arithmetic.text import json_text, parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
 from .files import decoded
 
@@ -62,6 +62,12 @@ class Table:
         that is no number.
         """
         raise NotImplementedError
+
+    def decide(self, columns: Iterable[int]) -> None:
+        """Set the decimal mark from the first rows of some columns, unless it is set.
+
+        Raises DataError if a comma may be a decimal mark or separate thousands.
+        """
 
     def number(self, cell: Any) -> Fraction:
         """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
@@ -126,10 +132,7 @@ class TextTable(Table):
             raise DataError(f"{self.where(index)}: {error}") from None
 
     def decide(self, columns: Iterable[int]) -> None:
-        """Set the decimal mark from the first rows of some columns, unless it is set.
-
-        Raises DataError if a comma may be a decimal mark or separate thousands.
-        """
+        """Set the decimal mark from the first rows of some columns, unless it is set."""
         if self.decimal:
             return
         wanted, places = set(columns), dict[str, int]()
@@ -242,7 +245,7 @@ class JsonTable(Table):
         for key, size in self._sizes.items():
             value = entries.get(key)
             if size and value is not None and not (isinstance(value, list) and len(value) == size):
-                wrong = f"must be {size} numbers, got {quoted(value)}"
+                wrong = f"must be {size} numbers, got {_shown(value)}"
                 raise DataError(f"{self.where(index)}, column {key}: {wrong}")
             row += value or [None] * size if size else [value]
         return row
@@ -255,7 +258,7 @@ class JsonTable(Table):
         for i in columns:
             for j, row in enumerate(rows):
                 if type(row[i]) not in {int, float, type(None)}:
-                    wrong = f"{names[i]} must be a number, got {quoted(row[i])}"
+                    wrong = f"{names[i]} must be a number, got {_shown(row[i])}"
                     raise DataError(f"{self.where(j)}, column {self.headings[i]}: {wrong}")  # type: ignore[index]
         chosen = [[row[i] for i in columns] for row in rows]
         return np.array(chosen, np.float64).reshape(-1, len(columns))
@@ -266,7 +269,7 @@ class JsonTable(Table):
         Raises LagtopError for anything else.
         """
         if type(cell) not in {int, float}:
-            raise LagtopError(f"must be a finite number, got {quoted(cell)}")
+            raise LagtopError(f"must be a finite number, got {_shown(cell)}")
         return parse_number(repr(cell))
 
 
@@ -328,6 +331,8 @@ def _layout(
     """
     best, found = 0, (0, _delimiters(texts[0], decimal)[0])
     for i, text in enumerate(texts):
+        if any(_are_numbers(_split(text, x)) for x in (*_delimiters(text, decimal), " ")):
+            break
         for delimiter in _delimiters(text, decimal):
             if (count := known(_split(text, delimiter))) > best:
                 best, found = count, (i, delimiter)
@@ -349,12 +354,17 @@ def _has_number(text: str, decimal: str) -> bool:
     return any(_NUMBER.fullmatch(x) for d in _delimiters(text, decimal) for x in _split(text, d))
 
 
+def _are_numbers(cells: Sequence[str]) -> bool:
+    """Return whether all cells are numbers or empty."""
+    return all(_NUMBER.fullmatch(x) for x in cells if x)
+
+
 def _delimiter_of(text: str, decimal: str, width: int | None) -> str:
     """Return the delimiter with which most cells are numbers and the row has `width` cells."""
 
     def fits(delimiter: str) -> tuple[bool, bool]:
         cells = _split(text, delimiter)
-        return width in {None, len(cells)}, all(_NUMBER.fullmatch(x) for x in cells if x)
+        return width in {None, len(cells)}, _are_numbers(cells)
 
     return max([*_delimiters(text, decimal), " "], key=fits)
 
@@ -405,6 +415,11 @@ def _parsed(name: str, text: str, first: int) -> Any:
     except orjson.JSONDecodeError as error:
         wrong = f"not JSON: {error.msg} at character {error.colno}"
         raise DataError(f"{name}, line {first + error.lineno}: {wrong}") from None
+
+
+def _shown(value: Any) -> str:
+    """Return a JSON value as text for a message."""
+    return shortened(json_text(value))
 
 
 def parts(name: str, size: int) -> list[str]:

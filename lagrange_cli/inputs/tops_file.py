@@ -176,9 +176,9 @@ def _format(table: Table, computed: Collection[str]) -> TopsFile:
             f"got {quoted(','.join(headings))}"
         )
     _check_units(units, name)
+    table.decide(i for i, x in enumerate(columns) if x in units)
     number, delimiter = table.number, ""
     if isinstance(table, TextTable):
-        table.decide(i for i, x in enumerate(columns) if x in units)
         # Blocks of rows go to other processes, without the rest of the file.
         delimiter, decimal = table.delimiter, table.decimal
         number = TextTable(name, [], 0, headings, delimiter=delimiter, decimal=decimal).number

@@ -328,6 +328,7 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     """
     table = read_table(read_bytes(path), shown_path(path), known_quantities, decimal)
     column, factor = _time_column(table)
+    table.decide([column])
     times = []
     for i, cell in enumerate(table.column(column)):
         try:

@@ -241,15 +241,6 @@ def test_a_range_has_one_unit(line: str, message: str, lagtop: Lagtop) -> None:
     assert_one_line(lagtop(*line.split()), 2, f"--r0 {message}")
 
 
-def test_tables_of_many_tops_name_units(lagtop: Lagtop) -> None:
-    keys = ["--keys", "r0,theta0_deg,T_nutation,regime"]
-    swept = lagtop("sweep", "--r0", "60:180:3 rpm", *keys, "--format", "markdown").stdout
-    assert swept.startswith("| r0 [rad/s] | theta0_deg | T_nutation [s] | regime |\n")
-    words = ["find", "--r0", "60:1600 rpm", "T_precession=800ms", "--keys", "T_precession"]
-    assert lagtop(*words, "--format", "table").stdout.startswith("T_precession [s]\n")
-    assert lagtop(*words).stdout.startswith("T_precession\n")
-
-
 def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     keys = ["--keys", "m,r0,error"]
     grid = lagtop("sweep", *WORDS[2:], "--m", "1,2 lb", "--r0", "log:60:6000:2 rpm", *keys)
@@ -290,7 +281,7 @@ def test_units_with_fractional_powers_are_refused(unit: str, lagtop: Lagtop) -> 
         ('{"R0": 1}', [], "standard input: the column R0 must be spelt r0"),
         ('{"theta0_Deg": 1}', [], "standard input: the column theta0_Deg must be spelt theta0_deg"),
         ("theta0_deg [rad]", [], "standard input: the column theta0_deg must be called theta0 [r"),
-        ('{"m": 1}', WORDS, "standard input: JSON lines have no units"),
+        ('{"m": 1}', WORDS, "standard input, heading m: m must have a unit such as 350g"),
     ],
 )
 def test_wrong_headings(header: str, options: list[str], message: str, lagtop: Lagtop) -> None:

@@ -67,21 +67,6 @@ LONG_FILE = "r0\n" + "".join(f"{i + 1}\n" for i in range(9000))
 SHORT_FILE = "".join(line + "\n" for line in LONG_FILE.splitlines()[:5001])
 
 
-def test_a_shorter_file_is_another_sweep(tmp_path: Path, lagtop: Lagtop) -> None:
-    (tmp_path / "long.csv").write_text(LONG_FILE)
-    (tmp_path / "short.csv").write_text(SHORT_FILE)
-    options = ["--keys", "r0", "--parts", tmp_path / "out"]
-    assert lagtop("sweep", tmp_path / "long.csv", *options).exit_code == 0
-    before = joined(tmp_path / "out")
-    result = lagtop("sweep", tmp_path / "short.csv", *options)
-    assert result.exit_code == 74
-    assert "another sweep, file sha256:" in result.stderr
-    assert result.stderr.count("\n") == 1
-    assert joined(tmp_path / "out") == before
-    again = lagtop("sweep", "-", *options, input=LONG_FILE)  # the name does not matter
-    assert again.exit_code == 0
-
-
 @pytest.mark.parametrize(
     ("options", "difference"),
     [
@@ -219,14 +204,6 @@ def test_a_file_system_without_links(
     assert lagtop("sweep", "--r0", "2", "--parts", tmp_path).exit_code == 74
 
 
-def test_fail_fast_writes_the_parts_before_the_error(tmp_path: Path, lagtop: Lagtop) -> None:
-    text = "r0\n" + "1\n" * 5000 + "x\n" * 5000
-    result = lagtop("sweep", "-", "--fail-fast", "--parts", tmp_path, input=text)
-    assert result.exit_code == 1
-    assert result.stderr.startswith("Error: line 5002: r0 must be")
-    assert [path.name for path in tmp_path.glob("part-*")] == ["part-000000.csv"]
-
-
 @pytest.mark.parametrize("fmt", ["csv", "ndjson", "json"])
 def test_fail_fast_prints_the_rows_before_the_error(fmt: str, lagtop: Lagtop) -> None:
     options = ["sweep", "-", "--keys", "r0", "--format", fmt]
@@ -272,23 +249,6 @@ FIVE = "r0\n" + "".join(f"{'x' if i == 3 else i + 1}\n" for i in range(5))
 
 
 @pytest.mark.parametrize(
-    "content",
-    [b"", b"[]", b"\xff\xfe", b"{}", b'{"failed": "x", "first": 1}', b"[" * 100_000, b"null"],
-)
-def test_a_damaged_count_of_errors_is_made_again(
-    content: bytes, tmp_path: Path, lagtop: Lagtop
-) -> None:
-    options = ["sweep", "-", "--keys", "r0", "--parts", tmp_path]
-    first = lagtop(*options, input=FIVE)
-    whole = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    assert "errors-000000.json" in whole
-    (tmp_path / "errors-000000.json").write_bytes(content)
-    again = lagtop(*options, input=FIVE)
-    assert (again.exit_code, again.stderr) == (first.exit_code, first.stderr) == (1, first.stderr)
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == whole
-
-
-@pytest.mark.parametrize(
     "content", [b"", b"nothing", b"[]", b"\xff\xfe", b"{" * 100_000, b"[" * 100_000]
 )
 def test_a_damaged_description_is_refused(content: bytes, tmp_path: Path, lagtop: Lagtop) -> None:
@@ -297,45 +257,3 @@ def test_a_damaged_description_is_refused(content: bytes, tmp_path: Path, lagtop
     (tmp_path / "sweep.json").write_bytes(content)
     said = f"cannot write {tmp_path}: sweep.json describes no sweep"
     assert_one_line(lagtop(*options), 74, said)
-
-
-@pytest.mark.parametrize("name", ["part-000000.csv", "errors-000000.json", "sweep.json"])
-@pytest.mark.parametrize("kind", ["folder", "pipe"])
-def test_parts_that_are_not_regular_files_are_refused(
-    name: str, kind: str, tmp_path: Path, lagtop: Lagtop
-) -> None:
-    """A folder of the name of a part counted as done; a pipe was waited for."""
-    options = ["sweep", "-", "--keys", "r0", "--parts", tmp_path]
-    lagtop(*options, input=FIVE)
-    (tmp_path / name).unlink()
-    (os.mkdir if kind == "folder" else os.mkfifo)(tmp_path / name)
-    said = f"cannot write {tmp_path}/{name}: it is there, and is no regular file"
-    assert_one_line(lagtop(*options, input=FIVE), 74, said)
-
-
-def test_a_pipe_of_tops_is_read_once(tmp_path: Path) -> None:
-    """The digest needs the content before the sweep does."""
-    for said in (b"", b"Resumed: 1 parts were already in out\n"):
-        line = f"{' '.join(LAGTOP)} sweep --keys r0 --parts out <(printf 'r0\\n1\\n2\\n')"
-        done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, check=False)
-        assert (done.returncode, done.stderr) == (0, said)
-    assert (tmp_path / "out" / "part-000000.csv").read_text() == "r0,error\n1.0,\n2.0,\n"
-
-
-def test_a_file_without_end_has_no_digest(tmp_path: Path) -> None:
-    """The digest of such a file was computed for ever."""
-    line = [*LAGTOP, "sweep", "--parts", "out", "/dev/zero"]
-    done = subprocess.run(line, cwd=tmp_path, capture_output=True, check=False, timeout=300)
-    said = b"Error: /dev/zero, line 1: a line must have less than 1048576 bytes\n"
-    assert (done.returncode, done.stdout, done.stderr) == (65, b"", said)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_no_space_for_a_copy_of_standard_input(tmp_path: Path) -> None:
-    line = (
-        f"ulimit -f 8; trap '' XFSZ; seq 100000 | sed '1s/.*/r0/' | "
-        f"{' '.join(LAGTOP)} sweep - --parts out"
-    )
-    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, check=False)
-    said = b"Error: cannot write temporary files: File too large\n"
-    assert (done.returncode, done.stdout, done.stderr) == (74, b"", said)

@@ -270,11 +270,12 @@ def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
     pytest.importorskip("pyarrow")
     from pyarrow import parquet
 
-    text = "id,r0\n7,0\n8,40\n9,x\n"
-    rows = lagtop("sweep", "-", "--format", "json", input=text).stdout
+    text = tmp_path / "tops.csv"
+    text.write_text("id,r0\n7,0\n8,40\n9,x\n")
+    rows = lagtop("sweep", text, "--format", "json").stdout
     whole, parts = tmp_path / "x.parquet", tmp_path / "parts"
     for options in (["-o", whole], ["--parts", parts]):
-        assert lagtop("sweep", "-", "--format", "parquet", *options, input=text).exit_code == 1
+        assert lagtop("sweep", text, "--format", "parquet", *options).exit_code == 1
     for file in (whole, parts / "part-000000.parquet"):
         assert parquet.read_table(file).to_pylist() == json.loads(rows)
     empty = tmp_path / "empty.parquet"
@@ -306,17 +307,17 @@ def test_rows_of_csv(tmp_path: Path, lagtop: Lagtop) -> None:
     file.write_bytes(
         b"\xef\xbb\xbfname,r0,theta0_deg,T_nutation\r\n"
         b'"a, ""b""",50,30,9\r\n\r\n=x,5_0,30,9\r\nc,7\r\n'
-        b'd,"40",1e400,9\r\n"e,1,2\r\n\xff,1,2,3\r\nf,-60,20,9\r\n'
+        b'd,"40",1e400,9\r\n"e,1,2\r\nf,-60,20,9\r\n'
     )
     result = lagtop("sweep", file, "--keys", "r0,T_nutation", "--psidot0", "0")
     assert result.exit_code == 1
     assert result.stderr == (
-        "Error: 5 of 7 tops have an error; the first: line 4: r0 must be a finite decimal number, "
+        "Error: 4 of 6 tops have an error; the first: line 4: r0 must be a finite decimal number, "
         "got '5_0' (leave out the underscores)\n"
     )
     rows = table(result.stdout)
-    assert [row["name"] for row in rows] == ['a, "b"', "=x", "c", "d", "", "", "f"]
-    where = ["", *(f"line {i}" for i in range(4, 9)), ""]
+    assert [row["name"] for row in rows] == ['a, "b"', "=x", "c", "d", "", "f"]
+    where = ["", *(f"line {i}" for i in range(4, 8)), ""]
     assert [row["error"].partition(":")[0] for row in rows] == where
     assert float(rows[-1]["T_nutation"]) == pytest.approx(
         solve(Top(r0=-60, theta0_deg=20)).T_nutation, rel=1e-15
@@ -339,17 +340,15 @@ def test_a_tilt_in_radians_over_one_in_degrees(lagtop: Lagtop) -> None:
 
 
 def test_rows_of_json(lagtop: Lagtop) -> None:
-    text = (
-        '{"id": 1, "r0": 40}\n{"id": {"x": [2]}, "theta0_rad": 1, "r0": 7}\n{"r0": true}\n[]\n{\n'
-    )
+    text = '{"id": 1, "r0": 40}\n{"id": {"x": [2]}, "theta0_rad": 1, "r0": 7}\n{"r0": true}\n'
     result = lagtop(
         "sweep", "-", "--keys", "r0,theta0_deg,error", "--format", "ndjson", "--theta0", "20",
         input=text,
     )  # fmt: skip
     rows = list(map(json.loads, result.stdout.splitlines()))
-    assert [row["id"] for row in rows] == [1, {"x": [2]}, None, None, None]
+    assert [row["id"] for row in rows] == [1, {"x": [2]}, None]
     assert [row["theta0_deg"] for row in rows[:2]] == [20, math.degrees(1)]
-    assert [bool(row["error"]) for row in rows] == [False, False, True, True, True]
+    assert [bool(row["error"]) for row in rows] == [False, False, True]
     assert rows[2]["error"] == "line 3: r0 must be a finite number, got true"
     assert result.exit_code == 1
 
