@@ -45,8 +45,8 @@ _MODULES = {
     "read_scene": "inputs.given",
     "sensitivities": "motion.sensitivity.sensitivities",
     "solve": "motion.solve",
-    "sweep": "sweeps.records",
-    "sweep_angles": "sweeps.angles",
+    "sweep": "sweep.records",
+    "sweep_angles": "sweep.angles",
     "view": "plot.browser",
 }
 """The module of each public name; it is imported when the name is first used.

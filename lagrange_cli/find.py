@@ -40,7 +40,7 @@ from .motion.quantity import unit_name
 from .motion.record import all_keys, shown_keys
 from .motion.regime import Regime
 from .motion.solve import Motion, solve
-from .sweeps.records import sweep
+from .sweep.records import sweep
 
 COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""

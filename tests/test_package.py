@@ -21,7 +21,7 @@ from lagtop import Judgement, Top
 
 from lagrange_cli.fits.record import Outcome
 from lagrange_cli.motion.numbers import Numbers
-from lagrange_cli.sweeps.results import Results
+from lagrange_cli.sweep.results import Results
 
 
 @pytest.mark.parametrize("name", dir(lagtop))
@@ -77,7 +77,7 @@ def test_the_import_alone_loads_nothing_heavy() -> None:
 
 
 def test_public_names_stand_beside_subpackages_of_the_same_name() -> None:
-    code = "import lagtop, lagrange_cli.sweeps.records as r; print(lagtop.sweep is r.sweep)"
+    code = "import lagtop, lagrange_cli.sweep.records as r; print(lagtop.sweep is r.sweep)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
     assert done.stdout == "True\n"
 

@@ -18,7 +18,7 @@ from ..arithmetic.types import Array
 from ..inputs.rotations import angles_of
 from ..inputs.top import Top
 from ..motion.solve import solve
-from ..sweeps.jobs import Child
+from ..sweep.jobs import Child
 from .engine_simulation import Body, serve
 from .integrators import problem_of
 from .method import AngleFunction, FailedError, Method, NotApplicableError, Run

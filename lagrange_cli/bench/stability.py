@@ -17,7 +17,7 @@ from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import Progress
-from ..sweeps.jobs import in_order
+from ..sweep.jobs import in_order
 from .battery import CONTRACT, KEY_CONTRACT, Case, HardScene, hard_scene, judged_case, prove
 from .hard_scenes import words_of
 from .measure import common_conditions, settled_reference

@@ -215,7 +215,7 @@ rad = flag("Use radians for all angles, in and out.", "--rad")
 certify = flag("Also print KEY_radius, a proven bound on the error.")
 plot = file("Also draw the report: FILE.svg or FILE.png.")
 jobs = option(
-    Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),
+    Parsed("N|auto", late("sweep.jobs", "parse_jobs")),
     "Number of processes; auto: one per core.  [default: 1]",
 )
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..inputs.units import System
     from ..motion.solve import Motion
     from ..output.destination import Output
-    from ..sweeps.plan import Make
+    from ..sweep.plan import Make
 
 _FORMATS = ("csv", "ndjson", "json", "parquet", "table")
 FEW = 50
@@ -78,9 +78,9 @@ def sweep_command(
     repeat the command to resume a run that was killed.
     """
     from ..output.formats import check_parquet
-    from ..sweeps.cluster import computed, connected
-    from ..sweeps.folder import Folder
-    from ..sweeps.plan import Tally, plan, shard_of
+    from ..sweep.cluster import computed, connected
+    from ..sweep.folder import Folder
+    from ..sweep.plan import Tally, plan, shard_of
 
     opt.exclude({"--parts": folder, "--output": out.path != "-"})
     if folder is not None:

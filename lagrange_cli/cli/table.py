@@ -195,8 +195,8 @@ def _write_many(
     described: bool,
     out: Output,
 ) -> None:
-    from ..sweeps.plan import Tally
-    from ..sweeps.tables import open_tables
+    from ..sweep.plan import Tally
+    from ..sweep.tables import open_tables
 
     tables, lines, given = open_tables(
         tops, top.scene, top.by_key(), request, fmt=out.fmt, system=top.units, dialect=dialect

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.numbers import Numbers
     from ..output.destination import Output
-    from ..sweeps.monte_carlo import Propagated
+    from ..sweep.monte_carlo import Propagated
 
 
 def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> None:
@@ -172,7 +172,7 @@ def _sampled(
     found: Given, motion: Numbers, samples: int, seed: int | None, radians: bool
 ) -> Report:
     """Return the report on random samples of the inputs."""
-    from ..sweeps import monte_carlo
+    from ..sweep import monte_carlo
 
     uncertain, record = first_order(found, motion), Motion(motion.exact).record(radians=radians)
     numbers = {}
@@ -210,7 +210,7 @@ def _all_inputs(found: Given, motion: Numbers) -> dict[str, float]:
 
 def _verdicts(outcome: Propagated) -> list[str]:
     """Return a sentence on linear propagation for each verdict that occurs."""
-    from ..sweeps.monte_carlo import FAILS, OPEN
+    from ..sweep.monte_carlo import FAILS, OPEN
 
     sentences = []
     for verdict, said in (

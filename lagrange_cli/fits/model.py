@@ -29,7 +29,7 @@ from ..motion.sensitivity.angle_sensitivities import AngleDerivatives
 from ..motion.sensitivity.neighbourhood import PARAMETERS
 from ..motion.sensitivity.sensitivities import sensitivities
 from ..motion.solve import solve
-from ..sweeps.angles import sweep_angles
+from ..sweep.angles import sweep_angles
 from .recording import Recording
 
 MEANINGS = {

@@ -23,7 +23,7 @@ from ..inputs.value import Value, parse_value
 from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
-from ..sweeps.records import BLOCK_ROWS, sweep
+from ..sweep.records import BLOCK_ROWS, sweep
 from .kinds import InputRange, Places, PlotRequest
 from .style import Look, mark_start, points, scale
 

@@ -41,10 +41,10 @@ from lagrange_cli.inputs.trajectory import open_trajectory
 from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
 from lagrange_cli.output.formats import block_text
-from lagrange_cli.sweeps.angles import sweep_angles
-from lagrange_cli.sweeps.plan import runs_of
-from lagrange_cli.sweeps.records import BLOCK_ROWS, column_keys, sweep
-from lagrange_cli.sweeps.results import ResultColumn
+from lagrange_cli.sweep.angles import sweep_angles
+from lagrange_cli.sweep.plan import runs_of
+from lagrange_cli.sweep.records import BLOCK_ROWS, column_keys, sweep
+from lagrange_cli.sweep.results import ResultColumn
 
 NUMPY: Any = np._core._multiarray_umath  # type: ignore[attr-defined]
 FEATURES: Mapping[str, bool] = NUMPY.__cpu_features__

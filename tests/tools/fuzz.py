@@ -49,7 +49,7 @@ from lagrange_cli.bench.hard_scenes import Scene
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
-from lagrange_cli.sweeps.angles import sweep_angles
+from lagrange_cli.sweep.angles import sweep_angles
 
 UNITS, WRAPPED, HALF_ULP, SWEEP_EPS = 4.0, 5.0, 0.5 + 1e-9, 10.0
 """The bounds: of an angle or a part of the quaternion, of an angle without whole turns, of a key of

@@ -35,7 +35,7 @@ from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = (
-    *("arithmetic", "elliptic", "inputs", "output", "motion", "sweeps", "fits", "plot", "judge"),
+    *("arithmetic", "elliptic", "inputs", "output", "motion", "sweep", "fits", "plot", "judge"),
     *("bench", "cli", "sweep", "fit", "compare"),
 )
 MODULES = {"fit": ["fit", "find.py"]}

@@ -12,7 +12,7 @@ from scenes import UNIT
 from lagrange_cli.inputs.value import Stds
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
-from lagrange_cli.sweeps.monte_carlo import (
+from lagrange_cli.sweep.monte_carlo import (
     FAILS,
     HOLDS,
     OPEN,

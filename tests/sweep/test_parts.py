@@ -15,8 +15,8 @@ from conftest import LAGTOP, Lagtop, assert_one_line, joined
 
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.inputs.ranges import parse_values
-from lagrange_cli.sweeps.folder import Folder
-from lagrange_cli.sweeps.plan import plan
+from lagrange_cli.sweep.folder import Folder
+from lagrange_cli.sweep.plan import plan
 
 
 def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:

@@ -18,9 +18,9 @@ from scenes import UNIT
 from lagrange_cli.bench.battery import judged_inputs
 from lagrange_cli.bench.hard_scenes import in_doubles
 from lagrange_cli.motion.record import NUMBER_KEYS
-from lagrange_cli.sweeps.records import sweep
-from lagrange_cli.sweeps.start_arrays import StartArrays
-from lagrange_cli.sweeps.top_arrays import TopArrays
+from lagrange_cli.sweep.records import sweep
+from lagrange_cli.sweep.start_arrays import StartArrays
+from lagrange_cli.sweep.top_arrays import TopArrays
 
 COSINES = {"u1", "u2", "u_quarter"}
 

@@ -23,9 +23,9 @@ from distributed import Client, LocalCluster
 
 from lagrange_cli.errors import UnavailableError
 from lagrange_cli.inputs.ranges import parse_values
-from lagrange_cli.sweeps.cluster import Computed, compute, computed, connected
-from lagrange_cli.sweeps.folder import Folder
-from lagrange_cli.sweeps.plan import Part, plan
+from lagrange_cli.sweep.cluster import Computed, compute, computed, connected
+from lagrange_cli.sweep.folder import Folder
+from lagrange_cli.sweep.plan import Part, plan
 
 pytestmark = pytest.mark.filterwarnings("default")  # whatever the cluster itself does
 

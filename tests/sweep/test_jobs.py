@@ -18,7 +18,7 @@ from click.testing import Result
 from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, wait_until
 
 from lagrange_cli.errors import CannotWriteError, LagtopError, UnavailableError
-from lagrange_cli.sweeps.jobs import _Worker, in_order, parse_jobs
+from lagrange_cli.sweep.jobs import _Worker, in_order, parse_jobs
 
 
 def number_and_place(x: int) -> tuple[int, int]:
@@ -71,7 +71,7 @@ def test_results_that_cannot_be_written_are_reported(
     for number in range(100):  # where the files were to be
         (tmp_path / str(number)).mkdir()
     folder = nullcontext(str(tmp_path))
-    monkeypatch.setattr("lagrange_cli.sweeps.jobs.TemporaryDirectory", lambda **_: folder)
+    monkeypatch.setattr("lagrange_cli.sweep.jobs.TemporaryDirectory", lambda **_: folder)
     with pytest.raises(CannotWriteError, match=r"^cannot write .*: Is a directory"):
         list(in_order(number_and_place, MANY, 2))
 
@@ -135,7 +135,7 @@ def test_bytes_are_those_of_one_process(
     options: Sequence[str], tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("lagrange_cli.sweeps.jobs._Worker", Started)
+    monkeypatch.setattr("lagrange_cli.sweep.jobs._Worker", Started)
     Path("tops.csv").write_text(tops(9000))
     Path("few.csv").write_text(tops(12))
     Path("times.txt").write_text("0.5\n" * 20_000)
@@ -249,7 +249,7 @@ LONG_WORK = """if True:
     from pathlib import Path
     sys.path.insert(0, {folder!r})
     from test_jobs import sleep_long
-    from lagrange_cli.sweeps.jobs import in_order
+    from lagrange_cli.sweep.jobs import in_order
     if __name__ == "__main__":
         list(in_order(sleep_long, range(9), 2))
 """

@@ -13,7 +13,7 @@ from fuzz import inputs_of, period_of, times_of
 from lagtop import LagtopError, Top, solve, sweep_angles
 
 from lagrange_cli.bench.hard_scenes import in_doubles
-from lagrange_cli.sweeps import angles
+from lagrange_cli.sweep import angles
 
 RNG = np.random.default_rng(14)
 COUNT = 100

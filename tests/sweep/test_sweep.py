@@ -25,10 +25,10 @@ from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.motion.gaps import state as state_of
 from lagrange_cli.motion.regime import Regime
 from lagrange_cli.motion.regime import exact as exact_of
-from lagrange_cli.sweeps import records as sweeps
-from lagrange_cli.sweeps.records import column_keys, sweep
-from lagrange_cli.sweeps.start_arrays import StartArrays
-from lagrange_cli.sweeps.top_arrays import TopArrays
+from lagrange_cli.sweep import records as sweeps
+from lagrange_cli.sweep.records import column_keys, sweep
+from lagrange_cli.sweep.start_arrays import StartArrays
+from lagrange_cli.sweep.top_arrays import TopArrays
 
 Record = dict[str, Any]
 
