@@ -94,6 +94,7 @@ def test_digits_are_judged_with_more_of_them(digits: int) -> None:
     assert 0 < error(row) < 50 * 10.0**-digits  # of angles of up to 70 rad
 
 
+@pytest.mark.slow
 def test_the_exact_angles_are_those_of_the_judge() -> None:
     work, judge = task(solve(Top()), 3.0, 5), Judge(Top().as_dict())
     for t, exact in zip(work.times.tolist(), work.exact, strict=True):
@@ -102,6 +103,7 @@ def test_the_exact_angles_are_those_of_the_judge() -> None:
     assert work.agreement < 1e-45
 
 
+@pytest.mark.slow
 def test_one_time_is_the_last_and_may_lie_before_the_start() -> None:
     work = task(solve(Top()), -2.5, 1)
     assert work.times.tolist() == [-2.5]
@@ -374,6 +376,7 @@ def test_sample_scenes(scene: str, lagtop: Lagtop) -> None:
     assert found["units_max"] < 4
 
 
+@pytest.mark.slow
 def test_scenes_make_one_report_and_one_picture(lagtop: Lagtop, tmp_path: Path) -> None:
     """Front, sorting and verdict belong to a scene; an option changes every scene."""
     scenes, picture = ["near-separatrix", "slow-top"], tmp_path / "x.svg"

@@ -47,6 +47,7 @@ def test_stratum(stratum: str) -> None:
         assert case.agreement < 1e-9
 
 
+@pytest.mark.slow
 def test_a_reference_with_too_few_digits_is_not_settled() -> None:
     """At 80 digits and at 110 the side of the pole is guessed, alike, and 60 times off."""
     top = Top(theta0_deg=1e-116, thetadot0=1, psidot0=1, r0=18, C=2, A=1, m=1, s=1, g=1)
@@ -305,6 +306,7 @@ def runs() -> dict[str, PeerRun]:
     return {name: peer_run(name, exact) for name in PEERS}
 
 
+@pytest.mark.slow
 def test_the_condition_is_what_half_a_unit_of_each_input_does(runs: dict[str, PeerRun]) -> None:
     """The reference of inputs that differ by so much, in all its digits."""
     inputs = {name: x for name, x in MOVING_TOP.as_dict().items() if x}

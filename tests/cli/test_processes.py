@@ -48,6 +48,7 @@ LOADED = {
 """Command lines, and the heavy packages that each needs."""
 
 
+@pytest.mark.slow
 def test_nothing_is_loaded_that_is_not_needed(tmp_path: Path) -> None:
     listing = "import atexit; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
     ends = forked(LOADED, tmp_path, each=listing)

@@ -200,6 +200,7 @@ ECHOING = [
 ]
 
 
+@pytest.mark.slow
 def test_control_characters_of_names_do_not_reach_the_terminal(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     echoing = [line.replace("{}", HOSTILE).replace(" file/", " ../file/") for line in ECHOING]

@@ -247,6 +247,7 @@ def test_loops_end_at_nan() -> None:
             assert np.isnan(values).tolist() == [False, True]
 
 
+@pytest.mark.slow
 def test_carlson_in_blocks() -> None:
     """Arrays longer than a block, of elements that need different numbers of steps."""
     x, y, z, p = np.exp(np.random.default_rng(3).normal(0, 4, (4, 40_000)))

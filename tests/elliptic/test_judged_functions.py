@@ -153,6 +153,7 @@ def test_what_takes_many_digits_is_left_to_arrays() -> None:
         assert isinstance(next(found), np.ndarray) == is_array
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_small_tables_have_the_nearest_doubles(seed: int) -> None:
     """Numbers of many digits are rounded once: each of 3 900 values was right."""

@@ -39,6 +39,7 @@ def noisy(end: float, rows: int, seed: int) -> tuple[Array, Any]:
     return t, fuzz_fits.noisy(MISLED, t, names, NOISE, np.random.default_rng(seed))
 
 
+@pytest.mark.slow
 def test_both_senses_of_psi_are_tried() -> None:
     """The mirror image came first here; its fit was taken, with r0 = 353 for -35.5."""
     t, angles = noisy(1.1210948238157177, 70, 18)
@@ -51,6 +52,7 @@ def test_both_senses_of_psi_are_tried() -> None:
     assert found.notes() == ["psi is counted in the other direction: its sign was changed"]
 
 
+@pytest.mark.slow
 def test_spin_and_precession_give_the_tilt_too() -> None:
     t, angles = noisy(2.0, 150, 3)
     del angles["theta"]
@@ -189,6 +191,7 @@ def test_recordings_that_cannot_be_fitted(t: Array, angles: Any, message: str) -
         fit(t, **angles)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "angles",
     [
@@ -228,6 +231,7 @@ def test_no_wrong_fit_of_a_random_recording_is_called_anything_but_failed() -> N
     assert fates[True, "good"] >= 36
 
 
+@pytest.mark.slow
 def test_an_impossible_body_that_leaves_more_than_noise_is_a_failure() -> None:
     """Plain harmonics fit this recording of spin and precession no better, so it was doubtful."""
     one = fuzz_fits.judged(50161)

@@ -220,6 +220,7 @@ def test_a_start_next_to_an_upright_root_is_found() -> None:
     assert found.record()["a"] == pytest.approx(float(exact.a), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_several_recordings_in_one_file(lagtop: Lagtop, tmp_path: Path) -> None:
     path = trials(tmp_path)
     options = ("fit", path, "--by", "trial", "--sigma", 0.5, "--format", "json")
@@ -262,6 +263,7 @@ DERIVED = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "known",
     [
@@ -293,6 +295,7 @@ def test_the_scene_keeps_the_covariance(lagtop: Lagtop, tmp_path: Path, known: s
         assert plain[f"{key}_std"] > 1.5 * fitted[f"{key}_std"], key
 
 
+@pytest.mark.slow
 def test_units_of_the_output(lagtop: Lagtop) -> None:
     known = ["--m", "1.587kg", "--g", "9.81m/s^2", "--s", "4cm", "--format", "json"]
     si, cgs = (
@@ -310,6 +313,7 @@ def test_a_steady_word_is_no_known_rate(lagtop: Lagtop, tmp_path: Path) -> None:
     assert_one_line(refused, 2, "--psidot0 must be a real number, got 'steady'")
 
 
+@pytest.mark.slow
 def test_priors_with_correlations_are_named(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text('m = "1.587(2)"\ns = "0.0400(1)"\ng = 9.81\n[correlations]\nm.s = 0.5\n')
@@ -531,6 +535,7 @@ def test_an_uncertain_known_input_widens_what_depends_on_it(sample: Outcome) -> 
     assert refitted(sample, m=mass, g="9.81 m/s^2", s=unit.Quantity(4, "cm")) == found
 
 
+@pytest.mark.slow
 def test_a_prior_is_between_a_known_input_and_none(sample: Outcome) -> None:
     body = {"m": 1.587, "g": 9.81, "s": 0.04}
     free, exact = sample.record(), refitted(sample, **body, C=1.7458e-3)

@@ -31,6 +31,7 @@ def test_correlated_residuals_are_no_noise() -> None:
     assert residual_of(red).lag1 == pytest.approx(np.corrcoef(red[1:], red[:-1])[0, 1], abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [14, 30])
 def test_deviations_from_residuals_count_degrees_of_freedom(rows: int) -> None:
     """A fit without sigma states what it would with sigma^2 = sum of squares / (rows - unknowns).
@@ -53,6 +54,7 @@ def test_deviations_from_residuals_count_degrees_of_freedom(rows: int) -> None:
             assert ratio == pytest.approx(math.sqrt(given.chi2_dof), rel=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_a_spin_of_more_than_half_a_turn_per_frame(sign: int) -> None:
     """Between frames phi turns by 6.8 rad: of the rates that look alike 50 is the slowest.

@@ -26,6 +26,7 @@ def noisy(top: Top, t: Array, names: tuple[str, ...], seed: int) -> dict[str, An
     return fuzz_fits.noisy(top, t, names, NOISE, np.random.default_rng(seed))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", [("theta", "psi"), ("psi",), ("theta", "phi", "psi")])
 def test_a_fast_top_has_the_ratio_of_b_and_a_only(names: tuple[str, ...]) -> None:
     """The elementary theory is too small by cos(theta)/(4 lambda)."""
@@ -42,6 +43,7 @@ def test_a_fast_top_has_the_ratio_of_b_and_a_only(names: tuple[str, ...]) -> Non
     assert np.abs(found.angles(T)["psi"][-1] - motion.angles(T).psi[-1]) < 0.05
 
 
+@pytest.mark.slow
 def test_known_inputs_of_a_fast_top_give_the_others() -> None:
     angles = noisy(FAST, T, ("theta", "psi"), 2)
     one = fit(T, **angles, known={**BODY, "r0": 800.0})
@@ -51,6 +53,7 @@ def test_known_inputs_of_a_fast_top_give_the_others() -> None:
     assert other["C*r0/(m*s*g)"] == pytest.approx(1.7458e-3 * 800 / (1.587 * 0.04 * 9.81), rel=4e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [None, NOISE])
 def test_deviations_of_a_steady_precession_cover_the_truth(sigma: float | None) -> None:
     """Straight lines with noise: 300 pulls have the standard deviation 1 within 0.13 (3 sigma)."""
@@ -66,6 +69,7 @@ def test_deviations_of_a_steady_precession_cover_the_truth(sigma: float | None) 
     assert np.std(pulls) == pytest.approx(1, abs=0.13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 9])
 def test_the_precession_alone_with_a_known_tilt(seed: int) -> None:
     """Fifteen random tops of fifteen were found, the farthest 2.1 of its sigma off."""
@@ -79,6 +83,7 @@ def test_the_precession_alone_with_a_known_tilt(seed: int) -> None:
     assert abs(found.values["b"] - motion.b) < 4 * found.deviations["b"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("names", "known", "message"),
     [
@@ -94,6 +99,7 @@ def test_angles_that_are_too_little(names: tuple[str, ...], known: Any, message:
         fit(T, **noisy(FAST, T, names, 4), known=known)
 
 
+@pytest.mark.slow
 def test_the_report_on_a_fast_top(lagtop: Lagtop, tmp_path: Path) -> None:
     angles = noisy(FAST, T, ("theta", "psi"), 5)
     path = written(tmp_path / "fast.csv", "t,theta,psi", [T, *map(np.degrees, angles.values())])

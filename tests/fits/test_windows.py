@@ -32,6 +32,7 @@ def found(short: fuzz_windows.Slowed) -> WindowedFit:
     return fuzz_windows.fitted(short)
 
 
+@pytest.mark.slow
 def test_the_decay_and_the_body(short: fuzz_windows.Slowed, found: WindowedFit) -> None:
     record = found.record()
     assert abs(record["decay_rate"] - 1 / fuzz_windows.DECAY) < 4 * record["decay_rate_std"]
@@ -49,6 +50,7 @@ def test_the_decay_and_the_body(short: fuzz_windows.Slowed, found: WindowedFit) 
     assert sum(row["verdict"] == "good" for row in rows) >= 7
 
 
+@pytest.mark.slow
 def test_without_the_spin_b_decays(short: fuzz_windows.Slowed) -> None:
     angles = {name: short.angles[name] for name in ("theta", "psi")}
     sigma = {name: fuzz_windows.NOISE[name] for name in angles}
@@ -87,6 +89,7 @@ def test_bad_windows(
         split(recording, window, is_time=is_time, where="data")
 
 
+@pytest.mark.slow
 def test_the_command(lagtop: Lagtop, tmp_path: Path, short: fuzz_windows.Slowed) -> None:
     angles = [np.degrees(short.angles[x]) for x in ("theta", "psi", "phi")]
     path = written(tmp_path / "slow.csv", "t,theta,psi,phi", [short.t, *angles])

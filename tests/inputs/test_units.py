@@ -171,6 +171,7 @@ def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
     assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: m must have a unit as in 350g")
 
 
+@pytest.mark.slow
 def test_a_fit_names_units(lagtop: Lagtop) -> None:
     known = ["sample_inputs/recording.csv", "--m", "1.587kg", "--g", "9.81m/s^2"]
     shown = lagtop("fit", *known).stdout

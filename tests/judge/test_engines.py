@@ -82,6 +82,7 @@ def test_the_default_of_mujoco_loses_the_phase(simulated: Run) -> None:
     assert rows[0].order == pytest.approx(1, abs=0.2)
 
 
+@pytest.mark.slow
 def test_a_model_with_the_moment_about_the_pivot(simulated: Run) -> None:
     steps = [2e-3, 1e-3]
     rows = verdicts([simulated("RK4", h, A) for h in steps], steps)

@@ -106,6 +106,7 @@ def test_names_of_a_motion_are_public_and_known() -> None:
     assert all(hasattr(MOTION, name) for name in names)
 
 
+@pytest.mark.slow
 def test_a_fit_and_a_judgement_show_themselves() -> None:
     t = np.linspace(0, 1, 60)
     theta, phi, psi = MOTION.angles(t)

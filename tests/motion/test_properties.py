@@ -47,6 +47,7 @@ def test_a_double_has_one_text_in_every_format(x: float) -> None:
 cells = st.one_of(st.none(), st.text(st.characters(exclude_categories=["Cs"])), st.integers(0, 9))
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(cells, doubles, cells), min_size=1))
 def test_csv_and_json_read_back_as_they_were(rows: list[tuple[Any, float, Any]]) -> None:
     first, numbers, last = (list(column) for column in zip(*rows, strict=True))
@@ -64,6 +65,7 @@ def test_csv_and_json_read_back_as_they_were(rows: list[tuple[Any, float, Any]])
     assert [[a, float(b), c] for a, b, c in found] == [[a, float(b), c] for a, b, c in wanted]
 
 
+@pytest.mark.slow
 @given(st.text())
 def test_any_text_is_a_number_or_one_clear_error(text: str) -> None:
     try:
@@ -99,6 +101,7 @@ def test_every_start_gives_numbers_or_one_clear_error(
     assert angles.theta.max() <= greatest + 4e-15
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(r0=spins, theta0=tilts)
 def test_json_is_json_and_carries_the_doubles(r0: float, theta0: float) -> None:

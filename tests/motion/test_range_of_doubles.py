@@ -70,6 +70,7 @@ def test_command(fmt: str, none: bytes) -> None:
     assert refused.stderr.startswith(b"Error: spin_rate_half must be within 1.8e308")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("r0", [0.0, 1.0, 20.0])
 def test_phases_whose_hyperbolic_functions_are_beyond_all_doubles(r0: float) -> None:
     """The axis leaves the upward vertical by 1e-315 rad in a unit of time.

@@ -80,6 +80,7 @@ def test_zeros_are_told_and_near_misses_are_not(
 HALF = {"m": 2, "A": 1, "C": 1, "s": 1, "g": 1, "theta0_deg": 90, "thetadot0": 2}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("inputs", "key", "other"),
     [

@@ -25,6 +25,7 @@ from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import LIGHT, WEDGES, styled
 
 
+@pytest.mark.slow
 def test_the_view_is_a_rotation_and_the_start_is_in_sight() -> None:
     for path in SAMPLES:
         scene = sample_motion(path)

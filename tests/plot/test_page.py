@@ -190,6 +190,7 @@ def test_pictures_at_the_corners_of_the_range_of_sizes(kinds: Sequence[str]) -> 
 # Files.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fmt", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")]
 )
