@@ -8,11 +8,8 @@ from lagrange_cli.inputs.given import read_scene as read_scene
 from lagrange_cli.inputs.top import Top as Top
 from lagrange_cli.judge.compare import compare as compare
 from lagrange_cli.judge.judgement import Judgement as Judgement
+from lagrange_cli.motion.derivatives import sensitivities as sensitivities
 from lagrange_cli.motion.regime import Regime as Regime
-from lagrange_cli.motion.sensitivity.angle_sensitivities import (
-    angle_sensitivities as angle_sensitivities,
-)
-from lagrange_cli.motion.sensitivity.sensitivities import sensitivities as sensitivities
 from lagrange_cli.motion.solve import Motion as Motion
 from lagrange_cli.motion.solve import solve as solve
 from lagrange_cli.plot import draw as draw

@@ -15,7 +15,6 @@ from conftest import ROOT
 from lagtop import (
     LagtopError,
     Top,
-    angle_sensitivities,
     compare,
     draw,
     draw_outcome,
@@ -76,9 +75,6 @@ CALLS: dict[str, Callable[[Any], Any]] = {
     "axis": MOTION.axis,
     "sensitivities": sensitivities,
     "sensitivities(keys)": lambda x: sensitivities(TOP, x),
-    "angle_sensitivities": lambda x: angle_sensitivities(x, [0, 1]),
-    "angle_sensitivities(t)": lambda x: angle_sensitivities(TOP, x),
-    "angle_sensitivities(inputs)": lambda x: angle_sensitivities(TOP, [0.0], x),
     "read_scene": read_scene,
     "read_scene(given)": lambda x: read_scene(SCENE, x),
     "angles": MOTION.angles,

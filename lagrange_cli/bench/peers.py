@@ -16,7 +16,8 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..inputs.top import Top
-from ..motion.sensitivity.angle_sensitivities import angle_sensitivities
+from ..motion.derivatives import AngleDerivatives, inputs_of
+from ..motion.solve import solve
 from .closed_forms import CLOSED_FORMS
 from .compare_methods import LOST, growth_of
 from .integrators import integrators
@@ -180,12 +181,12 @@ def turn(angles: Sequence[Any], exact: ExactAngles) -> float:
 
 def _conditions(top: Top, times: Array) -> list[float]:
     """Return the condition at times: the sum of the rotations by each input."""
-    slopes = angle_sensitivities(top, times)
-    inputs = top.as_dict()
-    steps = np.array([math.ulp(float(inputs[name] or 0)) / 2 for name in slopes.inputs])
-    steps[[not inputs[name] for name in slopes.inputs]] = 0.0
-    theta, phi, psi = (np.nan_to_num(x) * steps for x in (slopes.theta, slopes.phi, slopes.psi))
-    together = 2 * phi * psi * np.cos(slopes.angles.theta)[:, None]
+    motion, names = solve(top), inputs_of(top)
+    steps = np.array([math.ulp(float(getattr(top, name))) / 2 for name in names])
+    steps[[not getattr(top, name) for name in names]] = 0.0
+    slopes = np.moveaxis(AngleDerivatives(motion, names).at(times), 0, -1)
+    theta, phi, psi = np.nan_to_num(slopes) * steps
+    together = 2 * phi * psi * np.cos(motion.angles(times).theta)[:, None]
     square = np.maximum(theta**2 + phi**2 + psi**2 + together, 0.0)
     found: list[float] = np.sqrt(square).sum(axis=1).tolist()
     return found

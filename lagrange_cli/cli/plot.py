@@ -36,8 +36,8 @@ from .top import INPUT, TIME, UNCERTAIN, TopOptions, motion_of, top_options, war
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.value import Value
-    from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
+    from ..motion.uncertainty import FirstOrder
 
 _FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0

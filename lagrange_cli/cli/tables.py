@@ -13,8 +13,8 @@ from .options import Group, Parsed, choice, flag, late, names, option
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.text_lines import Dialect
-    from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
+    from ..motion.uncertainty import AngleStds
     from ..output.destination import Output
     from ..output.report import Report
 
@@ -93,11 +93,12 @@ def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     """
     if not found.stds:
         return None
-    from ..motion.sensitivity.angle_sensitivities import AngleStds  # for few tops only
+    from ..motion.derivatives import NO_DERIVATIVE  # for few tops only
+    from ..motion.uncertainty import AngleStds
 
-    stds = AngleStds(motion.exact, found.stds, found.inputs.keys())
-    if stds.reason:
-        complain(f"Warning: no uncertainty of the angles: {stds.reason}")
+    stds = AngleStds(motion, found.stds, found.inputs.keys())
+    if stds.derivatives.missing:
+        complain(f"Warning: no uncertainty of the angles: {NO_DERIVATIVE}")
     return stds
 
 

@@ -10,11 +10,11 @@ from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
 from ..inputs.input_keys import STANDS_FOR
 from ..inputs.names import check_names
+from ..motion.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
 from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, shown_keys
-from ..motion.sensitivity.sensitivities import DIFFERENTIABLE
-from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
 from ..motion.solve import Motion
+from ..motion.uncertainty import FirstOrder, stds_of
 from ..output.report import Field, Report, uncertain_text, with_unit
 from ..output.terminal import with_progress
 from .app import complain
@@ -66,8 +66,8 @@ def with_stds(
     stds = stds_of(record, uncertain)
     lost = [key for key in record if record[key] is not None and f"{key}_std" in stds]
     if lost := [key for key in lost if stds[f"{key}_std"] is None]:
-        known = next((key for key in map(degree_name, lost) if key in DIFFERENTIABLE), None)
-        reason = "keys on request have none" if known is None else uncertain.slopes.reason(known)
+        known = any(degree_name(key) in DIFFERENTIABLE for key in lost)
+        reason = NO_DERIVATIVE if known else "keys on request have none"
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
     if not shown:
         return dict(record) | stds
@@ -81,7 +81,7 @@ def with_stds(
 
 def first_order(found: Given, motion: Numbers) -> FirstOrder:
     """Return the first-order uncertainties of a motion."""
-    return FirstOrder(motion.top, found.stds, found.inputs.keys())
+    return FirstOrder(Motion(motion.exact), found.stds, found.inputs.keys())
 
 
 class _BudgetRow(NamedTuple):
@@ -113,8 +113,7 @@ def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
     uncertain = first_order(found, motion)
     whole = uncertain.std(key)
     if whole is None:
-        reason = uncertain.slopes.reason(degree_name(key))
-        raise AbsentError(f"no uncertainty of first order: {reason}")
+        raise AbsentError(f"{key} has no uncertainty of first order: {NO_DERIVATIVE}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     units = _units(found, [key, *given])
     lines = uncertain.budget(key, given)

@@ -17,17 +17,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.rotations import within_half_turn
 from ..inputs.top import Top
+from ..motion.derivatives import AngleDerivatives, sensitivities
 from ..motion.record import KEYS, requested_keys
-from ..motion.regime import exact
-from ..motion.sensitivity.angle_sensitivities import AngleDerivatives
-from ..motion.sensitivity.neighbourhood import PARAMETERS
-from ..motion.sensitivity.sensitivities import sensitivities
 from ..motion.solve import solve
 from ..sweep.angles import sweep_angles
 from .recording import Recording
@@ -79,17 +75,15 @@ def motion_angles(states: Array, t: Array) -> Array:
 
 
 def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:
-    """Return the angles of a top at times, and their exact derivatives by its state.
+    """Return the angles of a top at times, and their derivatives by its state.
 
     Angles are of shape (3, times), derivatives of shape (3, times, 5); derivatives that do not
     exist are NaN.  Raises LagtopError for an invalid state.
     """
-    top = Top(**inputs_of(*state.tolist()))
-    with ARRAYS.working():
-        angles, partials = AngleDerivatives(exact(top)).at(t)
-    by = dict(zip(PARAMETERS, np.moveaxis(partials, 1, 0), strict=True))
-    slopes = [by["a"], by["b"] + by["r0"], by["tilt"], by["theta_rate"], by["psi_rate"]]
-    return angles, np.stack(slopes, axis=-1)
+    inputs = ["g", "r0", "theta0_rad", "thetadot0", "psidot0"]
+    motion = solve(Top(**inputs_of(*state.tolist())))
+    slopes = np.moveaxis(AngleDerivatives(motion, inputs).at(t), 0, -1)
+    return np.array(motion.angles(t)), slopes * [0.5, 1.0, 1.0, 1.0, 1.0]
 
 
 def as_recorded(angles: Array, values: Mapping[str, Any], t: Array) -> Array:

@@ -21,9 +21,8 @@ if TYPE_CHECKING:
     from ..arithmetic.values import Key
     from ..inputs.input_keys import Input
     from ..inputs.units import System
-    from ..motion.sensitivity.angle_sensitivities import AngleStds
-    from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
+    from ..motion.uncertainty import AngleStds, FirstOrder
 
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows by default."""

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure, SubFigure
 from ..errors import LagtopError, NothingToDrawError
 from ..motion.quantity import degree_name
 from ..motion.record import KEYS
-from ..motion.sensitivity.uncertainty import stds_of
 from ..motion.solve import Motion
+from ..motion.uncertainty import stds_of
 from ..output.report import uncertain_text
 from .curves import motion_in_words
 from .kinds import KINDS, PlotRequest

@@ -138,7 +138,8 @@ def std_columns(
 
     `given` has the inputs as they were passed, NaN if a top has none.
     """
-    from ..motion.sensitivity.uncertainty import FirstOrder, stds_of  # for start-up
+    from ..motion.solve import solve  # for start-up
+    from ..motion.uncertainty import FirstOrder, stds_of
 
     names = std_keys(list(columns))
     size = len(columns["error"])
@@ -149,7 +150,7 @@ def std_columns(
             continue
         present = [name for name, x in rows.items() if not np.isnan(x[i])]
         try:
-            uncertain = FirstOrder(Top(**tops.one(i)), stds, present)
+            uncertain = FirstOrder(solve(Top(**tops.one(i))), stds, present)
         except LagtopError:
             continue
         record = {key: columns[key][i] for key in columns if f"{key}_std" in found}

@@ -14,9 +14,8 @@ import pytest
 from conftest import Lagtop, Solved, assert_one_line
 from lagtop import Top, solve
 
-from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.inputs.value import parse_value
-from lagrange_cli.motion.sensitivity.uncertainty import by_given
+from lagrange_cli.motion.uncertainty import by_given
 from lagrange_cli.output.report import uncertain_text
 
 uncertainties = pytest.importorskip("uncertainties")
@@ -102,14 +101,14 @@ def test_measured_inputs_hand_their_uncertainty_on() -> None:
     """A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0): differences of both."""
     given = {"m": 2.0, "A_cm": 3.0, "s": 0.5, "phidot0": 4.0, "psidot0": 1.5, "theta0_deg": 50.0}
     top = Top(C=1, g=1, **given)
-    chain = by_given(DOUBLES, top, given)
+    chain = by_given(top, given)
     for name, row in chain.items():
         if name not in given:
             continue
         ahead = Top(C=1, g=1, **(given | {name: given[name] + 1e-6}))
         for solved in ("A", "r0"):
             slope = (getattr(ahead, solved) - getattr(top, solved)) / 1e-6
-            assert row.get(solved, 0.0) == pytest.approx(slope, abs=1e-5), (name, solved)
+            assert float(row.get(solved, 0)) == pytest.approx(slope, abs=1e-5), (name, solved)
 
 
 def test_a_budget_adds_up(lagtop: Lagtop) -> None:
@@ -214,17 +213,18 @@ def test_a_report_on_samples_tells_both_uncertainties_apart(lagtop: Lagtop) -> N
 
 
 def test_a_number_without_an_uncertainty_is_named(lagtop: Lagtop) -> None:
-    result = lagtop("solve", "--theta0", "0(1)", "--get", "u1")
-    assert result.stdout == "1.0\n"
-    assert "no uncertainty of u1: next to the vertical" in result.stderr
-    refused = lagtop("solve", "--theta0", "0(1)", "--budget", "u1")
+    upright = "--theta0", 0, "--thetadot0", "0(1)"
+    result = lagtop("solve", *upright, "--get", "theta_max_deg")
+    assert result.stdout == "0.0\n"
+    assert "no uncertainty of theta_max_deg: it has a kink" in result.stderr
+    refused = lagtop("solve", *upright, "--budget", "theta_max_deg")
     assert refused.exit_code == 1
     assert "no uncertainty of first order" in refused.stderr
     table = lagtop("table", "--theta0", "0(1)", "--t-max", 1, "--n", 2)
     assert table.stdout.endswith(",,,\n")
-    assert "no uncertainty of the angles: next to the vertical" in table.stderr
+    assert "no uncertainty of the angles: it has a kink" in table.stderr
     by_spin = lagtop("table", "--theta0", 0, "--r0", "50(1)", "--t-max", 1, "--n", 2)
-    assert by_spin.stdout.endswith(",0.0,57.29577951308232,0.0\n")
+    assert by_spin.stdout.endswith(",0.0,57.2958,0.0\n")
     assert by_spin.stderr == ""
 
 
@@ -316,22 +316,6 @@ def test_correlated_angles_by_the_full_covariance(lagtop: Lagtop, tmp_path: Path
     assert np.array(found) == pytest.approx(wanted, rel=1e-4)
 
 
-def test_a_common_scale_cancels(lagtop: Lagtop, solved: Solved, tmp_path: Path) -> None:
-    """m, A and C in units of one reference mass: the motion does not depend on its size.
-
-    The uncertainty 1/64 is a double, so that the contributions cancel exactly.
-    """
-    scene = tmp_path / "scene.toml"
-    names = "m = { A = 1, C = 1.0 }\nA.C = 1\n"
-    scene.write_text(
-        'm = "1587 +- 1.5625 %"\nA = "39032 +- 1.5625 %"\nC = "17458 +- 1.5625 %"\ns = 4\ng = 981\n'
-        f"[correlations]\n{names}"
-    )
-    record = solved(scene)
-    assert (record["T_nutation_std"], record["theta_max_deg_std"]) == (0, 0)
-    assert record["m_std"] == 1587 / 64
-
-
 def test_a_given_input_is_not_correlated(lagtop: Lagtop, tmp_path: Path) -> None:
     table = "[correlations]\nr0 = { theta0_deg = 0.9, m = 0.2 }\n"
     plain = correlated(tmp_path / "plain.toml", "[correlations]\nr0.m = 0.2\n")
@@ -418,7 +402,7 @@ def test_a_table_knows_what_measured_inputs_stand_for(lagtop: Lagtop) -> None:
         float(lagtop("table", "--psidot0", rate, *shared).stdout.splitlines()[-1])
         for rate in (2.9999, 3.0001)
     )
-    assert std == pytest.approx(abs(high - low) / 2, rel=1e-6)
+    assert std == pytest.approx(abs(high - low) / 2, rel=1e-5)
 
 
 def test_a_table_has_uncertainties_in_radians_and_of_chosen_angles(lagtop: Lagtop) -> None:

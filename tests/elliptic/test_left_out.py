@@ -21,7 +21,6 @@ import lagrange_cli.elliptic.third_kind as third_kinds
 from lagrange_cli.arithmetic.ball import Ball
 from lagrange_cli.arithmetic.balls import Balls
 from lagrange_cli.arithmetic.complex_balls import ComplexBalls
-from lagrange_cli.arithmetic.duals import Dual, Duals, independent
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import (
     agm,
@@ -375,28 +374,3 @@ def test_an_iteration_cut_short_holds_the_truth(name: str) -> None:
 
             count += missed(compute, [exact], sharp)
     assert count >= 3
-
-
-@pytest.mark.parametrize("name", SMOOTH)
-def test_derivatives_of_an_iteration_cut_short_hold_the_truth(name: str) -> None:
-    """By differences of the truth; without the bound of the derivatives they are missed."""
-    computed, truth, cases = SMOOTH[name]
-    missed = 0
-    with arb_bits(3000):
-        for texts in cases:
-            point = [*map(exact_arb, texts)]
-            slopes = [slope_of(partial(along, truth, point, i), at) for i, at in enumerate(point)]
-            for stop in STOPS:
-                for kind in (Balls, Unwidened):
-                    ar = Duals(kind(DIGITS, stop))
-                    if kind is Unwidened:
-                        ar.widened = lambda x, *_, **__: x  # type: ignore[method-assign]
-                    found: Dual = computed(ar, *independent(balls_of(ar.plain, texts)))
-                    right = all(map(holds, found.partials or (), slopes))
-                    if kind is Balls:
-                        assert right, (texts, stop)
-                        size = max(x.radius for x in found.partials or ())
-                        most = 1 + max(abs(exact) for exact in slopes)
-                        assert stop < 15 or exact_arb(size) < most * arb(10) ** (5 - stop), texts
-                    missed += not right
-    assert missed >= 3

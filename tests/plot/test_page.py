@@ -23,8 +23,7 @@ from pictures import NUTATING, REGIMES, drawn, regime_motion, sample_motion
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.inputs.value import Stds
-from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
-from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
+from lagrange_cli.motion.uncertainty import AngleStds, FirstOrder
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest
 from lagrange_cli.plot.map import parse_input_range
@@ -113,7 +112,7 @@ def test_no_title_is_cut_off(
 
     monkeypatch.setattr("lagrange_cli.plot.page.figure_bytes", keep)
     motion = solve(Top())
-    stds = AngleStds(motion.exact, Stds({"theta0_deg": 1.0}), ["theta0_deg"])
+    stds = AngleStds(motion, Stds({"theta0_deg": 1.0}), ["theta0_deg"])
     request = PlotRequest(x=X, y=Y, stds=stds, key="precession_rate_start")
     page_bytes(Page(motion, kinds, request, size), "png", 150)
     (figure,) = figures
@@ -126,7 +125,7 @@ def test_no_title_is_cut_off(
 @pytest.mark.parametrize("uncertain", [False, True])
 def test_numbers_stand_beside_pictures_with_their_uncertainties(uncertain: bool) -> None:
     motion = solve(Top())
-    stds = FirstOrder(motion.top, Stds({"theta0_deg": 1.0}), ["theta0_deg"])
+    stds = FirstOrder(motion, Stds({"theta0_deg": 1.0}), ["theta0_deg"])
     request = PlotRequest(uncertain=stds if uncertain else None)
     figure = drawn(motion, ["cubic", "phase"], request)
     texts = {text.get_text() for text in figure.subfigs[0].texts}

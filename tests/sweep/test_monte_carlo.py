@@ -11,7 +11,7 @@ from scenes import UNIT
 
 from lagrange_cli.inputs.value import Stds
 from lagrange_cli.motion.record import NUMBER_KEYS
-from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
+from lagrange_cli.motion.uncertainty import FirstOrder
 from lagrange_cli.sweep.monte_carlo import (
     FAILS,
     HOLDS,
@@ -27,7 +27,7 @@ def outcome(
 ) -> Propagated:
     """Return what becomes of samples of a top, of which some keys are looked at."""
     top = Top(**inputs)
-    uncertain, motion = FirstOrder(top, Stds(stds), inputs), solve(top)
+    uncertain, motion = FirstOrder(solve(top), Stds(stds), inputs), solve(top)
     numbers = {key: (getattr(motion, key), uncertain.std(key)) for key in keys}
     given = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return propagate(given, Stds(stds), numbers, samples=samples, seed=1)
@@ -96,8 +96,8 @@ def test_numbers_correlate_with_inputs_by_the_signs_of_the_derivatives(regime: s
         free |= {"C": rng.uniform(0.2, 1), "s": rng.uniform(0.5, 1.5)}
         inputs: dict[str, Any] = UNIT | ({} if fixed else free) | own
         stds = Stds({x: 1e-6 * abs(inputs[x]) for x in names})
-        uncertain = FirstOrder(Top(**inputs), stds, inputs)
-        motion = solve(uncertain.top)
+        uncertain = FirstOrder(solve(Top(**inputs)), stds, inputs)
+        motion = uncertain.motion
         assert motion.regime == regime
         record = motion.numbers()
         drawn = {x: rng.normal(inputs[x], std, samples) for x, std in uncertain.stds.items()}

@@ -173,10 +173,18 @@ def rows(
                 write(sample, block.T)
                 if stds is not None:
                     spread = stds(sample.t)[angles]
-                    block.T[len(chosen) :] = spread if radians else np.degrees(spread)
+                    block.T[len(chosen) :] = six_digits(spread if radians else np.degrees(spread))
                 yield block
 
     return [*header, *names], blocks()
+
+
+def six_digits(x: Array) -> Array:
+    """Return numbers rounded to six significant digits."""
+    with ARRAYS.working():
+        places = 5 - np.floor(np.log10(x))
+        finer, coarser = 10.0 ** np.maximum(places, 0), 10.0 ** np.maximum(-places, 0)
+        return np.where(x > 0, np.rint(x * finer / coarser) / finer * coarser, x)
 
 
 def table(

@@ -1,0 +1,302 @@
+"""Derivatives of the numbers and of the angles of a motion by the inputs of its top.
+
+The record: each input is moved by 2^-200 of its size to either side, and the numbers have 140
+digits or more.  The difference quotient agrees with the derivative to some 60 digits.
+
+The angles: doubles of four neighbours are compared at equal phases of the nutation, so that the
+differences stay small at any time.  The derivatives of the period and of the mean rates, taken from
+the record, give the part that grows with time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from fractions import Fraction
+from functools import cache
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from ..arithmetic.ball import TooFewDigitsError, UndefinedError
+from ..arithmetic.numbers import unit_in_radians
+from ..arithmetic.rounding import decided
+from ..arithmetic.values import Values
+from ..errors import LagtopError
+from ..inputs.names import ANGLES, check_names
+from ..inputs.top import Top
+from .paper.requested import TEXTBOOK
+from .record import NUMBER_KEYS
+from .solve import Motion, solve
+
+if TYPE_CHECKING:
+    from ..arithmetic.ball import Ball
+    from ..arithmetic.types import Array
+
+DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]
+"""The keys that have derivatives."""
+NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist beside it"
+"""The reason why a number of a motion has no derivative by some input."""
+
+_STEP, _DIGITS = Fraction(1, 2**200), 140
+_ALIKE, _SHARP, _NEGLIGIBLE = (Fraction(1, 10**n) for n in (20, 30, 55))
+_ANGLE_STEP, _ANGLE_NOISE = 2.0**-11, 2.0**-40
+"""Step for angles, and its rounding errors, over the range of inputs in which motions are alike."""
+
+Stencils = tuple[Mapping[int, float], Mapping[int, float]]
+"""Weights of neighbours in a derivative, by place: central ones, and ones ahead of the top."""
+_OF_RECORD = {-1: -0.5, 0: 0.0, 1: 0.5, 2: 0.0}, {0: -1.5, 1: 2.0, 2: -0.5, 3: 0.0}
+_OF_ANGLES = (
+    {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
+    {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4},
+)
+Neighbours = list[tuple[Motion, float]]
+"""Motions with one input moved, and their weights in a derivative times the step."""
+
+
+class Sensitivities(Values):
+    """Derivatives of the numbers of a record by the inputs; NaN if one does not exist."""
+
+    top: Top
+    inputs: tuple[str, ...]
+    """The nine inputs; the tilt is in degrees or radians, as given."""
+    derivatives: dict[str, dict[str, float]]
+    """Derivatives by key and input, in the units of both, without keys that the motion lacks."""
+
+
+def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivities:
+    """Return the derivatives of all numbers of the record of a top by all inputs, or of some keys.
+
+    Keys of elementary theory have derivatives if they are named.  Each derivative is the nearest
+    double; below 1e-55 of the number over the input it may be 0.  Angles are in degrees, also in
+    derivatives by `theta0_rad`.  A derivative is one-sided if the input is at the end of its range,
+    such as g = 0, and 0 if the input can have no other value.  It is NaN if the number has a kink
+    or a jump at this top, or does not exist beside it.  Raises LagtopError for an unknown key.
+
+    >>> sensitivities(Top(), ["T_nutation"]).derivatives["T_nutation"]["r0"]
+    -0.0047282954028118425
+    """
+    chosen = check_names("keys", list(NUMBER_KEYS if keys is None else keys), DIFFERENTIABLE)
+    found = Derivatives(solve(top))
+    rows = {
+        key: {name: found.nearest(key, name) for name in found.inputs}
+        for key in DIFFERENTIABLE
+        if key in chosen and found.has(key)
+    }
+    return Sensitivities(top, found.inputs, rows)
+
+
+class Derivatives:
+    """Derivatives of the numbers of one motion by the inputs of its top."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion, self.inputs = motion, inputs_of(motion.top)
+        self.of, self.neighbours = cache(self._of), cache(self._neighbours)
+
+    def has(self, key: str) -> bool:
+        """Return whether the motion has a number."""
+        return decided(key, lambda digits: self.motion.enclosure(key, digits)) is not None
+
+    def nearest(self, key: str, name: str) -> float:
+        """Return the derivative of a number by an input as a double; NaN if there is none."""
+        found = self.of(key, name)
+        return math.nan if found is None else float(found)
+
+    def _neighbours(self, name: str) -> tuple[Fraction, Neighbours]:
+        size = Fraction(abs(getattr(self.motion.top, name)) or usual_size(self.motion, name))
+        return _STEP * size, neighbours(self.motion, name, _STEP * size, _OF_RECORD)
+
+    def _of(self, key: str, name: str) -> Fraction | None:
+        """Return the derivative of a number by an input to 30 digits; None if there is none."""
+        step, beside = self.neighbours(name)
+        weights = [weight for _, weight in beside[:3]]
+
+        def quotient(digits: int) -> Fraction | None:
+            values = _values(key, beside[:3], digits)
+            if values is None:
+                return None
+            largest = max(abs(middle) for middle, _ in values)
+            scale = (largest or 1) * _STEP / step
+            steepest = max(abs(y - x) for (x, _), (y, _) in pairwise(values)) / step
+            limit = _ALIKE * (steepest + scale)
+            bent, doubt = _combined((1, -2, 1), values, step)
+            if abs(bent) - doubt > limit or 2 * step * steepest > largest:
+                # a kink or a jump, unless the number is 0 here and its curvature is constant
+                more = _values(key, beside, digits)
+                if more is None:
+                    return None
+                bent, doubt = _combined((-1, 3, -3, 1), more, step)
+            if abs(bent) - doubt > limit:
+                return None
+            slope, radius = _combined(weights, values, step)
+            if abs(slope) + radius <= _NEGLIGIBLE * scale * min(step / _STEP, Fraction(1)):
+                return Fraction(0)
+            if abs(bent) + doubt > limit or radius > _SHARP * abs(slope):
+                raise TooFewDigitsError
+            return slope
+
+        return decided(f"a derivative of {key}", quotient, _DIGITS) if beside else Fraction(0)
+
+
+def _values(key: str, beside: Neighbours, digits: int) -> list[tuple[Fraction, Fraction]] | None:
+    """Return a number of each neighbour with a bound of its error; None if one lacks it."""
+    values = []
+    for motion, _ in beside:
+        try:
+            ball = motion.enclosure(key, digits)
+        except UndefinedError:
+            return None
+        if ball is None or ball.is_nan:
+            return None
+        values.append(middle_and_radius(ball))
+    return values
+
+
+def _combined(
+    weights: Sequence[float], values: Sequence[tuple[Fraction, Fraction]], step: Fraction
+) -> tuple[Fraction, Fraction]:
+    """Return the weighted sum of numbers over a step, and a bound of its error."""
+    exact = [Fraction(weight) / step for weight in weights]
+    middle = sum((x * y for x, (y, _) in zip(exact, values, strict=True)), Fraction(0))
+    return middle, sum((abs(x) * r for x, (_, r) in zip(exact, values, strict=True)), Fraction(0))
+
+
+def middle_and_radius(ball: Ball) -> tuple[Fraction, Fraction]:
+    """Return the middle and the radius of a ball as fractions."""
+    low, high = map(Fraction, ball.ends())
+    return (low + high) / 2, (high - low) / 2
+
+
+def inputs_of(top: Top) -> tuple[str, ...]:
+    """Return the inputs of a top; the tilt is in the unit in use, and a word is no number."""
+    names = top.inputs(radians=top.theta0_deg is None)
+    return tuple(name for name in names if not (name == "psidot0" and top.steady_word))
+
+
+def neighbours(motion: Motion, name: str, step: Fraction, stencils: Stencils) -> Neighbours:
+    """Return neighbours on both sides or, if the input is at the end of its range, on one.
+
+    The list is empty if the input can have no other value.
+    """
+    top, (central, ahead) = motion.top, stencils
+    value = Fraction(getattr(top, name))
+    for weights, side in ((central, 1), (ahead, 1), (ahead, -1)):
+        try:
+            moved = [top.replace(**{name: value + side * i * step}) if i else top for i in weights]
+            return list(zip(map(solve, moved), (side * x for x in weights.values()), strict=True))
+        except LagtopError:
+            continue
+    return []
+
+
+def usual_size(motion: Motion, name: str) -> float:
+    """Return a size of an input that changes the motion, for an input that is 0."""
+    A, C, m, s, g = (float(getattr(motion.top, x)) for x in ("A", "C", "m", "s", "g"))
+    rate = 2 * math.pi / (motion.T_nutation or 1.0)
+    if name in {"g", "s"}:
+        other = m * (s if name == "g" else g)
+        return A * rate * rate / other if other else 1.0
+    if name == "thetadot0":
+        return rate * min(sines(motion).values(), default=1.0)
+    return {"r0": rate * max(1.0, A / C), "psidot0": rate}.get(name, 1.0)
+
+
+def sines(motion: Motion) -> dict[str, float]:
+    """Return the sines of the extreme tilts that are not 0, by key."""
+    tilts = {key: getattr(motion, key) for key in ("theta_min_deg", "theta_max_deg")}
+    return {key: math.sin(math.radians(x)) for key, x in tilts.items() if x and x < 180}
+
+
+class AngleDerivatives:
+    """Derivatives of the angles of one motion over time by some inputs of its top."""
+
+    def __init__(self, motion: Motion, inputs: Sequence[str]) -> None:
+        self.motion, self.inputs, self.record = motion, tuple(inputs), Derivatives(motion)
+        self.period: float | None = motion.T_nutation
+        keys = ("T_nutation", "mean_spin_rate", "mean_precession_rate") if self.period else ()
+        self.slopes = {x: [self.record.nearest(key, x) for key in keys] for x in self.inputs}
+        """Derivatives of the period and of the mean rates of spin and precession, by input."""
+        self.steepness = {x: self._steepness(x) for x in self.inputs}
+        self.neighbours = {
+            x: neighbours(motion, x, Fraction(_ANGLE_STEP / self.steepness[x]), _OF_ANGLES)
+            for x in self.inputs
+        }
+        self.missing = {x for x, slopes in self.slopes.items() if any(map(math.isnan, slopes))}
+        """The inputs by which the angles have no derivative."""
+        if not self.period:  # a neighbour that nutates departs at once
+            nutates = {x: any(y.T_nutation for y, _ in self.neighbours[x]) for x in self.inputs}
+            self.missing = {x for x in self.inputs if nutates[x]}
+
+    def _steepness(self, name: str) -> float:
+        """Return the largest relative change of a size of the motion per unit of an input.
+
+        Next to the separatrix k' is small, and next to a pole the sine of an extreme tilt.
+        """
+        sizes = {"k_prime": self.motion.k_prime, "T_nutation": self.period}
+        sizes |= {key: math.degrees(x) for key, x in sines(self.motion).items()}
+        found = [abs(self.record.nearest(key, name) / x) for key, x in sizes.items() if x]
+        size = abs(float(getattr(self.motion.top, name))) or usual_size(self.motion, name)
+        return float(max([1 / size, *(x for x in found if not math.isnan(x))]))
+
+    def noise(self, name: str) -> float:
+        """Return the size of the rounding errors of the derivatives by an input."""
+        return _ANGLE_NOISE * self.steepness[name]
+
+    def at(self, t: Array) -> Array:
+        """Return derivatives of theta, phi and psi at n times, of shape (inputs, 3, n).
+
+        They are NaN after the start if they do not exist.
+        """
+        import numpy as np
+
+        from ..arithmetic.double_double import reduce_phase
+        from ..arithmetic.rounding import pair
+
+        found, columns = np.zeros((len(self.inputs), 3, t.size)), ANGLES
+        if self.period:
+            columns = ("theta", "dphi", "dpsi")
+            now = self.motion.table(t, ["thetadot", "phidot", "psidot"])
+            means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
+            exact = self.motion.number("T_nutation", 40)
+            assert exact is not None
+            _, turns = reduce_phase(t, pair(1 / Fraction(exact.value)))
+            turns[t == 0] = 0.25  # any: the derivatives at t = 0 are known
+        for i, name in enumerate(self.inputs):
+            for motion, weight in self.neighbours[name]:
+                at = turns * motion.T_nutation if self.period else t
+                values = np.stack([*motion.table(at, columns).values()])
+                found[i] += weight * self.steepness[name] / _ANGLE_STEP * values
+            if self.period:
+                by_period, *by_rates = self.slopes[name]
+                for j, (rate, mean) in enumerate(zip(now.values(), means, strict=True)):
+                    grown = (0.0, *by_rates)[j] - (rate - mean) * (by_period / self.period)
+                    found[i, j] += grown * t
+                if self.motion.exact.facts.plane:
+                    found[i, 1:] = 0.0  # they change by half turns only
+        return self._completed(found, t)
+
+    def in_digits(self, t: Array) -> Array:
+        """Return the same as `at` from proved rows, which take some milliseconds per time."""
+        import numpy as np
+
+        from .over_time.proved_table import ProvedTable
+
+        found = np.zeros((len(self.inputs), 3, t.size))
+        for i, name in enumerate(self.inputs):
+            step, beside = self.record.neighbours(name)
+            pairs = [(x, Fraction(weight) / step) for x, weight in beside if weight]
+            tables = [(ProvedTable(x, ANGLES, 90, radians=True), weight) for x, weight in pairs]
+            for j, time in enumerate(t.tolist()):
+                rows = [(table.row(Fraction(time)), weight) for table, weight in tables]
+                for k in range(3):
+                    found[i, k, j] = sum(Fraction(row[k].value) * weight for row, weight in rows)
+        return self._completed(found, t)
+
+    def _completed(self, found: Array, t: Array) -> Array:
+        """Return derivatives with those at t = 0, and NaN for those that do not exist."""
+        for i, name in enumerate(self.inputs):
+            if name in self.missing:
+                found[i] = math.nan
+            found[i][:, t == 0] = 0.0
+            if name.startswith("theta0"):
+                found[i, 0, t == 0] = unit_in_radians(radians=name == "theta0_rad")
+        return found

@@ -1,1 +1,0 @@
-"""Derivatives of numbers and angles with respect to the inputs, and uncertainties."""
