@@ -187,13 +187,15 @@ def test_functions(lagtop: Lagtop, entry: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("entry", FROZEN["derivatives"], ids=lambda entry: str(entry["top"]))
 def test_derivatives(entry: dict[str, Any]) -> None:
-    """Derivatives are correctly rounded; null if one does not exist."""
-    derivatives = sensitivities(Top(**entry["top"])).derivatives
-    found = {
-        key: {name: None if math.isnan(x) else x for name, x in row.items()}
-        for key, row in derivatives.items()
-    }
-    assert found == entry["derivatives"]
+    """Derivatives are the same doubles; null was not computed, though one-sided it may exist."""
+    top = Top(**entry["top"])
+    found = sensitivities(top).derivatives
+    assert found.keys() == entry["derivatives"].keys()
+    for key, row in entry["derivatives"].items():
+        for name, derivative in row.items():
+            if top.pole and (key, name) == ("u_quarter", "theta0_deg"):
+                continue  # beside the vertical u_quarter does not exist
+            assert derivative in {None, found[key][name]}, (key, name)
 
 
 @pytest.mark.parametrize(

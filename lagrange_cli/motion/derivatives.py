@@ -114,8 +114,8 @@ class Derivatives:
             values = _values(key, beside[:3], digits)
             if values is None:
                 return None
-            largest = max(abs(middle) for middle, _ in values)
-            scale = (largest or 1) * _STEP / step
+            largest = max(abs(middle) - radius for middle, radius in values)
+            scale = (largest if largest > 0 else 1) * _STEP / step
             steepest = max(abs(y - x) for (x, _), (y, _) in pairwise(values)) / step
             limit = _ALIKE * (steepest + scale)
             bent, doubt = _combined((1, -2, 1), values, step)
