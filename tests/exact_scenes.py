@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable
 from fractions import Fraction
 
-from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic, signed, ten_to
+from hard_scenes import STRATA, Scene, generic, signed, ten_to
 
 TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
 """Degrees whose cosine is rational."""

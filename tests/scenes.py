@@ -6,9 +6,8 @@ import random
 from typing import Any
 
 from conftest import ROOT
+from hard_scenes import Scene, from_rest, tiny_tilt
 from lagtop import Motion
-
-from lagrange_cli.bench.hard_scenes import Scene, from_rest, tiny_tilt
 
 EPS = 2.0**-52
 """Distance from 1 to the next double."""

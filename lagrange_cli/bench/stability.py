@@ -1,241 +1,303 @@
-"""The stability report: methods of all kinds in random scenes of every hard kind.
+"""Errors of methods in stiff and extreme scenes, beside the error that input rounding causes.
 
-Each stratum has a row per method.  The row of lagtop also has the errors of its record, angles and
-quaternion, to compare with the promised bounds.
+A new kind of scene is one entry in KINDS: its fixed scenes, and a function for random ones, whose
+docstring describes the kind.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from contextlib import closing
-from functools import lru_cache, partial
+from collections.abc import Callable, Iterator, Sequence
+from itertools import chain, islice, repeat
+from random import Random
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import FIRST_DIGITS
-from ..inputs.names import ANGLES
+import mpmath
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.names import check_names
 from ..inputs.top import Top
+from ..motion.regime import Regime
+from ..motion.solve import Motion, solve
 from ..output.report import Field, Report, fields_of, short
-from ..output.terminal import Progress
-from ..sweep.jobs import in_order
-from .battery import CONTRACT, KEY_CONTRACT, Case, HardScene, hard_scene, judged_case, prove
-from .hard_scenes import words_of
-from .measure import common_conditions, settled_reference
-from .method import OURS
-from .peers import (
-    LONG_SPAN,
-    PEERS,
-    SPANS,
-    VERDICTS,
-    ExactSpans,
-    PeerRun,
-    exact_spans,
-    peer_conditions,
-    peer_run,
-)
-from .reference import Reference
+from ..output.terminal import Progress, silent
+from .methods import METHODS, Sample, SlowError
+from .reference import DIGITS, Attitude, Reference, inputs_of, rotation_angle
+from .work_precision import exact_motion, machine
 
-TIMES = 2
-"""Random times per scene for lagtop; six more are next to half, quarter and whole periods."""
-FINE, EXCEEDED = "fine", "EXCEEDED"
-PROVED = (
-    f"lagtop's own balls of {FIRST_DIGITS} digits or more, which Arb has checked in the tests: "
-    "every error is a proved upper bound; `proved` is the worst of the angles and the quaternion"
-)
-Scene = tuple[str, int, int]
-"""Stratum, seed and number of a scene."""
-PARTS = ("", *PEERS)
-"""Parts of the work on a scene: the check of lagtop's promise, and the run of each method."""
+SPANS = 1.0, 100.0
+"""Spans in nutation periods."""
+TIMES = 12
+"""Number of times in each span that are compared; a third of them for the input rounding."""
+COMPARED = "lagtop", "scipy.special", "DOP853", "Radau", "Taylor"
+LIMIT = 1.0
+"""CPU seconds after which a run is too slow."""
+AT_ROUNDING, LOST = 100, 1e-3
+"""Limits of the verdicts: a multiple of the effect of input rounding, and an error in rad."""
+
+Scene = dict[str, float]
+UNIT: Scene = {"m": 1, "s": 1, "g": 1, "A": 1, "C": 0.5}
 
 
-class StratumRow(NamedTuple):
-    """One method in one stratum: its run in its worst scene, and the worst errors of lagtop."""
-
-    stratum: str
-    method: str
-    scenes: int
-    verdict: str
-    error_5_rad: float | None = None
-    """Greatest error over 5 periods (rad); infinite if the method gave up earlier."""
-    error_100_rad: float | None = None
-    error_10000_rad: float | None = None
-    condition_rad: float | None = None
-    """Rotation of the attitude by half a unit in the last place of the inputs, over 100 periods."""
-    growth: float | None = None
-    """Exponent of the growth of the error in time."""
-    energy: float | None = None
-    """Change of the energy since the start, over the sum of its terms."""
-    Lz: float | None = None
-    evaluations: int | None = None
-    theta_units: float | None = None
-    """Worst error of lagtop in units (see `reference`), as for the next fields."""
-    phi_units: float | None = None
-    psi_units: float | None = None
-    quaternion_units: float | None = None
-    key_ulps: float | None = None
-    worst_key: str | None = None
-    proved_units: float | None = None
-    """The worst of the angles and the quaternion, if errors are proved bounds."""
-    worst_case: str | None = None
-    """A command line that shows lagtop's worst number."""
-    remark: str | None = None
-    run: PeerRun | None = None
-    """The run of the worst scene, for the picture."""
+def body(rng: Random) -> Scene:
+    """Return a body with m = s = g = 1, from a needle to a disc."""
+    A = rng.uniform(0.5, 2)
+    return UNIT | {"A": A, "C": A * rng.uniform(0.05, 2)}
 
 
-def _error(error: float) -> str:
-    return "gave up" if math.isinf(error) else short(error)
+def moving(rng: Random) -> Scene:
+    """Return an ordinary top with moderate rates."""
+    rates = {name: rng.uniform(-3, 3) for name in ("r0", "thetadot0", "psidot0")}
+    return body(rng) | {"theta0_deg": rng.uniform(10, 170)} | rates
 
 
-def _hundredths(error: float) -> str:
-    return f"{error:.2f}" if error < 1000 else short(error)
+def sleeping_spin(scene: Scene) -> float:
+    """Return the spin above which the upright top is stable."""
+    return 2 * math.sqrt(scene["A"]) / scene["C"]
 
 
-_UNITS = [f"{name}_units" for name in (*ANGLES, "quaternion")]
-_WORST = [*_UNITS, "key_ulps", "energy", "Lz"]
-"""Errors of lagtop that a row has from the worst of all scenes, each for itself."""
-_ALWAYS = [
-    Field(name, name, is_text=True, names_the_row=name != "verdict")
-    for name in ("stratum", "method", "verdict")
-]
-_COMPARED = [
-    Field("error_5_rad", "5 periods", _error),
-    Field("error_100_rad", "100", _error),
-    Field("condition_rad", "condition", short),
-    Field("growth", "growth", lambda growth: f"t^{growth:.1f}"),
-    Field("energy", "energy", short),
-    Field("Lz", "Lz", short),
-]
-_LONG = Field("error_10000_rad", f"{LONG_SPAN:.0e}", _error)
-_PROVED = [
-    *(
-        Field(name, heading, _hundredths)
-        for name, heading in zip(_WORST, (*ANGLES, "quat.", "keys"), strict=False)
+def fast_spin(rng: Random) -> Scene:
+    """Spin of 1e3 to 1e6: highly oscillatory, the stiff case of explicit methods."""
+    return moving(rng) | {"r0": 10 ** rng.uniform(3, 6)}
+
+
+def slow_spin(rng: Random) -> Scene:
+    """Spin of 1e-9 to 1e-2: the axis passes close to the lower vertical."""
+    return body(rng) | {"r0": 10 ** rng.uniform(-9, -2), "theta0_deg": rng.uniform(20, 170)}
+
+
+def near_separatrix(rng: Random) -> Scene:
+    """A rise whose energy is within 1e-9 to 1e-3 of that of the upright top."""
+    return rising(rng, 10 ** rng.uniform(-9, -3))
+
+
+def rising(rng: Random, miss: float) -> Scene:
+    """Return a rise towards the upright position, too slow by a relative amount."""
+    scene, part = body(rng), rng.uniform(0.1, 0.8)
+    spin = sleeping_spin(scene) * math.sqrt(part)
+    u = rng.uniform(2 * part - 1, 0.9)
+    rate = scene["C"] * spin / scene["A"] / (1 + u)  # by which Lz = C r0
+    rise = math.sqrt(max(2 / scene["A"] * (1 - u) - rate * rate * (1 - u * u), 0))
+    start = {"theta0_deg": math.degrees(math.acos(u)), "psidot0": rate}
+    return scene | start | {"r0": spin, "thetadot0": -rise * (1 - miss)}
+
+
+def near_vertical(rng: Random) -> Scene:
+    """A start 1e-8 to 1e-2 degrees from the vertical, or a path that passes as close to it."""
+    if rng.random() < 0.5:
+        return moving(rng) | {"theta0_deg": 10 ** rng.uniform(-8, -2)}
+    scene = rising(rng, -rng.uniform(0.1, 1))
+    return scene | {"psidot0": scene["psidot0"] * (1 + 10 ** rng.uniform(-10, -4))}
+
+
+def tiny_tilt_with_rates(rng: Random) -> Scene:
+    """A tilt of 1e-60 to 1e-9 degrees with rates of the size of 1."""
+    return moving(rng) | {"theta0_deg": 10 ** rng.uniform(-60, -9)}
+
+
+def near_steady(rng: Random) -> Scene:
+    """A steady precession, disturbed by 1e-12 to 1e-3 of its rate."""
+    scene = body(rng) | {"theta0_deg": rng.uniform(20, 160)}
+    spin = sleeping_spin(scene) * rng.uniform(1.1, 5)
+    b, u = scene["C"] * spin, math.cos(math.radians(scene["theta0_deg"]))
+    steady = 2 / (b + math.sqrt(b * b - 4 * scene["A"] * u))
+    return scene | {"r0": spin, "psidot0": steady * (1 + 10 ** rng.uniform(-12, -3))}
+
+
+def near_hanging(rng: Random) -> Scene:
+    """A swing of 1e-9 to 1e-2 degrees about the hanging position."""
+    tilt = 180 - 10 ** rng.uniform(-9, -2)
+    return body(rng) | {"r0": rng.uniform(-5, 5), "theta0_deg": tilt}
+
+
+def extreme_sizes(rng: Random) -> Scene:
+    """Units of mass, length and time that are 1e-12 to 1e12 of those of an ordinary top."""
+    mass, length, second = (10 ** rng.uniform(-12, 12) for _ in range(3))
+    scene = moving(rng)
+    found = scene | {"m": mass, "s": length, "g": length / second**2}
+    found |= {name: scene[name] * mass * length**2 for name in ("A", "C")}
+    return found | {name: scene[name] / second for name in ("r0", "thetadot0", "psidot0")}
+
+
+KINDS: dict[str, tuple[list[Scene], Callable[[Random], Scene]]] = {
+    "fast-spin": ([UNIT | {"r0": 1e4, "theta0_deg": 30, "psidot0": 1}], fast_spin),
+    "slow-spin": ([UNIT | {"r0": 1e-3, "theta0_deg": 120}], slow_spin),
+    "near-separatrix": ([rising(Random(1), 1e-6)], near_separatrix),
+    "near-vertical": (
+        [UNIT | {"r0": 2, "theta0_deg": 1e-6, "psidot0": 1}, rising(Random(2), -0.5)],
+        near_vertical,
     ),
-    Field("proved_units", "proved", lambda bound: f"<= {_hundredths(bound)}"),
-]
+    "tiny-tilt-with-rates": (
+        [UNIT | {"r0": 3, "theta0_deg": 1e-30, "thetadot0": 1}],
+        tiny_tilt_with_rates,
+    ),
+    "near-steady": (
+        [UNIT | {"r0": 6, "theta0_deg": 60, "psidot0": 0.382}],
+        near_steady,
+    ),
+    "near-hanging": ([UNIT | {"r0": 2, "theta0_deg": 179.999}], near_hanging),
+    "extreme-sizes": (
+        [{"m": 1e12, "s": 1e-12, "g": 1e6, "A": 1e-12, "C": 1e-12, "r0": 1e9, "theta0_deg": 50}],
+        extreme_sizes,
+    ),
+}
+"""The fixed scenes of each kind, and the function that returns a random one."""
 
 
-def run_battery(
-    strata: Sequence[str],
-    samples: int,
-    seed: int,
-    progress: Progress,
-    jobs: int = 1,
-    *,
-    certify: bool = False,
-    is_long: bool = False,
+class Row(NamedTuple):
+    """The worst scene of a kind for one method over one span."""
+
+    kind: str
+    method: str
+    periods: float
+    error_rad: float | None
+    """Greatest rotation from the exact to the computed attitude; None if there is no result."""
+    input_rounding: float
+    """Greatest rotation (rad) that half an ulp of each input causes, added over the inputs."""
+    verdict: str
+    scene: str
+    """The options of the scene."""
+    remark: str | None = None
+
+
+FIELDS = fields_of(
+    Row._fields,
+    Field("kind", "kind", is_text=True, names_the_row=True),
+    Field("method", "method", is_text=True, names_the_row=True),
+    Field("periods", "periods", "{:g}".format),
+    Field("error_rad", "error", short),
+    Field("input_rounding", "input rounding", short),
+    Field("verdict", "verdict", is_text=True),
+)
+VERDICTS = "rounding level", "inaccurate", "lost", "too slow", "failed", "not installed"
+"""The verdicts from good to bad."""
+
+
+def stability(
+    kinds: Sequence[str] | None = None,
+    samples: int = 1,
+    seed: int = 1952,
+    progress: Progress = silent,
 ) -> Report:
-    """Return the report on `samples` scenes of each stratum, computed by `jobs` processes.
+    """Compare methods in the fixed scenes of each kind and in `samples` random ones.
 
-    With `certify`, only lagtop is checked, by enclosures, and errors are proved bounds.
+    Each method runs at its tightest setting.  Raises LagtopError for an unknown kind.
     """
-    cases: dict[str, list[Case]] = {name: [] for name in strata}
-    runs: dict[str, dict[str, list[PeerRun]]] = {name: {} for name in strata}
-    scenes = [(name, seed, i) for name in strata for i in range(samples)]
-    parts = [(scene, part) for scene in scenes for part in (PARTS[:1] if certify else PARTS)]
-    work = partial(judged, certify=certify, is_long=is_long)
-    with closing(in_order(work, parts, jobs)) as results:
-        for (name, _, _), _ in progress(parts, "runs"):
-            result = next(results)
-            if isinstance(result, Case):
-                cases[name].append(result)
-            else:
-                runs[name].setdefault(result.method, []).append(result)
-    rows = [row for name in strata for row in stratum_rows(name, cases[name], runs[name].values())]
-    agreement = max(case.agreement for of_stratum in cases.values() for case in of_stratum)
-    conditions = common_conditions(agreement) | _conditions(strata, samples, seed)
-    if certify:
-        conditions["reference"] = PROVED
-    else:
-        conditions |= peer_conditions(is_long=is_long)
-    shown = _PROVED if certify else [*_COMPARED, _LONG] if is_long else _COMPARED
-    fields = fields_of(StratumRow._fields[:-1], *_ALWAYS, *shown)
-    return Report(conditions, fields, rows, _conclusions(rows))
+    names = list(KINDS) if kinds is None else check_names("kinds", kinds, KINDS)
+    scenes = [(kind, x) for kind in names for x in motions(kind, samples, seed)]
+    rows = [row for kind, motion in progress(scenes, "scenes") for row in compared(kind, motion)]
+    found = [
+        max((row for row in rows if row[:3] == (kind, name, span)), key=badness)
+        for kind in names
+        for span in SPANS
+        for name in COMPARED
+    ]
+    return Report(conditions(samples, seed), FIELDS, found, list(conclusions(found)))
 
 
-def judged(part: tuple[Scene, str], *, certify: bool, is_long: bool) -> Case | PeerRun:
-    """Return lagtop's errors in a scene, or the run of one method.
-
-    A scene is given by stratum, seed and number.  With `certify`, the errors are proved bounds.
-    """
-    scene, name = part
-    if certify:
-        return prove(hard_scene(*scene, TIMES))
-    hard, settled, exact = _prepared(scene, is_long)
-    return peer_run(name, exact) if name else judged_case(hard, settled)
+def motions(kind: str, samples: int, seed: int) -> list[Motion]:
+    """Return the fixed motions of a kind, and random ones that nutate under a torque."""
+    fixed, draw = KINDS[kind]
+    rng = Random(f"{seed} {kind}")
+    tops = (Top(**scene) for scene in chain(fixed, (draw(rng) for _ in repeat(None))))
+    nutating = (x for x in map(solve, tops) if x.regime in (Regime.REGULAR, Regime.NO_SPIN))
+    return list(islice(nutating, len(fixed) + samples))
 
 
-@lru_cache(maxsize=1)
-def _prepared(scene: Scene, is_long: bool) -> tuple[HardScene, tuple[Reference, float], ExactSpans]:
-    """Return a scene, its settled reference and its exact spans, for all parts of the scene."""
-    hard = hard_scene(*scene, TIMES)
-    top = Top(**hard.inputs)
-    settled = settled_reference(top)
-    return hard, settled, exact_spans(top, settled[0], is_long=is_long)
-
-
-def stratum_rows(
-    stratum: str, cases: Sequence[Case], methods: Iterable[Sequence[PeerRun]]
-) -> list[StratumRow]:
-    """Return the rows of a stratum, one per method, or one of proved bounds if none was run."""
-    worst = max(cases, key=lambda case: case.excess)
-    ours: dict[str, Any] = {name: max(getattr(x, name) for x in cases) for name in _WORST}
-    ours["worst_key"] = max(cases, key=lambda case: case.key_ulps).worst_key
-    ours["worst_case"] = worst.command()
-    if worst.excess > 1:
-        ours["verdict"] = EXCEEDED
-    rows = []
-    for runs in methods:
-        run = max(runs, key=_badness)
-        row = StratumRow(
-            stratum,
-            run.method,
-            len(cases),
-            run.verdict,
-            error_5_rad=run.error(SPANS[0]),
-            error_100_rad=run.error(SPANS[1]),
-            error_10000_rad=run.error(LONG_SPAN),
-            condition_rad=run.condition(SPANS[1]),
-            growth=run.growth,
-            energy=run.drift[0],
-            Lz=run.drift[1],
-            evaluations=run.evaluations,
-            remark=run.remark,
-            run=run,
+def compared(kind: str, motion: Motion) -> Iterator[Row]:
+    """Yield the rows of all methods in one scene, span by span."""
+    reference, scene = exact_motion(motion), motion.top.options()
+    moved = list(neighbours(motion.top))
+    for span in SPANS:
+        times = np.linspace(0, 0.97 * span * float(reference.T), TIMES + 1)[1:]
+        exact = [reference.attitude(t) for t in times.tolist()]
+        rounding = max(
+            sum(rotation_angle(each.attitude(t), x) for each in moved)
+            for t, x in list(zip(times.tolist(), exact, strict=True))[3::4]
         )
-        rows.append(row._replace(**ours) if run.method == OURS else row)
-    ours = {"verdict": FINE, "proved_units": max(ours[name] for name in _UNITS)} | ours
-    return rows or [StratumRow(stratum, OURS, len(cases), **ours)]
+        for name in COMPARED:
+            error, failure, remark = run(name, motion, times, exact)
+            verdict = failure or verdict_of(error, rounding)
+            yield Row(kind, name, span, error, rounding, verdict, scene, remark)
 
 
-def _badness(run: PeerRun) -> tuple[int, float]:
-    """Return a sorting key for the badness of a run: its verdict, then its error."""
-    place = list(VERDICTS).index(run.verdict) if run.verdict else -1
-    return place, run.error(SPANS[1]) or 0.0
+def neighbours(top: Top) -> Iterator[Reference]:
+    """Yield the exact motions after each input in turn has grown by half an ulp."""
+    exact = inputs_of(top)
+    for name, value in exact.items():
+        if value:
+            with mpmath.workdps(DIGITS):
+                half_ulp = mpmath.mpf(2) ** (mpmath.floor(mpmath.log(abs(value), 2)) - 53)
+            with mpmath.workdps(1000):
+                moved = value + half_ulp
+            yield Reference({**exact, name: moved})
 
 
-def exceeded(report: Report) -> list[str]:
-    """Return the strata in which lagtop breaks a promise, each with its worst case."""
-    bad = (row for row in report.rows if row.verdict == EXCEEDED)
-    return [f"{row.stratum}: {row.worst_case}" for row in bad]
+def run(
+    name: str, motion: Motion, times: Array, exact: Sequence[Attitude]
+) -> tuple[float | None, str, str | None]:
+    """Return the error of a method, or else why it has none, and in which words."""
+    method = METHODS[name]
+    try:
+        with np.errstate(all="ignore"):
+            sample: Sample = method.prepare(motion, method.settings[-1])
+            found = sample(times, LIMIT)
+            attitudes = found.to_attitudes(found.output)
+    except ImportError:
+        return None, "not installed", f"needs {method.package}: pip install {method.package}"
+    except SlowError:
+        return None, "too slow", None
+    except (LagtopError, ArithmeticError, ValueError) as error:
+        return None, "failed", str(error)
+    error = max(map(rotation_angle, attitudes.tolist(), exact))
+    return (error, "", None) if math.isfinite(error) else (None, "failed", "not finite")
 
 
-def _conditions(strata: Sequence[str], samples: int, seed: int) -> dict[str, str]:
-    return {
-        "scenes": f"{samples} per stratum, seed {seed}; lagtop also at {TIMES} times 1e-9 to 1e14 "
-        "periods before or after the start, and at the doubles next to a half period on one side "
-        "and to a quarter, half or whole number of periods on the other, from 1 to 1e14",
-        "strata": "; ".join(f"{name}: {words_of(name)}" for name in strata),
-        "promise": f"lagtop: angles and quaternion within {CONTRACT:g} units, every key of the "
-        f"record within {KEY_CONTRACT:g} gaps between doubles",
+def verdict_of(error: float | None, rounding: float) -> str:
+    """Return the verdict on an error over a span, from the effect of input rounding there."""
+    if error is None or error <= AT_ROUNDING * rounding:
+        return VERDICTS[0]
+    return "lost" if error > LOST else "inaccurate"
+
+
+def badness(row: Row) -> tuple[int, float]:
+    """Return a key by which the worst row is the greatest."""
+    return VERDICTS.index(row.verdict), (row.error_rad or 0) / row.input_rounding
+
+
+def failures(report: Report) -> list[str]:
+    """Return the kinds in which lagtop is not at rounding level."""
+    bad = [x for x in report.rows if x.method == "lagtop" and x.verdict != VERDICTS[0]]
+    return [f"{x.kind} over {x.periods:g} periods: {x.verdict} ({x.scene})" for x in bad]
+
+
+def conclusions(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield one line for each method: the number of kinds by verdict after the longest span."""
+    for name in dict.fromkeys(row.method for row in rows):
+        mine = [row for row in rows if row.method == name and row.periods == SPANS[-1]]
+        words = {
+            verdict: [row.kind for row in mine if row.verdict == verdict] for verdict in VERDICTS
+        }
+        said = "; ".join(
+            f"{verdict} in {'all kinds' if len(kinds) == len(mine) else ', '.join(kinds)}"
+            for verdict, kinds in words.items()
+            if kinds
+        )
+        yield f"{name} over {SPANS[-1]:g} periods: {said}."
+
+
+def conditions(samples: int, seed: int) -> dict[str, Any]:
+    """Return what the figures depend on."""
+    settings = ", ".join(f"{name} {METHODS[name].settings[-1]}" for name in COMPARED)
+    return machine() | {
+        "scenes": f"the fixed ones of each kind and {samples} random, seed {seed}; a row shows the "
+        "worst of them",
+        "error": f"greatest rotation (rad) from the exact to the computed attitude at {TIMES} "
+        "times of the span; the reference is Legendre's third integral in 50 digits of mpmath",
+        "rounding": "input rounding: sum of the rotations that half an ulp of each input causes",
+        "verdicts": f"rounding level: error at most {AT_ROUNDING} times input rounding; lost: "
+        f"error above {LOST:g} rad; inaccurate: between; too slow: more than {LIMIT:g} s of CPU",
+        "settings": settings,
     }
-
-
-def _conclusions(rows: Sequence[StratumRow]) -> list[str]:
-    ours = [row for row in rows if row.method == OURS]
-    bad = [row.stratum for row in ours if row.verdict == EXCEEDED]
-    verdict = f"Exceeded in: {', '.join(bad)}." if bad else "All strata are within the contract."
-    missing = dict.fromkeys(f"{row.method} ({row.remark})" for row in rows if not row.verdict)
-    cases = (f"{row.stratum}: {row.worst_case}" for row in ours)
-    return [verdict, *(f"Not compared: {x}." for x in missing), "", "Worst cases:", *cases]

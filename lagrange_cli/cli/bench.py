@@ -1,114 +1,94 @@
-"""Tests of lagtop: `lagtop bench` and `lagtop stability`."""
+"""Tests of methods: `lagtop bench` and `lagtop stability`."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ..bench.hard_scenes import STRATA, stratum_lines
 from ..errors import LagtopError
-from ..inputs.names import check_names
 from ..output.terminal import with_progress
 from . import options as opt
 from .tables import fail_for, write_report
-from .top import INPUT, SCENE, TopOptions, top_options
+from .top import SCENE
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from ..output.destination import Output
     from ..output.report import Report
 
-SAMPLES, LONG_SAMPLES = 10_000, 1000
-MOST_TIMES = 10_000_000
+MOST_TIMES, MOST_SCENES, MOST_PERIODS = 10_000_000, 1000, 1e6
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Environment variables for the number of threads of linear algebra packages."""
-SCENES, MOST_SCENES = 1, 100_000
-SEED = 1952
-STABILITY = """Compare the errors of methods in random stiff and extreme scenes.
-
-Errors are in radians.  Compare them with the condition of a scene: the change caused by half a unit
-in the last place of its inputs.  The strata of scenes are:
-
-\b
-{strata}
-
-lagtop itself is checked against 80 digits or more, at times up to 1e14 periods.  Its keys must be
-correctly rounded, and its angles within 4 units, which lagtop table --help defines.  The exit code
-is 1 if a bound is exceeded.
-"""
 
 
-def _methods() -> list[str]:
-    from ..bench.measure import all_methods, groups
+def _parse_spans(text: str) -> list[float]:
+    """Return increasing spans in nutation periods."""
+    from ..inputs.names import split_names
+    from ..inputs.value import parse_number
 
-    return list(dict.fromkeys([*all_methods(1.0), *groups()]))
+    spans = [float(parse_number(each)) for each in split_names(text)]
+    if not all(0 < span <= MOST_PERIODS for span in spans) or spans != sorted(set(spans)):
+        raise LagtopError(f"must increase from above 0 to {MOST_PERIODS:g} periods, got {text}")
+    return spans
+
+
+def _save(figure: Figure, path: str) -> None:
+    """Write a picture of a report."""
+    from ..output.destination import opened
+
+    with opened(path) as stream:
+        figure.savefig(stream, format=opt.extension(path), dpi=150)
 
 
 @opt.command(
     "bench",
     """
-    lagtop bench --methods lagtop,DOP853-quaternion --n 1000
-    lagtop bench chrapan-1952 stiff-top near-separatrix slow-top --plot p.svg
-    lagtop bench --long --methods lagtop,theta-series --n 100
+    lagtop bench --methods lagtop,DOP853 --n 1000
+    lagtop bench chrapan-1952 stiff-top near-separatrix slow-top --plot methods.svg
+    lagtop bench --spans 1,100 --methods lagtop,scipy.special --n 100
     """,
-    exclusive=["--long --t-max"],
 )
 def bench_command(
     scenes: Sequence[str] = opt.arguments(SCENE, "[SCENE]..."),
-    top: TopOptions = top_options(INPUT, None),
-    t_max: Fraction | None = opt.number("Last time.  [default: 20.3 nutation periods]"),
-    count: int | None = opt.count(
-        "Number of times.  [default: 1e4; 1e3 with --long]", "--n", most=MOST_TIMES
+    spans: list[float] | None = opt.option(
+        opt.Parsed("X,...", _parse_spans),
+        "Lengths in nutation periods; several show how errors grow.  [default: 20.3]",
+    ),
+    count: int = opt.count(
+        "Number of times.", "--n", most=MOST_TIMES, default="1e4", show_default=True
     ),
     methods: list[str] | None = opt.names(
-        "Methods, or groups such as engines.  [default: all but engines]", offered=_methods
+        "Methods to compare.  [default: all]", offered=opt.late("bench.methods", "METHODS")
     ),
-    timeout: Fraction = opt.number(
-        "Time limit of a run, in seconds.", positive=True, default="3", show_default=True
-    ),
-    is_long: bool = opt.flag("Compare over spans of 1 to 1e6 periods instead.", "--long"),
     plot: str | None = opt.plot,
     out: Output = opt.output(*opt.REPORT_FORMATS),
 ) -> None:
-    """Measure the error of many methods against their run time.
+    """Measure the error of methods against their run time.
 
-    The methods are closed forms, integrators and physics engines, each on one thread.  The
-    reference has 80 digits and shares no formula with lagtop.  The column `setting` holds the
-    tolerance of a method, or its number of steps per nutation period.  A * marks the Pareto
-    front: no other run is both faster and more accurate.  Several scenes make one table
-    and one picture.
+    The methods are closed forms, integrators and MuJoCo, each on one thread.  The error is the
+    greatest rotation (rad) from the exact attitude, which mpmath computes in 50 digits by other
+    formulas.  The column `setting` holds the tolerance of a method, or its number of steps per
+    nutation period.  A * marks the front: no other row is both faster and more accurate.
 
-    Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method needs heyoka.
+    Taylor's method needs heyoka, and MuJoCo its own package; a missing one is named.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
-    from ..bench.compare_methods import compare_methods
-    from ..bench.measure import chosen_methods
-    from ..bench.pictures import draw_methods
+    from ..bench.pictures import methods_figure
+    from ..bench.work_precision import PERIODS, bench
+    from ..inputs.given import read_scene
+    from ..motion.solve import solve
     from ..plot.reports import check_plot
 
-    if t_max == 0:
-        raise LagtopError("--t-max must not be 0")
     check_plot(plot, out.path)
-    chosen = chosen_methods(methods, float(timeout))
-    names: Sequence[str | None] = scenes or [None]
-    motions, units = {}, dict[str, str]()
-    for name in names:
-        motions[name], units = top.replace(scene=name).solved_in_units()
+    motions = {name: solve(read_scene(name)) for name in scenes or ["chrapan-1952"]}
 
     def find() -> Report:
-        report = compare_methods(
-            motions,
-            chosen,
-            count or (LONG_SAMPLES if is_long else SAMPLES),
-            t_max=None if t_max is None else float(t_max),
-            limit=float(timeout),
-            is_long=is_long,
-            progress=with_progress,
-        )
+        report = bench(motions, methods, spans or [PERIODS], count, with_progress)
         if plot:
-            draw_methods(report, plot, is_long=is_long)
-        return report._replace(conditions=units | report.conditions)
+            _save(methods_figure(report), plot)
+        return report
 
     write_report(out, find)
 
@@ -116,48 +96,45 @@ def bench_command(
 @opt.command(
     "stability",
     """
-    lagtop stability --strata slow,thresholds --samples 1
-    lagtop stability --strata slow --samples 2 --seed 7 -o battery.csv
-    lagtop stability --strata slow --samples 1 --plot stability.svg
+    lagtop stability
+    lagtop stability --kinds slow-spin,near-vertical --samples 5 --seed 7 -o stability.csv
+    lagtop stability --kinds slow-spin --plot stability.svg
     """,
-    exclusive=["--certify --long"],
-    text=STABILITY.format(strata="\n".join(stratum_lines())),
 )
 def stability_command(
-    scenes: int = opt.count(  # the help lists it among the options of the command, as `first_seed`
-        "Scenes per stratum; 200 make a thorough test.",
-        "--samples",
-        most=MOST_SCENES,
-        default=str(SCENES),
-        show_default=True,
+    kinds: list[str] | None = opt.names(
+        "Use only these kinds of scenes.  [default: all]",
+        offered=opt.late("bench.stability", "KINDS"),
     ),
-    first_seed: int = opt.count(
-        "Seed of the random scenes.", "--seed", default=str(SEED), show_default=True
+    samples: int = opt.count(
+        "Random scenes of each kind.", most=MOST_SCENES, default="1", show_default=True
     ),
-    strata: list[str] | None = opt.names(
-        "Use only these strata.  [default: all]", offered=opt.late("bench.hard_scenes", "STRATA")
-    ),
-    jobs: int | None = opt.jobs,
-    certify: bool = opt.flag("Print only proven bounds on the errors of lagtop."),
-    is_long: bool = opt.flag("Compare over 1e4 periods too.", "--long"),
+    seed: int = opt.count("Seed of the random scenes.", default="1952", show_default=True),
     plot: str | None = opt.plot,
     out: Output = opt.output(*opt.REPORT_FORMATS),
 ) -> None:
-    """Compare methods in random scenes; STABILITY is the help."""
-    from ..bench import stability
-    from ..bench.pictures import draw_stability
+    """Compare methods in stiff and extreme scenes.
+
+    The kinds are fast-spin, slow-spin, near-separatrix, near-vertical, tiny-tilt-with-rates,
+    near-steady, near-hanging and extreme-sizes.  Each has a fixed scene and random ones.  Errors
+    are the greatest rotations (rad) from the exact attitude, over 1 and 100 nutation periods.
+    `input rounding` is the rotation that half an ulp of each input causes: no method whose inputs
+    are doubles can do better.  A row shows the worst scene of its kind.
+
+    The exit code is 1 if an error of lagtop exceeds 100 times the input rounding.
+    """
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    from ..bench.pictures import stability_figure
+    from ..bench.stability import failures, stability
     from ..plot.reports import check_plot
 
     check_plot(plot, out.path)
-    chosen = list(STRATA) if strata is None else check_names("strata", strata, STRATA)
 
     def find() -> Report:
-        report = stability.run_battery(
-            chosen, scenes, first_seed, with_progress, jobs or 1, certify=certify, is_long=is_long
-        )
+        report = stability(kinds, samples, seed, with_progress)
         if plot:
-            draw_stability(report, plot)
+            _save(stability_figure(report), plot)
         return report
 
     report = write_report(out, find)
-    fail_for(stability.exceeded(report), len(chosen), "strata")
+    fail_for(failures(report), len(report.rows), "rows")

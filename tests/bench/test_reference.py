@@ -1,4 +1,4 @@
-"""The many-digit reference against the judge in balls, and its definition of errors."""
+"""The reference in 50 digits against Arb with other formulas, and the definition of error."""
 
 from __future__ import annotations
 
@@ -9,28 +9,54 @@ import mpmath
 import pytest
 from arb_balls import many_digits
 from ball_judge import Judge
-from lagtop import Top
+from hard_scenes import STRATA, nutating
+from lagtop import Top, solve
 
-from lagrange_cli.bench.battery import judged_inputs
-from lagrange_cli.bench.hard_scenes import STRATA
-from lagrange_cli.bench.reference import Reference, angle_units
+from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle, viete_roots
 
 
 @pytest.mark.parametrize("stratum", STRATA)
-def test_the_reference_agrees_with_the_judge(stratum: str) -> None:
-    """Legendre's third integral about the bottom, by mpmath and by Arb."""
-    top = Top(**judged_inputs(stratum, random.Random(2)))
-    reference, judge = Reference(top, 60), Judge(top.as_dict())
+def test_attitudes_agree_with_the_judge(stratum: str) -> None:
+    """Legendre's third integral from the lowest point, by mpmath and by Arb."""
+    top = Top(**nutating(stratum, random.Random(2)))
+    reference, judge = Reference(inputs_of(top)), Judge(top.as_dict())
     t = 3.7 * float(reference.T)
-    with mpmath.workdps(60):
-        for mine, other in zip(reference.at(t)[:3], judge.at(t)[:3], strict=True):
-            assert abs(mine - many_digits(other)) < 1e-25 * (1 + abs(mine))
+    with mpmath.workdps(50):
+        theta, phi, psi = map(many_digits, judge.at(t)[:3])
+        cos, sin = mpmath.cos(theta / 2), mpmath.sin(theta / 2)
+        plus, minus = (psi + phi) / 2, (psi - phi) / 2
+        attitude = (cos * mpmath.cos(plus), sin * mpmath.cos(minus))
+        attitude += (sin * mpmath.sin(minus), cos * mpmath.sin(plus))
+    assert rotation_angle(attitude, reference.attitude(t)) < 1e-20
 
 
-def test_errors_are_counted_by_the_one_definition() -> None:
-    exact = Reference(Top()).at(0.25)
-    angles = float(exact.theta), float(exact.phi), float(exact.psi)
-    assert max(angle_units(angles, exact)) <= 0.5
-    off = (angles[0] + 2.0**-40, angles[1], angles[2])
-    assert angle_units(off, exact)[0] > 1000
-    assert angle_units((math.nan, angles[1], angles[2]), exact)[0] == math.inf
+def test_the_error_is_the_angle_of_a_rotation() -> None:
+    half = 1e-12 / 2
+    turned = [math.cos(half), 0.0, math.sin(half), 0.0]
+    start = tuple(map(mpmath.mpf, (1, 0, 0, 0)))
+    assert rotation_angle(turned, start) == pytest.approx(1e-12, rel=1e-12)
+    assert rotation_angle([-2 * x for x in turned], start) == pytest.approx(1e-12, rel=1e-12)
+    assert rotation_angle([0.0, 1.0, 0.0, 0.0], start) == pytest.approx(math.pi)
+    assert rotation_angle([math.nan, 1.0, 0.0, 0.0], start) == math.inf
+    assert rotation_angle(start, start) == 0
+
+
+def test_the_error_does_not_depend_on_the_exact_attitude() -> None:
+    exact = Reference(inputs_of(Top())).attitude(0.3)
+    with mpmath.workdps(50):
+        w, x, y, z = exact
+        c, s = mpmath.cos(mpmath.mpf("5e-9")), mpmath.sin(mpmath.mpf("5e-9"))
+        about_z = (c * w - s * z, c * x + s * y, c * y - s * x, c * z + s * w)
+    assert rotation_angle(about_z, exact) == pytest.approx(1e-8, rel=1e-12)
+
+
+def test_roots_by_cosines() -> None:
+    with mpmath.workdps(30):
+        found = viete_roots(mpmath.mpf(-2), mpmath.mpf(-1), mpmath.mpf(2))
+        assert all(abs(x - y) < 1e-25 for x, y in zip(found, (-1, 1, 2), strict=True))
+
+
+def test_the_period_is_that_of_the_record() -> None:
+    for top in (Top(), Top(r0=30, theta0_deg=110, thetadot0=-2, psidot0=3)):
+        period = solve(top).T_nutation
+        assert float(Reference(inputs_of(top)).T) == period

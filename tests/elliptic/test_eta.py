@@ -11,13 +11,13 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
+from error_units import error_in_units
 from function_tables import array_rows
 from hypothesis import given
 from hypothesis import strategies as st
 from lagtop import LagtopError, Top, solve
 
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.eta import Quadrature, eta_constants
 from lagrange_cli.elliptic.eta_table import EtaTable, record
 from lagrange_cli.elliptic.many_digits import ManyDigits

@@ -14,12 +14,12 @@ import pytest
 from arb_balls import exact_arb
 from balls.scene import arb_bits
 from conftest import Lagtop
+from error_units import error_in_units
 from flint import acb
 from lagtop import LagtopError
 from scenes import EPS
 
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import complete_k
 from lagrange_cli.elliptic.jacobi import jacobi

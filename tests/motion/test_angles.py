@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hard_scenes import Scene, ordinary
 from lagtop import LagtopError, Motion, Regime, Top, solve
 from scenes import UNIT, period
 
 from lagrange_cli.arithmetic.arrays import BLOCK
-from lagrange_cli.bench.hard_scenes import Scene, ordinary
 
 
 @pytest.mark.parametrize("r0", [50, -50, 60, -1])

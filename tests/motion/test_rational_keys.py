@@ -9,11 +9,11 @@ from fractions import Fraction
 
 import pytest
 from exact_scenes import KINDS
+from hard_scenes import nutating
 from lagtop import LagtopError, Motion, Top, solve
 from scenes import UNIT
 
 from lagrange_cli.arithmetic.ball import Ball
-from lagrange_cli.bench.battery import judged_inputs
 from lagrange_cli.motion.exact import rational_keys as rational_keys_module
 from lagrange_cli.motion.exact.rational_keys import known_fraction, rational_keys
 from lagrange_cli.motion.record import NUMBER_KEYS
@@ -151,7 +151,7 @@ def test_a_fraction_next_to_a_rate_is_refused_by_balls_alone(
     monkeypatch.setattr(rational_keys_module, "_shared_roots", None)
     rng = random.Random(4)
     for _ in range(9):
-        motion = solve(Top(**judged_inputs("near a pole", rng)))
+        motion = solve(Top(**nutating("near a pole", rng)))
         for key in ("spin_rate_half", "precession_rate_half"):
             motion.fraction(key)
 

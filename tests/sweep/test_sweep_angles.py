@@ -10,9 +10,9 @@ import pytest
 from ball_judge import Judge
 from exact_scenes import KINDS
 from fuzz import inputs_of, period_of, times_of
+from hard_scenes import in_doubles
 from lagtop import LagtopError, Top, solve, sweep_angles
 
-from lagrange_cli.bench.hard_scenes import in_doubles
 from lagrange_cli.sweep import angles
 
 RNG = np.random.default_rng(14)

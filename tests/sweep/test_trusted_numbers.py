@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 from ball_judge import Judge
 from exact_scenes import KINDS
+from hard_scenes import in_doubles, nutating
 from lagtop import Top, solve
 from scenes import UNIT
 
-from lagrange_cli.bench.battery import judged_inputs
-from lagrange_cli.bench.hard_scenes import in_doubles
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.sweep.records import sweep
 from lagrange_cli.sweep.start_arrays import StartArrays
@@ -92,7 +91,7 @@ CANCELLING: dict[str, list[dict[str, float]]] = {
         for _ in range(30)
     ],
     # among them a spin rate far below its parts: gaps good to 2^-38 would put it 31 eps off
-    "stiff tops": [judged_inputs("stiff (fast spin)", STIFF) for _ in range(25)],
+    "stiff tops": [nutating("stiff (fast spin)", STIFF) for _ in range(25)],
     "a cosine": [EXAMPLE | {"theta0_deg": 90, "r0": 1e10}],
 }
 

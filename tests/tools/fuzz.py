@@ -41,11 +41,10 @@ from balls.scene import Undecided
 from balls.scene import arb_bits as precision
 from exact_scenes import KINDS, as_decimals
 from flint import arb
+from hard_scenes import HardTimes, Scene
 from lagtop import LagtopError, Motion, Top, solve, sweep
 
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.bench.battery import HardScene
-from lagrange_cli.bench.hard_scenes import Scene
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
@@ -107,7 +106,7 @@ def times_of(rng: random.Random, period: Fraction, decades: int = 14) -> list[fl
     ]
     powers = rng.uniform(-9, 1), 0, *(rng.uniform(0, decades) for _ in range(ELSEWHERE - 2))
     periods = [rng.choice([-1, 1]) * rng.random() * 10**power for power in powers]
-    return HardScene({}, periods, quarters).times(period)
+    return HardTimes(periods, quarters).times(period)
 
 
 def period_of(judge: Judge) -> Fraction:

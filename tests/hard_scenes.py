@@ -11,9 +11,14 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
+
+from lagtop import LagtopError, Top, solve
+
+from lagrange_cli.bench.work_precision import exact_motion
 
 Scene = dict[str, Any]
 _HALF_PI = Decimal("1.57079632679489661923132169163975144209858469968755291048747")
@@ -278,16 +283,35 @@ STRATA: dict[str, Callable[[random.Random], Scene]] = {
 """The kinds by name."""
 
 
-def words_of(stratum: str) -> str:
-    """Return a line that describes the scenes of a stratum."""
-    return (STRATA[stratum].__doc__ or "").partition("\n")[0].removeprefix("Return ").rstrip(".")
-
-
-def stratum_lines() -> list[str]:
-    """Return one aligned line per stratum, for the help of the command."""
-    return [f"{name:20}  {words_of(name)}" for name in STRATA]
-
-
 def in_doubles(scene: Scene) -> Scene:
     """Return a scene with each input rounded to the nearest double."""
     return {name: float(value) for name, value in scene.items()}
+
+
+def nutating(stratum: str, rng: random.Random) -> Scene:
+    """Return the inputs, as doubles, of a scene of a stratum that nutates under a torque."""
+    while True:
+        scene = in_doubles(STRATA[stratum](rng))
+        with suppress(LagtopError):
+            exact_motion(solve(Top(**scene)))
+            return scene
+
+
+class HardTimes(NamedTuple):
+    """Times at which a motion is checked."""
+
+    periods: list[float]
+    """Random times, in nutation periods."""
+    quarters: list[int]
+    """Times at which angles might leap, in quarters of a period."""
+
+    def times(self, period: Any) -> list[float]:
+        """Return all times, with both neighbours of the double next to each quarter.
+
+        `period` is the exact nutation period, in many digits.
+        """
+        times = [float(period * number) for number in self.periods]
+        for number in self.quarters:
+            t = float(period * number / 4)
+            times += [t, math.nextafter(t, math.inf), math.nextafter(t, -math.inf)]
+        return times

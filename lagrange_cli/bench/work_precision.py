@@ -1,0 +1,291 @@
+"""Error against run time, for every method at the same times: rows, front and conclusions."""
+
+from __future__ import annotations
+
+import math
+import platform
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.names import check_names
+from ..motion.regime import Regime
+from ..motion.solve import Motion
+from ..output.report import Field, Report, fields_of, short
+from ..output.terminal import Progress, silent
+from .methods import METHODS, SlowError
+from .reference import Attitude, Reference, inputs_of, rotation_angle
+
+PERIODS = 20.3
+"""Default span in nutation periods.  It does not end at a turning point, where errors are least."""
+CHECKED = 51
+"""Number of times that are compared with the reference, the last one among them."""
+RUNS, SECONDS_OF_RUNS, LIMIT = 9, 0.3, 3.0
+"""Most warm runs, the CPU seconds after which they end, and the limit of one run."""
+ROUNDING, LOST = 1e-11, 0.1
+"""Errors (rad) between which an order of convergence is measured."""
+
+
+class Row(NamedTuple):
+    """One method at one setting, in one scene and over one span."""
+
+    scene: str
+    method: str
+    setting: float | str
+    periods: float
+    error_rad: float | None = None
+    """Greatest rotation from the exact to the computed attitude."""
+    ns_per_sample: float | None = None
+    """The least CPU time of warm runs, without the set-up."""
+    setup_ms: float | None = None
+    """CPU time until the first sample of a new top can be computed."""
+    evaluations: int | None = None
+    order: float | None = None
+    """Observed order of a method with fixed steps, between this setting and the one before it."""
+    front: bool = False
+    """Whether no other row of the scene and span is both faster and more accurate."""
+    remark: str | None = None
+
+
+FIELDS = fields_of(
+    Row._fields,
+    Field("scene", "scene", is_text=True, names_the_row=True),
+    Field("method", "method", is_text=True, names_the_row=True),
+    Field("setting", "setting", names_the_row=True),
+    Field("periods", "periods", "{:g}".format),
+    Field("error_rad", "error", short),
+    Field("ns_per_sample", "ns/sample", "{:.0f}".format),
+    Field("setup_ms", "set-up ms", "{:.1f}".format),
+    Field("evaluations", "evaluations"),
+    Field("order", "order", "{:.1f}".format),
+    Field("front", "front", lambda front: "*" if front else ""),
+    Field("remark", "remark", is_text=True),
+)
+
+
+class Task(NamedTuple):
+    """Times of one scene, and the exact attitudes at some of them."""
+
+    scene: str
+    motion: Motion
+    periods: float
+    times: Array
+    checked: NDArray[np.int64]
+    """Indices of the times with an exact attitude."""
+    exact: list[Attitude]
+
+
+def bench(
+    scenes: Mapping[str, Motion],
+    methods: Sequence[str] | None = None,
+    spans: Sequence[float] = (PERIODS,),
+    count: int = 10_000,
+    progress: Progress = silent,
+) -> Report:
+    """Compare methods at `count` times over spans in nutation periods.
+
+    Each method runs at all of its settings, or at its tightest one if there are several spans.
+    Raises LagtopError for an unknown method, and for a scene that does not nutate.
+    """
+    names = list(METHODS) if methods is None else check_names("methods", methods, METHODS)
+    tasks = [
+        task_of(scene, motion, span, count) for scene, motion in scenes.items() for span in spans
+    ]
+    runs = [
+        (task, name, setting)
+        for task in tasks
+        for name in names
+        for setting in METHODS[name].settings[0 if len(spans) == 1 else -1 :]
+    ]
+    found = [measure(*run) for run in progress(runs, "methods")]
+    rows = [
+        row
+        for task in tasks
+        for row in marked([x for x in found if (x.scene, x.periods) == (task.scene, task.periods)])
+    ]
+    lines = [*(growth(rows) if len(spans) > 1 else rivals_of_lagtop(rows)), *missing(rows)]
+    return Report(conditions(tasks), FIELDS, rows, lines)
+
+
+def exact_motion(motion: Motion) -> Reference:
+    """Return the reference of a motion; raise LagtopError if it cannot check the motion."""
+    if motion.regime not in (Regime.REGULAR, Regime.NO_SPIN):
+        raise LagtopError(f"the scene must nutate, got {motion.regime.value}")
+    try:
+        return Reference(inputs_of(motion.top))
+    except ZeroDivisionError:
+        raise LagtopError("the axis must not pass exactly through the vertical") from None
+
+
+def task_of(scene: str, motion: Motion, periods: float, count: int) -> Task:
+    """Return `count` times from 0 over a span (only its end if 1), with exact attitudes."""
+    reference = exact_motion(motion)
+    end = periods * float(reference.T)
+    times = np.linspace(0.0, end, count) if count > 1 else np.array([end])
+    checked = np.unique(np.linspace(0, count - 1, min(CHECKED, count)).round().astype(np.int64))
+    exact = [reference.attitude(t) for t in times[checked].tolist()]
+    return Task(scene, motion, periods, times, checked, exact)
+
+
+def measure(task: Task, name: str, setting: float | str) -> Row:
+    """Return the error and the times of one method; a remark states why it has none."""
+    row, method = Row(task.scene, name, setting, task.periods), METHODS[name]
+    times = task.times[task.checked] if method.has_fixed_steps else task.times
+    seconds: list[float] = []
+    try:
+        if method.package:
+            import_module(method.package)  # before the clock starts
+        with np.errstate(all="ignore"):  # numbers that are not finite have an infinite error
+            setups = []
+            for _ in range(2):  # the first one may import
+                begun = time.process_time()
+                sample = method.prepare(task.motion, setting)
+                setups.append(time.process_time() - begun)
+            while len(seconds) <= RUNS and sum(seconds) <= SECONDS_OF_RUNS:
+                begun = time.process_time()
+                run = sample(times, LIMIT)
+                seconds.append(time.process_time() - begun)
+            attitudes = run.to_attitudes(run.output)
+    except SlowError:
+        return row._replace(remark=f"too slow: more than {LIMIT:g} s")
+    except ImportError:
+        return row._replace(remark=f"needs {method.package}: pip install {method.package}")
+    except (LagtopError, ArithmeticError, ValueError) as error:
+        return row._replace(remark=f"failed: {error}")
+    found = attitudes if method.has_fixed_steps else attitudes[task.checked]
+    error = max(map(rotation_angle, found.tolist(), task.exact))
+    if not math.isfinite(error):
+        return row._replace(remark="failed: numbers are not finite")
+    return row._replace(
+        error_rad=error,
+        ns_per_sample=min(seconds[1:] or seconds) / task.times.size * 1e9,
+        setup_ms=min(setups) * 1e3,
+        evaluations=run.evaluations,
+    )
+
+
+def marked(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows of a scene and span with orders and front, the most accurate method first."""
+    found: list[Row] = []
+    for before, row in zip([None, *rows], rows, strict=False):
+        front = row.error_rad is not None and not rivals(row, rows)
+        found.append(row._replace(front=front, order=order_between(before, row)))
+    best = {
+        name: min(error_of(x) for x in rows if x.method == name)
+        for name in {x.method for x in rows}
+    }
+    return sorted(found, key=lambda x: (best[x.method], x.method, error_of(x)))
+
+
+def error_of(row: Row) -> float:
+    """Return the error of a row, infinite if it has none."""
+    return math.inf if row.error_rad is None else row.error_rad
+
+
+def order_between(before: Row | None, row: Row) -> float | None:
+    """Return the exponent by which the error of fixed steps falls with their number."""
+    if before is None or before.method != row.method or not METHODS[row.method].has_fixed_steps:
+        return None
+    if not (ROUNDING < error_of(row) < error_of(before) < LOST):
+        return None
+    ratio = float(row.setting) / float(before.setting)
+    return math.log(error_of(before) / error_of(row)) / math.log(ratio)
+
+
+def rivals(row: Row, rows: Sequence[Row]) -> list[Row]:
+    """Return the rows at least as fast and accurate as a row, and better in one of both."""
+    mine = error_of(row), row.ns_per_sample or math.inf
+    return [
+        other
+        for other in rows
+        if other.ns_per_sample
+        and (theirs := (error_of(other), other.ns_per_sample)) != mine
+        and theirs[0] <= mine[0]
+        and theirs[1] <= mine[1]
+    ]
+
+
+def rivals_of_lagtop(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield which methods are both faster and more accurate than lagtop, scene by scene."""
+    for scene in dict.fromkeys(row.scene for row in rows):
+        mine = [row for row in rows if row.scene == scene]
+        if {row.method for row in mine if row.ns_per_sample} == {"lagtop"}:
+            yield f"{scene}: lagtop was compared with nothing."
+            continue
+        for row in mine:
+            if row.method != "lagtop" or row.error_rad is None:
+                continue
+            better = [x for x in rivals(row, mine) if x.method != "lagtop"]
+            names = ", ".join(f"{x.method} at {x.setting}" for x in better) or "no other method"
+            verb = "are" if len(better) > 1 else "is"
+            yield f"{scene}: {names} {verb} faster and more accurate than lagtop's {row.setting}."
+
+
+def growth(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield the exponent p of each method whose error grows as span^p, by least squares."""
+    for scene, name in dict.fromkeys((row.scene, row.method) for row in rows):
+        points = [
+            (math.log(row.periods), math.log(row.error_rad))
+            for row in rows
+            if (row.scene, row.method) == (scene, name)
+            and 0 < error_of(row) < LOST
+            and row.error_rad
+        ]
+        if len(points) > 1:
+            slope = np.polyfit(*np.transpose(points), 1)[0]
+            yield f"{scene}: the error of {name} grows as span^{slope:.1f}."
+
+
+def missing(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield a line with the methods that have no result, each with its first reason."""
+    done = {row.method for row in rows if row.error_rad is not None}
+    reasons = {row.method: row.remark for row in reversed(rows) if row.method not in done}
+    if reasons:
+        said = (f"{name} ({remark})" for name, remark in sorted(reasons.items()))
+        yield f"Not compared: {', '.join(said)}."
+
+
+def machine() -> dict[str, str]:
+    """Return the processor with its vector instructions, and the versions of all packages."""
+    names = []
+    with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8") as lines:
+        names = [line.partition(":")[2].strip() for line in lines if "model name" in line]
+    vector = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
+    versions = [f"Python {platform.python_version()}"]
+    for name in ("lagtop", "numpy", "scipy", "mpmath", "heyoka", "mujoco"):
+        try:
+            versions.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            versions.append(f"no {name}")
+    return {
+        "machine": f"{names[0] if names else platform.processor() or 'unknown processor'}, "
+        f"{platform.system()} {platform.machine()}, "
+        f"{vector[-1] if vector else 'unknown vector instructions'}",
+        "versions": ", ".join(versions),
+    }
+
+
+def conditions(tasks: Sequence[Task]) -> dict[str, str]:
+    """Return what the figures depend on."""
+    return machine() | {
+        "scenes": "; ".join(dict.fromkeys(f"{x.scene}: {x.motion.top.options()}" for x in tasks)),
+        "times": f"{tasks[0].times.size} from 0 over "
+        f"{', '.join(dict.fromkeys(f'{x.periods:g}' for x in tasks))} nutation periods",
+        "error": "greatest rotation (rad) from the exact to the computed attitude, at "
+        f"{tasks[0].checked.size} of the times; the reference is Legendre's third integral "
+        "in 50 digits of mpmath",
+        "setting": "rtol = atol in the units of the scene; of fixed steps, their number per "
+        "nutation period",
+        "time": f"CPU, least of up to {RUNS} warm runs, without the set-up; a run of more than "
+        f"{LIMIT:g} s is ended. RK4 and MuJoCo are sampled at the checked times only",
+        "compiled": "Taylor (heyoka) and MuJoCo; SciPy and RK4 call a right-hand side in Python",
+        "not timed": "energy, conversion of lagtop's angles to attitudes, imports",
+    }

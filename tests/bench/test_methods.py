@@ -1,0 +1,133 @@
+"""Each method against the exact motion, and SciPy's rows by equations of their own."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from lagtop import LagtopError, Top, solve
+from scipy.integrate import solve_ivp
+
+from lagrange_cli.bench.methods import METHODS, Run, SlowError, steps_between
+from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
+from lagrange_cli.bench.work_precision import bench, measure, task_of
+
+START = {"m": 1.2, "A": 0.03, "C": 0.02, "s": 0.1, "g": 9.81}
+START |= {"r0": 40.0, "theta0_deg": 50.0, "thetadot0": -2.0, "psidot0": 3.0}
+MOTION = solve(Top(**START))
+ERRORS = {
+    **{"lagtop": 2e-15, "scipy.special": 1e-12, "Taylor": 1e-13, "DOP853": 1e-11},
+    **{"RK45": 1e-5, "LSODA": 1e-8, "Radau": 1e-4, "RK4": 1e-6, "MuJoCo-RK4": 1e-6},
+    "MuJoCo-Euler": 3.2,
+}
+"""The greatest errors (rad) at the tightest settings over three periods."""
+
+
+def run(name: str, setting: Any, times: Any, limit: float = 60.0) -> Run:
+    """Return the run of a method in the scene of this file."""
+    if METHODS[name].package:
+        pytest.importorskip(METHODS[name].package)
+    return METHODS[name].prepare(MOTION, setting)(times, limit)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_the_tightest_setting_agrees_with_the_reference(name: str) -> None:
+    reference = Reference(inputs_of(MOTION.top))
+    times = np.linspace(0, 3 * float(reference.T), 8)
+    done = run(name, METHODS[name].settings[-1], times)
+    found = done.to_attitudes(done.output)
+    assert found.shape == (8, 4)
+    exact = [reference.attitude(t) for t in times.tolist()]
+    error = max(map(rotation_angle, found.tolist(), exact))
+    assert 0 < error < ERRORS[name]
+
+
+def test_angles_of_lagtop_give_the_attitude() -> None:
+    times = np.linspace(0, 3.0, 50)
+    angles, quaternion = (run("lagtop", each, times) for each in ("angles", "quaternion"))
+    difference = angles.to_attitudes(angles.output) - quaternion.to_attitudes(quaternion.output)
+    assert np.abs(difference).max() < 1e-13
+
+
+def moments(_: float, state: Any) -> list[float]:
+    """Euler's equations from the moments A and C, and the rate of the quaternion."""
+    p, q, w, x, y, z = state
+    A, C, r, weight = START["A"], START["C"], START["r0"], START["m"] * START["g"] * START["s"]
+    return [
+        ((A - C) * q * r + weight * 2 * (y * z + w * x)) / A,
+        ((C - A) * p * r - weight * 2 * (x * z - w * y)) / A,
+        (-x * p - y * q - z * r) / 2,
+        (w * p + y * r - z * q) / 2,
+        (w * q + z * p - x * r) / 2,
+        (w * r + x * q - y * p) / 2,
+    ]
+
+
+@pytest.mark.parametrize("name", ["RK45", "DOP853", "LSODA"])
+def test_scipy_runs_as_in_a_plain_call(name: str) -> None:
+    half, across = math.radians(25), START["psidot0"] * math.sin(math.radians(50))
+    start = [START["thetadot0"], across, math.cos(half), math.sin(half), 0.0, 0.0]
+    times = np.linspace(0, 1.5, 30)
+    plain = solve_ivp(moments, (0, 1.5), start, name, t_eval=times, rtol=1e-7, atol=1e-7)
+    done = run(name, 1e-7, times)
+    assert done.evaluations == pytest.approx(plain.nfev, rel=0.01)
+    assert np.abs(done.to_attitudes(done.output) - plain.y[2:].T).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", ["RK4", "MuJoCo-RK4"])
+def test_fixed_steps_converge_with_order_4(name: str) -> None:
+    task = task_of("scene", MOTION, 2.3, 24)
+    if METHODS[name].package:
+        pytest.importorskip(METHODS[name].package)
+    coarse, fine = (measure(task, name, setting) for setting in (100, 200))
+    assert coarse.error_rad
+    assert fine.error_rad
+    assert math.log2(coarse.error_rad / fine.error_rad) == pytest.approx(4, abs=0.5)
+
+
+def test_fixed_steps_divide_the_gaps_between_times() -> None:
+    assert [steps_between(0, end, 0.1) for end in (0.0, 0.05, 0.1, 0.10001, 1.0)] == [
+        0,
+        1,
+        1,
+        2,
+        10,
+    ]
+    assert run("RK4", 50, np.array([0.0, 0.5])).evaluations == 4 * steps_between(
+        0, 0.5, float(MOTION.T_nutation or 0) / 50
+    )
+
+
+@pytest.mark.parametrize("name", ["DOP853", "Radau", "RK4", "Taylor"])
+def test_a_run_that_takes_too_long_is_ended(name: str) -> None:
+    with pytest.raises(SlowError):
+        run(name, METHODS[name].settings[-1], np.linspace(0, 5000, 10), 0.0)
+
+
+def test_mujoco_refuses_a_body_without_a_shape() -> None:
+    pytest.importorskip("mujoco")
+    flat = solve(Top(**START | {"A": 0.0121}))
+    with pytest.raises(LagtopError, match="MuJoCo needs"):
+        METHODS["MuJoCo-RK4"].prepare(flat, 50)
+
+
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(METHODS, "Taylor", METHODS["Taylor"]._replace(package="no_such_package"))
+    report = bench({"scene": MOTION}, ["lagtop", "Taylor"], count=3)
+    assert "Not compared: Taylor (needs no_such_package: pip install no_such_package)." in (
+        report.conclusions
+    )
+
+
+@pytest.mark.slow
+def test_the_figures_of_the_worked_example() -> None:
+    """DOP853 and RK4 over 20.3 periods, at 1e4 times, as runs outside the package found them."""
+    report = bench({"worked": solve(Top())}, ["lagtop", "DOP853", "RK4"])
+    rows = {(row.method, row.setting): row for row in report.rows}
+    assert rows["DOP853", 3e-14].evaluations == pytest.approx(44_900, rel=0.02)
+    assert rows["DOP853", 3e-14].error_rad == pytest.approx(7e-12, rel=0.5)
+    assert rows["RK4", 800].error_rad == pytest.approx(5.8e-7, rel=0.1)
+    assert rows["RK4", 50].evaluations < rows["RK4", 200].evaluations / 3
+    assert rows["lagtop", "quaternion"].error_rad < 2e-15
