@@ -293,11 +293,13 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
           </body></worldbody>
         </mujoco>"""
     )
-    data = engine.MjData(model)
+    data, warned = engine.MjData(model), list[str]()
+    engine.set_mju_user_warning(warned.append)  # or else MuJoCo writes a file
     rates = np.array([*problem.start[:2], float(top.r0)]) * period
 
     def sample(t: Array, limit: float) -> Run:
         end = time.process_time() + limit
+        warned.clear()
         engine.mj_resetData(model, data)
         data.qpos[:], data.qvel[:] = problem.start[2:], rates
         rows, now = np.empty((t.size, 4)), 0.0
@@ -306,6 +308,8 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
             if count:
                 model.opt.timestep = (then - now) / count
                 engine.mj_step(model, data, count)
+            if warned:
+                raise ArithmeticError(warned[0].strip())
             if time.process_time() > end:
                 raise SlowError
             row[:], now = data.qpos, then

@@ -30,7 +30,9 @@ def methods_figure(report: Report) -> Figure:
     wide = min(2, len(scenes))
     size = 5 * wide + 2, 4 * -(-len(scenes) // wide)
     figure = Figure(figsize=size, layout="constrained")
-    panels = figure.subplots(-(-len(scenes) // wide), wide, squeeze=False, sharey=True).flat
+    panels = figure.subplots(
+        -(-len(scenes) // wide), wide, squeeze=False, sharex=True, sharey=True
+    ).flat
     for axes, scene in zip(panels, scenes, strict=False):
         mine = [row for row in rows if row.scene == scene]
         front = sorted((r.error_rad, r.ns_per_sample) for r in mine if r.front)
@@ -55,8 +57,8 @@ def methods_figure(report: Report) -> Figure:
         axes.grid(True, color="0.9")
     for empty in list(panels):
         empty.set_axis_off()
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right upper", fontsize="small")
+    handles, texts = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, texts, loc="outside right upper", fontsize="small")
     return figure
 
 
@@ -79,10 +81,10 @@ def stability_figure(report: Report) -> Figure:
             y = [drawn(r.error_rad) for r in found]
             axes.plot(x, y, **look(names, name) | {"ls": "none"})
         axes.set(yscale="log", ylim=(LEAST_ERROR, 10), ylabel="greatest error (rad)")
-        axes.set_title(f"{span:g} nutation periods")
-        axes.tick_params(axis="x", rotation=40)
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right upper", fontsize="small")
+        axes.set_title(f"span of {span:g} T")
+        axes.set_xticks(range(len(kinds)), kinds, rotation=40, ha="right")
+    handles, texts = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, texts, loc="outside right upper", fontsize="small")
     return figure
 
 

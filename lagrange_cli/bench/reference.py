@@ -35,17 +35,16 @@ def rotation_angle(computed: Sequence[Any], exact: Attitude) -> float:
     either sign.  Its angle is infinite if a part is not finite.
     """
     with mpmath.workdps(DIGITS):
-        parts = [mpmath.mpf(x) for x in computed]
-        if not all(map(mpmath.isfinite, parts)):
-            return math.inf
-        (w, x, y, z), (a, b, c, d) = parts, exact
+        w, x, y, z = map(mpmath.mpf, computed)
+        a, b, c, d = exact
         along = a * w + b * x + c * y + d * z
         across = (
             a * x - b * w - c * z + d * y,
             a * y - c * w - d * x + b * z,
             a * z - d * w - b * y + c * x,
         )
-        return float(2 * mpmath.atan2(mpmath.norm(across), abs(along)))
+        angle = float(2 * mpmath.atan2(mpmath.norm(across), abs(along)))
+    return angle if math.isfinite(angle) else math.inf
 
 
 def inputs_of(top: Top) -> dict[str, Many]:

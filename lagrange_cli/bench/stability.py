@@ -249,8 +249,8 @@ def run(
         return None, "not installed", f"needs {method.package}: pip install {method.package}"
     except SlowError:
         return None, "too slow", None
-    except (LagtopError, ArithmeticError, ValueError) as error:
-        return None, "failed", str(error)
+    except (LagtopError, ArithmeticError, ValueError) as failure:
+        return None, "failed", str(failure)
     error = max(map(rotation_angle, attitudes.tolist(), exact))
     return (error, "", None) if math.isfinite(error) else (None, "failed", "not finite")
 

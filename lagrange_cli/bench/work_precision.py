@@ -158,8 +158,8 @@ def measure(task: Task, name: str, setting: float | str) -> Row:
         return row._replace(remark=f"too slow: more than {LIMIT:g} s")
     except ImportError:
         return row._replace(remark=f"needs {method.package}: pip install {method.package}")
-    except (LagtopError, ArithmeticError, ValueError) as error:
-        return row._replace(remark=f"failed: {error}")
+    except (LagtopError, ArithmeticError, ValueError) as failure:
+        return row._replace(remark=f"failed: {failure}")
     found = attitudes if method.has_fixed_steps else attitudes[task.checked]
     error = max(map(rotation_angle, found.tolist(), task.exact))
     if not math.isfinite(error):
@@ -215,33 +215,23 @@ def rivals(row: Row, rows: Sequence[Row]) -> list[Row]:
 
 def rivals_of_lagtop(rows: Sequence[Row]) -> Iterator[str]:
     """Yield which methods are both faster and more accurate than lagtop, scene by scene."""
-    for scene in dict.fromkeys(row.scene for row in rows):
-        mine = [row for row in rows if row.scene == scene]
-        if {row.method for row in mine if row.ns_per_sample} == {"lagtop"}:
-            yield f"{scene}: lagtop was compared with nothing."
-            continue
-        for row in mine:
-            if row.method != "lagtop" or row.error_rad is None:
-                continue
-            better = [x for x in rivals(row, mine) if x.method != "lagtop"]
-            names = ", ".join(f"{x.method} at {x.setting}" for x in better) or "no other method"
-            verb = "are" if len(better) > 1 else "is"
-            yield f"{scene}: {names} {verb} faster and more accurate than lagtop's {row.setting}."
+    for row in rows:
+        if row.method == "lagtop" and row.error_rad is not None:
+            better = rivals(row, [x for x in rows if x.scene == row.scene and x.method != "lagtop"])
+            names = ", ".join(f"{x.method} at {x.setting}" for x in better)
+            yield (
+                f"{row.scene}: faster and more accurate than lagtop's {row.setting}: "
+                f"{names or 'no other method'}."
+            )
 
 
 def growth(rows: Sequence[Row]) -> Iterator[str]:
     """Yield the exponent p of each method whose error grows as span^p, by least squares."""
     for scene, name in dict.fromkeys((row.scene, row.method) for row in rows):
-        points = [
-            (math.log(row.periods), math.log(row.error_rad))
-            for row in rows
-            if (row.scene, row.method) == (scene, name)
-            and 0 < error_of(row) < LOST
-            and row.error_rad
-        ]
-        if len(points) > 1:
-            slope = np.polyfit(*np.transpose(points), 1)[0]
-            yield f"{scene}: the error of {name} grows as span^{slope:.1f}."
+        mine = [x for x in rows if (x.scene, x.method) == (scene, name) and 0 < error_of(x) < LOST]
+        if len(mine) > 1:
+            x, y = np.log([x.periods for x in mine]), np.log([error_of(x) for x in mine])
+            yield f"{scene}: the error of {name} grows as span^{np.polyfit(x, y, 1)[0]:.1f}."
 
 
 def missing(rows: Sequence[Row]) -> Iterator[str]:

@@ -25,8 +25,8 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLI
 
 def _parse_spans(text: str) -> list[float]:
     """Return increasing spans in nutation periods."""
+    from ..arithmetic.text import parse_number
     from ..inputs.names import split_names
-    from ..inputs.value import parse_number
 
     spans = [float(parse_number(each)) for each in split_names(text)]
     if not all(0 < span <= MOST_PERIODS for span in spans) or spans != sorted(set(spans)):

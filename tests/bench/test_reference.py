@@ -25,8 +25,10 @@ def test_attitudes_agree_with_the_judge(stratum: str) -> None:
         theta, phi, psi = map(many_digits, judge.at(t)[:3])
         cos, sin = mpmath.cos(theta / 2), mpmath.sin(theta / 2)
         plus, minus = (psi + phi) / 2, (psi - phi) / 2
-        attitude = (cos * mpmath.cos(plus), sin * mpmath.cos(minus))
-        attitude += (sin * mpmath.sin(minus), cos * mpmath.sin(plus))
+        attitude = (
+            *(cos * mpmath.cos(plus), sin * mpmath.cos(minus)),
+            *(sin * mpmath.sin(minus), cos * mpmath.sin(plus)),
+        )
     assert rotation_angle(attitude, reference.attitude(t)) < 1e-20
 
 
