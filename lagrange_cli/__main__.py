@@ -1,22 +1,36 @@
 """The start of the command: `python -m lagrange_cli` and the script `lagtop`."""
 
-import gc
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    import signal
-else:
-    import _signal as signal  # without the enumerations of `signal`, 2 % of `lagtop solve`
+import signal
+import sys
 
 
 def main() -> None:
-    """Run the command line; Ctrl-C during its imports ends it as a signal, without a traceback."""
-    if signal.getsignal(signal.SIGINT) == signal.default_int_handler:  # unless it is ignored
+    """Run the command line; a signal ends it without a traceback, and removes temporary files.
+
+    Ctrl-C kills at once while modules are imported.  Later it raises KeyboardInterrupt, and TERM
+    and HUP raise SystemExit, so that `finally` clauses run.  Ignored signals stay ignored.
+    """
+    is_interactive = signal.getsignal(signal.SIGINT) == signal.default_int_handler
+    if is_interactive:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-    gc.disable()  # until the command is loaded: imports leave no garbage, see `LagtopGroup`
     from .cli.app import main as run
 
-    run(prog_name="lagtop")
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # not every system has each
+        if number is not None and signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, _unwind)
+    try:
+        if is_interactive:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+        run(prog_name="lagtop")
+    finally:
+        if is_interactive:
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def _unwind(number: int, _: object) -> None:
+    signal.signal(number, signal.SIG_IGN)  # a second one must not stop the cleaning
+    sys.exit(128 + number)
 
 
 if __name__ == "__main__":

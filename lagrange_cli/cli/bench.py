@@ -3,67 +3,61 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from io import BytesIO
 from typing import TYPE_CHECKING
 
 from ..errors import LagtopError
 from ..output.terminal import with_progress
-from . import options as opt
-from .tables import fail_for, write_report
-from .top import SCENE
+from . import shared as opt
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..output.destination import Output
-    from ..output.report import Report
 
-MOST_TIMES, MOST_SCENES, MOST_PERIODS = 10_000_000, 1000, 1e6
+MOST_PERIODS = 1e6
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Environment variables for the number of threads of linear algebra packages."""
 
 
 def _parse_spans(text: str) -> list[float]:
     """Return increasing spans in nutation periods."""
-    from ..arithmetic.text import parse_number
-    from ..inputs.names import split_names
-
-    spans = [float(parse_number(each)) for each in split_names(text)]
+    spans = opt.parse_numbers(text)
     if not all(0 < span <= MOST_PERIODS for span in spans) or spans != sorted(set(spans)):
         raise LagtopError(f"must increase from above 0 to {MOST_PERIODS:g} periods, got {text}")
     return spans
 
 
-def _save(figure: Figure, path: str) -> None:
-    """Write a picture of a report."""
-    from ..output.destination import opened
-
-    with opened(path) as stream:
-        figure.savefig(stream, format=opt.extension(path), dpi=150)
+def _drawn(figure: Figure, path: str) -> bytes:
+    """Return a picture in the format of its file."""
+    stream = BytesIO()
+    figure.savefig(stream, format=opt.extension(path), dpi=150)
+    return stream.getvalue()
 
 
 @opt.command(
     "bench",
-    """
-    lagtop bench --methods lagtop,DOP853 --n 1000
-    lagtop bench chrapan-1952 stiff-top near-separatrix slow-top --plot methods.svg
-    lagtop bench --spans 1,100 --methods lagtop,scipy.special --n 100
-    """,
+    "bench --methods lagtop,DOP853 --n 1000",
+    "bench chrapan-1952 stiff-top near-separatrix slow-top --plot methods.svg",
+    "bench --spans 1,100 --methods lagtop,scipy.special --n 100",
 )
+@opt.scenes
+@opt.option(
+    "--spans",
+    type=opt.Parsed("X,...", _parse_spans),
+    help="Lengths in nutation periods; several show how errors grow.  [default: 20.3]",
+)
+@opt.option("--n", type=opt.COUNT, default="1e4", show_default=True, help="Number of times.")
+@opt.option("--methods", type=opt.LIST, help="Methods to compare.  [default: all]")
+@opt.plot
+@opt.output(*opt.REPORT_FORMATS)
 def bench_command(
-    scenes: Sequence[str] = opt.arguments(SCENE, "[SCENE]..."),
-    spans: list[float] | None = opt.option(
-        opt.Parsed("X,...", _parse_spans),
-        "Lengths in nutation periods; several show how errors grow.  [default: 20.3]",
-    ),
-    count: int = opt.count(
-        "Number of times.", "--n", most=MOST_TIMES, default="1e4", show_default=True
-    ),
-    methods: list[str] | None = opt.names(
-        "Methods to compare.  [default: all]", offered=opt.late("bench.methods", "METHODS")
-    ),
-    plot: str | None = opt.plot,
-    out: Output = opt.output(*opt.REPORT_FORMATS),
+    scenes: tuple[str, ...],
+    spans: list[float] | None,
+    n: int,
+    methods: list[str] | None,
+    plot: str | None,
+    out: Output,
 ) -> None:
     """Measure the error of methods against their run time.
 
@@ -79,39 +73,42 @@ def bench_command(
     from ..bench.work_precision import PERIODS, bench
     from ..inputs.given import read_scene
     from ..motion.solve import solve
-    from ..plot.reports import check_plot
 
-    check_plot(plot, out.path)
+    opt.check_plot(plot, out.path)
     motions = {name: solve(read_scene(name)) for name in scenes or ["chrapan-1952"]}
-
-    def find() -> Report:
-        report = bench(motions, methods, spans or [PERIODS], count, with_progress)
-        if plot:
-            _save(methods_figure(report), plot)
-        return report
-
-    write_report(out, find)
+    opt.write_report(
+        out,
+        lambda: bench(motions, methods, spans or [PERIODS], n, with_progress),
+        plot,
+        lambda report: _drawn(methods_figure(report), plot or ""),
+    )
 
 
 @opt.command(
     "stability",
-    """
-    lagtop stability
-    lagtop stability --kinds slow-spin,near-vertical --samples 5 --seed 7 -o stability.csv
-    lagtop stability --kinds slow-spin --plot stability.svg
-    """,
+    "stability",
+    "stability --kinds slow-spin,near-vertical --samples 5 --seed 7 -o stability.csv",
+    "stability --kinds slow-spin --plot stability.svg",
 )
+@opt.option("--kinds", type=opt.LIST, help="Use only these kinds of scenes.  [default: all]")
+@opt.option(
+    "--samples",
+    type=opt.COUNT,
+    default="1",
+    show_default=True,
+    help="Random scenes of each kind.",
+)
+@opt.option(
+    "--seed",
+    type=opt.COUNT,
+    default="1952",
+    show_default=True,
+    help="Seed of the random scenes.",
+)
+@opt.plot
+@opt.output(*opt.REPORT_FORMATS)
 def stability_command(
-    kinds: list[str] | None = opt.names(
-        "Use only these kinds of scenes.  [default: all]",
-        offered=opt.late("bench.stability", "KINDS"),
-    ),
-    samples: int = opt.count(
-        "Random scenes of each kind.", most=MOST_SCENES, default="1", show_default=True
-    ),
-    seed: int = opt.count("Seed of the random scenes.", default="1952", show_default=True),
-    plot: str | None = opt.plot,
-    out: Output = opt.output(*opt.REPORT_FORMATS),
+    kinds: list[str] | None, samples: int, seed: int, plot: str | None, out: Output
 ) -> None:
     """Compare methods in stiff and extreme scenes.
 
@@ -126,15 +123,12 @@ def stability_command(
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     from ..bench.pictures import stability_figure
     from ..bench.stability import failures, stability
-    from ..plot.reports import check_plot
 
-    check_plot(plot, out.path)
-
-    def find() -> Report:
-        report = stability(kinds, samples, seed, with_progress)
-        if plot:
-            _save(stability_figure(report), plot)
-        return report
-
-    report = write_report(out, find)
-    fail_for(failures(report), len(report.rows), "rows")
+    opt.check_plot(plot, out.path)
+    report = opt.write_report(
+        out,
+        lambda: stability(kinds, samples, seed, with_progress),
+        plot,
+        lambda report: _drawn(stability_figure(report), plot or ""),
+    )
+    opt.fail_for(failures(report), len(report.rows), "rows")

@@ -11,37 +11,22 @@ from ..arithmetic.text import value_text
 from ..inputs.scene_file import scene_names, scene_remark
 from ..output.report import Field, Report
 from ..output.terminal import width_of
-from . import options as opt
-from .top import UNCERTAIN, TopOptions, motion_of, top_options, words
+from . import shared as opt
 
 if TYPE_CHECKING:
     from ..motion.explanation import Explained
     from ..output.destination import Output
 
-_FORMATS = ("table", "json", "csv", "ndjson")
-
-
-def _names() -> list[str]:
-    from ..motion.over_time.columns import COLUMNS
-    from ..motion.record import all_keys
-
-    return list(dict.fromkeys([*all_keys(), *COLUMNS, *scene_names()]))
-
 
 @opt.command(
     "explain",
-    """
-    lagtop explain
-    lagtop explain T_nutation mean_precession_rate looping-top
-    lagtop explain b psidot --r0 20 --format json
-    """,
+    "explain",
+    "explain T_nutation mean_precession_rate looping-top",
+    "explain b psidot --r0 20 --format json",
 )
-def explain_command(
-    top: TopOptions = top_options(
-        UNCERTAIN, words("[SCENE] [KEY]...", opt.Parsed("KEY", str, _names))
-    ),
-    out: Output = opt.output(*_FORMATS),
-) -> None:
+@opt.top("[SCENE] [KEY]...")
+@opt.output(*opt.REPORT_FORMATS)
+def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     """Explain keys and columns, with formulas and numbers.
 
     A key is the name of a result.  Each formula is shown in symbols and with the numbers of the
@@ -51,17 +36,17 @@ def explain_command(
     """
     from ..motion.explanation import explanations, listed
 
-    found, names = top.given(), top.words
+    found = top.given()
     named = found.system.named if found.system else str
-    if names:
-        rows = explanations(motion_of(found), names, radians=top.radians, named=named)
+    if words:
+        rows = explanations(opt.motion_of(found), words, radians=top.radians, named=named)
     else:
         rows = listed(radians=top.radians, named=named)
     if out.fmt == "table":
-        view = width_of(out.path)
-        out.text("\n".join((_block(row, view) for row in rows) if names else _lists(rows, view)))
+        width = width_of(out.path) or 80
+        out.text("\n".join((_block(row, width) for row in rows) if words else _lists(rows, width)))
     else:
-        out.report(lambda: Report({}, _EXPLAINED if names else _LISTED, rows, []))
+        out.report(lambda: Report({}, _EXPLAINED if words else _LISTED, rows, []))
 
 
 _HEADINGS = {
@@ -71,7 +56,7 @@ _HEADINGS = {
 }
 
 
-def _lists(rows: Sequence[Explained], view: int | None) -> Iterator[str]:
+def _lists(rows: Sequence[Explained], width: int) -> Iterator[str]:
     """Yield the list of each kind: names, and beside them symbol, meaning, unit and equation."""
     for kind, heading in _HEADINGS.items():
         lines = [f"{heading}:"]
@@ -79,11 +64,11 @@ def _lists(rows: Sequence[Explained], view: int | None) -> Iterator[str]:
             if row.kind == kind:
                 meaning = f"{row.meaning} [{row.unit}]" if row.unit else row.meaning
                 text = ", ".join(filter(None, (row.symbol, meaning, row.equation)))
-                lines.append(_filled(row.name, text, view, 28))
+                lines.append(_beside(row.name, text, width, 28))
         yield "\n".join([*lines, ""])
 
 
-def _block(row: Explained, view: int | None) -> str:
+def _block(row: Explained, width: int) -> str:
     """Return the lines of one key or column; each equation of a formula has a line of its own."""
     title = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))
     texts = {
@@ -96,38 +81,20 @@ def _block(row: Explained, view: int | None) -> str:
     for name, text in texts.items():
         for i, part in enumerate(re.split(r" where |, (?=\w+ = )", text)):
             if part:
-                lines.append(_filled(name if not i else "", part, view, 9))
+                lines.append(_beside(name if not i else "", part, width, 9))
     return "\n".join([*lines, ""])
 
 
-def _filled(name: str, text: str, view: int | None, width: int) -> str:
-    """Return a name and a text beside it, in lines that fit; names are `width` characters wide."""
-    line, indent = f"  {name:{width}}{text}", " " * (width + 2)
-    return fill(line, view or 80, subsequent_indent=indent, break_on_hyphens=False)
+def _beside(name: str, text: str, width: int, indent: int) -> str:
+    """Return a name and a text beside it, in lines that fit; the name has `indent` columns."""
+    line, space = f"  {name:{indent}}{text}", " " * (indent + 2)
+    return fill(line, width, subsequent_indent=space, break_on_hyphens=False)
 
 
-def _text(key: str, heading: str) -> Field:
-    return Field(key, heading, is_text=True)
-
-
-_NAME = Field("name", "name", is_text=True, names_the_row=True)
-_LISTED = [
-    _NAME,
-    _text("symbol", "symbol"),
-    _text("meaning", "meaning"),
-    _text("unit", "unit"),
-    _text("equation", "equation"),
-    Field("kind"),
-    Field("formula"),
-]
+_LISTED = [Field(x) for x in ("name", "symbol", "meaning", "unit", "equation", "kind", "formula")]
 _EXPLAINED = [
     *_LISTED[:4],
-    Field("value", "value", value_text),
-    _text("equation", "equation"),
-    _text("formula", "formula"),
-    _text("numbers", "with numbers"),
-    _text("missing", "missing"),
-    Field("kind"),
+    *(Field(x) for x in ("value", "equation", "formula", "numbers", "missing", "kind")),
 ]
 
 
@@ -136,20 +103,14 @@ class _Scene(NamedTuple):
     remark: str
 
 
-@opt.command(
-    "scenes",
-    """
-    lagtop scenes
-    lagtop solve fast-gyroscope
-    lagtop scenes --format json
-    """,
-)
-def scenes_command(out: Output = opt.output(*_FORMATS)) -> None:
+@opt.command("scenes", "scenes", "solve fast-gyroscope", "scenes --format json")
+@opt.output(*opt.REPORT_FORMATS)
+def scenes_command(out: Output) -> None:
     """List the built-in scenes.
 
     Commands that solve a top accept these names as SCENE.  You can write your own scene: a TOML
     file with inputs by name, such as r0 = 40 or theta0 = "30 deg".
     """
     rows = [_Scene(name, scene_remark(name)) for name in scene_names()]
-    fields = [_NAME, _text("remark", "remark")]
+    fields = [Field(x, x, is_text=True) for x in _Scene._fields]
     out.report(lambda: Report({}, fields, rows, []))

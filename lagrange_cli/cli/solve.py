@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import AbsentError, LagtopError
@@ -9,45 +10,42 @@ from ..motion.numbers import Numbers, record_in_range
 from ..motion.quantity import unit_name
 from ..motion.record import all_keys, record_keys, shown_keys
 from ..motion.regime import exact
-from . import options as opt
+from . import shared as opt
 from .app import complain
-from .top import UNCERTAIN, TopOptions, top_options, warned
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from ..arithmetic.values import Key
     from ..inputs.units import System
     from ..output.destination import Output
 
-_Keys = dict[str, "Key"]
-
 
 @opt.command(
     "solve",
-    """
-    lagtop solve simo-wong-1991 --r0 40
-    lagtop solve --theta0 60 --get T_nutation,theta_max_deg --digits 30
-    lagtop solve --r0 '477(2) rpm' --budget T_nutation
-    """,
-    exclusive=["--get --derivation --budget --samples"],
+    "solve simo-wong-1991 --r0 40",
+    "solve --theta0 60 --get T_nutation,theta_max_deg --digits 30",
+    "solve --r0 '477(2) rpm' --budget T_nutation",
 )
+@opt.top()
+@opt.option("--get", type=opt.LIST, help="Print only the values of these keys, one per line.")
+@opt.option(
+    "--derivation",
+    is_flag=True,
+    help="Print the steps of section 8 of the paper, for a top released from rest.",
+)
+@opt.digits(opt.MOST_RECORD_DIGITS)
+@opt.certify
+@opt.option(
+    "--budget", metavar="KEY", help="Print the uncertainty budget of KEY: the share of each input."
+)
+@opt.output("table", "json", "csv", "ndjson")
 def solve_command(
-    top: TopOptions = top_options(UNCERTAIN),
-    keys: list[str] | None = opt.key_names(
-        "Print only the values of these keys, one per line.", "--get"
-    ),
-    derivation: bool = opt.flag(
-        "Print the steps of section 8 of the paper, for a top released from rest."
-    ),
-    digits: int | None = opt.digits(opt.MOST_RECORD_DIGITS),
-    certify: bool = opt.certify,
-    budget: str | None = opt.option(
-        opt.KEY, "Print the uncertainty budget of KEY: the share of each input."
-    ),
-    samples: int | None = opt.count("Check linear propagation with N random tops."),
-    seed: int | None = opt.count("Seed of the random tops."),
-    out: Output = opt.output("table", "json", "csv", "ndjson"),
+    top: opt.TopOptions,
+    get: list[str] | None,
+    derivation: bool,
+    digits: int | None,
+    certify: bool,
+    budget: str | None,
+    out: Output,
 ) -> None:
     """Compute the periods, turning points and mean rates of one top.
 
@@ -58,49 +56,44 @@ def solve_command(
     Inputs may have units ('480 rpm').  Give units for all inputs that you set, or for none; the
     tilt needs none.  An input may have an uncertainty ('1587(2)').
     """
+    opt.exclude(get=get, derivation=derivation, budget=budget)
     radians = top.radians
-    if keys is not None:
-        _check_selected(keys, radians)
-    if seed is not None and samples is None:
-        raise LagtopError("--seed needs --samples")
+    if get is not None:
+        _check_selected(get, radians)
     found = top.given()
-    asked = budget is not None or samples is not None
-    if found.stds or asked or any(key.endswith("_std") for key in keys or ()):
+    if found.stds or budget is not None or any(key.endswith("_std") for key in get or ()):
         from . import uncertainty
 
-        uncertainty.check(found, digits, derivation, certify)
-    motion = warned(Numbers(exact(found.top(exact=digits is not None))), found)
-    if asked:
-        uncertainty.write_uncertainty(found, motion, budget, samples, seed, radians, out)
+        uncertainty.check(found, digits=digits, derivation=derivation, certify=certify)
+    motion = opt.warned(Numbers(exact(found.top(exact=digits is not None))), found)
+    if budget is not None:
+        uncertainty.write_budget(found, motion, budget, radians, out)
         return
-    names = _steps_of_section_8(motion, radians) if derivation else keys
+    names = _steps_of_section_8(motion, radians) if derivation else get
     wanted = list(dict.fromkeys(name.removesuffix("_std") for name in names)) if names else None
     record = _record(motion, found.system, wanted, digits=digits, radii=certify, radians=radians)
-    is_summed = wanted is None and out.fmt != "csv"
     named = str if found.system is None else found.system.named
-    summed = _summary(record, motion, named) if is_summed else {}
+    is_whole = wanted is None and out.fmt != "csv"
+    sentence = _summary(record, motion, named) if is_whole else {}
     if found.stds:
-        drawn = out.fmt == "table" and (keys is None or out.is_named)
+        drawn = out.fmt == "table" and (get is None or out.is_named)
         record = uncertainty.with_stds(found, motion, record, drawn)
-
-    def shown() -> _Keys:
-        return shown_keys(radians=radians, named=named, requested=names is not None)
-
-    if keys is not None:
-        values = _chosen_values(motion, record, keys)
+    record |= sentence
+    shown = shown_keys(radians=radians, named=named, requested=names is not None)
+    if get is not None:
+        values = _chosen_values(motion, record, get)
         if out.fmt == "table":
             out.values(values.values())
         else:
-            out.record(values, lambda: _with_std_keys(shown()))
+            out.record(values, lambda: shown)
     elif names is not None:
         more = {x: record[x] for x in record if x.endswith("_radius") or x == "remark"}
         steps = {name: record[name] for name in names} | more
-        out.record(steps, lambda: _keys_by_step(shown(), radians))
+        out.record(steps, lambda: _keys_by_step(shown, radians))
     else:
-        units = {}
         if found.system is not None and out.fmt in {"json", "ndjson"}:
-            units = {name: x.unit for name, x in shown().items() if name in record and x.unit}
-        out.record(record | summed | ({"units": units} if units else {}), shown)
+            record["units"] = {x: key.unit for x, key in shown.items() if x in record and key.unit}
+        out.record(record, lambda: shown)
 
 
 def _record(
@@ -157,15 +150,6 @@ def _chosen_values(motion: Numbers, record: dict[str, Any], keys: Sequence[str])
     return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
 
 
-def _with_std_keys(keys: _Keys) -> _Keys:
-    """Return keys and those of their uncertainties."""
-    stds = {
-        f"{name}_std": key.replace(symbol="", meaning=f"uncertainty of {name}", equation="")
-        for name, key in keys.items()
-    }
-    return keys | stds
-
-
 def _steps_of_section_8(motion: Numbers, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
     from ..motion.paper.requested import derivation_keys
@@ -180,7 +164,7 @@ def _steps_of_section_8(motion: Numbers, radians: bool) -> list[str]:
     return derivation_keys(radians=radians)
 
 
-def _keys_by_step(keys: _Keys, radians: bool) -> _Keys:
+def _keys_by_step(keys: dict[str, Key], radians: bool) -> dict[str, Key]:
     """Return the keys of the steps of section 8, in order and grouped by step."""
     from ..motion.paper.requested import CHAIN
 

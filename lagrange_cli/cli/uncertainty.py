@@ -1,4 +1,4 @@
-"""Uncertain inputs of `lagtop solve`: values with uncertainties, budgets and Monte Carlo."""
+"""Uncertain inputs of `lagtop solve`: values with uncertainties, and the budget of a key."""
 
 from __future__ import annotations
 
@@ -12,47 +12,26 @@ from ..inputs.input_keys import STANDS_FOR
 from ..inputs.names import check_names
 from ..motion.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
 from ..motion.quantity import degree_name, unit_name
-from ..motion.record import NUMBER_KEYS, shown_keys
+from ..motion.record import shown_keys
 from ..motion.solve import Motion
 from ..motion.uncertainty import FirstOrder, stds_of
 from ..output.report import Field, Report, uncertain_text, with_unit
-from ..output.terminal import with_progress
 from .app import complain
-from .options import exclude
-from .tables import write_report
+from .shared import write_report
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.numbers import Numbers
     from ..output.destination import Output
-    from ..sweep.monte_carlo import Propagated
 
 
-def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> None:
+def check(found: Given, **options: object) -> None:
     """Raise LagtopError if no input is uncertain, or for options that exclude uncertainties."""
     if not found.stds:
         raise LagtopError("no input is uncertain: give one as in --m '1587(2)'")
-    others = {"--digits": digits, "--derivation": derivation, "--certify": certify}
-    for name, value in others.items():
-        exclude({name: value, "uncertain inputs": True})
-
-
-def write_uncertainty(
-    found: Given,
-    motion: Numbers,
-    key: str | None,
-    samples: int | None,
-    seed: int | None,
-    radians: bool,
-    out: Output,
-) -> None:
-    """Write the budget of a key or, without a key, the report on random samples."""
-    if key is None:
-        write_report(out, lambda: _sampled(found, motion, samples or 0, seed, radians))
-        return
-    check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
-    report = _budget(found, motion, key, radians)
-    write_report(out, lambda: report)
+    for name, value in options.items():
+        if value:
+            raise LagtopError(f"use --{name} or uncertain inputs, not both")
 
 
 def with_stds(
@@ -100,6 +79,13 @@ class _BudgetRow(NamedTuple):
     def noise(self) -> float:
         """The uncertainty, which decides how many digits are shown."""
         return self.std
+
+
+def write_budget(found: Given, motion: Numbers, key: str, radians: bool, out: Output) -> None:
+    """Write the uncertainty budget of a key."""
+    check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
+    report = _budget(found, motion, key, radians)
+    write_report(out, lambda: report)
 
 
 def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
@@ -165,74 +151,6 @@ def _figures(x: float) -> str:
 def _names(key: str, units: Mapping[str, str]) -> Field:
     """Return the column of names of inputs or keys, which a table shows with their units."""
     return Field(key, key, lambda x: with_unit(x, units.get(x)), is_text=True, names_the_row=True)
-
-
-def _sampled(
-    found: Given, motion: Numbers, samples: int, seed: int | None, radians: bool
-) -> Report:
-    """Return the report on random samples of the inputs."""
-    from ..sweep import monte_carlo
-
-    uncertain, record = first_order(found, motion), Motion(motion.exact).record(radians=radians)
-    numbers = {}
-    for key in NUMBER_KEYS:
-        name = unit_name(key, radians=radians)
-        if record[name] is not None and (std := uncertain.std(name)) != 0:
-            numbers[key] = record[name], std
-    outcome = monte_carlo.propagate(
-        _all_inputs(found, motion),
-        found.stds,
-        numbers,
-        samples=samples,
-        seed=seed,
-        radians=radians,
-        progress=with_progress,
-    )
-    conditions = {"samples": str(samples)} | ({} if seed is None else {"seed": str(seed)})
-    shares = [f"{name} {100 * share:.3g} %" for name, share in outcome.regimes.items()]
-    conditions["regimes"] = ", ".join(shares)
-    units = _units(found, [spread.key for spread in outcome.spreads])
-    linear = Field("first_order", "linear?", is_text=True)
-    fields = [_names("key", units), *(_Measured(x, y) for x, y in _SAMPLED.items()), linear]
-    return Report(conditions, fields, outcome.spreads, _verdicts(outcome), units)
-
-
-def _all_inputs(found: Given, motion: Numbers) -> dict[str, float]:
-    """Return every input once, as given or as computed."""
-    inputs = {name: float(x) for name, x in motion.top.as_dict().items() if x is not None}
-    for measured, solved in STANDS_FOR.items():
-        if measured in found.inputs:
-            del inputs[solved]
-            inputs[measured] = float(found.inputs[measured])
-    return inputs
-
-
-def _verdicts(outcome: Propagated) -> list[str]:
-    """Return a sentence on linear propagation for each verdict that occurs."""
-    from ..sweep.monte_carlo import FAILS, OPEN
-
-    sentences = []
-    for verdict, said in (
-        (FAILS, "not adequate for {}: use the sampled quantiles"),
-        (OPEN, "not decided for {}: increase --samples"),
-    ):
-        if keys := [spread.key for spread in outcome.spreads if spread.first_order == verdict]:
-            sentences.append(f"Linear propagation is {said.format(', '.join(keys))}.")
-    return sentences or ["Linear propagation is adequate for every number."]
-
-
-_SAMPLED = {
-    "value": "value",
-    "first_order_std": "linear std",
-    "sampled_mean": "",
-    "sampled_std": "sampled std",
-    "q2_5": "2.5 %",
-    "q16": "",
-    "q50": "",
-    "q84": "",
-    "q97_5": "97.5 %",
-}
-"""The numbers of a report on random samples, and the headings of those in a table."""
 
 
 class _Measured(Field):

@@ -35,7 +35,8 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
             wrong = f"got {got}"
             if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
                 raise LagtopError(f"{key} must be among {listed}, {wrong}", key)
-            some = f"{', '.join(known[:_FIRST])} and {len(known) - _FIRST} more"
+            first = known.index("regime") if "regime" in known else 0  # the results of a record
+            some = f"{', '.join(known[first:][:_FIRST])} and {len(known) - _FIRST} more"
             some += ", see lagtop explain" if "T_nutation" in known else ""  # a list of keys
             raise LagtopError(f"{key} must be among {len(known)} names, {wrong}: {some}", key)
     if (twice := repeated(names)) is not None:
@@ -54,18 +55,22 @@ def repeated(names: Iterable[str]) -> str | None:
 
 
 def suggestion(name: object, known: Iterable[str]) -> str:
-    """Return ` (did you mean 'x'?)` with the known name closest to a wrong one, or an empty text.
+    """Return ` (did you mean 'x'?)` with the known names closest to a wrong one, or an empty text.
 
     A name without its unit of an angle, or with its words in another order, comes first.  Then come
-    names that begin with the wrong one, then similar names.
+    names that contain the words of the wrong one, then names that begin with it or are similar.
     """
     from difflib import get_close_matches
 
     known, wrong = list(known), str(name)[:80]
     same = [x for x in known if wrong in (f"{x}_deg", f"{x}_rad") or _words(x) == _words(wrong)]
+    words = [x for x in known if _words(wrong) <= _words(x)]
     longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
-    nearest = same or longer or get_close_matches(wrong, known, 1)
-    return f" (did you mean {nearest[0]!r}?)" if nearest else ""
+    nearest = same[:1] or words[:3] or longer[:1] or get_close_matches(wrong, known, 1)
+    if not nearest:
+        return ""
+    *others, last = map(repr, nearest)
+    return f" (did you mean {', '.join(others)}{' or ' if others else ''}{last}?)"
 
 
 def _words(name: str) -> set[str]:

@@ -11,14 +11,16 @@ Text remains text in SVG, and PDF embeds TrueType outlines (Type 42), as journal
 from __future__ import annotations
 
 import io
+import logging
 import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from html import escape
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-from ..errors import UnavailableError
+from ..errors import LagtopError, UnavailableError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -211,8 +213,16 @@ def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
 
 
 def require_matplotlib() -> None:
-    """Raise UnavailableError, with the remedy, if matplotlib is missing."""
+    """Raise UnavailableError, with the remedy, if matplotlib is missing.
+
+    Raises LagtopError if a variable of the environment, such as MPLBACKEND, stops it.
+    """
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as about its folder of settings
     try:
         import matplotlib  # noqa: F401
+
+        datetime.fromtimestamp(int(os.environ.get("SOURCE_DATE_EPOCH", "0")), UTC)
     except ImportError:
         raise UnavailableError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
+    except (ValueError, OverflowError) as error:
+        raise LagtopError(f"unset MPLBACKEND and SOURCE_DATE_EPOCH: {error}") from None

@@ -7,52 +7,36 @@ import subprocess
 import sys
 from pathlib import Path
 
-import click
 import pytest
-from conftest import ROOT
+from conftest import ROOT, Lagtop
 
-from lagrange_cli.cli.app import NAMES, Command, main
+from lagrange_cli.cli.app import NAMES
 
-SLOW = ("plot", "bench", "stability", "fit", "view")
-
-
-def command_of(name: str) -> Command:
-    """Return a command, or the group for no name."""
-    found = main.get_command(click.Context(main), name) if name else main
-    assert isinstance(found, Command)
-    return found
-
-
-@pytest.fixture
-def lagtop_on_path(tmp_path: Path) -> dict[str, str]:
-    """Return an environment with a `lagtop` on the PATH, outside the folder of the examples."""
-    script = tmp_path / "bin" / "lagtop"
-    script.parent.mkdir()
-    started = "if __name__ == '__main__':  # as pip writes it: workers import this file\n    main()"
-    script.write_text(f"#!{sys.executable}\nfrom lagrange_cli.__main__ import main\n{started}\n")
-    script.chmod(0o755)
-    path = f"{script.parent}{os.pathsep}{os.environ['PATH']}"
-    return os.environ | {"PATH": path, "PYTHONPATH": str(ROOT)}
+QUICK = ("solve", "scenes")
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(x, marks=[pytest.mark.slow] if x in SLOW else []) for x in ["", *NAMES]]
+    "name",
+    [pytest.param(x, marks=[] if x in QUICK else [pytest.mark.slow]) for x in ["", *NAMES]],
 )
-def test_examples_run_in_an_empty_folder(
-    name: str, tmp_path: Path, lagtop_on_path: dict[str, str]
-) -> None:
-    folder = tmp_path / "empty"
+def test_examples_run_in_an_empty_folder(name: str, lagtop: Lagtop, tmp_path: Path) -> None:
+    bin_folder, folder = tmp_path / "bin", tmp_path / "empty"
+    bin_folder.mkdir()
     folder.mkdir()
-    examples = command_of(name).examples
+    script = bin_folder / "lagtop"
+    started = "if __name__ == '__main__':  # as pip writes it: workers import this file\n    main()"
+    script.write_text(f"#!{sys.executable}\nfrom lagrange_cli.__main__ import main\n{started}\n")
+    script.chmod(0o755)
+    path = f"{bin_folder}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": path, "PYTHONPATH": str(ROOT)}
+    shown = lagtop(*name.split(), "--help").stdout
+    examples = shown.partition("Examples:\n")[2].partition("\n\n")[0].splitlines()
     assert len(examples) == 3
     for line in examples:
         before = [*folder.iterdir()]
+        command = ["bash", "-e", "-o", "pipefail", "-c", line]
         done = subprocess.run(
-            ["bash", "-e", "-o", "pipefail", "-c", line],
-            capture_output=True,
-            check=False,
-            cwd=folder,
-            env=lagtop_on_path,
+            command, capture_output=True, check=False, cwd=folder, env=environment
         )
         assert done.returncode == 0, (line, done.stderr.decode())
         assert b"Error" not in done.stderr

@@ -1,4 +1,4 @@
-"""Behaviour that only a separate process can show: modules loaded, streams, signals, files."""
+"""Behaviour that only a separate process can show: modules loaded, streams, signals, terminals."""
 
 from __future__ import annotations
 
@@ -9,52 +9,70 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
 from click.shell_completion import ShellComplete
-from conftest import LAGTOP, Lagtop, forked, process
+from conftest import LAGTOP, ROOT, Lagtop, forked, process
 
+from lagrange_cli.cli.app import NAMES as COMMANDS
 from lagrange_cli.cli.app import main
 
-HEAVY = {"distributed", "pyarrow", "numpy", "scipy", "mpmath", "rich", "matplotlib", "orjson"}
-
-
+HEAVY = {"distributed", "pyarrow", "numpy", "scipy", "mpmath", "rich", "matplotlib"}
 LOADED = {
     "solve --format json": set(),
     "solve --format csv --rad --theta0 1": set(),
-    "--help": set(),
-    "table --help": set(),
-    "plot --help": set(),
+    "solve --get T_nutation": set(),
+    **{f"{name} --help": set() for name in COMMANDS},
     "view -o -": set(),
     "solve": {"rich"},
-    "table": {"numpy", "orjson"},
-    "table --r0 0 --format json": {"numpy", "orjson"},
-    "solve --get T_nutation": set(),
-    "sweep --help": set(),
-    "compare --help": set(),
-    "find --help": set(),
-    "fit --help": set(),
-    "sweep --r0 1:2:3": {"numpy", "orjson"},
+    "table": {"numpy"},
+    "sweep --r0 1:2:3": {"numpy"},
     "jacobi --k 0.8 --format json": set(),
-    "jacobi --k-prime 1e-9": {"rich"},
-    "jacobi --nome 0.1 --format csv": set(),
-    "jacobi --k 0.8 --u K/2,K/3 --format csv": {"orjson"},
-    "jacobi --k 0.8 --u 0.5 --functions zeta,pi --param 0.7i --format json": {"orjson"},
-    "jacobi --k 0.8 --u 0.5 --functions theta,omega --param 0.7": {"orjson", "rich"},
-    "jacobi --k 0.8 --phi 30,60 --format csv": {"orjson"},
-    "jacobi --k 0.8 --u 0:1:99 --format csv": {"numpy", "orjson"},
     "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json": set(),
 }
 """Command lines, and the heavy packages that each needs."""
+LINES = {
+    "solve": "solve",
+    "table": "table --n 5",
+    "sweep": "sweep --r0 1:9:5",
+    "find": "find --r0 10:200 T_precession=2",
+    "fit": f"fit {ROOT}/sample_inputs/recording.csv --format csv",
+    "compare": f"compare {ROOT}/sample_inputs/files/mujoco.txt --max-error 9 --format csv",
+    "plot": "plot sphere -o -",
+    "view": "view -o -",
+    "jacobi": "jacobi --k 0.8 --u 1",
+    "eta": "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4",
+    "bench": "bench --n 3 --methods lagtop --format csv",
+    "explain": "explain",
+    "scenes": "scenes",
+    "stability": "stability --samples 1 --format csv",
+}
+"""A line of each command."""
+HOSTILE = "a\x1b[31m\x9b\x7f\u202e\u2066\u200b\udcff.csv"
+ECHOING = [
+    *("solve {}.toml", "solve {}", "solve --{}", "solve --r0 {}", "solve --format {}", "{}"),
+    *("table --times {}", "table --columns {}", "solve -o nowhere/{}", "sweep {}", "plot -o {}"),
+    *("jacobi --k 0.5 --u 1 --functions pi --param {}", "jacobi {}", "plot {}", "view {}"),
+    *("sweep --shard {}", "sweep --dask {}", "bench --methods {}", "compare {}", "fit {}"),
+]
+
+
+def test_solve_loads_no_heavy_package() -> None:
+    code = "import sys; from lagrange_cli.cli.app import main; main(standalone_mode=False)"
+    command = [sys.executable, "-X", "importtime", "-c", code, "solve", "--format", "json"]
+    said = subprocess.run(command, capture_output=True, check=True).stderr.decode()
+    assert not {line.split("|")[-1].strip() for line in said.splitlines()} & HEAVY
 
 
 @pytest.mark.slow
-def test_nothing_is_loaded_that_is_not_needed(tmp_path: Path) -> None:
+def test_only_needed_packages_are_loaded(tmp_path: Path) -> None:
     listing = "import atexit; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
     ends = forked(LOADED, tmp_path, each=listing)
     assert [end.code for end in ends] == [0] * len(LOADED)
     names = [{name.partition(".")[0] for name in end.stderr.decode().split()} for end in ends]
     assert {line: x & HEAVY for line, x in zip(LOADED, names, strict=True)} == LOADED
+
+
+# streams
 
 
 def shell(line: str, **extra: str) -> subprocess.CompletedProcess[bytes]:
@@ -63,226 +81,228 @@ def shell(line: str, **extra: str) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(["bash", "-c", line], capture_output=True, check=False, env=environment)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize(
-    "command",
-    [
-        "table --t-max 1",
-        "table --n 200000",
-        "table --n 5000 --format json",
-        "sweep --r0 1:100:20000",
-        "sweep --r0 1:100:5000 --format ndjson",
-    ],
-)
-def test_head_is_silent(command: str, unbuffered: str) -> None:
-    line = f"$LAGTOP {command} | head -3; echo ${{PIPESTATUS[0]}}"
-    result = shell(line, PYTHONUNBUFFERED=unbuffered)
-    assert result.stderr == b""
-    assert result.stdout.count(b"\n") == 4
-    assert result.stdout.split()[-1] in (b"0", b"141")
+def check_streams(line: str) -> None:
+    """Check a command line with each stream closed or full, and with a reader that leaves."""
+    whole = shell(f"$LAGTOP {line}")
+    assert whole.returncode == 0, whole.stderr
+    for where, why in ((">&-", "it is closed"), ("> /dev/full", "No space left on device")):
+        refused = shell(f"$LAGTOP {line} {where}")
+        said = f"Error: cannot write standard output: {why}"
+        assert (refused.returncode, refused.stderr.decode().splitlines()[-1]) == (74, said)
+    for where in ("2>&-", "2>/dev/full", "<&-"):
+        done = shell(f"$LAGTOP {line} {where}")
+        assert done.returncode == 0, where
+        assert done.stdout.count(b"\n") == whole.stdout.count(b"\n") > 0  # it may hold run times
+    early = shell(f"$LAGTOP {line} | head -c 1; echo ${{PIPESTATUS[0]}}")
+    assert early.stdout[1:] in (b"0\n", b"141\n")
+    assert b"Error" not in early.stderr
+
+
+def test_streams_of_solve() -> None:
+    check_streams("solve --format json")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize(
-    "command", ["solve", "solve --format json", "table --n 100000", "sweep --r0 1:9:20000"]
-)
-@pytest.mark.parametrize(
-    ("where", "why"), [("> /dev/full", "No space left on device"), (">&-", "it is closed")]
-)
-def test_output_that_no_place_takes(where: str, why: str, command: str, unbuffered: str) -> None:
-    result = shell(f"$LAGTOP {command} {where}", PYTHONUNBUFFERED=unbuffered)
-    said = f"Error: cannot write standard output: {why}\n"
-    assert (result.returncode, result.stderr.decode()) == (74, said)
+@pytest.mark.parametrize("name", COMMANDS)
+def test_streams_of_every_command(name: str) -> None:
+    check_streams(LINES[name])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", "1"])
-def test_a_reader_that_is_gone_before_the_first_byte(unbuffered: str) -> None:
-    for command in ("solve --format json", "table", "sweep"):
-        line = f"$LAGTOP {command} | true; echo ${{PIPESTATUS[0]}}"
-        result = shell(line, PYTHONUNBUFFERED=unbuffered)
-        assert (result.stdout, result.stderr) in [(b"141\n", b""), (b"0\n", b"")]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-def test_a_file_that_may_not_grow(unbuffered: str, tmp_path: Path) -> None:
+def test_long_output(unbuffered: str, tmp_path: Path) -> None:
+    """A reader that leaves, a slow one that gets all, and a disk that is full in the middle."""
+    line = "$LAGTOP table --n 200000 | head -3; echo ${PIPESTATUS[0]}"
+    ended = shell(line, PYTHONUNBUFFERED=unbuffered)
+    assert (ended.stdout.split()[-1], ended.stderr) == (b"141", b"")
+    line = "$LAGTOP table --n 20000 | (sleep 0.5; cat) | wc -l"
+    assert shell(line, PYTHONUNBUFFERED=unbuffered).stdout.strip() == b"20001"
     target = tmp_path / "out.csv"
     target.write_text("old")
     line = f"ulimit -f 64; trap '' XFSZ; $LAGTOP table --n 100000 -o {target}"
-    result = shell(line, PYTHONUNBUFFERED=unbuffered)
-    assert result.returncode == 74
-    assert result.stderr == f"Error: cannot write {target}: File too large\n".encode()
-    assert target.read_text() == "old"
-    assert list(tmp_path.iterdir()) == [target]
+    full = shell(line, PYTHONUNBUFFERED=unbuffered)
+    said = f"Error: cannot write {target}: File too large\n"
+    assert (full.returncode, full.stderr.decode()) == (74, said)
+    assert (target.read_text(), os.listdir(tmp_path)) == ("old", ["out.csv"])
+
+
+@pytest.mark.parametrize("line", ["table -", "sweep -", "compare -", "table --times -"])
+def test_closed_standard_input(line: str) -> None:
+    done = shell(f"$LAGTOP {line} <&-")
+    said = "Error: standard input: it is closed: give a file in place of -\n"
+    assert (done.returncode, done.stdout, done.stderr.decode()) == (65, b"", said)
+
+
+def test_closed_standard_error_and_a_file(tmp_path: Path) -> None:
+    """No file that is opened later becomes standard error: messages are lost."""
+    assert shell(f"$LAGTOP sweep --r0 40,x -o {tmp_path}/out.csv 2>&-").returncode == 2
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_failed_command_leaves_its_file_as_it_was(lagtop: Lagtop, tmp_path: Path) -> None:
+    target = tmp_path / "out.csv"
+    target.write_text("old")
+    for bad in ("--theta0 200", "--t-max 1e30", "--times /nowhere", "nowhere.toml"):
+        assert lagtop("table", "-o", target, *bad.split()).exit_code in (2, 65)
+    assert (target.read_text(), os.listdir(tmp_path)) == ("old", ["out.csv"])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-def test_a_slow_reader_gets_all_of_it(unbuffered: str) -> None:
-    command = [*LAGTOP, "table", "--n", "20000"]
-    whole = subprocess.run(command, capture_output=True, check=True).stdout
-    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
-    with subprocess.Popen(command, stdout=subprocess.PIPE, env=environment) as running:
-        assert running.stdout is not None
-        time.sleep(1)  # the pipe is full long before
-        parts = []
-        while part := os.read(running.stdout.fileno(), 30_000):
-            parts.append(part)
-            time.sleep(0.002)
-    assert b"".join(parts) == whole
-    assert running.returncode == 0
-
-
-def test_a_named_pipe_is_written_in_place(tmp_path: Path) -> None:
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE) as reader:
-        process("table", "--n", "3", "-o", str(pipe))
-        assert reader.communicate(timeout=30)[0] == process("table", "--n", "3").stdout
-    assert pipe.is_fifo()
-
-
-@pytest.mark.slow
-def test_a_shell_loop_stops_with_ctrl_c(tmp_path: Path) -> None:
-    line = f"for i in 1 2 3; do echo $i; $LAGTOP table --n 1e9 -o {tmp_path}/out.csv; done; echo 4"
-    environment = os.environ | {"LAGTOP": " ".join(LAGTOP)}
-    running = subprocess.Popen(
-        ["bash", "-c", line], stdout=subprocess.PIPE, env=environment, start_new_session=True
-    )
-    wait_for_a_file(tmp_path)
-    os.killpg(running.pid, signal.SIGINT)
-    assert running.communicate(timeout=30)[0] == b"1\n"
-    assert running.returncode == -signal.SIGINT
-    assert list(tmp_path.iterdir()) == []
-
-
-def wait_for_a_file(folder: Path, count: int = 1) -> None:
-    """Wait until a folder holds so many files and their writer is at work."""
-    deadline = time.monotonic() + 30
-    while len(list(folder.iterdir())) < count and time.monotonic() < deadline:
-        time.sleep(0.02)
-    time.sleep(0.2)
-
-
-def most_memory(*args: str) -> float:
-    """Return the most memory of a command in MB, by its own account: ru_maxrss has its parent's."""
+def test_memory_does_not_grow_with_the_rows() -> None:
     code = """if True:
         import atexit, sys
         from lagrange_cli.__main__ import main
         atexit.register(lambda: sys.stderr.write(open("/proc/self/status").read()))
         main()
     """
-    command = [sys.executable, "-c", code, *args, "-o", "/dev/null"]
-    status = subprocess.run(command, capture_output=True, check=True).stderr.decode()
-    return int(status.partition("VmHWM:")[2].split()[0]) / 1024
+    used = []
+    for count in ("1e5", "1e6"):
+        command = [sys.executable, "-c", code, "table", "--n", count, "-o", "/dev/null"]
+        status = subprocess.run(command, capture_output=True, check=True).stderr.decode()
+        used.append(int(status.partition("VmHWM:")[2].split()[0]) / 1024)
+    assert used[1] < min(200, used[0] + 10)
+
+
+# signals and the environment
+
+
+def started(*options: str, folder: Path, before: str = "") -> subprocess.Popen[bytes]:
+    """Start `lagtop table` with a file as output, and wait until it writes."""
+    command = [*LAGTOP, "table", *options, "-o", str(folder / "out.csv")]
+    line = f'{before} exec "$@"'
+    running = subprocess.Popen(["bash", "-c", line, "_", *command], stderr=subprocess.PIPE)
+    while not any(path.name.startswith(".lagtop") for path in folder.iterdir()):
+        assert running.poll() is None
+        time.sleep(0.02)
+    return running
+
+
+@pytest.mark.parametrize(("name", "code"), [("INT", -2), ("TERM", 143), ("HUP", 129)])
+def test_signals_end_a_command_that_cleans_up(name: str, code: int, tmp_path: Path) -> None:
+    (tmp_path / "out.csv").write_text("old")
+    running = started("--n", "1e9", folder=tmp_path)
+    running.send_signal(getattr(signal, f"SIG{name}"))
+    assert running.communicate(timeout=30)[1] == b""
+    assert running.returncode == code
+    assert ((tmp_path / "out.csv").read_text(), os.listdir(tmp_path)) == ("old", ["out.csv"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["HUP", "INT", "TERM"])
+def test_a_signal_that_is_ignored_at_the_start_stays_ignored(name: str, tmp_path: Path) -> None:
+    """The command `nohup` does that with HUP, and a shell with INT of a job with &."""
+    running = started("--n", "1e6", folder=tmp_path, before=f"trap '' {name};")
+    running.send_signal(getattr(signal, f"SIG{name}"))
+    assert running.communicate(timeout=60)[1] == b""
+    assert running.returncode == 0
+    assert (tmp_path / "out.csv").read_bytes().count(b"\n") == 1_000_001
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("module", ["click", "lagrange_cli.cli.app", "numpy"])
+def test_ctrl_c_while_modules_are_imported(module: str) -> None:
+    code = f"""if True:
+        import os, signal, sys
+
+        class Interrupt:
+            def find_spec(name, *_):
+                if name == {module!r}:
+                    os.kill(os.getpid(), signal.SIGINT)
+
+        sys.meta_path.insert(0, Interrupt)
+        from lagrange_cli.__main__ import main
+        main()
+    """
+    done = subprocess.run([sys.executable, "-c", code, "table"], capture_output=True, check=False)
+    assert (done.returncode, done.stderr, done.stdout) == (-signal.SIGINT, b"", b"")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "command", ["table --n {}", "sweep --r0 1:90:{} --keys r0,regime --format ndjson"]
+    ("settings", "line", "code", "said"),
+    [
+        ("MPLBACKEND=nonsense", "plot -o {}/a.png", 2, "'nonsense' is not a valid value"),
+        ("SOURCE_DATE_EPOCH=abc", "plot -o {}/a.pdf", 2, "SOURCE_DATE_EPOCH"),
+        ("_LAGTOP_COMPLETE=bash_complete", "", 2, "_LAGTOP_COMPLETE needs"),
+        ("ulimit -v 600000;", "sweep --r0 1:9:20000000 -o {}/a.csv", 69, "out of memory"),
+    ],
 )
-def test_memory_does_not_grow_with_the_rows(command: str) -> None:
-    few, many = (most_memory(*command.format(n).split()) for n in ("1e5", "1e6"))
-    assert many < 200
-    assert many < few + 10
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("form", ["csv", "json", "npy"])
-def test_memory_does_not_grow_with_the_rows_of_a_trajectory(form: str, tmp_path: Path) -> None:
-    used, path = [], tmp_path / "trajectory.npy"
-    for count in ("1e5", "5e5" if form == "json" else "1e6"):  # rows of json are slow to read
-        how = ["--t-max", "10", "--n", count, "--columns", "t,theta", "-o", str(path)]
-        process("table", *how, "--format", "json" if form == "json" else "csv")
-        if form == "npy":
-            np.save(path, np.loadtxt(path, delimiter=",", skiprows=1))
-        used.append(most_memory("compare", str(path), "--columns", "t,theta"))
-    assert used[1] < 200
-    assert used[1] < used[0] + 25, used  # of files of 2 and of 20 MB and more
-
-
-def test_output_to_a_file(tmp_path: Path) -> None:
-    target = tmp_path / "out.csv"
-    target.write_text("old")
-    target.chmod(0o640)
-    link = tmp_path / "link.csv"
-    link.symlink_to(target)
-    assert process("table", "-o", str(link)).stdout == b""
-    assert target.read_bytes() == process("table").stdout
-    assert link.is_symlink()
-    assert target.stat().st_mode & 0o777 == 0o640
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.csv", "out.csv"]
-
-
-@pytest.mark.parametrize(
-    "bad", [["--theta0", "200"], ["--t-max", "1e30"], ["--times", "/nowhere"], ["nowhere.toml"]]
-)
-def test_a_failed_command_leaves_the_file_as_it_was(
-    bad: list[str], tmp_path: Path, lagtop: Lagtop
+def test_bad_surroundings_end_in_one_line(
+    settings: str, line: str, code: int, said: str, tmp_path: Path
 ) -> None:
-    target = tmp_path / "out.csv"
-    target.write_text("old")
-    assert lagtop("table", "-o", target, *bad).exit_code in (2, 65)
-    assert target.read_text() == "old"
-    assert list(tmp_path.iterdir()) == [target]
-
-
-def test_output_to_a_device() -> None:
-    assert process("solve", "-o", "/dev/null").stdout == b""
+    done = shell(f"{settings} $LAGTOP {line.format(tmp_path)}")
+    assert (done.returncode, done.stdout, os.listdir(tmp_path)) == (code, b"", [])
+    assert said in done.stderr.decode()
+    assert done.stderr.count(b"\n") == 1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", ["table --n 1e9", "sweep --r0 1:2:1e9"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_signals_kill_and_clean_up(number: signal.Signals, command: str, tmp_path: Path) -> None:
-    target = tmp_path / "out.csv"
-    target.write_text("old")
-    running = subprocess.Popen(
-        [*LAGTOP, *command.split(), "-o", str(target)], stderr=subprocess.PIPE
-    )
-    wait_for_a_file(tmp_path, 2)
-    running.send_signal(number)
-    _, stderr = running.communicate(timeout=30)
-    assert running.returncode == -number
-    assert b"Traceback" not in stderr
-    assert target.read_text() == "old"
-    assert list(tmp_path.iterdir()) == [target]
+def test_a_folder_of_modules_is_not_imported(tmp_path: Path) -> None:
+    for name in ("numpy", "click", "json", "rich", "orjson", "signal", "sitecustomize", "scipy"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('imported')")
+    script = Path(sys.executable).with_name("lagtop")
+    for line in ("solve", "table --n 3", "sweep --r0 1:9:3 --jobs 2", "plot sphere -o x.svg"):
+        done = subprocess.run(
+            [script, *line.split()], capture_output=True, check=False, cwd=tmp_path
+        )
+        assert (done.returncode, done.stderr) == (0, b""), line
+
+
+# terminals
+
+
+def test_control_characters_of_names_do_not_reach_the_terminal(lagtop: Lagtop) -> None:
+    for line in ECHOING:
+        ended = lagtop(*line.replace("{}", HOSTILE).split())
+        assert ended.exit_code != 0, ascii(line)
+        assert ended.stdout == "", ascii(line)
+        assert ended.stderr.endswith("\n"), ascii(line)
+        assert ended.stderr[:-1].isprintable(), ascii(ended.stderr)
+
+
+def on_terminal(line: str, code: int = 0, **extra: str) -> str:
+    """Return what a command writes to a terminal of 80 columns."""
+    terminal, child = os.openpty()
+    environment = {x: y for x, y in os.environ.items() if x != "COLUMNS"} | {"TERM": "xterm"}
+    with subprocess.Popen(
+        [*LAGTOP, *line.split()], stdin=child, stdout=child, stderr=child, env=environment | extra
+    ) as running:
+        os.close(child)
+        written = b""
+        try:
+            while chunk := os.read(terminal, 65536):
+                written += chunk
+        except OSError:  # nobody has the terminal open any more
+            pass
+    os.close(terminal)
+    assert running.returncode == code, written
+    return written.decode()
+
+
+def test_headings_are_bold_on_a_terminal() -> None:
+    assert "\x1b[1m" in on_terminal("solve")
+    assert "\x1b" not in on_terminal("solve", TERM="dumb")
 
 
 @pytest.mark.slow
-def test_narrow_terminal_without_colour_cuts_nothing() -> None:
-    plain = process("solve").stdout
-    environment = os.environ | {"COLUMNS": "40", "NO_COLOR": "1", "TERM": "dumb"}
-    assert process("solve", env=environment).stdout == plain
+def test_data_on_a_terminal(tmp_path: Path) -> None:
+    (tmp_path / "x.csv").write_bytes(b"id,r0\n\x1b]0;evil\x07\x1b[31mred,40\n")
+    assert "\u2500" in on_terminal("sweep --r0 40:50:3 --keys theta0_deg,T_nutation")
+    shown = on_terminal(f"sweep {tmp_path}/x.csv --keys theta0_deg,T_nutation", TERM="dumb")
+    assert "\\x1b]0;evil\\x07\\x1b[31mred" in shown
+    assert "\x1b" not in shown
+    refused = on_terminal("table --t-max 1 --n 3 --format parquet", 2)
+    assert "is not for a terminal: use -o FILE.parquet" in refused
 
 
 @pytest.mark.parametrize(
     ("line", "completed"),
-    [
-        ("so", ["solve"]),
-        ("solve --get T_nut", ["T_nutation", "T_nutation_elementary"]),
-        ("sweep --keys r0,mean_s", ["r0,mean_spin_rate"]),
-        ("table --columns t,quat", ["t,quaternion", *(f"t,quaternion_{x}" for x in "wxyz")]),
-        ("bench --methods lagtop,muj", [f"lagtop,mujoco{x}" for x in ("-euler", "-rk4", "")]),
-        ("stability --strata slo", ["slow"]),
-        ("plot sph", ["sphere", "spherical-pendulum"]),
-        ("plot --key T_spi", ["T_spin"]),
-        ("plot --x thetad", ["thetadot0="]),
-        ("find T_pre", ["T_precession="]),
-        ("compare --align sta", ["start"]),
-        ("solve simo", ["simo-wong-1991"]),
-        ("plot scene", ["scene"]),
-    ],
+    [("so", ["solve"]), ("solve simo", ["simo-wong-1991"]), ("plot scene", ["scene"])],
 )
 def test_completion(line: str, completed: list[str]) -> None:
-    """What is offered, as a word or, for `scene`, as the beginning of a file."""
     words = line.split()
     items = ShellComplete(main, {}, "lagtop", "_X").get_completions(words[:-1], words[-1])
     assert [item.value for item in items] == completed
-    assert {item.type for item in items} == {"file" if line == "plot scene" else "plain"}
 
 
 def test_bash_gets_completions() -> None:

@@ -1,0 +1,400 @@
+"""Options that several commands share, as decorators of click, and the top that they describe."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from functools import partial, wraps
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import click
+
+from ..arithmetic.text import parse_number, quoted
+from ..errors import LagtopError, SomeFailedError
+from ..inputs.input_keys import DECLARED
+from ..inputs.names import split_names
+from ..output.destination import Output, opened
+from ..output.terminal import is_screen, width_of
+from .app import complain
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+    from ..inputs.given import Given
+    from ..inputs.value import Value
+    from ..motion.numbers import Numbers
+    from ..motion.solve import Motion
+    from ..output.report import Report
+
+F = TypeVar("F", bound=Callable[..., Any])
+M = TypeVar("M", bound="Numbers")
+MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
+REPORT_FORMATS = ("table", "csv", "json", "ndjson")
+
+
+class Parsed(click.ParamType):  # type: ignore[type-arg]
+    """A parameter type whose value a function parses; errors begin with the option's name."""
+
+    def __init__(self, metavar: str, parse: Callable[[str], Any]) -> None:
+        self.name, self.parse = metavar, parse
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the value; click may pass it a second time, when it is already converted."""
+        if not isinstance(value, str):
+            return value
+        try:
+            return self.parse(value)
+        except LagtopError as error:
+            name = param.opts[-1] if param and param.opts[-1].startswith("-") else ""
+            raise LagtopError(f"{name} {error}".lstrip()) from None
+
+
+class Words(click.ParamType):  # type: ignore[type-arg]
+    """Words among which may be a scene: a shell completes the shipped scenes, and files."""
+
+    name = "words"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Return the scenes that begin with a word, or files."""
+        from click.shell_completion import CompletionItem
+
+        from ..inputs.scene_file import scene_names
+
+        scenes = [CompletionItem(x) for x in scene_names() if x.startswith(incomplete)]
+        return scenes or [CompletionItem(incomplete, type="file")]
+
+
+def _parse_count(text: str) -> int:
+    """Return a whole number from 1, which may be written as 1e6."""
+    exact = parse_number(text)
+    if exact.denominator != 1 or exact < 1:
+        raise LagtopError(f"must be a whole number >= 1, got {text}")
+    return int(exact)
+
+
+def _parse_positive(text: str) -> float:
+    exact = parse_number(text)
+    if not exact > 0:
+        raise LagtopError(f"must be > 0, got {float(exact)}")
+    return float(exact)
+
+
+def _parse_mark(text: str) -> str:
+    marks = {"": "", "point": ".", "comma": ",", ".": ".", ",": ","}
+    if text not in marks:
+        raise LagtopError(f"must be point, comma or the character, got {quoted(text)}")
+    return marks[text]
+
+
+def _parse_value(text: str, **allowed: Any) -> Value:
+    from ..inputs.value import parse_value
+
+    return parse_value(text, **allowed)
+
+
+NUMBER = Parsed("X", parse_number)
+POSITIVE = Parsed("X", _parse_positive)
+COUNT = Parsed("N", _parse_count)
+LIST = Parsed("NAME,...", split_names)
+VALUE = Parsed("X", partial(_parse_value, uncertain=True))
+"""An input of one top: a number, which may have a unit and an uncertainty."""
+TIME = Parsed("X", _parse_value)
+
+option = click.option
+Choice = click.Choice
+rad = option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
+certify = option(
+    "--certify", is_flag=True, help="Also print KEY_radius, a proven bound on the error."
+)
+keys = option("--keys", type=LIST, help="Compute and print only these keys (see lagtop explain).")
+plot = option("--plot", metavar="FILE", help="Also draw the report: FILE.svg or FILE.png.")
+jobs = option("--jobs", metavar="N|auto", help="Number of processes; auto: one per core.")
+decimal = option(
+    "--decimal",
+    metavar="MARK",
+    default="",
+    type=Parsed("MARK", _parse_mark),
+    help="Decimal mark of the input: point or comma.  [default: detected]",
+)
+columns = option(
+    "--columns",
+    type=LIST,
+    help="Names of all columns; axis, quaternion and matrix stand for all of their parts, _ skips "
+    "a column.",
+)
+quaternion_order = option(
+    "--quaternion-order",
+    metavar="ORDER",
+    type=click.Choice(["wxyz", "xyzw"]),
+    help="wxyz or xyzw.  [default: from the first row]",
+)
+euler_sequence = option(
+    "--euler-sequence",
+    metavar="SEQ",
+    default="xyz",
+    show_default=True,
+    help="Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
+)
+
+
+scenes = click.argument("scenes", nargs=-1, metavar="[SCENE]...", type=Words())
+
+
+def extension(path: str) -> str:
+    """Return the extension of a file, in lower case and without its dot."""
+    return os.path.splitext(path)[1][1:].lower()
+
+
+def parse_numbers(text: str) -> list[float]:
+    """Return the numbers of a comma-separated list."""
+    return [float(parse_number(part)) for part in split_names(text)]
+
+
+def digits(most: int) -> Callable[[F], F]:
+    """Declare --digits, from 1 to `most`."""
+
+    def parse(text: str) -> int:
+        if not 1 <= (count := _parse_count(text)) <= most:
+            raise LagtopError(f"must be in [1, {most}], got {count}")
+        return count
+
+    text = f"Print N correct digits, 1 to {most}; inputs are read as exact decimals."
+    return option("--digits", type=Parsed("N", parse), help=text)
+
+
+def command(name: str, *examples: str, **attributes: Any) -> Callable[[F], click.Command]:
+    """Declare a command whose help ends with examples."""
+    lines = "".join(f"\n  lagtop {example}" for example in examples)
+    settings = {"help_option_names": ["-h", "--help"]}
+    return click.command(
+        name, epilog=f"\b\nExamples:{lines}", context_settings=settings, **attributes
+    )
+
+
+def exclude(**values: Any) -> None:
+    """Raise LagtopError if more than one of some options, by parameter, was given."""
+    given = [x for x, y in values.items() if y is not None and y is not False and y != ()]
+    if len(given) > 1:
+        first, second = (f"--{name.replace('_', '-')}" for name in given[:2])
+        raise LagtopError(f"use {first} or {second}, not both")
+
+
+class TopOptions(NamedTuple):
+    """The inputs of a top on the command line."""
+
+    inputs: Mapping[str, Value]
+    """The inputs that were given, by key, in the order of the command line."""
+    radians: bool
+    scene: str | None
+
+    def given(self, others: Mapping[str, Value] | None = None) -> Given:
+        """Return the inputs of the scene, if any, overridden by the options.
+
+        `others` are further values that are converted to the same units, such as times.
+        """
+        from ..inputs.given import gather  # not for commands without a top
+
+        return gather(self.inputs, self.scene, others=others or {})
+
+    def motion(self) -> Motion:
+        """Return the motion, with a warning if the uncertainty of an input is not used."""
+        found = self.given()
+        warn_unused(found)
+        return motion_of(found)
+
+
+def is_scene(word: str) -> bool:
+    """Return whether a word among others, such as conditions or kinds of picture, names a scene.
+
+    Scenes are `-`, shipped scenes, words that end in `.toml`, and words with a dot or a slash that
+    are no condition.
+    """
+    from ..inputs.scene_file import scene_names
+
+    is_path = bool(set(word) & set("./")) and not set(word) & set("=<>")
+    return word == "-" or word.endswith(".toml") or is_path or word in scene_names()
+
+
+def top(
+    argument: str = "[SCENE]",
+    *,
+    kind: Parsed = VALUE,
+    whole: bool = True,
+    required: bool = False,
+    is_scene: Callable[[str], bool] | None = is_scene,
+) -> Callable[[F], F]:
+    """Declare the inputs of a top and --rad, which become `top`, and the arguments of a command.
+
+    If the `argument` is more than a scene, the command gets the other `words`; `is_scene` finds the
+    scene among them, unless it is None.  A top that is not `whole` has no defaults.
+    """
+    names = [name for name in DECLARED if whole or name != "phidot0"]  # which needs a whole start
+    several = argument != "[SCENE]"
+
+    def decorate(function: F) -> F:
+        @wraps(function)
+        def run(rad: bool, words: Any, **others: Any) -> None:
+            tilt = "theta0_rad" if rad else "theta0_deg"
+            given = {x: others.pop(x) for x in [*others] if x in names}  # as on the command line
+            inputs = {
+                tilt if x == "theta0" and not y.unit else x: y
+                for x, y in given.items()
+                if y is not None
+            }
+            scene = words
+            if several:
+                scenes = [word for word in words if is_scene and is_scene(word)]
+                if len(scenes) > 1:
+                    raise LagtopError(f"use one scene, not {' and '.join(scenes)}")
+                scene = scenes[0] if scenes else None
+                others["words"] = [word for word in words if word not in scenes]
+            function(top=TopOptions(inputs, rad, scene), **others)
+
+        found: Any = rad(run)
+        for name in reversed(names):
+            is_rate = whole and kind is VALUE and name == "psidot0"
+            steady = Parsed("X", partial(_parse_value, uncertain=True, steady=True))
+            text = _help_of(name, shows_default=whole)
+            flag = f"--{name.replace('_', '-')}"
+            found = option(flag, name, type=steady if is_rate else kind, help=text)(found)
+        nargs = -1 if several else 1
+        return click.argument(  # type: ignore[no-any-return]
+            "words", nargs=nargs, required=required, metavar=argument, type=Words()
+        )(found)
+
+    return decorate
+
+
+def _help_of(name: str, *, shows_default: bool) -> str:
+    """Return the help of an input, with its unit if it is a rate, its bounds and its default."""
+    declared = DECLARED[name]
+    rate = "rad per unit of time" if declared.unit == "rad/time" else ""
+    text = ", ".join(filter(None, (declared.meaning, rate, declared.bound)))
+    ending = f"  [default: {declared.default:g}]" if declared.default is not None else ""
+    return f"{text[0].upper()}{text[1:]}.{ending if shows_default else ''}"
+
+
+def motion_of(found: Given, *, exact: bool = False) -> Motion:
+    """Return the motion of some inputs, kept as decimals if `exact`, after warnings about them."""
+    from ..motion.solve import solve
+
+    return warned(solve(found.top(exact=exact)), found)
+
+
+def warned(motion: M, found: Given) -> M:
+    """Return a motion, after warnings about mixed inputs and about a body that cannot be built."""
+    warn_missing(found)
+    if caveat := motion.top.caveat():
+        complain(f"Warning: {caveat}")
+    return motion
+
+
+def warn_missing(found: Given) -> None:
+    """Warn of inputs of the body from the worked example, and of a scene without inputs."""
+    if found.empty is not None:
+        complain(f"Warning: {found.empty} has no inputs: using the worked example")
+    if found.missing:
+        from ..inputs.input_keys import example_options, remark_on
+
+        words = example_options(found.missing, units=found.system is not None)
+        complain(f"Warning: {remark_on(found.missing, words)}")
+
+
+def warn_unused(found: Given) -> None:
+    """Warn of inputs whose uncertainties a command does not use."""
+    if names := ", ".join(found.stds):
+        used = "solve, table and plot angles use it"
+        complain(f"Warning: the uncertainty of {names} is not used: {used}")
+
+
+def output(
+    *formats: str, extensions: Iterable[str] = (), on_terminal: str = ""
+) -> Callable[[F], F]:
+    """Declare --output and --format, which become `out`.
+
+    The extension of the file sets the default format.  Without an extension, or with one of the
+    `extensions`, it is the first format, or `on_terminal` if standard output is a terminal.
+    """
+    default = f"{formats[0]}, on a terminal {on_terminal}" if on_terminal else formats[0]
+    text = f"{', '.join(formats)}.  [default: extension of FILE, or {default}]"
+
+    def chosen(path: str, fmt: str | None) -> str:
+        ending = extension(path)
+        if fmt is None and ending in {"", "txt", *extensions}:
+            return on_terminal if on_terminal and is_screen(path) else formats[0]
+        if fmt is None and (ending == "table" or ending not in formats):
+            raise LagtopError(
+                f"{click.get_current_context().command.name} cannot write {ending or path}: use "
+                f"{', '.join(formats)} as extension of {quoted(path)}, or add --format"
+            )
+        if (fmt or ending) == "parquet" and is_screen(path):
+            raise LagtopError("--format parquet is not for a terminal: use -o FILE.parquet")
+        return fmt or ending
+
+    def decorate(function: F) -> F:
+        @wraps(function)
+        def run(output: str, fmt: str | None, **others: Any) -> None:
+            out = Output(output, chosen(output, fmt), fmt is not None)
+            if out.fmt == "parquet":
+                from ..output.formats import check_parquet
+
+                check_parquet()
+            function(out=out, **others)
+
+        found: Any = option(
+            "--format", "fmt", metavar="FORMAT", type=click.Choice(formats), help=text
+        )(run)
+        return option(  # type: ignore[no-any-return]
+            *("-o", "--output"),
+            metavar="FILE",
+            default="-",
+            help="Output file (replaced only on success).",
+        )(found)
+
+    return decorate
+
+
+def check_plot(path: str | None, output: str) -> None:
+    """Raise LagtopError for a picture of another type than SVG and PNG, or one over the report."""
+    if path is None:
+        return
+    if extension(path) not in {"svg", "png"}:
+        raise LagtopError(f"--plot must end in .svg or .png, got {quoted(path)}")
+    if os.path.realpath(path) == os.path.realpath(output):
+        raise LagtopError(f"--plot must not be the file of the report, got {quoted(path)}")
+    from ..plot.style import require_matplotlib
+
+    require_matplotlib()
+
+
+def write_report(
+    out: Output,
+    find: Callable[[], Report],
+    plot: str | None = None,
+    draw: Callable[[Report], bytes] | None = None,
+) -> Report:
+    """Write the report that `find` returns, and its picture; return the report.
+
+    Both destinations are opened first, and replaced only if everything is written.  CSV holds only
+    the rows: its conditions go to standard error.
+    """
+    with ExitStack() as stack:
+        picture = stack.enter_context(opened(plot)) if plot and draw else None
+        stream = stack.enter_context(opened(out.path))
+        report = find()
+        if picture and draw:
+            picture.write(draw(report))
+        stream.write(report.text(out.fmt, width_of(out.path)))
+    if out.fmt in {"csv", "ndjson"}:
+        for name, text in report.conditions.items():
+            complain(f"{name}: {text}")
+    return report
+
+
+def fail_for(failures: Sequence[str], count: int, what: str) -> None:
+    """Raise SomeFailedError if there are failures, with their number and the first one."""
+    if failures:
+        raise SomeFailedError(f"{len(failures)} of {count} {what} failed; the first: {failures[0]}")
