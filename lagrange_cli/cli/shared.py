@@ -67,12 +67,18 @@ class Words(click.ParamType):  # type: ignore[type-arg]
         return scenes or [CompletionItem(incomplete, type="file")]
 
 
-def _parse_count(text: str) -> int:
-    """Return a whole number from 1, which may be written as 1e6."""
-    exact = parse_number(text)
-    if exact.denominator != 1 or exact < 1:
-        raise LagtopError(f"must be a whole number >= 1, got {text}")
-    return int(exact)
+def count(most: float = 1e9) -> Parsed:
+    """Return the type of a whole number from 1 to `most`, which may be written as 1e6."""
+
+    def parse(text: str) -> int:
+        exact = parse_number(text)
+        if exact.denominator != 1:
+            raise LagtopError(f"must be a whole number, got {quoted(text)}")
+        if not 1 <= exact <= most:
+            raise LagtopError(f"must be in [1, {most:.10g}], got {text}")
+        return int(exact)
+
+    return Parsed("N", parse)
 
 
 def _parse_positive(text: str) -> float:
@@ -97,7 +103,6 @@ def _parse_value(text: str, **allowed: Any) -> Value:
 
 NUMBER = Parsed("X", parse_number)
 POSITIVE = Parsed("X", _parse_positive)
-COUNT = Parsed("N", _parse_count)
 LIST = Parsed("NAME,...", split_names)
 VALUE = Parsed("X", partial(_parse_value, uncertain=True))
 """An input of one top: a number, which may have a unit and an uncertainty."""
@@ -155,14 +160,8 @@ def parse_numbers(text: str) -> list[float]:
 
 def digits(most: int) -> Callable[[F], F]:
     """Declare --digits, from 1 to `most`."""
-
-    def parse(text: str) -> int:
-        if not 1 <= (count := _parse_count(text)) <= most:
-            raise LagtopError(f"must be in [1, {most}], got {count}")
-        return count
-
     text = f"Print N correct digits, 1 to {most}; inputs are read as exact decimals."
-    return option("--digits", type=Parsed("N", parse), help=text)
+    return option("--digits", type=count(most), help=text)
 
 
 def command(name: str, *examples: str, **attributes: Any) -> Callable[[F], click.Command]:

@@ -32,7 +32,7 @@ MAX_DRAWN_ROWS = 10_000
 @opt.top()
 @opt.option("--t-max", type=opt.TIME, help="Last time.  [default: one period; 1 without one]")
 @opt.option("--t-min", type=opt.TIME, help="First time.  [default: 0]")
-@opt.option("--n", type=opt.COUNT, help="Number of times.  [default: 101]")
+@opt.option("--n", type=opt.count(), help="Number of times.  [default: 101]")
 @opt.option("--dt", type=opt.TIME, help="Time step, instead of --n.")
 @opt.option("--times", metavar="FILE", help="Read the times from a file, one per line.")
 @opt.decimal
