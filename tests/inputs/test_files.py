@@ -52,7 +52,6 @@ def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -
     assert lagtop("solve", path).exit_code == lagtop("sweep", path).exit_code == 65
     assert lagtop("solve", path, "--C", "1").exit_code == 0
     assert lagtop("sweep", path, "--C", "1").exit_code == 0
-    assert lagtop("table", path, "--C", "1", "--tops", "-", input="r0\n3\n").exit_code == 0
 
 
 @pytest.mark.parametrize(
@@ -115,9 +114,8 @@ def test_a_scene_on_standard_input(lagtop: Lagtop) -> None:
     assert_one_line(wrong, 65, "standard input, line 2: unknown key 'spin'")
 
 
-@pytest.mark.parametrize("option", ["--times", "--tops"])
-def test_standard_input_is_read_once(option: str, lagtop: Lagtop) -> None:
-    result = lagtop("table", "-", option, "-", input="r0 = 1\n")
+def test_standard_input_is_read_once(lagtop: Lagtop) -> None:
+    result = lagtop("table", "-", "--times", "-", input="r0 = 1\n")
     assert_one_line(result, 2, "")
     assert "not both" in result.stderr
 
@@ -144,7 +142,6 @@ MISSING = [
     "fit FILE.csv top.toml --fix m",
     "sweep FILE.csv",
     "sweep FILE.csv --parts x",
-    "table --tops FILE.csv",
     "table --times FILE.txt",
 ]
 

@@ -139,14 +139,6 @@ def test_sweeps_of_grids_and_files(lagtop: Lagtop) -> None:
     found = lagtop(*files, *keys, input=rows)
     assert found.stdout.splitlines()[1] == "5.0,0.0,"
     assert found.stdout.splitlines()[2].endswith('"line 3: A must be > 0, got -1.0"')
-    words = ["--t-max", "1", "--columns", "r", *files[2:]]
-    tables = lagtop("table", "--tops", "-", *words, input=rows)
-    assert tables.stdout.splitlines()[1] == "2,0.0,"
-    many = "phidot0\n" + "3\n" * 20
-    table = lagtop("table", "--tops", "-", "--t-max", "1", "--n", "2", input=many)
-    alone = lagtop("table", "--r0", "3", "--t-max", "1", "--n", "2").stdout
-    one, other = (x.splitlines()[2].split(",") for x in (table.stdout, alone))
-    assert one[1:4] == other[:3]
 
 
 def test_angles_of_many_tops() -> None:

@@ -91,7 +91,6 @@ def test_the_warning_appears_once_per_grid_and_per_file(tmp_path: Path, lagtop: 
     path.write_text("m,C,g,r0\n" + "0.35,4e-4,9.81,1\n" * 3)
     assert lagtop("sweep", path).stderr == SAID
     assert lagtop("sweep", path, "--A", "1e-3", "--s", "1").stderr == ""
-    assert lagtop("table", "--tops", path, "--t-max", "1").stderr == SAID
     objects = '{"r0": 3}\n{"m": 0.35, "C": 4e-4, "g": 9.81}\n'
     assert lagtop("sweep", "-", input=objects).stderr == SAID
     assert lagtop("sweep", "-", "sample_inputs/slow-top.toml", input=objects).stderr == ""

@@ -56,7 +56,7 @@ WHERE = {
     "sweep --keys": "r0",
     "table --columns": "theta",
     "bench --n 3 --methods": "lagtop",
-    "stability --strata": "slow",
+    "stability --kinds": "slow-spin",
 }
 
 

@@ -57,7 +57,7 @@ def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("theta0", "a top has no input 'theta0' (did you mean 'theta0_deg'?)"),
+        ("theta0", "a top has no input 'theta0' (did you mean 'theta0_deg' or 'theta0_rad'?)"),
         ("phidot", "a top has no input 'phidot' (did you mean 'phidot0'?)"),
         ("mass", "a top has no input 'mass'"),
     ],

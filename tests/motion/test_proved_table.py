@@ -174,8 +174,7 @@ def test_commands_write_radii(lagtop: Lagtop) -> None:
     ("options", "message"),
     [
         ("table --certify --columns t,e", "--columns must be among t, theta, phi,"),
-        ("table --certify --format npy", "--format npy holds doubles: with --certify use csv,"),
-        ("table --certify --tops x.csv", "use --tops or --certify, not both"),
+        ("table --certify --format parquet -o x", "--format parquet holds doubles"),
         ("solve --certify --r0 nan", "--r0 must be a finite decimal number"),
     ],
 )

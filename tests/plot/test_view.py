@@ -70,8 +70,6 @@ def test_the_page_names_the_units_of_its_inputs(lagtop: Lagtop) -> None:
     page = lagtop("view", *body, *start, "-o", "-").stdout
     assert 'const UNITS = {"mass": "kg", "len": "m", "time": "s"};' in page
     assert '"m": 1.587' in page
-    page = lagtop("view", *body, *start, "--units", "cgs", "-o", "-").stdout
-    assert 'const UNITS = {"mass": "g", "len": "cm", "time": "s"};' in page
 
 
 def test_the_command_opens_the_page(

@@ -109,7 +109,6 @@ def test_invalid_numbers_of_jobs_are_refused(text: str, lagtop: Lagtop) -> None:
 
 
 def test_jobs_need_something_to_share(lagtop: Lagtop) -> None:
-    assert_one_line(lagtop("table", "--jobs", 2), 2, "--jobs needs --tops: one top")
     refused = lagtop("sweep", "--jobs", 2, "--dask", "local")
     assert_one_line(refused, 2, "use --jobs or --dask, not both")
 
@@ -126,9 +125,6 @@ def tops(count: int) -> str:
     [
         ["sweep", "--r0", "1:100:40000"],
         ["sweep", "tops.csv", "--keys", "T_nutation", "--fail-fast"],
-        ["table", "--tops", "few.csv", "--n", "20000"],
-        ["table", "--tops", "few.csv", "--times", "times.txt", "--format", "json"],
-        ["stability", "--samples", "2", "--strata", "slow,units", "--format", "csv"],
     ],
 )
 def test_bytes_are_those_of_one_process(
