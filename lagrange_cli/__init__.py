@@ -8,7 +8,7 @@ from typing import Any
 
 __version__ = "0.1.0"
 __all__ = [
-    "Judgement",
+    "Comparison",
     "LagtopError",
     "MixedBodyWarning",
     "Motion",
@@ -29,13 +29,13 @@ __all__ = [
 ]
 
 _MODULES = {
-    "Judgement": "judge.judgement",
+    "Comparison": "compare.compare",
     "LagtopError": "errors",
     "MixedBodyWarning": "errors",
     "Motion": "motion.solve",
     "Regime": "motion.regime",
     "Top": "inputs.top",
-    "compare": "judge.compare",
+    "compare": "compare.compare",
     "draw": "plot",
     "draw_outcome": "plot.reports",
     "find": "find",

@@ -1,13 +1,13 @@
 """Installed as `lagtop-stubs`: the public names of `lagtop` for type checkers."""
 
+from lagrange_cli.compare.compare import Comparison as Comparison
+from lagrange_cli.compare.compare import compare as compare
 from lagrange_cli.errors import LagtopError as LagtopError
 from lagrange_cli.errors import MixedBodyWarning as MixedBodyWarning
 from lagrange_cli.find import find as find
 from lagrange_cli.fits.fit import fit as fit
 from lagrange_cli.inputs.given import read_scene as read_scene
 from lagrange_cli.inputs.top import Top as Top
-from lagrange_cli.judge.compare import compare as compare
-from lagrange_cli.judge.judgement import Judgement as Judgement
 from lagrange_cli.motion.derivatives import sensitivities as sensitivities
 from lagrange_cli.motion.regime import Regime as Regime
 from lagrange_cli.motion.solve import Motion as Motion

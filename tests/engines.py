@@ -1,4 +1,4 @@
-"""Engines of our own for the tests of the judge: Euler's equations, integrated by plain methods.
+"""Engines of our own for the tests of `compare`: Euler's equations, integrated by plain methods.
 
 They share nothing with the program: the state is a quaternion and the angular velocity in the body.
 """
@@ -82,10 +82,10 @@ def semi_implicit_euler(body: Body, h: float, end: float) -> Run:
     return _stepped(body, h, end, step)
 
 
-def dop853(body: Body, t: Array) -> Run:
-    """Return a trajectory by DOP853 at its tightest."""
+def dop853(body: Body, t: Array, rtol: float = 3e-14, method: str = "DOP853") -> Run:
+    """Return a trajectory by DOP853 at its tightest, or by another integrator of SciPy."""
     flow = solve_ivp(
-        lambda _, y: body.slope(y), (t[0], t[-1]), body.state, "DOP853", t, rtol=3e-14, atol=1e-15
+        lambda _, y: body.slope(y), (t[0], t[-1]), body.state, method, t, rtol=rtol, atol=rtol / 30
     )
     return t, flow.y.T
 

@@ -17,7 +17,7 @@ import lagtop
 import numpy as np
 import pytest
 from conftest import ROOT
-from lagtop import Judgement, Top
+from lagtop import Comparison, Top
 
 from lagrange_cli.fits.record import Outcome
 from lagrange_cli.motion.numbers import Numbers
@@ -52,7 +52,7 @@ INSIDE = {
 """Methods that other modules use: no user needs them."""
 
 
-@pytest.mark.parametrize("owner", [Top, lagtop.Motion, Results, Outcome, Judgement])
+@pytest.mark.parametrize("owner", [Top, lagtop.Motion, Results, Outcome, Comparison])
 def test_examples_use_every_method(owner: type) -> None:
     parents = {x for x in owner.__mro__ if x.__module__.startswith("lagrange_cli")} - {Numbers}
     members = {name: x for parent in parents for name, x in vars(parent).items()}

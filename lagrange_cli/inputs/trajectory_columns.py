@@ -1,7 +1,7 @@
 """The columns of a trajectory by name: their quantities, and the conventions that names imply.
 
 To add a name or a quantity, add a line to a table.  The help of `lagtop compare` and the table in
-the README of `judge` are generated from them.
+the README of `compare` are generated from them.
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""Comparison of trajectories by other programs with the exact motion."""

@@ -1,1 +1,0 @@
-"""Comparison of trajectories of a top with the exact motion."""
