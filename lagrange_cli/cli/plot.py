@@ -1,4 +1,4 @@
-"""The commands `lagtop plot`, pictures of one motion, and `lagtop view`, a page for the browser."""
+"""The commands `lagtop plot`, pictures of motions, and `lagtop view`, a page for the browser."""
 
 from __future__ import annotations
 
@@ -12,51 +12,40 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..inputs.input_keys import TILT
-from ..inputs.names import check_names
 from ..output.destination import opened
 from ..output.terminal import is_screen, with_progress
-from ..plot.kinds import (
-    FILM_OPTIONS,
-    KINDS,
-    MAP_KEY,
-    ON_THE_SHEET,
-    SHEET,
-    InputRange,
-    PlotRequest,
-    flag_of,
-    help_lines,
-)
-from ..plot.style import DARK, LIGHT, require_matplotlib
+from ..plot import KINDS, SHEET
+from ..plot.style import DARK, FORMATS, LEAST_DPI, LIGHT, MOST_DPI, check_picture
 from . import shared as opt
 
 if TYPE_CHECKING:
-    from ..inputs.given import Given
     from ..inputs.value import Value
+    from ..plot.map import Axis, MapOptions
 
-_FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
-HELP = "Draw pictures of one motion.\n\n\b\n{kinds}\n"
 
 
 @opt.command(
     "plot",
     "plot looping-top sphere -o loops.svg",
-    "plot map --x r0=5:120:40 --y theta0=2:178:9 -o map.png",
+    "plot sphere cusped-top looping-top wavy-top -o three.svg",
+    "plot map --key path --x psidot0=-8:8:80 --theta0 60 -o map.png",
     "plot --r0 30 --animate top.gif --duration 2",
-    help=HELP.format(kinds="\n".join(help_lines())),
 )
-@opt.top("[SCENE] [KIND]...")
+@opt.top("[KIND]... [SCENE]...", is_scene=None)
 @opt.option("--t-max", type=opt.TIME, help="Last time.  [default: a few nutation periods]")
-@opt.option("--key", metavar="KEY", help=f"Key of `map`.  [default: {MAP_KEY}]")
+@opt.option(
+    *("--key", "key"),
+    metavar="KEY",
+    help="Key of `map`, also regime and path.  [default: mean_precession_rate]",
+)
 @opt.option("--x", metavar="RANGE", help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
 @opt.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0]")
-@opt.option("--camera", metavar="AZ,EL", help="Azimuth and elevation of the camera.")
+@opt.option("--camera", metavar="AZ,EL", help="Azimuth and elevation.  [default: in front]")
 @opt.option("--dark", is_flag=True, help="Dark background.")
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
 @opt.option("--animate", metavar="FILE", help="Write a film of the top: FILE.gif or FILE.mp4.")
 @opt.option("--duration", type=opt.NUMBER, help="Length of the film in seconds.  [default: 6]")
-@opt.option("--format", "fmt", metavar="FORMAT", type=opt.Choice(_FORMATS), help="png, svg, pdf.")
 @opt.option(
     *("-o", "--output"), metavar="FILE", help="FILE.png, .svg or .pdf (replaced only on success)."
 )
@@ -72,83 +61,88 @@ def plot_command(
     dpi: Fraction | None,
     animate: str | None,
     duration: Fraction | None,
-    fmt: str | None,
     output: str | None,
 ) -> None:
-    """Write and film the pictures that the options request."""
-    names = check_names("KIND", words or [SHEET], [*KINDS, SHEET])
-    kinds = [kind for name in names for kind in (ON_THE_SHEET if name == SHEET else [name])]
-    kinds = list(dict.fromkeys(kinds))
-    written = _format_of(fmt, output)
-    eye = None if camera is None else _camera(camera, top.radians)
-    if duration is not None and animate is None:
-        raise LagtopError("--duration needs --animate FILE.gif")
-    _check_kinds({"t_max": t_max, "key": key, "x": x, "y": y, "camera": eye}, kinds, bool(animate))
+    """Draw pictures of motions.
+
+    \b
+    sphere  the path of the figure axis on the unit sphere, coloured by time
+    angles  tilt, precession, and the deviation of the spin from its mean rate
+    cubic   f(u), its roots, and the band of the motion
+    phase   tilt rate against tilt, and the separatrix
+    map     a key of the record over two inputs
+    all     sphere, angles, cubic and phase on one sheet (default)
+
+    Several scenes are drawn side by side.
+    """
+    kinds = _kinds([word for word in words if word in {*KINDS, SHEET}])
+    scenes = [word for word in words if word not in {*KINDS, SHEET}]
     if not (output or animate):
         raise LagtopError("nothing to do: give -o FILE.png or --animate FILE.gif")
-    require_matplotlib()
-    from ..motion.uncertainty import FirstOrder
+    if duration is not None and animate is None:
+        raise LagtopError("--duration needs --animate FILE.gif")
+    if (key or x or y) and "map" not in kinds:
+        raise LagtopError(f"--key, --x and --y need map, got {', '.join(kinds)}")
+    if animate and len(scenes) > 1:
+        raise LagtopError(f"--animate films one scene, got {', '.join(scenes)}")
+    if dpi is not None and not LEAST_DPI <= dpi <= MOST_DPI:
+        raise LagtopError(f"--dpi must be in [{LEAST_DPI:g}, {MOST_DPI:g}], got {float(dpi):g}")
+    fmt = _format_of(output)
+    film = None if animate is None else check_picture(animate, ("gif", "mp4"))
+    eye = None if camera is None else _camera(camera, top.radians)
+    chart = _map_options(key, {"x": x, "y": y}, top) if "map" in kinds else None
     from ..plot.curves import checked_span
-    from ..plot.page import Page, page_bytes
+    from ..plot.film import check_film, film_bytes
+    from ..plot.pictures import Options
     from .table import angle_stds
 
-    found, axes = _given(top, t_max, {"x": x, "y": y})
-    motion = opt.motion_of(found)
-    request = PlotRequest(
-        t_max=checked_span(motion, found.others.get("t_max")),
+    seconds = check_film(animate, duration and float(duration)) if animate else 0.0
+    others = {} if t_max is None else {"t_max": t_max}
+    founds = [top._replace(scene=name).given(others) for name in scenes or [None]]
+    motions = {name: opt.motion_of(x) for name, x in zip(scenes or [""], founds, strict=True)}
+    spans = [
+        checked_span(motion, found.others.get("t_max"))
+        for motion, found in zip(motions.values(), founds, strict=True)
+    ]
+    options = Options(
+        t_max=spans[0],
         radians=top.radians,
-        system=found.system,
-        key=key or MAP_KEY,
-        x=axes.get("x"),
-        y=axes.get("y"),
         camera=eye,
-        progress=with_progress,
-        stds=angle_stds(found, motion),
-        uncertain=FirstOrder(motion, found.stds, found.inputs.keys()) if found.stds else None,
         look=DARK if dark else LIGHT,
+        map=chart,
+        unit=founds[0].system.named if founds[0].system else str,
     )
-    page = Page(motion, tuple(kinds), request, None)
-    page_dpi, film_dpi = (float(dpi or usual) for usual in (PAGE_DPI, FILM_DPI))
-    if output is not None:
-        page.check_dpi(page_dpi, written)
-    if animate is not None:
-        from ..plot.film import check_film, film_bytes, film_pace
-
-        check_film(page, animate, film_dpi)
-        pace = film_pace(
-            motion, t_max=request.t_max, duration=None if duration is None else float(duration)
-        )
+    if len(founds) == 1 and (stds := angle_stds(founds[0], motions[scenes[0] if scenes else ""])):
+        options = options._replace(stds=stds.at)
     with ExitStack() as stack:
-        film = stack.enter_context(opened(animate)) if animate is not None else None
+        film_file = stack.enter_context(opened(animate)) if animate is not None else None
         if output is not None:
-            stack.enter_context(opened(output)).write(page_bytes(page, written, page_dpi))
-        if film and animate:
-            film.write(film_bytes(page, animate, film_dpi, pace))
+            picture = _picture(motions, kinds, options, (fmt, float(dpi or PAGE_DPI)))
+            stack.enter_context(opened(output)).write(picture)
+        if film_file and film:
+            motion, resolution = next(iter(motions.values())), float(dpi or FILM_DPI)
+            film_file.write(
+                film_bytes(
+                    *(motion, film, options),
+                    seconds=seconds,
+                    dpi=resolution,
+                    progress=with_progress,
+                )
+            )
 
 
-def _check_kinds(options: Mapping[str, Any], kinds: Sequence[str], films: bool) -> None:
-    """Raise LagtopError for an option that none of the pictures has, and no film."""
-    for name, value in options.items():
-        having = [kind.name for kind in KINDS.values() if name in kind.options]
-        films_too = name in FILM_OPTIONS
-        if value is None or set(having) & set(kinds) or (films_too and films):
-            continue
-        needed = " or ".join([*having, *["--animate FILE.gif"] * films_too])
-        raise LagtopError(f"{flag_of(name)} needs {needed}, got {', '.join(kinds)}")
+def _kinds(names: Sequence[str]) -> list[str]:
+    """Return the kinds of picture, each once; `all` stands for several, and is the default."""
+    sheet = [kind for kind in KINDS if kind != "map"]
+    kinds = [kind for name in names or [SHEET] for kind in (sheet if name == SHEET else [name])]
+    return list(dict.fromkeys(kinds))
 
 
-def _format_of(fmt: str | None, output: str | None) -> str:
-    """Return `png`, `svg` or `pdf`: --format, or the extension of the file."""
+def _format_of(output: str | None) -> str:
+    """Return `png`, `svg` or `pdf`, the extension of the file; standard output takes SVG."""
     if output is not None and is_screen(output):
         raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
-    if fmt is not None and output is None:
-        raise LagtopError(f"--format needs -o FILE.{fmt}")
-    if fmt or output in (None, "-"):
-        return fmt or "png"
-    suffix = splitext(output)[1][1:].lower()
-    if suffix not in _FORMATS:
-        raise LagtopError(f"-o must be a file that ends in .png, .svg or .pdf, got {output!r}")
-    return suffix
+    return "svg" if output in (None, "-") else check_picture(output, FORMATS)
 
 
 def _camera(text: str, radians: bool) -> tuple[float, float]:
@@ -167,27 +161,49 @@ def _camera(text: str, radians: bool) -> tuple[float, float]:
     return azimuth, elevation
 
 
-def _given(
-    top: opt.TopOptions, t_max: Value | None, axes: Mapping[str, str | None]
-) -> tuple[Given, dict[str, InputRange]]:
-    """Return the inputs of the top and the axes of a map, in the same units."""
-    others = {} if t_max is None else {"t_max": t_max}
-    texts = {name: text for name, text in axes.items() if text is not None}
-    if not texts:
-        return top.given(others), {}
-    from ..plot.map import input_range, parse_axis
+def _map_options(
+    key: str | None, axes: Mapping[str, str | None], top: opt.TopOptions
+) -> MapOptions:
+    """Return the key and the axes of a map."""
+    from ..plot.map import MapOptions
 
-    parsed = {name: parse_axis(name, text, radians=top.radians) for name, text in texts.items()}
-    ranges = {key: value for key, value in parsed.values() if key != TILT}
+    ends = {name: _axis(f"--{name}", text, top) for name, text in axes.items() if text}
+    return MapOptions(key or MapOptions().key, ends.get("x"), ends.get("y"), with_progress)
+
+
+def _axis(option: str, text: str, top: opt.TopOptions) -> Axis:
+    """Return the axis of a map from a text such as `r0=log:5:120:40` or `r0=60:600:40 rpm`."""
+    from ..inputs.input_keys import DECLARED
+    from ..inputs.ranges import parse_range
+    from ..inputs.units import factor_of
+    from ..inputs.value import parse_value
+    from ..plot.map import checked_axis
+
+    name, _, grid = text.partition("=")
     try:
-        found = top.given(others | ranges)
+        value = parse_value(grid, parse_range)
+        if value.unit and name in DECLARED:
+            value = value.scaled(factor_of(name, value, "rad" if top.radians else "deg"))
     except LagtopError as error:
-        name = next((name for name, (key, _) in parsed.items() if key == error.key), None)
-        raise LagtopError(f"--{name}: {error}") if name else error from None
-    return found, {
-        name: input_range(name, key, found.others.get(key, value.number))
-        for name, (key, value) in parsed.items()
-    }
+        raise LagtopError(f"{option} {error}") from None
+    points: Any = value.number
+    return checked_axis(option, name, next(points.blocks()), logarithmic="log:" in grid)
+
+
+def _picture(
+    motions: Mapping[str, Any], kinds: Sequence[str], options: Any, file: tuple[str, float]
+) -> bytes:
+    """Return a picture as a file of a format, with pixels per inch."""
+    from ..plot.pictures import figure_of
+    from ..plot.style import figure_bytes, styled
+
+    text = "; ".join(
+        f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.options()}"
+        for name, motion in motions.items()
+    )
+    with styled(options.look):
+        figure = figure_of(motions, kinds, options)
+        return figure_bytes(figure, *file, f"Lagrange top: {', '.join(kinds)}", text)
 
 
 @opt.command(

@@ -214,6 +214,12 @@ class Outcome(HasRecord):
             return ["psi may be counted in the other direction: this fit changed its sign"]
         return ["psi is counted in the other direction: its sign was changed"]
 
+    def curves(self) -> Any:
+        """Yield the curves of the picture, one for each recorded angle."""
+        from .report import curves_of
+
+        return curves_of(self)
+
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw data, motion and residuals, on a figure of matplotlib or a new one; return it."""
         from .. import draw_outcome  # the face of the package: drawn by a subpackage above

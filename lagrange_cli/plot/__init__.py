@@ -1,55 +1,43 @@
 """Pictures of motions: files, films, a page for the browser, and drawings on your own axes.
 
-Each function here draws one kind of picture on your own axes, in your own style.  Pass an `Axes` of
-matplotlib, or a sequence with as many axes as the kind has; by default a new figure is made.  The
-functions raise LagtopError for a time out of range, if there is nothing to draw, and without
-matplotlib.
-
 matplotlib and NumPy are imported when a function is called, because help does not need them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, Unpack
-
-from .kinds import KINDS, PictureKind, PlotRequest
-from .style import DARK, LIGHT, points, require_matplotlib
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..motion.solve import Motion
 
-    AxesOfUser: TypeAlias = Axes | Sequence[Axes] | None
-
-
-class DrawingOptions(TypedDict, total=False):
-    """Options of drawings; each kind has some of them."""
-
-    t_max: float | None
-    """The last time."""
-    radians: bool
-    """Whether angles are in radians instead of degrees."""
-    key: str
-    """The key that a map shows."""
-    x: str | None
-    """Horizontal axis of a map, such as `r0=5:120:80`."""
-    y: str | None
-    """Vertical axis of a map."""
-    dark: bool
-    """Whether colours are for dark paper."""
+KINDS = "sphere", "angles", "cubic", "phase", "map"
+"""The kinds of picture."""
+SHEET = "all"
+"""The name of the sheet, which holds sphere, angles, cubic and phase."""
 
 
 def draw(
     motion: Motion,
     kind: str = "sphere",
-    ax: AxesOfUser = None,
-    **options: Unpack[DrawingOptions],
+    ax: Axes | Sequence[Axes] | None = None,
+    *,
+    t_max: float | None = None,
+    radians: bool = False,
+    dark: bool = False,
+    key: str | None = None,
+    x: tuple[str, Any] | None = None,
+    y: tuple[str, Any] | None = None,
 ) -> list[Axes]:
-    """Draw the kind of picture with this name, and return the axes.
+    """Draw a kind of picture on axes, or on those of a new figure, and return the axes.
 
-    Raises LagtopError for an unknown kind, and TypeError for an option that the kind does not have.
+    `ax` is one Axes, or three for `angles`.  `t_max` is the last time.  A `map` shows a `key` of
+    the record over `x` and `y`, each a pair of an input and an array of its values.
+
+    Raises LagtopError for an unknown kind, a time out of range, or if there is nothing to draw, and
+    UnavailableError without matplotlib.
 
     >>> len(draw(solve(Top()), "angles", t_max=1.0))
     3
@@ -57,72 +45,34 @@ def draw(
     from ..errors import LagtopError, check_type  # start-up
     from ..inputs.names import check_names  # start-up
     from ..motion.solve import Motion  # start-up
+    from .style import DARK, LIGHT, require_matplotlib  # start-up
 
     check_type("motion", motion, Motion)
     check_type("kind", kind, str)
     check_names("kind", [kind], KINDS)
-    picture = KINDS[kind]
-    shown: dict[str, Any] = {**options}
-    dark = shown.pop("dark", False)
-    known = DrawingOptions.__annotations__.keys() & picture.options
-    if unknown := [name for name in shown if name not in known]:
-        raise TypeError(f"draw_{kind}() got an unexpected keyword argument {unknown[0]!r}")
+    if kind != "map" and (key or x or y):
+        raise LagtopError(f"key, x and y need the kind map, got {kind}")
     require_matplotlib()
+    import numpy as np
+    from matplotlib import pyplot
     from matplotlib.axes import Axes
 
-    from .curves import checked_span  # start-up
+    from .curves import checked_span
+    from .map import MapOptions, checked_axis
+    from .pictures import PICTURES, Options
 
-    if "key" in picture.options:
-        from .map import parse_input_range  # start-up
-
-        ranges = {name: shown.get(name) for name in ("x", "y")}
-        shown |= {name: parse_input_range(name, text) for name, text in ranges.items() if text}
-    if "t_max" in shown:
-        shown["t_max"] = checked_span(motion, shown["t_max"])
+    picture, axes = PICTURES[kind], [ax] if isinstance(ax, Axes) else list(ax or [])
     if ax is None:
-        from matplotlib import pyplot
-
         grid = pyplot.subplots(picture.axes, sharex=True, squeeze=False, layout="constrained")[1]
-        axes: list[Axes] = list(grid.flat)
-    else:
-        axes = [ax] if isinstance(ax, Axes) else list(ax)
+        axes = list(grid.flat)
     if len(axes) != picture.axes:
         raise LagtopError(f"ax must be {picture.axes} axes, got {len(axes)}", "ax")
-
-    def places(heights: Sequence[float]) -> list[Axes]:
-        """Return one axes for each height, and hide the others."""
-        for empty in axes[len(heights) :]:
-            empty.set_axis_off()
-        return axes[: len(heights)]
-
-    title = picture.draw(motion, PlotRequest(look=DARK if dark else LIGHT, **shown), places)
-    axes[0].set_title(title, pad=points(18))  # above names at the top of the axes
+    ends = [
+        pair and checked_axis(name, pair[0], np.asarray(pair[1], float))
+        for name, pair in (("x", x), ("y", y))
+    ]
+    chart = MapOptions(key or MapOptions().key, ends[0], ends[1])
+    span = checked_span(motion, t_max)
+    options = Options(span, radians, look=DARK if dark else LIGHT, map=chart)
+    axes[0].set_title(picture.draw(motion, axes, options), pad=18)
     return axes
-
-
-class Drawing(Protocol):
-    """A function that draws one kind of picture."""
-
-    def __call__(
-        self, motion: Motion, ax: AxesOfUser = None, **options: Unpack[DrawingOptions]
-    ) -> list[Axes]:
-        """Draw the picture, and return the axes."""
-
-
-def _drawing(kind: PictureKind) -> Drawing:
-    """Return the function that draws a kind on axes of the caller."""
-
-    def function(
-        motion: Motion, ax: AxesOfUser = None, **options: Unpack[DrawingOptions]
-    ) -> list[Axes]:
-        return draw(motion, kind.name, ax, **options)
-
-    own = [name for name in DrawingOptions.__annotations__ if name in (*kind.options, "dark")]
-    function.__doc__ = f"Draw {kind.help}; options: {', '.join(own)}."
-    function.__name__ = function.__qualname__ = f"draw_{kind.name}"
-    return function
-
-
-draw_sphere, draw_angles, draw_remainders, draw_cubic, draw_phase, draw_map = map(
-    _drawing, KINDS.values()
-)

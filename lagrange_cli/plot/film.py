@@ -2,254 +2,139 @@
 
 from __future__ import annotations
 
-import io
 import math
 import shutil
 import tempfile
-from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from matplotlib.animation import FFMpegWriter
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib import animation
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_rgba
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from PIL import Image
 
+from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
+from ..inputs.rotations import rotated
 from ..motion.solve import Motion
-from .curves import MOST_PERIODS, span, tilt_period, turn_span
-from .globe import camera_at, cone_at, draw_globe, on_one_side, side_camera
-from .page import Page, check_pixels
-from .sphere import axis_path
-from .style import points, scale, styled
+from ..output.terminal import Progress, silent
+from .curves import sampled, span, turn_span
+from .pictures import Camera, Options, camera_of, draw_globe
+from .style import Look, scale, styled
 
-SUFFIXES = ".gif", ".mp4"
-"""The file types, by the extension of the file name."""
-COLOURS = 63
-"""Number of colours of a GIF; they are chosen for its middle frame, which contains them all.
-
-One more index is transparent.
-"""
-FRAMES_PER_SECOND, SECONDS = 25, 6.0
-"""Frames per second (a GIF counts hundredths of a second), and the default duration."""
-MOST_FRAMES = 3000
-ALIASED = math.pi / 3
-"""Greatest visible spin per frame: half of the 120 degrees after which the lid repeats."""
-FOOT = 0.16
-"""Distance below the globe, in its radii, of the line that states the time scale."""
-BACKGROUND, BEHIND, BODY, FAR, RIM, NEAR, BEFORE = 2.0, 2.1, 2.2, 2.3, 2.5, 3.0, 4.0
-"""Drawing layers, from back to front.
-
-They are the part of the globe that the top hides, the axle on its far side and the top.  In front
-are the far part of the trace, the rim, the near part of the trace and the axle on the near side.
-"""
-USUAL_SIZE = 4.8, 5.0
-"""Width and height in inches."""
+FILMS = "gif", "mp4"
+PER_SECOND, SECONDS, MOST_SECONDS, DPI = 25, 6.0, 120.0, 100.0
+HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 36
+"""Height and radius (in radii of the globe) and number of wedges of the cone."""
 
 
-class Pace(NamedTuple):
-    """The time scale of a film."""
+def check_film(path: str, seconds: float | None) -> float:
+    """Return the length of a film in seconds.
 
-    frames: int
-    t_max: float
-    """Time of the motion shown in the whole film."""
+    Raises LagtopError for another ending than .gif and .mp4 and for a length out of range, and
+    UnavailableError for an MP4 without ffmpeg.
+    """
+    suffix = Path(path).suffix.lower()[1:]
+    if suffix not in FILMS:
+        raise LagtopError(f"animate must end in .gif or .mp4, got {path!r}", "animate")
+    if suffix == "mp4" and not shutil.which("ffmpeg"):
+        raise UnavailableError("animate FILE.mp4 needs ffmpeg (or write FILE.gif)", "animate")
+    seconds = seconds or SECONDS
+    if not 2 / PER_SECOND <= seconds <= MOST_SECONDS:
+        least = 2 / PER_SECOND
+        bounds = f"[{least:g}, {MOST_SECONDS:g}]"
+        raise LagtopError(f"duration must be in {bounds} seconds, got {seconds:g}", "duration")
+    return seconds
 
-    @property
-    def speed(self) -> float:
-        """Time of the motion shown per second of film."""
-        return self.t_max * FRAMES_PER_SECOND / self.frames
 
-
-def film_pace(
+def film_bytes(
     motion: Motion,
+    suffix: str,
+    options: Options,
     *,
-    t_max: float | None = None,
-    duration: float | None = None,
-    speed: float | None = None,
-) -> Pace:
-    """Return the pace of a film of `duration` seconds that shows `speed` units of time per second.
+    seconds: float = SECONDS,
+    dpi: float = DPI,
+    progress: Progress = silent,
+) -> bytes:
+    """Return a film of the spinning top as `gif` or `mp4`.
 
-    Raises LagtopError if t_max, duration and speed are all given, and for a number out of its
-    range. It also refuses a time so long that the path would be a blot.
+    It shows `options.t_max`, or else one turn of the precession, at most six nutations.
     """
-    if t_max and duration and speed:
-        raise LagtopError("speed must be omitted if t_max and duration are given", "speed")
-    if speed is not None and not speed > 0:
-        raise LagtopError(f"speed must be > 0, got {speed:g}", "speed")
-    if duration is None:
-        duration = t_max / speed if t_max and speed else SECONDS
-    least, most = 2 / FRAMES_PER_SECOND, MOST_FRAMES / FRAMES_PER_SECOND
-    if not least <= duration <= most:
-        bounds = f"[{least:g}, {most:g}] seconds"
-        raise LagtopError(f"duration must be in {bounds}, got {duration:g}", "duration")
-    if t_max is None:
-        t_max = film_span(motion) if speed is None else speed * duration
-    longest = MOST_PERIODS * (tilt_period(motion) or math.inf)
-    if speed is not None and t_max > longest:
-        fastest = f"{longest / duration:.6g} ({MOST_PERIODS} nutation periods)"
-        raise LagtopError(f"speed must be at most {fastest}, got {speed:g}", "speed")
-    return Pace(round(FRAMES_PER_SECOND * duration), t_max)
-
-
-def check_film(page: Page, name: str, dpi: float) -> None:
-    """Raise LagtopError if a film cannot be made.
-
-    The name must end in .gif or .mp4, and the pixels per inch must suit the size.  An .mp4 without
-    ffmpeg raises UnavailableError.
-    """
-    suffix = Path(name).suffix.lower()
-    if suffix not in SUFFIXES:
-        wanted = " or ".join(SUFFIXES)
-        raise LagtopError(f"animate must be a file that ends in {wanted}, got {name!r}", "animate")
-    if suffix == ".mp4" and not shutil.which("ffmpeg"):
-        raise UnavailableError(
-            "animate FILE.mp4 needs ffmpeg on the PATH (or write FILE.gif)", "animate"
+    with styled(options.look):
+        figure, show, frames = film_figure(motion, options, seconds)
+        numbers = progress(range(frames), "frames")
+        film = animation.FuncAnimation(
+            figure, show, iter(numbers), save_count=frames, cache_frame_data=False
         )
-    check_pixels(dpi, page.size or USUAL_SIZE)
+        writer = "pillow" if suffix == "gif" else "ffmpeg"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"film.{suffix}"
+            film.save(path, writer=writer, fps=PER_SECOND, dpi=dpi)
+            return path.read_bytes()
 
 
-def film_bytes(page: Page, name: str, dpi: float, pace: Pace) -> bytes:
-    """Return the film as a GIF or an MP4, by the ending of `name`; `check_film` has accepted it."""
-    writer = _gif if Path(name).suffix.lower() == ".gif" else _mp4
-    with styled(page.request.look):
-        film = Film(page, pace)
-        return writer(film, dpi, page.request.progress(range(pace.frames), "frames"))
+def film_figure(motion: Motion, options: Options, seconds: float) -> tuple[Figure, Any, int]:
+    """Return the figure, the function that shows the frame with a number, and their count."""
+    t_max = options.t_max or min(turn_span(motion), span(motion, 6))
+    frames, look = round(PER_SECOND * seconds), options.look
+    t, *columns = sampled(motion, t_max, ["axis"]).values()
+    path = np.stack(columns, axis=1)
+    times = np.linspace(0.0, t_max, frames)
+    attitude = np.stack([*motion.table(times, ["quaternion"]).values()], axis=1)
+    camera = camera_of(path, options, 15.0)
+    figure = Figure(figsize=(4.8, 5.2))
+    ax = figure.subplots()
+    draw_globe(ax, motion, camera, options)
+    body = ax.add_collection(PolyCollection([], zorder=2.5, linewidths=0.4))
+    colour = scale(look)(0.35)
+    (near,) = ax.plot([], [], color=colour, lw=2.2, zorder=3)
+    (far,) = ax.plot([], [], color=colour, lw=1.2, alpha=0.45, zorder=2.3)
+    (rim,) = ax.plot([], [], color=look.ink, lw=0.9, zorder=2.6)
+    (axle,) = ax.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
+    clock = ax.text(0.02, 0.97, "", transform=ax.transAxes)
+    pace = t_max * PER_SECOND / frames
+    turned = np.abs(np.diff(motion.angles(times).phi)).max(initial=0.0)
+    foot = f"1 second shows {pace:.3g} {options.unit('time').replace('time', 'of t')}"
+    foot += "\nthe spin is too fast for these frames" * bool(turned > math.pi / 3)
+    ax.text(0.02, 0.0, foot, size="small", transform=ax.transAxes)
+
+    def show(i: int) -> None:
+        polygons, shades, end, edge, lid_in_sight = cone(attitude[i], camera, look)
+        body.set(verts=polygons, facecolors=shades, edgecolors=shades)
+        rim.set_data(*edge)
+        axle.set_data(*end)
+        axle.set_zorder(4 if lid_in_sight else 2.1)
+        x, y, seen = camera.project(path[: np.searchsorted(t, times[i], side="right")])
+        near.set_data(*np.where(seen, [x, y], np.nan))
+        far.set_data(*np.where(seen, np.nan, [x, y]))
+        clock.set_text(f"t = {times[i]:.4g}")
+
+    return figure, show, frames
 
 
-def _gif(film: Film, dpi: float, numbers: Iterable[int]) -> bytes:
-    """Return a GIF whose frames share one palette, and store only the pixels that change."""
-    film.show(film.times.size // 2)
-    palette = film.figure.frame(dpi).quantize(COLOURS)
-    frames: list[Image.Image] = []
-    last = None
-    for i in numbers:
-        film.show(i)
-        frame = film.figure.frame(dpi).quantize(palette=palette, dither=Image.Dither.NONE)
-        pixels = np.asarray(frame)
-        if last is not None:
-            frame.frombytes(np.where(pixels == last, np.uint8(COLOURS), pixels).tobytes())
-            frame.info["transparency"] = COLOURS
-        last = pixels
-        frames.append(frame)
-    file = io.BytesIO()
-    options = {"duration": 1000 // FRAMES_PER_SECOND, "loop": 0, "save_all": True}
-    # Pillow's own search for equal pixels (`optimize`) would take twice the time
-    frames[0].save(file, "gif", append_images=frames[1:], optimize=False, **options)
-    return file.getvalue()
+def cone(
+    quaternion: Array, camera: Camera, look: Look
+) -> tuple[list[Array], list[Any], Array, Array, bool]:
+    """Return the visible triangles of the top, their colours, its axle, its rim, and if we see it
+    from above.
 
-
-def _mp4(film: Film, dpi: float, numbers: Iterable[int]) -> bytes:
-    """Return an MP4, which ffmpeg writes."""
-    writer = FFMpegWriter(fps=FRAMES_PER_SECOND)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "film.mp4"
-        with writer.saving(film.figure, str(path), dpi):
-            for i in numbers:
-                film.show(i)
-                writer.grab_frame()
-        return path.read_bytes()
-
-
-def film_span(motion: Motion) -> float:
-    """Return the time of one turn of the precession, at most six nutations: more would flicker."""
-    return min(turn_span(motion), span(motion, 6))
-
-
-class Frames(Figure):
-    """A figure whose frames are drawn between a fixed background and a fixed foreground."""
-
-    moving: Sequence[Artist]
-    """The artists of each frame, from the back to the front."""
-    front: Sequence[Artist]
-    """The fixed artists in front of the moving ones."""
-    _still: Any = None
-
-    def frame(self, dpi: float) -> Image.Image:
-        """Return the pixels of a frame; the fixed parts are drawn for the first frame only."""
-        if self._still is None:
-            self._still = self._drawn_once(dpi)
-        canvas, background, (place, foreground) = self._still
-        canvas.restore_region(background)
-        for artist in self.moving:
-            artist.draw(canvas.get_renderer())
-        shown = canvas.buffer_rgba()
-        pixels = Image.frombuffer("RGBA", shown.shape[1::-1], shown, "raw", "RGBA", 0, 1)
-        frame = pixels.convert("RGB")
-        frame.paste(foreground, place, foreground)
-        return frame
-
-    def _drawn_once(self, dpi: float) -> tuple[Any, Any, tuple[Any, Image.Image]]:
-        """Return a canvas, the pixels of the background, and the foreground with its place."""
-        self.dpi = dpi
-        for artist in (*self.moving, *self.front):
-            artist.set_animated(True)
-        canvas: Any = FigureCanvasAgg(self)
-        canvas.draw()
-        background = canvas.copy_from_bbox(self.bbox)
-        canvas.get_renderer().clear()
-        for artist in self.front:
-            artist.draw(canvas.get_renderer())
-        foreground = Image.fromarray(np.array(canvas.buffer_rgba()))
-        place = foreground.getbbox() or (0, 0, 1, 1)
-        return canvas, background, (place, foreground.crop(place))
-
-    def savefig(self, file: Any, *, dpi: Any, **_: Any) -> None:  # type: ignore[override]
-        """Write the pixels of a frame; writers of films use nothing else."""
-        file.write(self.frame(dpi).convert("RGBA").tobytes())
-
-
-class Film:
-    """The figure of a film and its moving parts."""
-
-    def __init__(self, page: Page, pace: Pace) -> None:
-        motion, request = page.motion, page.request
-        look = request.look
-        self.figure = Frames(figsize=page.size or USUAL_SIZE)
-        self.path = axis_path(motion, pace.t_max)
-        self.times = np.linspace(0.0, pace.t_max, pace.frames)
-        columns = motion.table(self.times, ["quaternion"])
-        self.attitude = np.stack([*columns.values()], axis=1)
-        self.camera = camera_at(*request.camera) if request.camera else side_camera(self.path.axis)
-        self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        draw_globe(self.axes, self.camera, (self.path.least, self.path.greatest), request)
-        low, high = self.axes.get_ylim()
-        self.axes.set_ylim(low - FOOT, high)
-        self.body = PolyCollection([], zorder=BODY, linewidths=0.3, edgecolors="face")
-        self.axes.add_collection(self.body)
-        self.inks = np.array([to_rgba(ink) for ink in (look.paper, look.lines[1], look.lines[0])])
-        past = scale(look)(0.35)
-        (self.rim,) = self.axes.plot([], [], color=look.ink, lw=points(0.9), zorder=RIM)
-        (self.far,) = self.axes.plot([], [], color=past, lw=1.2, alpha=0.45, zorder=FAR)
-        (self.near,) = self.axes.plot([], [], color=past, lw=2.2, zorder=NEAR)
-        self.trace = {
-            line: on_one_side(self.camera, self.path.axis, line is self.near)
-            for line in (self.near, self.far)
-        }
-        (self.axle,) = self.axes.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
-        self.clock = self.axes.text(0.03, 0.95, "", transform=self.axes.transAxes)
-        turned = np.abs(np.diff(motion.angles(self.times).phi)).max(initial=0.0)
-        self.unit = f" {request.unit('time')}" if request.system else ""
-        foot = f"1 second shows {pace.speed:.3g}{self.unit or ' of time t'}"
-        foot += "; the spin is too fast for these frames" * bool(turned > ALIASED)
-        self.axes.text(0.03, 0.02, foot, size="small", transform=self.axes.transAxes, zorder=0)
-        self.moving = self.body, self.axle, self.far, self.rim, self.near, self.clock
-        others = {*self.axes.lines, *self.axes.texts}.difference(self.moving)
-        self.figure.front = [x for x in others if x.get_zorder() > BACKGROUND]
-
-    def show(self, i: int) -> None:
-        """Set the moving parts to frame i."""
-        top = cone_at(self.attitude[i], self.camera)
-        self.body.set(verts=top.corners, facecolors=self.inks[top.inks])
-        self.rim.set_data(*top.rim)
-        self.axle.set_data(*top.axle)
-        self.axle.set_zorder(BEFORE if top.lid_in_sight else BEHIND)
-        passed = np.searchsorted(self.path.t, self.times[i], side="right")
-        for line, places in self.trace.items():
-            line.set_data(*places[:, :passed])
-        self.clock.set_text(f"t = {self.times[i]:.4g}{self.unit}")
-        self.figure.moving = sorted(self.moving, key=Artist.get_zorder)
+    A third of the wedges is light, so that the spin is visible.  The lamp stands at the left of the
+    camera.
+    """
+    around = 2 * math.pi / WEDGES * np.arange(WEDGES + 1)
+    spokes = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    z = np.array([0.0, 0.0, 1.0])
+    normals = HEIGHT * (spokes[1:] + spokes[:-1]) / 2 - RADIUS * z
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    points = np.concatenate([[0 * z, HEIGHT * z, z], RADIUS * spokes + HEIGHT * z, normals, [z]])
+    right, up, toward = camera.rows @ rotated(quaternion, points).T
+    tip, middle, axis, *rim = np.stack([right, up], axis=1)[: WEDGES + 4]
+    facing = toward[WEDGES + 4 :]
+    light = 0.5 + 0.5 * np.clip(0.8 * facing - 0.6 * right[WEDGES + 4 :], 0, 1)
+    paint = [to_rgb("#f4f4f4" if 3 * k < WEDGES else look.lines[1]) for k in range(WEDGES)]
+    seen = [(tip, k, light[k]) for k in range(WEDGES) if facing[k] > 0]
+    seen += [(middle, k, light[-1]) for k in range(WEDGES) if facing[-1] > 0]
+    triangles = [np.array([apex, rim[k], rim[k + 1]]) for apex, k, _ in seen]
+    shades = [[lamp * channel for channel in paint[k]] for _, k, lamp in seen]
+    return triangles, shades, np.array([middle, axis]).T, np.array(rim).T, bool(facing[-1] > 0)

@@ -3,62 +3,48 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from itertools import cycle
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from ..errors import CannotWriteError, LagtopError, check_type
-from .style import LIGHT, About, figure_bytes, require_matplotlib, scale, styled
+from .style import LIGHT, check_picture, figure_bytes, plain, require_matplotlib, scale, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ..arithmetic.types import Array
-    from ..fits.record import Outcome
-    from ..fits.report import FittedCurve
 
-REPORT_KINDS = (".svg", ".png")
+FORMATS = "svg", "png"
 """File types of the pictures of reports."""
-
-
-def report_bytes(figure: Figure, path: str, about: About) -> bytes:
-    """Return the figure of a report in the format given by its file name."""
-    return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
+MOST_RECORDINGS = 3
+"""Most recordings on one sheet."""
 
 
 def check_plot(path: str | None, output: str) -> None:
-    """Raise LagtopError for an unsupported file type, or for the file of the report itself.
-
-    Raises UnavailableError if matplotlib is missing, and CannotWriteError if the directory does not
-    exist.
-    """
-    if path is None:
-        return
-    if Path(path).suffix.lower() not in REPORT_KINDS:
-        raise LagtopError(f"plot must end in {' or '.join(REPORT_KINDS)}, got {path!r}", "plot")
-    if Path(path).resolve() == Path(output).resolve():
-        raise LagtopError(f"plot must not be the file of the report, got {path!r}", "plot")
-    require_matplotlib()
-    if not Path(path).resolve().parent.is_dir():
-        raise CannotWriteError(f"cannot write {path}: no such directory")
+    """Raise the errors of `check_picture` for the picture of a report, if there is one."""
+    if path is not None:
+        check_picture(path, FORMATS, output)
 
 
-def _report(
-    path: str, size: tuple[float, float], about: About, draw: Callable[[Figure], None]
+def report_picture(
+    path: str, size: tuple[float, float], title: str, draw: Callable[[Figure], None]
 ) -> bytes:
     """Return a picture of a size (inches) in the format given by its file name."""
     from matplotlib.figure import Figure
 
-    with styled(LIGHT, 0.9):
-        figure = Figure(figsize=size, layout="constrained")
+    with styled(LIGHT):
+        figure = Figure(figsize=size)
         draw(figure)
-        return report_bytes(figure, path, about)
+        return figure_bytes(figure, path.rpartition(".")[2].lower(), 150, title, title)
 
 
-def _names(curves: Sequence[ErrorCurve] | Sequence[FittedCurve]) -> str:
-    return ", ".join(curve.name for curve in curves)
+def new_figure() -> Figure:
+    """Return a new figure of pyplot, which a notebook shows.  Raises UnavailableError."""
+    require_matplotlib()
+    from matplotlib import pyplot  # only here: files need no pyplot
+
+    return pyplot.figure(layout="constrained")
 
 
 class ErrorCurve(NamedTuple):
@@ -81,12 +67,12 @@ class ErrorCurve(NamedTuple):
 def draw_errors(curves: Sequence[ErrorCurve], limit: float, path: str) -> bytes:
     """Return the picture of errors in the format given by its file name."""
     size = 10 if any(curve.has_step for curve in curves) else 7.5, 4.6
-    about = About("lagtop compare: error over time", f"Errors of {_names(curves)} in radians.")
-    return _report(path, size, about, lambda figure: draw_error_panels(figure, curves, limit))
+    title = "lagtop compare: error (rad) over time"
+    return report_picture(path, size, title, lambda x: draw_error_panels(x, curves, limit))
 
 
 def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float) -> None:
-    """Draw a line over time for each trajectory, the first ones darker, and the limit.
+    """Draw a line over time for each trajectory, and the limit.
 
     If the trajectories have steps, a second panel shows the error of each over its step.
     """
@@ -95,48 +81,82 @@ def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float
     stepped = [curve for curve in curves if curve.has_step]
     over_time, *over_step = figure.subplots(1, 2 if stepped else 1, squeeze=False)[0]
     shades = scale(LIGHT)([i / max(len(curves) - 1, 1) for i in range(len(curves))])
-    colors = {curve.name: shade for curve, shade in zip(curves, shades, strict=True)}
-    for curve, dashes in zip(curves, cycle(("-", "--", "-.", ":"))):
+    for curve, colour, dashes in zip(curves, shades, cycle(("-", "--", "-.", ":"))):
         positive = np.where(curve.error > 0, curve.error, np.nan)  # 0 and NaN have no logarithm
-        colour = colors[curve.name]
-        over_time.plot(curve.t, positive, lw=1.2, label=curve.name, color=colour, ls=dashes)
-    over_time.axhline(limit, color=LIGHT.quiet, lw=0.8)
-    over_time.set(yscale="log", xlabel="time", ylabel="error (rad)")
+        style = {"lw": 1.2, "color": colour, "ls": dashes, "label": plain(curve.name)}
+        over_time.plot(curve.t, positive, **style)
+    over_time.axhline(limit, color=LIGHT.quiet, lw=0.8, ls=":", label="--max-error")
+    over_time.set(yscale="log", xlabel="t (units of the trajectory)", ylabel="error (rad)")
     over_time.set_title("Error over time")
-    over_time.legend(fontsize=8)
+    over_time.legend(loc="upper left", bbox_to_anchor=(0, -0.14), ncols=2)
     for axes in over_step:
-        _draw_convergence(axes, stepped, colors)
+        draw_convergence(axes, stepped)
 
 
-def _draw_convergence(
-    axes: Axes, curves: Sequence[ErrorCurve], colors: Mapping[str, Array]
-) -> None:
+def draw_convergence(axes: Axes, curves: Sequence[ErrorCurve]) -> None:
     """Draw error over step, with the slopes of orders 1, 2 and 4 from the coarsest step."""
-    how: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8, "color": LIGHT.quiet}
-    points = {curve.name: (curve.step or 0.0, curve.compared or 0.0) for curve in curves}
-    for (name, point), mark in zip(points.items(), cycle("os^Dv<>pP*X")):
-        axes.plot(*point, mark, color=colors[name], ms=7)
-    step, error = max(points.values())
-    finest = min(points.values())[0]
+    points = sorted((curve.step or 0.0, curve.compared or 0.0) for curve in curves)
+    axes.plot(*zip(*points, strict=True), "o-", color=LIGHT.lines[0], ms=7)
+    (finest, _), (step, error) = points[0], points[-1]
     for order in (1, 2, 4):
-        ends = [error, error * (finest / step) ** order]
-        axes.plot([step, finest], ends, color=LIGHT.quiet, lw=0.7, ls=":")
-        axes.annotate(f"order {order}", (finest, ends[1]), (2, -9), **how)
+        end = error * (finest / step) ** order
+        axes.plot([step, finest], [error, end], color=LIGHT.quiet, lw=0.7, ls=":")
+        how: dict[str, Any] = {"textcoords": "offset points", "size": 8, "color": LIGHT.quiet}
+        axes.annotate(f"order {order}", (finest, end), (2, -9), **how)
     axes.set(xscale="log", yscale="log", xlabel="step", ylabel="error (rad)")
-    steps = sorted({step for step, _ in points.values()})
-    axes.set_xticks(steps, [f"{step:g}" for step in steps], rotation=30)
+    axes.set_xticks([x for x, _ in points], [f"{x:g}" for x, _ in points], rotation=30)
     axes.set_xticks([], minor=True)
     axes.set_title("Convergence")
 
 
-def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str) -> bytes:
+class FittedCurve(Protocol):
+    """One channel of a recording, with the fitted motion."""
+
+    @property
+    def name(self) -> str:
+        """The recording and the angle, such as `run 1: theta`, or the angle alone."""
+
+    @property
+    def t(self) -> Array:
+        """The times of the data."""
+
+    @property
+    def data(self) -> Array:
+        """The data, in the unit of the picture; the residuals and the curve are so too."""
+
+    @property
+    def residual(self) -> Array:
+        """Data minus fitted motion."""
+
+    @property
+    def fine_t(self) -> Array:
+        """Times of the fitted motion."""
+
+    @property
+    def curve(self) -> Array:
+        """The fitted motion."""
+
+
+def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str, title: str = "") -> bytes:
     """Return the picture of a fit in the format given by its file name."""
-    size = 7.5, 1.0 + 3.0 * len(curves)
-    about = About("lagtop fit", f"Data, fitted motion and residuals: {_names(curves)}")
-    return _report(path, size, about, lambda figure: draw_fit_panels(figure, curves, unit))
+    kept = kept_curves(curves)
+    size = 8.0, 1.0 + 2.8 * len(kept)
+    return report_picture(
+        path,
+        size,
+        "lagtop fit: data, fitted motion and residuals",
+        lambda figure: draw_fit_panels(figure, kept, unit, title),
+    )
 
 
-def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
+def kept_curves(curves: Sequence[FittedCurve]) -> list[FittedCurve]:
+    """Return the curves of the first recordings, as many as fit on one sheet."""
+    names = list(dict.fromkeys(curve.name.rpartition(": ")[0] for curve in curves))
+    kept = names[:MOST_RECORDINGS]
+    return [curve for curve in curves if curve.name.rpartition(": ")[0] in kept]
+
+
+def draw_outcome(outcome: Any, figure: Figure | None = None) -> Figure:
     """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure.
 
     Angles are in degrees, or in radians if the fit was made so.  Raises UnavailableError without
@@ -147,38 +167,29 @@ def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
     >>> len(draw_outcome(fit(t, theta=theta, psi=psi)).axes)
     4
     """
-    from ..fits.record import Outcome  # start-up
-    from ..fits.report import curves_of  # start-up
-
-    check_type("outcome", outcome, Outcome)
     figure = figure or new_figure()
-    draw_fit_panels(figure, list(curves_of(outcome)), outcome.angle)
+    draw_fit_panels(figure, list(outcome.curves()), outcome.angle)
     return figure
 
 
-def new_figure() -> Figure:
-    """Return a new figure of pyplot, which a notebook shows.  Raises UnavailableError."""
-    require_matplotlib()
-    from matplotlib import pyplot  # only here: files need no pyplot
-
-    return pyplot.figure(layout="constrained")
-
-
-def draw_fit_panels(figure: Figure, curves: Sequence[FittedCurve], unit: str) -> None:
+def draw_fit_panels(
+    figure: Figure, curves: Sequence[FittedCurve], unit: str, title: str = "", time: str = ""
+) -> None:
     """Draw two panels for each channel: the data with the curve, and the residuals below."""
     panels = figure.subplots(
-        2 * len(curves), 1, squeeze=False, sharex=True, height_ratios=[3, 1] * len(curves)
+        2 * len(curves), 1, squeeze=False, sharex="col", height_ratios=[3, 1] * len(curves)
     )[:, 0]
-    for i, curve in enumerate(curves):
-        above, below = panels[2 * i], panels[2 * i + 1]
+    for curve, above, below in zip(curves, panels[::2], panels[1::2], strict=True):
         recording, _, angle = curve.name.rpartition(": ")
         number = ("theta", "phi", "psi").index(angle)
         symbol, colour = "ϑφψ"[number], LIGHT.lines[number]
-        above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label="fit")
-        above.plot(curve.t, curve.data, ".", ms=3, color=LIGHT.ink, label="data")
-        above.set(ylabel=f"{symbol} ({unit})", title=recording)
+        above.plot(curve.t, curve.data, ".", ms=4, color=LIGHT.ink, label="data")
+        above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label="fit", alpha=0.8)
+        above.set(ylabel=f"{symbol} ({unit})", title=plain(recording))
+        above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
-        below.set(ylabel="residual")
-    panels[0].legend(fontsize=8, ncols=2)
-    panels[-1].set(xlabel="time")
+        below.set(ylabel=f"residual ({unit})")
+    panels[-1].set(xlabel=f"t ({time or 'units of the recording'})")
+    if title:
+        figure.suptitle(plain(title), x=0.012, ha="left")

@@ -1,43 +1,28 @@
-"""The look of pictures, light and dark, and the files that hold them: one style for all of them.
+"""The look of pictures, light and dark, and the files that hold them.
 
 Tilt is blue, spin orange and precession green, in every picture and on the page.  The colours
-follow Okabe and Ito; on white they are darker, so that letters also have a contrast of 4.5.
-Viridis colours time and keys, because its lightness increases evenly.  It is cut where it would
-fade into the background.  A test simulates three kinds of colour blindness.
-
-Text remains text in SVG, and PDF embeds TrueType outlines (Type 42), as journals require.
+follow Okabe and Ito; on white they are darker, so that letters have a contrast of 4.5.
 """
 
 from __future__ import annotations
 
 import io
-import logging
-import math
-import os
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from datetime import UTC, datetime
 from html import escape
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..errors import LagtopError, UnavailableError
+from ..errors import CannotWriteError, LagtopError, UnavailableError
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
-    from matplotlib.figure import Figure, FigureBase
+    from matplotlib.figure import Figure
 
-
-POINTS = 11.0
-"""Size of ordinary letters on a page of the usual size."""
-
-HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
-"""Height and radius (in radii of the globe) and number of wedges of the cone for the top."""
-
-FONTS = ["DejaVu Sans", "Verdana", "Arial"]
-"""The first font comes with matplotlib and has Greek; the others are for readers of an SVG."""
-
-_IN_FILES = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "lagtop"}
+FORMATS = "png", "svg", "pdf"
+"""File types of pictures."""
+LEAST_DPI, MOST_DPI, MOST_PIXELS = 20.0, 1000.0, 5e7
 
 
 class Look(NamedTuple):
@@ -46,11 +31,11 @@ class Look(NamedTuple):
     paper: str
     ink: str
     quiet: str
-    """Colour of auxiliary elements: circles, axes, mean rates."""
+    """Colour of circles, axes and mean rates."""
     faint: str
     """Colour of areas."""
     lines: tuple[str, str, str]
-    """Colours of tilt, spin and precession, and of other curves."""
+    """Colours of tilt, spin and precession."""
     scale: tuple[float, float]
     """The part of viridis that stands out from the paper."""
 
@@ -64,93 +49,20 @@ DARK = Look(
 
 
 @contextmanager
-def styled(look: Look, size: float = 1.0) -> Iterator[None]:
-    """Apply our settings only, whatever the user's own matplotlibrc contains.
+def styled(look: Look) -> Iterator[None]:
+    """Draw with our style sheet, whatever the user's own matplotlibrc contains."""
+    from matplotlib import rc_context, style
 
-    `size` scales letters, lines and gaps.
-    """
-    from matplotlib import rc_context, rcParams, rcParamsDefault
-
-    usual = {key: value for key, value in rcParamsDefault.items() if key != "backend"}
-    changed = {key: value for key, value in usual.items() if rcParams[key] != value}
-    colours = {key: getattr(look, name) for name, keys in _COLOURED.items() for key in keys}
-    scaled = {key: value * size for key, value in _SCALED.items()}
-    with rc_context(cast(Any, changed | _FIXED | colours | scaled)):  # the stub lists every key
+    colours = {
+        **dict.fromkeys(["axes.facecolor", "figure.facecolor", "savefig.facecolor"], look.paper),
+        **dict.fromkeys(["axes.labelcolor", "text.color"], look.ink),
+        **dict.fromkeys(["xtick.labelcolor", "ytick.labelcolor"], look.ink),
+        **dict.fromkeys(["axes.edgecolor", "xtick.color", "ytick.color"], look.quiet),
+    }
+    with rc_context(), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing")  # a font of the user has it or not
+        style.use(["default", Path(__file__).with_name("lagtop.mplstyle"), colours])
         yield
-
-
-_COLOURED = {
-    "paper": ("axes.facecolor", "figure.facecolor", "savefig.facecolor"),
-    "ink": ("axes.labelcolor", "text.color", "xtick.labelcolor", "ytick.labelcolor"),
-    "quiet": ("axes.edgecolor", "hatch.color", "xtick.color", "ytick.color"),
-}
-"""Settings of matplotlib that take each colour of a look."""
-_SCALED = {
-    "axes.labelpad": 4.0,
-    "axes.titlepad": 6.0,
-    "axes.titlesize": 12.0,
-    "figure.constrained_layout.h_pad": 0.042,
-    "figure.constrained_layout.w_pad": 0.042,
-    "figure.titlesize": 12.0,
-    "font.size": POINTS,
-    "lines.linewidth": 1.8,
-    **dict.fromkeys(("xtick.major.pad", "xtick.major.size"), 3.5),
-    **dict.fromkeys(("ytick.major.pad", "ytick.major.size"), 3.5),
-}
-"""Settings that scale with the letters, and their values on a page of the usual size."""
-_FIXED = {
-    "axes.axisbelow": True,
-    "axes.formatter.limits": (-4, 5),
-    "axes.formatter.useoffset": False,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.titlelocation": "left",
-    "font.family": "sans-serif",
-    "font.sans-serif": FONTS,
-    "legend.frameon": False,
-    "lines.solid_capstyle": "round",
-    "lines.solid_joinstyle": "round",
-    "mathtext.fontset": "dejavusans",
-    "path.simplify": False,  # it would blunt the cusps
-}
-
-
-def points(length: float) -> float:
-    """Convert a length to points on the page being drawn, whose letters may be small."""
-    import matplotlib
-
-    return length * float(matplotlib.rcParams["font.size"]) / POINTS
-
-
-def head(panel: FigureBase, title: str) -> None:
-    """Write the title of a picture at its upper left."""
-    panel.suptitle(title, x=0.012, ha="left")
-
-
-def number_from_left_to_right(axes: Axes) -> None:
-    """Label the horizontal axis with as many numbers as fit; few, if they are long.
-
-    The numbers are written in full, because readers overlook an offset at the corner of a picture.
-    """
-    low, high = axes.get_xlim()
-    decimals = max(0.0, -math.log10((high - low) / 5)) if low < high else 0.0
-    count = next(n for n, most in ((6, 4), (4, 6), (3, 8), (2, math.inf)) if decimals <= most)
-    axes.ticklabel_format(axis="x", useOffset=False)
-    axes.locator_params(axis="x", nbins=count)
-
-
-def number_text(value: float) -> str:
-    """Return a number to seven digits; if that rounds it to 1 or -1, by its distance from there."""
-    shown = f"{value:.7g}"
-    if shown in {"1", "-1"} and abs(value) != 1:
-        beyond = abs(value) - 1
-        shown = f"{shown} {'+' if (beyond > 0) == (value > 0) else '-'} {abs(beyond):.2g}"
-    return shown.replace("-", "−")
-
-
-def short_text(value: float) -> str:
-    """Return a number to four digits."""
-    return number_text(float(f"{value:.4g}"))
 
 
 def scale(look: Look) -> Colormap:
@@ -162,67 +74,61 @@ def scale(look: Look) -> Colormap:
     return ListedColormap(colormaps["viridis"](np.linspace(*look.scale, 256)), name="lagtop")
 
 
-def mark_start(axes: Axes, x: float, y: float, look: Look, label: str = "start") -> None:
-    """Draw a ring with a label at one point."""
-    ring: dict[str, Any] = {"mfc": look.paper, "mec": look.ink, "mew": points(1.6), "zorder": 6}
-    axes.plot(x, y, "o", ls="none", ms=points(7), label=label, **ring)
+def plain(text: str) -> str:
+    """Return a text from outside that matplotlib draws as it is, without control characters."""
+    return "".join(x if x.isprintable() else " " for x in text).replace("$", r"\$")
 
 
-class About(NamedTuple):
-    """A description of a picture in words, for the metadata of its file."""
-
-    title: str
-    text: str
-    """The scene in a sentence, for readers who cannot see the picture."""
-    command: str = ""
-    """The command line that draws the picture."""
-
-    def fields(self, fmt: str) -> dict[str, str | None]:
-        """Return the metadata for a file type, without date and version."""
-        texts = self.title, self.text, self.command
-        if fmt == "svg":
-            whole = f"{self.text}\n{self.command}".strip()
-            return {"Title": self.title, "Description": whole, "Creator": "lagtop", "Date": None}
-        if fmt == "pdf":
-            named = dict(zip(("Title", "Subject", "Keywords"), texts, strict=True))
-            return {**named, "Creator": "lagtop", "Producer": None, "CreationDate": None}
-        named = dict(zip(("Title", "Description", "Comment"), texts, strict=True))
-        return {**named, "Software": "lagtop"}
-
-
-def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
-    """Return the figure as `png`, `svg` or `pdf`; the same figure gives the same bytes.
-
-    The canvas of each format prints it, because `savefig` would draw it twice.
-    """
-    import matplotlib
-    from matplotlib.backend_bases import get_registered_canvas_class
-
-    buffer = io.BytesIO()
-    os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # or the fonts in a PDF would carry the day
-    figure.dpi = dpi
-    how: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if fmt == "png" else {}
-    with matplotlib.rc_context(_IN_FILES):  # type: ignore[arg-type]  # the stub lists every key
-        canvas = get_registered_canvas_class(fmt)(figure)
-        getattr(canvas, f"print_{fmt}")(buffer, metadata=about.fields(fmt), **how)
-    if fmt != "svg":
-        return buffer.getvalue()
-    end = b"</title>"  # a description for screen readers follows
-    described = end + f"\n <desc>{escape(about.text)}</desc>".encode()
-    return buffer.getvalue().replace(end, described, 1)
+def number_text(value: float, digits: int = 6) -> str:
+    """Return a number to a few digits; if that rounds it to 1 or -1, by its distance from there."""
+    shown = f"{value:.{digits}g}"
+    if shown in {"1", "-1"} and abs(value) != 1:
+        beyond = abs(value) - 1
+        shown = f"{shown} {'+' if (beyond > 0) == (value > 0) else '-'} {abs(beyond):.2g}"
+    return shown.replace("-", "−")
 
 
 def require_matplotlib() -> None:
-    """Raise UnavailableError, with the remedy, if matplotlib is missing.
-
-    Raises LagtopError if a variable of the environment, such as MPLBACKEND, stops it.
-    """
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as about its folder of settings
+    """Raise UnavailableError, with the remedy, if matplotlib is missing or cannot be used."""
     try:
         import matplotlib  # noqa: F401
-
-        datetime.fromtimestamp(int(os.environ.get("SOURCE_DATE_EPOCH", "0")), UTC)
     except ImportError:
         raise UnavailableError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
-    except (ValueError, OverflowError) as error:
-        raise LagtopError(f"unset MPLBACKEND and SOURCE_DATE_EPOCH: {error}") from None
+    except ValueError as error:  # MPLBACKEND names no backend
+        raise UnavailableError(f"matplotlib cannot start: {error}") from None
+
+
+def check_picture(path: str, formats: tuple[str, ...], report: str = "-") -> str:
+    """Return the format that the name of a picture selects.
+
+    Raises LagtopError for another extension, and if the `report` beside the picture has the same
+    name.  Raises CannotWriteError if the folder does not exist.
+    """
+    suffix = Path(path).suffix.lower()[1:]
+    if suffix not in formats:
+        wanted = " or ".join(f".{each}" for each in formats)
+        raise LagtopError(f"the name of a picture must end in {wanted}, got {path!r}")
+    if Path(path).resolve() == Path(report).resolve():
+        raise LagtopError(f"the picture must not be the file of the report, got {path!r}")
+    require_matplotlib()
+    if not Path(path).resolve().parent.is_dir():
+        raise CannotWriteError(f"cannot write {path}: no such directory")
+    return suffix
+
+
+def figure_bytes(figure: Figure, fmt: str, dpi: float, title: str, text: str) -> bytes:
+    """Return a figure as `png`, `svg` or `pdf`, with its title and a description in words.
+
+    Raises LagtopError for more than 50 million pixels.
+    """
+    width, height = figure.get_size_inches() * dpi
+    if fmt == "png" and width * height > MOST_PIXELS:
+        most = (MOST_PIXELS / (width * height)) ** 0.5 * dpi
+        raise LagtopError(f"dpi must be at most {most:.0f} for this picture, got {dpi:g}", "dpi")
+    about: dict[str, Any] = {"Title": title, "Subject" if fmt == "pdf" else "Description": text}
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format=fmt, dpi=dpi, metadata=about)
+    if fmt != "svg":
+        return buffer.getvalue()
+    described = f"</title>\n <desc>{escape(text)}</desc>".encode()  # for screen readers
+    return buffer.getvalue().replace(b"</title>", described, 1)

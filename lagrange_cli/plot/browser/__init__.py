@@ -15,6 +15,7 @@ from collections.abc import Callable
 from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from ...errors import LagtopError, check_type
 from ...inputs.given import read_scene
@@ -26,10 +27,27 @@ from ...motion.notebook import Document
 from ...motion.record import KEYS, requested_keys
 from ...motion.solve import Motion, solve
 from ...motion.summary import PHRASES
-from ..kinds import TITLES
-from ..style import DARK, HEIGHT, LIGHT, RADIUS, WEDGES, Look
+from ..style import DARK, LIGHT, Look
 
 _IMPORT = re.compile(r'^import \{[^}]*\} from "([^"]+)";\n', re.MULTILINE)
+
+HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
+
+TITLES: list[tuple[dict[str, Any], str]] = [
+    ({"regime": "sleeping", "stable": True}, "sleeping, stable"),
+    ({"regime": "sleeping"}, "sleeping, unstable"),
+    ({"regime": "hanging"}, "hanging, stable"),
+    ({"regime": "torque-free"}, "torque-free"),
+    ({"regime": "separatrix"}, "separatrix, rises to upright for ever"),
+    ({"regime": "steady precession"}, "steady precession"),
+    ({"plane": True}, "plane pendulum"),
+    ({"regime": "no spin"}, "no spin"),
+    ({"constant": True}, "almost steady precession"),
+    ({"fast": True}, "pseudo-regular precession"),
+    ({"path": "cusped"}, "cusped path"),
+    ({"path": "looping"}, "looping path"),
+    ({}, "wavy path"),
+]
 
 _TRACES = {LIGHT: "#472d7b", DARK: "#dde318"}
 """Colour of the path of the axis on each paper: an end of viridis, unlike the colours of angles."""
