@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from lagtop import Motion, Top, solve
-from matplotlib.figure import Figure
 from scenes import SAMPLES, UNIT
 
 from lagrange_cli.inputs.given import read_scene
 from lagrange_cli.plot.curves import tilt_period
-from lagrange_cli.plot.kinds import PlotRequest
-from lagrange_cli.plot.page import Page, draw_page
-from lagrange_cli.plot.style import LIGHT, styled
 
 REGIMES: dict[str, dict[str, float]] = {
     "sleeping": {"theta0_deg": 0},
@@ -43,11 +38,3 @@ NUTATING = [path for path in SAMPLES if tilt_period(sample_motion(path))]
 def regime_motion(name: str) -> Motion:
     """Return the motion of one of REGIMES."""
     return solve(Top(**REGIMES[name]))
-
-
-def drawn(motion: Motion, kinds: Sequence[str], request: PlotRequest | None = None) -> Figure:
-    """Return the figure of some kinds, with its artists, on light paper."""
-    with styled(LIGHT):
-        figure = Figure(layout="constrained")
-        draw_page(figure, Page(motion, kinds, request or PlotRequest()))
-    return figure

@@ -96,9 +96,9 @@ def plot_command(
     from ..plot.pictures import Options
     from .table import angle_stds
 
-    seconds = check_film(animate, duration and float(duration)) if animate else 0.0
+    seconds = check_film(animate, float(duration) if duration else None) if animate else 0.0
     others = {} if t_max is None else {"t_max": t_max}
-    founds = [top._replace(scene=name).given(others) for name in scenes or [None]]
+    founds = [top._replace(scene=name or None).given(others) for name in scenes or [""]]
     motions = {name: opt.motion_of(x) for name, x in zip(scenes or [""], founds, strict=True)}
     spans = [
         checked_span(motion, found.others.get("t_max"))

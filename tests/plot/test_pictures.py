@@ -63,7 +63,7 @@ def test_the_path_is_that_of_the_axis() -> None:
     near, far = (figure.axes[0].collections[i] for i in (1, 0))
     found = np.concatenate([*near.get_segments(), *far.get_segments()])  # type: ignore[attr-defined]
     right, up = camera_at(0.3, 0.5).rows[:2]
-    axis = motion.axis(np.linspace(0, 1, 4000))
+    axis = motion.axis(np.linspace(0, 1, 8000))
     exact = np.stack([axis @ right, axis @ up], axis=1)
     distance = np.abs(found[:, None] - exact[None]).sum(axis=2).min(axis=1)
     assert distance.max() < 2e-3
@@ -139,7 +139,9 @@ def test_a_map_shows_the_number_of_each_top(key: str) -> None:
     from lagrange_cli.plot.map import grid_of
 
     values, border = grid_of(solve(Top()), x, y, key, Options(map=chart))
-    exact = [[solve(Top(r0=r, theta0_deg=tilt))[key] for r in x.values] for tilt in y.values]  # type: ignore[index]
+    exact = [
+        [getattr(solve(Top(r0=r, theta0_deg=tilt)), key) for r in x.values] for tilt in y.values
+    ]
     assert np.asarray(values, float) == pytest.approx(np.array(exact, float), rel=1e-12)
     assert border[0] == pytest.approx(solve(Top()).stability_factor ** 0.5 * x.values / 50)
     assert drawn("map", solve(Top()), map=chart).axes[0].get_ylabel().endswith("(deg)")

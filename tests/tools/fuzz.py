@@ -264,7 +264,7 @@ def judge_many(tally: Tally, judges: Sequence[tuple[Scene, Judge]], rng: random.
 def judge_sweep(tally: Tally, judges: Sequence[tuple[Scene, Judge]]) -> None:
     """Judge every number of a sweep of scenes."""
     inputs = inputs_of(judges)
-    columns = sweep(keys=[*NUMBER_KEYS, "error"], **inputs)
+    columns = sweep(keys=[*NUMBER_KEYS, "error"], **inputs)  # type: ignore[arg-type]
     for i, (scene, judge) in enumerate(judges):
         if columns["error"][i] is not None:
             tally.counts["sweep refused"] += 1
