@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import Lagtop
-from lagtop import LagtopError, Motion, Top, draw, fit, read_scene, solve
+from lagtop import LagtopError, Motion, Top, draw, read_scene, solve
 
 pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
@@ -178,9 +179,10 @@ def test_names_from_outside_are_plain_text() -> None:
 
 def test_the_picture_of_a_fit_has_units_and_a_legend_beside_the_data() -> None:
     t = np.linspace(0, 1, 60)
-    theta, _, psi = solve(Top()).angles(t)
+    one = {"name": "theta", "t": t, "data": t, "residual": 0 * t, "fine_t": t, "curve": t}
     figure = Figure(layout="constrained")
-    draw_fit_panels(figure, list(fit(t, theta=theta, psi=psi).curves()), "deg", "good, χ² 58.2")
+    curves: Any = [SimpleNamespace(**one)]
+    draw_fit_panels(figure, curves, "deg", "good, χ² 58.2")
     above, below = figure.axes[:2]
     assert (above.get_ylabel(), below.get_ylabel()) == ("ϑ (deg)", "residual (deg)")
     assert figure.get_suptitle() == "good, χ² 58.2"
