@@ -102,7 +102,7 @@ class TextTable(Table):
         `decimal` is a point or a comma, or empty if the first rows decide.  `comments` are the
         texts of comments above the headings.
         """
-        self._all, self._first, self.comments = lines, first, comments
+        self.name, self.comments, self._all, self._first = name, comments, lines, first
         self.texts = [x for x in lines[first:] if _is_row(x)]
         self.delimiter, self.decimal = delimiter, "." if delimiter == "," else decimal
         width = len(headings or (self._cells(0) if self.texts else ()))

@@ -1,0 +1,390 @@
+"""Values of inputs as texts: numbers with units and uncertainties, ranges, lists and grids.
+
+    number       `30`, `-1.5`, `2e-3`
+    uncertain    `1587(2)`, `1587+/-2`, `1587 ± 0.1 %`, `(1.5+-0.2)e3`
+    points       `1,2,3`, `start:stop:count`, `log:start:stop:count`
+    unknown      `from:to`, `log:from:to`
+    unit         at the end of any of them: `480 rpm`, `477(2) rpm`, `60:80:3 rpm`
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
+from ..arithmetic.text import parse_number, quoted
+from ..errors import LagtopError
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+LOG = "log:"
+"""Prefix of a range with equal ratios."""
+STEADY_WORDS = ("steady", "steady-fast")
+"""Words accepted as a precession rate: the steady rate of smaller or of larger size."""
+_UNIT = re.compile(r"(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*", re.DOTALL)
+"""Any text from its first letter, which begins no exponent; `1/` may precede."""
+_DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+_EXPONENT = r"(?:[eE][+-]?\d+)"
+_SPREAD = rf"({_DECIMAL}{_EXPONENT}?)\s*(?:\+/?-|±)\s*({_DECIMAL}{_EXPONENT}?)\s*(%?)"
+_UNCERTAIN = re.compile(
+    rf"(?:{_SPREAD}|\(\s*{_SPREAD}\s*\)({_EXPONENT}?)"
+    rf"|({_DECIMAL})\((\d+\.?\d*)\)({_EXPONENT}?))"
+)
+
+
+class Value(NamedTuple):
+    """An input as it was given, without any conversion."""
+
+    number: Any
+    """A real number or one of `STEADY_WORDS`; the `Points` of a sweep or the `Span` of a search."""
+    unit: str = ""
+    std: Fraction | None = None
+    """Standard uncertainty, in the same unit; None if there is none."""
+
+    def scaled(self, factor: Fraction) -> Value:
+        """Return the value multiplied by the size of its unit, without the unit."""
+        if hasattr(self.number, "scaled"):
+            number = self.number.scaled(factor)
+        else:  # arrays have doubles
+            number = self.number * (factor if isinstance(self.number, Fraction) else float(factor))
+        return Value(number, "", None if self.std is None else self.std * abs(factor))
+
+
+def parse_value(
+    text: str,
+    parse: Callable[[str], Any] = parse_number,
+    *,
+    uncertain: bool = False,
+    steady: bool = False,
+) -> Value:
+    """Parse an input; `parse` reads its number.
+
+    `uncertain` allows an uncertainty, and `steady` allows `STEADY_WORDS`.  Raises LagtopError if
+    `parse` does, with the whole text in place of the number, and for a bad uncertainty.
+    """
+    number, unit = split_unit(text)
+    if steady and number in STEADY_WORDS:
+        return Value(number)
+    got = f"got {quoted(text.strip())}"
+    try:
+        plain, std = _split_uncertainty(number)
+        if std is not None and not uncertain:
+            spread = number[len(plain) :] if number.startswith(plain) else "the uncertainty"
+            wrong = f"must have no uncertainty in this command, {got}: leave out {spread.strip()}"
+            raise LagtopError(wrong)
+        return Value(parse(plain), unit, std)
+    except LagtopError as error:
+        whole = str(error).replace(f"got {quoted(number)}", got)
+        if number in STEADY_WORDS:
+            whole = steady_refused(number)
+        elif steady and not re.search(r"\d", number):
+            whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
+        raise LagtopError(whole, error.key) from None
+
+
+def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
+    """Return the number in a text, as text, and its standard uncertainty, or None if it has none.
+
+    Raises LagtopError for a text in no known form, and for a negative uncertainty.
+    """
+    if not re.search(r"[(±%]|\+/?-", text) or re.fullmatch(f"{_DECIMAL}{_EXPONENT}?", text):
+        return text, None
+    found = _UNCERTAIN.fullmatch(text)
+    if found is None:
+        forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
+        raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")
+    groups = found.groups(default="")
+    number, std, percent, exponent = groups[0:3] + ("",) if groups[0] else groups[3:7]
+    if groups[7]:
+        (number, std, exponent), percent = groups[7:10], ""
+        decimals = 0 if "." in std else len(number.partition(".")[2])
+        std = f"{std}e-{decimals}"
+    size = parse_number(std) * parse_number(f"1{exponent}")
+    if percent:
+        size *= abs(parse_number(number)) / 100
+    if size < 0:
+        raise LagtopError(f"must have an uncertainty >= 0, got {quoted(text)}")
+    return number + exponent, size
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Return the number part of an input text and its unit, empty if it has none.
+
+    The unit begins at the first letter that is not the e of an exponent.  A text without a digit
+    before its first letter, such as `nan`, has no unit.  A range or a list has its unit at the end,
+    after a number: no colon and no comma follows or precedes it.
+    """
+    text = text.strip()
+    found = _UNIT.search(text, len(LOG) if text.startswith(LOG) else 0)
+    if found is None:
+        return text, ""
+    number, unit = text[: found.start()].rstrip(), found[0]
+    if set(unit) & {":", ","} or number.endswith((":", ",")) or not re.search(r"\d", number):
+        return text, ""
+    return number, unit
+
+
+def steady_refused(word: str) -> str:
+    """Return the message about a word for the rates of many tops, without the name of the input."""
+    keys = "steady_rate_slow and steady_rate_fast"
+    return f"must be a number unless one top is solved, got {word}: see the keys {keys}"
+
+
+def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -> Value:
+    """Return a number or an array of Python as a value.
+
+    Quantities of pint and numbers of the package uncertainties are accepted, and texts if `parse`
+    reads their numbers.  Raises LagtopError for an uncertainty that is not finite, for a quantity
+    of another kind, and if `parse` does.
+    """
+    if parse is not None and isinstance(given, str):
+        try:
+            return parse_value(given, parse, uncertain=True)
+        except LagtopError as error:
+            raise LagtopError(f"{name} {error}", name) from None
+    if isinstance(given, Value):
+        return given
+    unit = ""
+    if hasattr(given, "m_as"):  # a quantity of pint
+        from .units import si_unit  # start-up
+
+        unit = si_unit(name)
+        try:
+            given = given.m_as(unit)
+        except Exception as error:  # pint has errors of many kinds
+            raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
+        if not getattr(given, "shape", ()):
+            given = exact_number(name, given)
+    std = getattr(given, "std_dev", None)
+    spread = None if std is None else exact_number(name, std, "the uncertainty of ")
+    return Value(getattr(given, "nominal_value", given), unit, spread)
+
+
+def values_of(inputs: Mapping[str, Any]) -> dict[str, Value]:
+    """Return the values of inputs by key.  Raises LagtopError."""
+    return {name: value_of(name, x) for name, x in inputs.items()}
+
+
+def exact_number(name: str, number: Any, what: str = "") -> Fraction:
+    """Return a real number as a fraction.  Raises LagtopError for anything else."""
+    number = number.item() if getattr(number, "shape", None) == () else number  # NumPy's overflow
+    try:
+        if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
+            float(number)
+            return Fraction(number)
+    except (ValueError, OverflowError):
+        pass
+    raise LagtopError(f"{what}{name} must be a finite number, got {quoted(number)}", name)
+
+
+class Span(NamedTuple):
+    """The interval in which an unknown input is searched for, or the ends of a range."""
+
+    first: Fraction
+    last: Fraction
+    logarithmic: bool = False
+    """Whether the interval is divided into equal ratios instead of equal steps."""
+
+    def points(self, count: int) -> Points:
+        """Return `count` points of the interval, both ends included."""
+        if self.logarithmic:
+            return LogPoints(self.first, self.last, count)
+        return EvenPoints(self.first, (self.last - self.first) / max(count - 1, 1), count)
+
+    def scaled(self, factor: Fraction) -> Span:
+        """Return the interval multiplied by a factor > 0."""
+        return self._replace(first=self.first * factor, last=self.last * factor)
+
+    def __str__(self) -> str:
+        return f"{float(self.first):g} to {float(self.last):g}"
+
+
+def _parse_span(
+    parts: Sequence[str], text: str, parse: Callable[[str], Fraction] = parse_number
+) -> Span:
+    """Return the span of two ends.  Raises LagtopError if a logarithmic one contains 0."""
+    span = Span(parse(parts[0]), parse(parts[1]), text.startswith(LOG))
+    if span.logarithmic and not span.first * span.last > 0:
+        wanted = "must have two ends of one sign, not 0, in a log: range"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+    return span
+
+
+def parse_span(text: str) -> Span:
+    """Parse an interval, `from:to` or `log:from:to`.
+
+    Raises LagtopError for anything else, and unless the second end is the larger one.
+    """
+    refuse_units_inside(text, "60:80 rpm")
+    ends = text.removeprefix(LOG).split(":")
+    if len(ends) != 2:
+        raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
+    span = _parse_span(ends, text)
+    if not span.first < span.last:
+        raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
+    return span
+
+
+def parse_number_or_span(text: str) -> Fraction | Span:
+    """Parse a number, or an interval `[log:]from:to`.  Raises LagtopError."""
+    return parse_span(text) if ":" in text else parse_number(text)
+
+
+def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
+    """Return the points of `start:stop:count` or, with equal ratios, of `log:start:stop:count`.
+
+    `parse` reads the two ends.  Raises LagtopError for anything else, for a count of 1 between
+    different ends, and for a logarithmic range over 0.
+    """
+    parts = text.removeprefix(LOG).split(":")
+    if len(parts) != 3:
+        raise LagtopError(f"must be a range [log:]start:stop:count, got {quoted(text)}")
+    span, count = _parse_span(parts, text, parse), parse_number(parts[2])
+    if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
+        raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {quoted(text)}")
+    if count == 1 and span.first != span.last:
+        wanted = "must have a count of 2 or more between different ends"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+    return span.points(int(count))
+
+
+def parse_values(text: str) -> Points:
+    """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
+    refuse_units_inside(text, "60:80:3 rpm")
+    if ":" in text:
+        return parse_range(text)
+    return ListedPoints([parse_number(part) for part in text.split(",")])
+
+
+def refuse_units_inside(text: str, example: str) -> None:
+    """Raise LagtopError for a range or a list with a unit in front of its last number."""
+    if re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
+        wanted = f"must have its unit once, at the end, as in {example!r}"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+
+
+class Multiple(NamedTuple):
+    """A number, or a factor of K."""
+
+    factor: Fraction
+    in_quarters: bool
+
+
+class Multiples(NamedTuple):
+    """Numbers, or factors of K."""
+
+    factors: Points
+    in_quarters: bool
+
+
+def parse_multiple(text: str) -> Multiple:
+    """Parse a number such as `0.5`, or a multiple of K such as `K`, `-2.5K`, `K/2` or `3K/4`.
+
+    Raises LagtopError for anything else.
+    """
+    before, has_unit, after = text.strip().partition("K")
+    if not has_unit:
+        return Multiple(parse_number(text), False)
+    try:
+        factor = parse_number(f"{before}1" if before in {"", "+", "-"} else before)
+        divisor = parse_number(after.removeprefix("/")) if after else Fraction(1)
+        if after[:1] not in {"", "/"} or divisor <= 0:
+            raise LagtopError(text)
+    except LagtopError:
+        wanted = "must be a multiple of K such as K, -2.5K, K/2 or 3K/4"
+        raise LagtopError(f"{wanted}, got {quoted(text)}") from None
+    return Multiple(factor / divisor, True)
+
+
+def parse_multiples(text: str) -> Multiples:
+    """Parse a range whose ends are read by `parse_multiple`.
+
+    Raises LagtopError as `parse_range` does, and if only one end is in units of K.
+    """
+    ends: list[Multiple] = []
+
+    def parse(end: str) -> Fraction:
+        ends.append(parse_multiple(end))
+        return ends[-1].factor
+
+    points = parse_range(text, parse)
+    wanted = f"must have both ends in units of K or none, got {quoted(text)}"
+    return Multiples(points, _in_quarters(ends, LagtopError(wanted)))
+
+
+def listed_multiples(single: Sequence[Multiple]) -> Multiples:
+    """Return a list of multiples as one object.  Raises LagtopError for a mixture of both kinds."""
+    mixed = LagtopError("u must be in units of K every time or never, got both", "u")
+    return Multiples(ListedPoints([x.factor for x in single]), _in_quarters(single, mixed))
+
+
+def _in_quarters(multiples: Sequence[Multiple], mixed: LagtopError) -> bool:
+    """Return whether numbers are in units of K; 0 fits both kinds.  Raises `mixed` for both."""
+    kinds = {multiple.in_quarters for multiple in multiples if multiple.factor}
+    if len(kinds) > 1:
+        raise mixed
+    return True in kinds
+
+
+class InputArrays(NamedTuple):
+    """The inputs of some tops, with the columns, lines and errors of each."""
+
+    size: int
+    """The number of tops."""
+    inputs: Mapping[str, Array | float]
+    """For each input an array, or one number for all tops; NaN for a top without the input."""
+    carried: Sequence[Sequence[Any]] = ()
+    """The extra columns, which are copied to the output."""
+    lines: Sequence[int] | None = None
+    """The line number of each top, if the tops come from a file."""
+    errors: Mapping[int, str] = {}
+    """Messages of the errors found so far, by row."""
+
+
+class Product(NamedTuple):
+    """Combinations of the values of several inputs; the last input varies fastest."""
+
+    axes: Mapping[str, Points]
+    """The values of each input, by its name."""
+    first: int = 0
+    """The number of the first combination."""
+    stop: int | None = None
+    """One more than the number of the last combination; None for all combinations."""
+
+    @property
+    def size(self) -> int:
+        """The number of combinations."""
+        stop = prod(x.count for x in self.axes.values()) if self.stop is None else self.stop
+        return stop - self.first
+
+    def blocks(self, size: int) -> Iterator[Product]:
+        """Yield all combinations, `size` at a time."""
+        for first in range(0, self.size, size):
+            yield Product(self.axes, first, min(first + size, self.size))
+
+    def values(self) -> dict[str, Array]:
+        """Return the values of each input in these combinations."""
+        import numpy as np
+
+        left = np.arange(self.first, self.first + self.size)
+        values = {}
+        for name, axis in reversed(list(self.axes.items())):
+            values[name] = axis.at(left % axis.count)
+            left //= axis.count
+        return values
+
+    def arrays(self, shared: Mapping[str, float]) -> InputArrays:
+        """Return the inputs of the combinations; `shared` holds those that do not vary."""
+        return InputArrays(self.size, {**shared, **self.values()})
+
+    def checked(self) -> Product:
+        """Return the product.  Raises LagtopError for more than 1e9 combinations."""
+        if self.size > MOST_POINTS:
+            raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")
+        return self
