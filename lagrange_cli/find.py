@@ -24,12 +24,13 @@ from .errors import AbsentError, LagtopError, check_type
 from .inputs.given import Given, gather
 from .inputs.input_keys import checked_double, overridden, warn_of
 from .inputs.names import check_names
-from .inputs.ranges import Span, parse_span
 from .inputs.top import INPUTS, Top
-from .inputs.units import CGS, UNITS, factor_of
-from .inputs.value import (
+from .inputs.units import UNITS, factor_of
+from .inputs.values import (
+    Span,
     Value,
     exact_number,
+    parse_span,
     parse_value,
     split_unit,
     steady_refused,
@@ -148,7 +149,7 @@ def search_of(
     conditions that cannot have isolated solutions.
     """
     units = {split_unit(re.split("[<>=]+", text)[-1])[1] for text in conditions}
-    angles = {name for name, unit in UNITS.items() if not any(unit.dimensions)}
+    angles = {name for name, unit in UNITS.items() if not any(unit.dimensions[:3])}
     has_units = bool(units - angles - {"", "degree", "radian"})
     given = gather(values_of(inputs), scene, system="si" if has_units else None)
     found = _read_conditions(conditions, given, radians=radians)
@@ -175,7 +176,7 @@ def _known(given: Given, spans: Mapping[str, Span]) -> dict[str, float]:
     loose = set(spans)
     if loose & {"A", "A_cm", "C"} or ("A_cm" in known and loose & {"m", "s"}):
         loose |= {"A", "A_cm", "C"}  # because of C <= 2A
-    top = given.replace(inputs=known).top(without=loose).as_dict()
+    top = given._replace(inputs=known).top(without=loose).as_dict()
     inputs = {name: float(x) for name, x in top.items() if x is not None}
     inputs = overridden(inputs, {name: checked_double(name, x) for name, x in known.items()})
     return {name: x for name, x in inputs.items() if name not in spans}
@@ -197,18 +198,18 @@ def _read_conditions(texts: Sequence[str], given: Given, *, radians: bool) -> li
         if key in _WORDS and (relation != "=" or word not in _WORDS[key]):
             wanted, got = ", ".join(_WORDS[key]), f"{'' if relation == '=' else relation}{word}"
             raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
-        number = word if key in _WORDS else _number(key, word, given, radians=radians)
+        number = word if key in _WORDS else _number(key, word, radians=radians)
         found.append(Condition(key, relation, number))
     return found
 
 
-def _number(key: str, text: str, given: Given, *, radians: bool) -> float:
+def _number(key: str, text: str, *, radians: bool) -> float:
     try:
         value = parse_value(text)
     except LagtopError as error:
         raise LagtopError(f"the value of {key} {error}") from None
     unit = shown_keys(radians=radians, requested=True)[key].unit
-    factor = factor_of(key, value, unit, given.system or CGS) if value.unit else 1
+    factor = factor_of(key, value.unit, unit) if value.unit else 1
     return float(value.number * factor)
 
 
@@ -429,4 +430,4 @@ def _input(name: str, given: Any) -> Value:
     first, last = (exact_number(name, x) for x in pair)
     if not first < last:
         raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
-    return value.replace(number=Span(first, last))
+    return value._replace(number=Span(first, last))

@@ -90,7 +90,7 @@ class TopOptions(Values):
         if any(x.unit for x in given.values()):
             from ..inputs.units import converted
 
-            top, given = self.replace(units=self.units or "si"), converted(given, None)
+            top, given = self.replace(units=self.units or "si"), converted(given)
         return top, {name: given[name].number if name in given else None for name in times}
 
 

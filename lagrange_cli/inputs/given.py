@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Mapping
-from fractions import Fraction
+from collections.abc import Collection, Mapping
 from types import MappingProxyType, NoneType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.numbers import Number
-from ..arithmetic.values import Values
 from ..errors import LagtopError, check_type
-from .input_keys import BODY, TILT, checked_double, from_example, one_of_each, overridden, warn_of
+from .input_keys import (
+    BODY,
+    EXAMPLE,
+    TILT,
+    checked_double,
+    from_example,
+    one_of_each,
+    overridden,
+    warn_of,
+)
 from .top import Top
-from .value import STEADY_WORDS, InputPair, Stds, Value, values_of
+from .values import STEADY_WORDS, Stds, Value, values_of
 
 if TYPE_CHECKING:
-    from .scene_file import SceneFile
+    from .scenes import SceneFile
     from .units import System
 
 
-class Given(Values):
-    """Inputs of a top by key, all in units of one system."""
+class Given(NamedTuple):
+    """Inputs of a top by key, all in SI if one of them has a unit."""
 
     inputs: Mapping[str, Any]
     """The given numbers; the `Points` of a sweep or the `Span` of a search in their place."""
@@ -30,15 +37,19 @@ class Given(Values):
     body: Mapping[str, Number]
     """The body of the worked example, in these units."""
     system: System | None
-    """The system of units; None if the inputs have no units."""
+    """SI; None if the inputs have no units."""
     missing: Mapping[str, float]
     """The body inputs taken from the worked example, in CGS, if only some of the body was given."""
-    blame: Callable[[LagtopError], LagtopError]
-    """Adds the file and the line to an error about an input of a scene file."""
-    stds: Stds = Stds({})
+    stds: Stds = Stds()
     """Standard uncertainties of the inputs that have one, in these units."""
-    empty: str | None = None
-    """The name of the scene file if it has no inputs, else None."""
+    file: SceneFile | None = None
+    options: Collection[str] = ()
+    """The inputs that are not from the scene file."""
+
+    @property
+    def empty(self) -> str | None:
+        """The name of the scene file if it has no inputs, else None."""
+        return self.file.name if self.file is not None and not self.file.inputs else None
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.
@@ -47,83 +58,74 @@ class Given(Values):
         for an impossible input, SceneError if it is in a file.
         """
         kept = {key: x for key, x in self.inputs.items() if key not in without}
-        numbers = overridden(self.body, kept).items()
+        numbers = overridden(self.body, kept)
         try:
-            kept = {
-                key: x if exact or x in STEADY_WORDS else checked_double(key, x)
-                for key, x in numbers
-            }
-            return Top(**kept)
+            if self.system is not None and numbers.get("psidot0") not in STEADY_WORDS:
+                from .stand_ins import as_solved  # start-up
+
+                numbers = as_solved(overridden(EXAMPLE, numbers))  # from exact numbers, once
+            return Top(
+                **{
+                    key: x if exact or x in STEADY_WORDS else checked_double(key, x)
+                    for key, x in numbers.items()
+                }
+            )
         except LagtopError as error:
-            raise self.blame(_not_given(error, self.missing)) from None
+            moments = [name for name in ("A", "C") if name in self.missing]
+            if moments and error.key in {"A", "C"}:
+                which = f"{' and '.join(moments)} of the worked example"
+                error = LagtopError(f"{error} (with {which}: give the whole body)", error.key)
+            raise _of_file(self.file, error, self.options) from None
+
+
+def _of_file(file: SceneFile | None, error: LagtopError, options: Collection[str]) -> LagtopError:
+    """Return an error with the file and the line of its input, unless an option gives it."""
+    return error if file is None or error.key in options else file.error(error)
 
 
 def gather(
     given: Mapping[str, Value],
     path: str | None = None,
     *,
-    system: str | None = None,
+    system: object = None,
     varying: Collection[str] = (),
     others: Mapping[str, Value] = MappingProxyType({}),
 ) -> Given:
     """Return the `given` inputs and those of a scene file, if any; given inputs override the file.
 
-    Inputs with units are converted to a `system`, `si` (the default) or `cgs`.  So are `others`,
-    such as times or the units of columns.  `varying` names inputs that are given later.  Raises
-    SceneError for a bad file, LagtopError for a bad given input.
+    Inputs with units are converted to SI, and so are `others`, such as times or the units of
+    columns.  If `system` is true, inputs must have units.  `varying` names inputs that are given
+    later.  Raises SceneError for a bad file, LagtopError for a bad given input.
     """
     inputs = {TILT if x.unit and name.startswith(TILT) else name: x for name, x in given.items()}
     file: SceneFile | None = None
-    correlations: dict[InputPair, Fraction] = {}
     if path is not None:
-        from .scene_file import SceneFile  # start-up
+        from .scenes import SceneFile  # start-up
 
         file = SceneFile(path)
-        own = file.inputs.keys() - inputs.keys()
         inputs = overridden(file.inputs, inputs)
-        own &= inputs.keys()
-        correlations = {pair: r for pair, r in file.correlations.items() if pair <= own}
-
-    def blame(error: LagtopError) -> LagtopError:
-        return error if file is None or error.key in given else file.error(error)
-
     units: System | None = None
     body: Mapping[str, Number] = BODY
     try:
         one_of_each(inputs)
         if system or any(x.unit for x in (*inputs.values(), *others.values())):
-            from .units import converted, system_of  # start-up
+            from .units import converted, system_of, worked_example  # start-up
 
-            units = system_of(overridden(inputs, others), system)
-            inputs, others = converted(inputs, units), converted(others, units)
-            body = units.worked_example() if units else BODY
+            units = system_of(overridden(inputs, others), asked=bool(system))
+            inputs, others = converted(inputs), converted(others)
+            body = worked_example() if units else BODY
     except LagtopError as error:
-        raise blame(error) from None
-    tilt = next((name for name in inputs if name.startswith(f"{TILT}_")), TILT)
-    stds = Stds(
-        {name: float(x.std) for name, x in inputs.items() if x.std is not None},
-        {InputPair(tilt if x == TILT else x for x in pair): r for pair, r in correlations.items()},
-    )
+        raise _of_file(file, error, given) from None
+    stds = Stds({name: float(x.std) for name, x in inputs.items() if x.std is not None})
     numbers, known = ({name: x.number for name, x in values.items()} for values in (inputs, others))
-    missing = from_example(
-        dict.fromkeys(varying) | {name: _if_one(x) for name, x in numbers.items()}
-    )
-    empty = file.name if file is not None and not file.inputs else None
-    return Given(numbers, known, body, units, missing, blame, stds, empty)
+    fixed = {name: _if_one(x) for name, x in numbers.items()}
+    missing = from_example(dict.fromkeys(varying) | fixed)
+    return Given(numbers, known, body, units, missing, stds, file, given)
 
 
 def _if_one(value: Any) -> Any:
     """Return a number as it is, and the only value of a sweep's axis with one value."""
     return value.bounds()[0] if getattr(value, "count", 0) == 1 else value
-
-
-def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
-    """Return an error about A and C, with a remedy if one of them was not given."""
-    moments = [name for name in ("A", "C") if name in missing]
-    if not moments or error.key not in {"A", "C"}:
-        return error
-    which = f"{' and '.join(moments)} of the worked example"
-    return LagtopError(f"{error} (with {which}: give the whole body)", error.key)
 
 
 def read_scene(

@@ -20,7 +20,7 @@ from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError
 from .input_keys import STANDS_FOR
-from .value import STEADY_WORDS
+from .values import STEADY_WORDS
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic

@@ -19,11 +19,10 @@ from .given import Given, gather
 from .headings import name_and_unit
 from .input_keys import TILT, checked_double, one_of_each, overridden
 from .names import repeated
-from .ranges import InputArrays
 from .text_lines import UNDECIDED, Dialect
 from .text_tables import Table, TextTable, cells_of, read_table
 from .top import INPUTS
-from .value import STEADY_WORDS, Value, steady_refused
+from .values import STEADY_WORDS, InputArrays, Value, steady_refused
 
 _TILTS = {"theta", "tilt", "elevation"}
 """Names of the tilt in trajectories, or of 90 degrees less the tilt, which no top is given by."""
@@ -226,7 +225,7 @@ def _check_units(units: Mapping[str, Value], name: str) -> None:
         from .units import converted  # for few files only
 
         try:
-            converted({column: one}, None)
+            converted({column: one})
         except LagtopError as error:
             raise DataError(f"{name}, heading {column} [{one.unit}]: {error}") from None
 

@@ -16,7 +16,6 @@ from ..errors import LagtopError
 from .headings import name_and_unit
 from .input_keys import declared
 from .names import ANGLES, suggestion
-from .value import Value
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -227,10 +226,9 @@ def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | No
         raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
     from .units import factor_of  # for few files only
 
-    one = Value(Fraction(1), str(unit))
     if own == "angle":
-        return "rad", factor_of(key, one, "rad")
-    return None, factor_of(key, one, own)
+        return "rad", factor_of(key, str(unit), "rad")
+    return None, factor_of(key, str(unit), own)
 
 
 def expanded(names: Sequence[str]) -> list[str]:

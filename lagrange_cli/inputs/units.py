@@ -10,12 +10,14 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
+from ..arithmetic.arb_ball import pi_to
 from ..arithmetic.numbers import Number
 from ..arithmetic.points import Points
+from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from .derived_inputs import EXACT_DIGITS, pi_fraction
 from .input_keys import BODY, DECLARED, TILT
 from .names import suggestion
+from .stand_ins import EXACT_DIGITS
 from .values import Value
 
 Dimensions = tuple[int, int, int, int]
@@ -47,7 +49,7 @@ _TABLE = """
 1 1 -2 0 | 0 | N=1 dyn=1e-5
 0 1 -2 0 | 0 | g_0=9.80665
 0 0 0 1 | 0 | rad=1 mrad=1e-3
-0 0 0 1 | 1 | deg=1/180 \u00b0=1/180 arcmin=1/10800 turn=2 rev=2 gon=1/200
+0 0 0 1 | 1 | deg=1/180 °=1/180 arcmin=1/10800 turn=2 rev=2 gon=1/200
 0 0 -1 1 | 1 | rpm=1/30
 """
 """The dimensions, the power of pi, and the exact sizes of units."""
@@ -60,51 +62,166 @@ UNITS = {
     for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().splitlines())
     for name, size in (pair.split("=") for pair in pairs.split())
 }
-_OF_WORDS = {"mass": UNITS["kg"], "len": UNITS["m"], "time": UNITS["s"]}
+_WITHOUT_ANGLE = {(0, 0, -1, 1): (0, 0, -1, 0)}
+"""A rate may be given without radians, as 1/s."""
 _UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
 _EXAMPLES = {
     "mass": "350g",
-    "mass len\u00b2": "'3.9e-3 kg*m^2'",
+    "mass len²": "'3.9e-3 kg*m^2'",
     "len": "4cm",
-    "len/time\u00b2": "'9.81 m/s^2'",
+    "len/time²": "'9.81 m/s^2'",
     "rad/time": "'50 rad/s' or 480rpm",
     "time": "2s",
     "m": "4cm",
     **dict.fromkeys(("deg", "rad"), "30deg or 0.5rad"),
 }
 """An example of each unit of an input."""
-_RAISED = str.maketrans("\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079", "-0123456789")
+_RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _FIGURES = {figure: raised for raised, figure in _RAISED.items()}
-_FACTOR = re.compile(r"\s*([*\u00b7/]?)\s*(1|\u00b0|[^\W\d](?:_?[^\W\d_]|_0)*)(?:\s*(?:\*\*|\^)\s*(-?\d)(?!\d))?")
+_NAME = r"1|°|g_0|[^\W\d_]+"
+_FACTOR = re.compile(rf"\s*([*·/]?)\s*({_NAME})\s*(?:(?:\*\*|\^)?\s*(-?\d)(?!\d))?")
 """A factor of a product: a stroke, a name, and a power of one digit."""
-_HERTZ = "turns or radians per second? write rpm, turn/s or rad/s"
+_ASKED = {
+    "Hz": "turns or radians per second? write rpm, turn/s or rad/s",
+    "gr": "grain or gram? write g",
+}
 
 
 def unit_of_text(text: str) -> Unit:
-    """Return the product of units that a text names, such as `kg*m^2`, `kg m\u00b2` or `m/s/s`.
+    """Return the product of units that a text names, such as `kg*m^2`, `kg m²`, `kg m2` or `1/s`.
 
-    Raises LagtopError for an unknown unit, with the nearest name.
+    Raises LagtopError for an unknown unit, with the nearest name and the known ones.
     """
-    found, place = _ONE, 0
-    text = re.sub("[\u207b\u2070\u00b9\u00b2\u00b3\u2074-\u2079]+", lambda x: f"^{x[0].translate(_RAISED)}", text.strip())
+    found, place, text = _ONE, 0, text.strip().translate(_RAISED)
     while place < len(text):
         match = _FACTOR.match(text, place)
         name = match[2] if match else text[place:]
-        unit = _ONE if name == "1" else (UNITS | _OF_WORDS).get(name)
+        unit = _ONE if name == "1" else UNITS.get(name)
         if match is None or unit is None:
-            raise LagtopError(f"no such unit{_usual_spelling(text) or suggestion(name, UNITS)}")
+            raise LagtopError(_ASKED.get(name) or f"no such unit{_meant(name)}; known: {_KNOWN}")
         found = found.times(unit, int(match[3] or 1) * (-1 if match[1] == "/" else 1))
         place = match.end()
     return found
 
 
-def _usual_spelling(text: str) -> str:
-    """Return a question with the usual spelling of a unit, such as rpm for RPM, or an empty text.
+_KNOWN = f"{', '.join(UNITS)}, their products and powers"
 
-    A digit after a name counts as its power, as in `kg m2`.
+
+def _meant(name: str) -> str:
+    """Return a hint with the known unit nearest to a name, such as rpm for RPM, or nothing."""
+    usual = {unit.lower(): unit for unit in UNITS}.get(name.lower())
+    return f" (did you mean {usual!r}?)" if usual else suggestion(name, UNITS)
+
+
+def factor_of(key: str, unit: str, wanted: str | None = None) -> Fraction:
+    """Return the factor from a unit to `wanted` in SI.
+
+    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`, by default that of the input
+    `key`, or else of a time.  Raises LagtopError for a unit of other dimensions.
     """
-    known = {name.lower(): name for name in UNITS}
-    usual = re.sub(r"[^\W\d_]+", lambda name: known.get(name[0].lower(), name[0]), text)
-    usual = re.sub(r"(?<=[^\W\d_])(?=\d)", "^", usual)
-    names = re.findall(r"[^\W\d_]+|\u00b0", usual)
-    return f"; did you mean {usual}?" if usual != text and {*names} <= {*UNITS} else ""
+    wanted = _UNIT_OF.get(key, "time") if wanted is None else wanted
+    into = unit_of_text(SI.named(wanted))
+    try:
+        given = unit_of_text(unit)
+        if given.dimensions not in {into.dimensions, _WITHOUT_ANGLE.get(into.dimensions)}:
+            raise LagtopError("it measures something else")
+    except LagtopError as error:
+        example = _EXAMPLES.get(wanted) or repr(f"2 {SI.named(wanted)}")
+        must = f"have a unit as in {example}" if wanted else "have no unit"
+        wrong = f"{key} must {must}, got the unit {quoted(unit)} ({error})"
+        raise LagtopError(wrong, key) from None
+    powers_of_pi = given.power_of_pi - into.power_of_pi
+    return given.size / into.size * pi_to(EXACT_DIGITS) ** powers_of_pi
+
+
+class System:
+    """The names of the units of results: SI."""
+
+    mass, length = "kg", "m"
+
+    def named(self, unit: str) -> str:
+        """Return a unit such as `mass len²` or `rad/time` with the names of its parts."""
+        names = {"mass": self.mass, "len": self.length, "time": "s"}
+        return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
+
+    def unit_of(self, powers: Mapping[str, Fraction]) -> str:
+        """Return the unit of a product of powers of inputs, such as `kg m²/s²`; radians are 1."""
+        sums = [
+            sum((n * unit_of_text(si_unit(x)).dimensions[i] for x, n in powers.items()), Fraction())
+            for i in range(3)
+        ]
+        parts = list(zip((self.mass, self.length, "s"), sums, strict=True))
+        above = " ".join(_raised(name, n) for name, n in parts if n > 0)
+        below = " ".join(_raised(name, -n) for name, n in parts if n < 0)
+        if not below:
+            return above
+        return f"{above or 1}/({below})" if " " in below else f"{above or 1}/{below}"
+
+    def in_words(self, remark: str) -> str:
+        """Return a remark with `time` replaced by the second."""
+        return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)
+
+
+SI = System()
+
+
+def _raised(name: str, power: Fraction) -> str:
+    """Return a power of a unit, such as `m²`."""
+    return name if power == 1 else name + str(power).translate(_FIGURES)
+
+
+def si_unit(key: str) -> str:
+    """Return the SI unit of an input, such as `kg m²`; of a tilt, that in its key."""
+    unit = {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}.get(key) or _UNIT_OF.get(key, "time")
+    return SI.named(unit)
+
+
+def converted(inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """Return inputs in SI; a tilt with a unit becomes degrees or radians.
+
+    Raises LagtopError for a unit of other dimensions.
+    """
+    found: dict[str, Value] = {}
+    for key, value in inputs.items():
+        if not value.unit:
+            found[key] = value
+        elif key == TILT:
+            factor_of(key, value.unit)  # refuses other dimensions
+            wanted = "deg" if unit_of_text(value.unit).power_of_pi else "rad"
+            found[f"{TILT}_{wanted}"] = value.scaled(factor_of(key, value.unit, wanted))
+        else:
+            found[key] = value.scaled(factor_of(key, value.unit))
+    return found
+
+
+def system_of(inputs: Mapping[str, Value], *, asked: bool = False) -> System | None:
+    """Return SI if inputs have units, or None if none has one, or only a tilt.
+
+    A tilt, a time and a zero need no unit.  Raises LagtopError for another input without a unit if
+    some have one, or if units are `asked` for.
+    """
+    united = [key for key, x in inputs.items() if x.unit and key != TILT]
+    bare = [key for key, x in inputs.items() if _needs_unit(key, x)]
+    if bare and (united or asked):
+        why = f"as {united[0]} has" if united else "as a time or a condition has"
+        number, example = inputs[bare[0]].number, _EXAMPLES[_UNIT_OF[bare[0]]]
+        if isinstance(number, Fraction) and number != 1:  # a heading of a file counts as 1
+            example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
+        raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
+    return SI if united or asked else None
+
+
+def _needs_unit(key: str, value: Value) -> bool:
+    """Return whether an input needs a unit but has none."""
+    number = value.number
+    if value.unit or isinstance(number, str) or key not in _UNIT_OF or key == TILT:
+        return False
+    is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
+    return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array
+
+
+def worked_example() -> dict[str, Number]:
+    """Return the body of the worked example in SI."""
+    cgs = {"mass": "g", "len": "cm", "time": "s"}
+    units = {x: re.sub("[a-z]+", lambda word: cgs[word[0]], _UNIT_OF[x]) for x in BODY}
+    return {x: Fraction(y) * factor_of(x, units[x]) for x, y in BODY.items()}

@@ -1,16 +1,16 @@
 """Values of inputs as texts: numbers with units and uncertainties, ranges, lists and grids.
 
-    number       `30`, `-1.5`, `2e-3`
-    uncertain    `1587(2)`, `1587+/-2`, `1587 ± 0.1 %`, `(1.5+-0.2)e3`
-    points       `1,2,3`, `start:stop:count`, `log:start:stop:count`
-    unknown      `from:to`, `log:from:to`
-    unit         at the end of any of them: `480 rpm`, `477(2) rpm`, `60:80:3 rpm`
+number       `30`, `-1.5`, `2e-3`
+uncertain    `1587(2)`, `1587+/-2`, `1587 ± 0.1 %`, `(1.5+-0.2)e3`
+points       `1,2,3`, `start:stop:count`, `log:start:stop:count`
+unknown      `from:to`, `log:from:to`
+unit         at the end of any of them: `480 rpm`, `477(2) rpm`, `60:80:3 rpm`
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from math import prod
@@ -31,10 +31,14 @@ _UNIT = re.compile(r"(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*",
 """Any text from its first letter, which begins no exponent; `1/` may precede."""
 _DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 _EXPONENT = r"(?:[eE][+-]?\d+)"
-_SPREAD = rf"({_DECIMAL}{_EXPONENT}?)\s*(?:\+/?-|±)\s*({_DECIMAL}{_EXPONENT}?)\s*(%?)"
-_UNCERTAIN = re.compile(
-    rf"(?:{_SPREAD}|\(\s*{_SPREAD}\s*\)({_EXPONENT}?)"
-    rf"|({_DECIMAL})\((\d+\.?\d*)\)({_EXPONENT}?))"
+_SPREAD = (
+    rf"(?P<number>{_DECIMAL}{_EXPONENT}?)\s*(?:\+/?-|±)"
+    rf"\s*(?P<std>{_DECIMAL}{_EXPONENT}?)\s*(?P<percent>%?)"
+)
+_UNCERTAIN = (
+    rf"(?P<number>{_DECIMAL})\((?P<last>\d+\.?\d*)\)(?P<exponent>{_EXPONENT}?)",
+    _SPREAD,
+    rf"\(\s*{_SPREAD}\s*\)(?P<exponent>{_EXPONENT}?)",
 )
 
 
@@ -56,6 +60,22 @@ class Value(NamedTuple):
         return Value(number, "", None if self.std is None else self.std * abs(factor))
 
 
+class Stds(dict[str, float]):
+    """Standard uncertainties of inputs by key."""
+
+    def only(self, names: Collection[str]) -> Stds:
+        """Return the uncertainties of some inputs."""
+        return Stds({x: std for x, std in self.items() if x in names})
+
+    # For the old sensitivities, sweeps and fits.
+    correlations: Mapping[frozenset[str], Fraction] = {}
+
+    @property
+    def sources(self) -> Sequence[tuple[Fraction, Mapping[str, Fraction]]]:
+        """The independent sources of all uncertainties: their variances and shares by input."""
+        return [(Fraction(1), {name: Fraction(1)}) for name in self]
+
+
 def parse_value(
     text: str,
     parse: Callable[[str], Any] = parse_number,
@@ -75,9 +95,9 @@ def parse_value(
     try:
         plain, std = _split_uncertainty(number)
         if std is not None and not uncertain:
-            spread = number[len(plain) :] if number.startswith(plain) else "the uncertainty"
-            wrong = f"must have no uncertainty in this command, {got}: leave out {spread.strip()}"
-            raise LagtopError(wrong)
+            spread = re.search(r"\([\d.]+\)|(\+/?-|±)\s*[^\s)%]+(\s*%)?", number)
+            remedy = f"leave out {spread[0] if spread else 'it'}"
+            raise LagtopError(f"must have no uncertainty in this command, {got}: {remedy}")
         return Value(parse(plain), unit, std)
     except LagtopError as error:
         whole = str(error).replace(f"got {quoted(number)}", got)
@@ -95,22 +115,21 @@ def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
     """
     if not re.search(r"[(±%]|\+/?-", text) or re.fullmatch(f"{_DECIMAL}{_EXPONENT}?", text):
         return text, None
-    found = _UNCERTAIN.fullmatch(text)
+    found = next((x for form in _UNCERTAIN if (x := re.fullmatch(form, text))), None)
     if found is None:
         forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
         raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")
-    groups = found.groups(default="")
-    number, std, percent, exponent = groups[0:3] + ("",) if groups[0] else groups[3:7]
-    if groups[7]:
-        (number, std, exponent), percent = groups[7:10], ""
-        decimals = 0 if "." in std else len(number.partition(".")[2])
-        std = f"{std}e-{decimals}"
-    size = parse_number(std) * parse_number(f"1{exponent}")
-    if percent:
-        size *= abs(parse_number(number)) / 100
-    if size < 0:
+    parts = {"exponent": "", **found.groupdict(default="")}
+    number, last = parts["number"], parts.get("last")
+    if last is not None:  # in units of the last digit
+        decimals = 0 if "." in last else len(number.partition(".")[2])
+        parts |= {"std": f"{last}e-{decimals}", "percent": ""}
+    std = parse_number(parts["std"]) * parse_number(f"1{parts['exponent']}")
+    if std < 0:
         raise LagtopError(f"must have an uncertainty >= 0, got {quoted(text)}")
-    return number + exponent, size
+    if parts["percent"]:
+        std *= abs(parse_number(number)) / 100
+    return number + parts["exponent"], std
 
 
 def split_unit(text: str) -> tuple[str, str]:
@@ -152,18 +171,28 @@ def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -
         return given
     unit = ""
     if hasattr(given, "m_as"):  # a quantity of pint
-        from .units import si_unit  # start-up
-
-        unit = si_unit(name)
-        try:
-            given = given.m_as(unit)
-        except Exception as error:  # pint has errors of many kinds
-            raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
-        if not getattr(given, "shape", ()):
-            given = exact_number(name, given)
-    std = getattr(given, "std_dev", None)
+        unit, given = _of_pint(name, given)
+    number, std = getattr(given, "nominal_value", given), getattr(given, "std_dev", None)
+    if unit and not getattr(number, "shape", ()):
+        number = exact_number(name, number)
     spread = None if std is None else exact_number(name, std, "the uncertainty of ")
-    return Value(getattr(given, "nominal_value", given), unit, spread)
+    return Value(number, unit, spread)
+
+
+def _of_pint(name: str, given: Any) -> tuple[str, Any]:
+    """Return the unit and the magnitude of a quantity, in SI if lagtop does not know its unit."""
+    from .units import si_unit, unit_of_text  # start-up
+
+    unit = f"{given.units:~C}"
+    try:
+        unit_of_text(unit)
+        return unit, given.magnitude
+    except LagtopError:
+        unit = si_unit(name)
+    try:
+        return unit, given.m_as(unit)
+    except Exception as error:  # pint has errors of many kinds
+        raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
 
 
 def values_of(inputs: Mapping[str, Any]) -> dict[str, Value]:

@@ -221,7 +221,7 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
     }
     if isinstance(word := numbers.get("psidot0"), str):
         raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
-    top = found.replace(inputs=numbers).top(without=loose)
+    top = found._replace(inputs=numbers).top(without=loose)
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return overridden(inputs, {name: checked_double(name, x) for name, x in numbers.items()})
 
