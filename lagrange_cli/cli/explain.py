@@ -8,7 +8,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.text import value_text
-from ..inputs.scene_file import scene_names, scene_remark
+from ..inputs.scenes import scene_names, scene_remark
 from ..output.report import Field, Report
 from ..output.terminal import width_of
 from . import shared as opt

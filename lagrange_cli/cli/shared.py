@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from ..inputs.given import Given
-    from ..inputs.value import Value
+    from ..inputs.values import Value
     from ..motion.numbers import Numbers
     from ..motion.solve import Motion
     from ..output.report import Report
@@ -61,7 +61,7 @@ class Words(click.ParamType):  # type: ignore[type-arg]
         """Return the scenes that begin with a word, or files."""
         from click.shell_completion import CompletionItem
 
-        from ..inputs.scene_file import scene_names
+        from ..inputs.scenes import scene_names
 
         scenes = [CompletionItem(x) for x in scene_names() if x.startswith(incomplete)]
         return scenes or [CompletionItem(incomplete, type="file")]
@@ -96,7 +96,7 @@ def _parse_mark(text: str) -> str:
 
 
 def _parse_value(text: str, **allowed: Any) -> Value:
-    from ..inputs.value import parse_value
+    from ..inputs.values import parse_value
 
     return parse_value(text, **allowed)
 
@@ -211,7 +211,7 @@ def is_scene(word: str) -> bool:
     Scenes are `-`, shipped scenes, words that end in `.toml`, and words with a dot or a slash that
     are no condition.
     """
-    from ..inputs.scene_file import scene_names
+    from ..inputs.scenes import scene_names
 
     is_path = bool(set(word) & set("./")) and not set(word) & set("=<>")
     return word == "-" or word.endswith(".toml") or is_path or word in scene_names()

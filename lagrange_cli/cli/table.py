@@ -14,7 +14,7 @@ from .app import complain
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..inputs.given import Given
-    from ..inputs.value import Value
+    from ..inputs.values import Value
     from ..motion.solve import Motion
     from ..motion.uncertainty import AngleStds
     from ..output.destination import Output

@@ -104,12 +104,7 @@ def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
     units = _units(found, [key, *given])
     lines = uncertain.budget(key, given)
     shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
-    independent = sum(line.share or 0.0 for line in lines)
-    relation = "inputs are taken as independent"
-    if found.stds.correlations and independent:
-        times = f"{1 / independent:.3g} times"
-        relation = f"inputs are correlated: the variance is {times} that of independent inputs"
-    conclusions = [f"{shown}, to first order; {relation}."]
+    conclusions = [f"{shown}, to first order; inputs are taken as independent."]
     fields = [
         _names("quantity", units),
         _Measured("value", "value"),

@@ -181,17 +181,13 @@ def scene_text(outcome: Outcome, source: str, system: System | None = None) -> s
         *(f"# {text}: one of them is assumed." for text in outcome.undetermined()),
         *(f"# Warning: {text}." for text in outcome.warnings()),
     ]
-    stds, correlations = _spread_of_inputs(outcome)
+    stds, _ = _spread_of_inputs(outcome)
     units = {} if system is None else outcome_units(outcome, system)
     for name, value in outcome.inputs().items():
         unit = "" if name.startswith(TILT) else units.get(name, "")  # the key of a tilt names it
         shown = f"{value!r} +/- {stds[name]!r}" if name in stds else repr(value)
         text = f"{shown} {unit}".rstrip()
         lines.append(f"{name} = {text}" if text == repr(value) else f'{name} = "{text}"')
-    lines += ["", "[correlations]"] if len(stds) > 1 else []
-    for i, (name, row) in enumerate(zip(stds, correlations.tolist(), strict=True)):
-        others = [f"{x} = {r!r}" for x, r in list(zip(stds, row, strict=True))[i + 1 :]]
-        lines += [f"{name} = {{ {', '.join(others)} }}"] if others else []
     return "".join(f"{line}\n" for line in lines)
 
 

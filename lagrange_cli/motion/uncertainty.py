@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.balls import balls
 from ..arithmetic.rounding import decided
 from ..inputs.top import Top
-from ..inputs.value import Stds
+from ..inputs.values import Stds
 from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, middle_and_radius
 from .quantity import degree_name
 from .record import TEXT_KEYS
@@ -89,12 +88,8 @@ class FirstOrder:
         slopes = {name: self.slope(key, name) for name in self.stds}
         if None in slopes.values():
             return None
-        parts = {name: (slopes[name] or 0) * Fraction(std) for name, std in self.stds.items()}
-        changes = [
-            (size, sum((parts[name] * share for name, share in shares.items()), Fraction(0)))
-            for size, shares in self.stds.sources
-        ]
-        return sum((size * change * change for size, change in changes), Fraction(0))
+        parts = [(slopes[name] or 0) * Fraction(std) for name, std in self.stds.items()]
+        return sum((part * part for part in parts), Fraction(0))
 
     def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
         """Return the contributions of the uncertain inputs to a key, the greatest first.
@@ -157,14 +152,10 @@ class AngleStds:
         """Take the uncertainties of the inputs as given, and the names of all given inputs."""
         self.motion, chain = motion, by_given(motion.top, given)
         self.changes: list[dict[str, float]] = []
-        """The change of each input by one standard deviation of each independent source."""
-        for variance, shares in stds.sources:
-            changes: dict[str, float] = {}
-            for name, share in shares.items():
-                for one, slope in chain[name].items():
-                    change = stds[name] * float(share * slope) * math.sqrt(variance)
-                    changes[one] = changes.get(one, 0.0) + change
-            self.changes.append({name: change for name, change in changes.items() if change})
+        """The change of each input by one standard deviation of each uncertain input."""
+        for name, std in stds.items():
+            changes = {one: std * float(slope) for one, slope in chain[name].items()}
+            self.changes.append({one: change for one, change in changes.items() if change})
 
     @cached_property
     def derivatives(self) -> AngleDerivatives:

@@ -263,64 +263,11 @@ DERIVED = (
 )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "known",
-    [
-        "--m 1.587 --g 9.81 --s 0.04",
-        "--g 9.81",
-        "--m 1.587(2) --g 9.81 --s 0.04",
-        "--m 1.6(2) --g 9.81 --s 0.040(5) --A-cm 0.00137(3)",
-        "--C 1.7458e-3 --r0 50.0(2) --theta0 41.0(1)",
-        "--m 1587(2)g --g 9.81m/s^2 --s 4cm",
-    ],
-)
-def test_the_scene_keeps_the_covariance(lagtop: Lagtop, tmp_path: Path, known: str) -> None:
-    """The uncertainties of solve are those of the fit; without correlations they are not."""
-    path, sigma = tmp_path / "fitted.toml", ["--sigma", "theta=0.3,psi=0.5,phi=1"]
-    shown = lagtop("fit", SAMPLE, *known.split(), *sigma, "--format", "json", "-o", path)
-    fitted = json.loads(shown.stdout)
-    solved = json.loads(lagtop("solve", path, "--format", "json").stdout)
-    assert fitted.get("units", {}).get("r0") == solved.get("units", {}).get("r0")
-    keys = [*DERIVED, "a", "b", "r0", "theta0_deg", "thetadot0", "psidot0"]
-    keys += [x for x in ("m", "s", "A", "C") if f"{x}_std" in fitted]
-    more = ["--get", "stability_factor,stability_factor_std", "--format", "json"]
-    solved |= json.loads(lagtop("solve", path, *more).stdout)
-    for key in keys:
-        assert solved[key] == pytest.approx(fitted[key], rel=1e-9), key
-        assert solved[f"{key}_std"] == pytest.approx(fitted[f"{key}_std"], rel=1e-6), key
-    path.write_text(path.read_text().partition("[correlations]")[0])
-    plain = json.loads(lagtop("solve", path, "--format", "json").stdout)
-    for key in DERIVED[:3]:
-        assert plain[f"{key}_std"] > 1.5 * fitted[f"{key}_std"], key
-
-
-@pytest.mark.slow
-def test_units_of_the_output(lagtop: Lagtop) -> None:
-    known = ["--m", "1.587kg", "--g", "9.81m/s^2", "--s", "4cm", "--format", "json"]
-    si, cgs = (
-        json.loads(lagtop("fit", SAMPLE, *known, "--units", x).stdout) for x in ("si", "cgs")
-    )
-    assert cgs["A"] == pytest.approx(1e7 * si["A"], rel=1e-9)
-    assert (si["units"]["A"], cgs["units"]["A"]) == ("kg m²", "g cm²")
-    assert cgs["r0_std"] == pytest.approx(si["r0_std"], rel=1e-6)
-
-
 def test_a_steady_word_is_no_known_rate(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text('r0 = 60\npsidot0 = "steady"\n')
     refused = lagtop("fit", SAMPLE, scene, "--fix", "psidot0")
     assert_one_line(refused, 2, "--psidot0 must be a real number, got 'steady'")
-
-
-@pytest.mark.slow
-def test_priors_with_correlations_are_named(lagtop: Lagtop, tmp_path: Path) -> None:
-    scene = tmp_path / "scene.toml"
-    scene.write_text('m = "1.587(2)"\ns = "0.0400(1)"\ng = 9.81\n[correlations]\nm.s = 0.5\n')
-    found = lagtop("fit", SAMPLE, scene, "--fix", "m,s,g")
-    assert found.exit_code == 0
-    assert found.stderr == "Warning: the correlations of known inputs are not used\n"
-    assert lagtop("fit", SAMPLE, scene, "--fix", "m,g").stderr == ""
 
 
 def test_the_moment_about_the_pivot_is_fixed_by_that_about_the_mass_centre(

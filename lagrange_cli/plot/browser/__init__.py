@@ -20,7 +20,7 @@ from typing import Any
 from ...errors import LagtopError, check_type
 from ...inputs.given import read_scene
 from ...inputs.input_keys import DECLARED, NINE, TILT, Input
-from ...inputs.scene_file import scene_names, scene_remark
+from ...inputs.scenes import scene_names, scene_remark
 from ...inputs.top import Top
 from ...motion.explanation import listed
 from ...motion.notebook import Document
