@@ -183,7 +183,9 @@ def _axis(option: str, text: str, top: opt.TopOptions) -> Axis:
     try:
         value = parse_value(grid, parse_range)
         if value.unit and name in DECLARED:
-            value = value.scaled(factor_of(name, value, "rad" if top.radians else "deg"))
+            angle = "rad" if top.radians else "deg"
+            wanted = angle if DECLARED[name].unit == "angle" else None
+            value = value.scaled(factor_of(name, value.unit, wanted))
     except LagtopError as error:
         raise LagtopError(f"{option} {error}") from None
     points: Any = value.number
