@@ -2,73 +2,72 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-from functools import partial
 from typing import TYPE_CHECKING
 
-from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..inputs.names import split_names
-from ..output.destination import Output, write_bytes
-from . import options as opt
+from ..inputs.scene_file import is_scene_file
+from . import shared as opt
 from .app import complain
-from .tables import (
-    columns_option,
-    euler_option,
-    fail_for,
-    quaternion_option,
-    text_options,
-    write_report,
-)
-from .top import INPUT, TopOptions, top_options, words
 
 if TYPE_CHECKING:
-    from ..inputs.text_lines import Dialect
+    from ..output.destination import Output
     from ..output.report import Report
-
-
-def _parse_step_sizes(text: str) -> list[float]:
-    return [float(parse_number(name)) for name in split_names(text)]
+    from ..plot.reports import ErrorCurve
 
 
 @opt.command(
     "compare",
-    """
-    lagtop table looping-top --t-max 5 --columns t,quaternion -o run.csv
-    lagtop compare looping-top run.csv --max-error 1e-6 --plot errors.svg
-    lagtop table --columns t,axis --r0 -50 | lagtop compare - || true
-    """,
+    "table looping-top --t-max 5 --columns t,quaternion -o run.csv",
+    "compare looping-top run.csv --max-error 1e-6 --plot errors.svg",
+    "table --columns t,axis --r0 -50 | lagtop compare - || true",
 )
+@opt.top("[SCENE] TRAJECTORY...", required=True, is_scene=is_scene_file)
+@opt.columns
+@opt.quaternion_order
+@opt.euler_sequence
+@opt.option(
+    "--rates-frame",
+    metavar="FRAME",
+    type=opt.Choice(["body", "space"]),
+    default="body",
+    show_default=True,
+    help="Frame of the angular velocity: body or space.",
+)
+@opt.option(
+    "--align",
+    metavar="WORD,...",
+    type=opt.LIST,
+    help="Other axes: axis=y, up=y, left (left-handed).  From the first row: start (zero of spin "
+    "and precession), time (zero of t).",
+)
+@opt.option(
+    "--step-sizes",
+    type=opt.NUMBERS,
+    help="Step sizes of the trajectories, for the order of convergence.",
+)
+@opt.option(
+    "--max-error",
+    type=opt.POSITIVE,
+    help="Largest acceptable error in rad.  [default: 0.001]",
+)
+@opt.decimal
+@opt.plot
+@opt.output(*opt.REPORT_FORMATS)
 def compare_command(
-    top: TopOptions = top_options(INPUT, words("[SCENE] TRAJECTORY...", opt.FILE, required=True)),
-    names: list[str] | None = columns_option,
-    quaternion_order: str | None = quaternion_option(None),
-    euler_sequence: str = euler_option,
-    rates_frame: str = opt.choice(
-        ["body", "space"],
-        "Frame of the angular velocity: body or space.",
-        "FRAME",
-        default="body",
-        show_default=True,
-    ),
-    align: list[str] | None = opt.names(
-        "Other axes: axis=y, up=y, left (left-handed).  From the first row: start (zero of spin "
-        "and precession), time (zero of t).",
-        offered=opt.late("compare.differences", "WORDS"),
-        metavar="WORD,...",
-    ),
-    step_sizes: list[float] | None = opt.option(
-        opt.Parsed("X,...", _parse_step_sizes),
-        "Step sizes of the trajectories, for the order of convergence.",
-    ),
-    max_error: Fraction | None = opt.number(
-        "Largest acceptable error in rad.  [default: 0.001]", positive=True
-    ),
-    dialect: Dialect = text_options,
-    plot: str | None = opt.plot,
-    out: Output = opt.output(*opt.REPORT_FORMATS),
+    top: opt.TopOptions,
+    words: list[str],
+    columns: list[str] | None,
+    quaternion_order: str | None,
+    euler_sequence: str,
+    rates_frame: str,
+    align: list[str] | None,
+    step_sizes: list[float] | None,
+    max_error: float | None,
+    decimal: str,
+    plot: str | None,
+    out: Output,
 ) -> None:
-    """Compare computed or measured trajectories with the exact motion.
+    """Compare trajectories with the exact motion.
 
     A trajectory is a file (CSV, text, JSON lines, npy, npz or Parquet), or - for standard input.
     Its columns are recognised by name, such as t, theta, axis, quaternion or matrix.  Angles are in
@@ -80,35 +79,40 @@ def compare_command(
     from ..compare.differences import Alignment
     from ..compare.report import comparison_report, failures, read
     from ..inputs.seen import Conventions
-    from ..plot.reports import ErrorCurve, check_plot, draw_errors
 
-    check_plot(plot, out.path)
-    if not top.words:
+    opt.check_plot(plot, out.path)
+    if not words:
         raise LagtopError("no trajectory: give a file, or - for standard input")
-    if list(top.words).count("-") > 1:
+    if words.count("-") > 1:
         raise LagtopError("standard input can be read once, got - twice")
-    limit = LIMIT if max_error is None else float(max_error)
+    limit = LIMIT if max_error is None else max_error
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, top.radians).checked()
     alignment = Alignment.of(align or [])
-    motion, units = top.solved_in_units()
+    motion = top.motion()
     failed: list[str] = []
+    curves: list[ErrorCurve] = []
 
     def find() -> Report:
-        trajectories = [read(x, conventions, alignment, names, dialect.decimal) for x in top.words]
+        trajectories = [read(x, conventions, alignment, columns, decimal) for x in words]
         results, found = compared(motion, trajectories, limit, step_sizes)
-        if top.scene is None and not top.by_key():
+        if top.scene is None and not top.inputs:
             complain("Warning: no scene and no inputs: compared with the worked example")
+        failed.extend(failures(results))
         if plot:
+            from ..plot.reports import ErrorCurve
+
             errors = found.errors if found else [None] * len(results)
-            curves = [
+            curves.extend(
                 ErrorCurve(str(x.file), x.t, x.error, x.step, error)
                 for x, error in zip(results, errors, strict=True)
                 if x.t is not None and x.error is not None
-            ]
-            write_bytes(plot, partial(draw_errors, curves, limit, plot))
-        failed.extend(failures(results))
-        report = comparison_report(motion, results, found, limit)
-        return report._replace(conditions=units | report.conditions)
+            )
+        return comparison_report(motion, results, found, limit)
 
-    report = write_report(out, find)
-    fail_for(failed, len(report.rows), "trajectories")
+    def draw(_: Report) -> bytes:
+        from ..plot.reports import draw_errors
+
+        return draw_errors(curves, limit, plot or "")
+
+    report = opt.write_report(out, find, plot, draw)
+    opt.fail_for(failed, len(report.rows), "trajectories")

@@ -88,6 +88,11 @@ def _parse_positive(text: str) -> float:
     return float(exact)
 
 
+def parse_numbers(text: str) -> list[float]:
+    """Return the numbers of a comma-separated list."""
+    return [float(parse_number(part)) for part in split_names(text)]
+
+
 def _parse_mark(text: str) -> str:
     marks = {"": "", "point": ".", "comma": ",", ".": ".", ",": ","}
     if text not in marks:
@@ -104,6 +109,7 @@ def _parse_value(text: str, **allowed: Any) -> Value:
 NUMBER = Parsed("X", parse_number)
 POSITIVE = Parsed("X", _parse_positive)
 LIST = Parsed("NAME,...", split_names)
+NUMBERS = Parsed("X,...", parse_numbers)
 VALUE = Parsed("X", partial(_parse_value, uncertain=True))
 """An input of one top: a number, which may have a unit and an uncertainty."""
 TIME = Parsed("X", _parse_value)
@@ -151,11 +157,6 @@ scenes = click.argument("scenes", nargs=-1, metavar="[SCENE]...", type=Words())
 def extension(path: str) -> str:
     """Return the extension of a file, in lower case and without its dot."""
     return os.path.splitext(path)[1][1:].lower()
-
-
-def parse_numbers(text: str) -> list[float]:
-    """Return the numbers of a comma-separated list."""
-    return [float(parse_number(part)) for part in split_names(text)]
 
 
 def digits(most: int) -> Callable[[F], F]:
