@@ -46,14 +46,9 @@ class Cause(NamedTuple):
         try:
             moved = motion if self.top is None else solve(self.top(motion.top))
             few = self.rows(trajectory).few(most)
-            return _greatest(few.errors(moved, lambda seen: self.change(seen, motion.top)))
+            return few.greatest(moved, lambda seen: self.change(seen, motion.top))
         except LagtopError:
             return math.inf
-
-
-def _greatest(errors: Array) -> float:
-    """Return the greatest error that is known, infinite if none is."""
-    return float(np.nan_to_num(np.fmax.reduce(errors), nan=np.inf))
 
 
 def likely_cause(
@@ -179,7 +174,7 @@ def _angles(name: str, *, phi: str = "phi", psi: str = "psi") -> Cause:
         angles = changed(rotations.angles_of(seen.quaternion))
         return replace(seen, quaternion=rotations.of_angles(**angles))
 
-    return Cause(f"{name}", change=change)
+    return Cause(name, change=change)
 
 
 def _framed(words: str) -> Cause:
@@ -218,12 +213,11 @@ def _shifted_clock(motion: Motion, trajectory: Trajectory) -> Cause:
     errors = few._replace(given=rows).errors(motion).reshape(len(shifts), -1)
     best = float(shifts[np.argmin(np.nan_to_num(np.fmax.reduce(errors, axis=1), nan=np.inf))])
 
-    def error(shift: float) -> float:
-        return _greatest(few.errors(motion, lambda seen: replace(seen, t=seen.t - shift)))
-
-    options = {"xatol": 1e-9 * step}
     found = minimize_scalar(
-        error, bounds=(best - step, best + step), method="bounded", options=options
+        lambda shift: few.greatest(motion, lambda seen: replace(seen, t=seen.t - shift)),
+        bounds=(best - step, best + step),
+        method="bounded",
+        options={"xatol": 1e-9 * step},
     )
     shift = float(found.x)
     remedy = " (--align time)" if math.isclose(shift, t[0], rel_tol=1e-4) else ""

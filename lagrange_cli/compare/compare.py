@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.files import shown_path, utf8_path
@@ -180,6 +179,7 @@ def compare(
     return compared(motion, [trajectory], max_error)[0][0]
 
 
+@np.errstate(all="ignore")  # rows that are not finite raise no warnings
 def compared(
     motion: Motion,
     trajectories: Sequence[Trajectory],
@@ -189,24 +189,14 @@ def compared(
     """Return the comparison of each trajectory, and their convergence if there are step sizes.
 
     Causes are tried for a trajectory that exceeds the limit, unless the error falls with the step:
-    then the top is right.  Raises LagtopError for bad step sizes,
-    DataError for times in a file that are too late.
+    then the top is right.  Raises LagtopError for bad step sizes, DataError for times that are
+    too late in a file.
     """
     if step_sizes is not None and len(step_sizes) != len(trajectories):
         wanted = f"one number per trajectory ({len(trajectories)})"
         raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
     if wrong := [step for step in step_sizes or [] if not step > 0]:
         raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
-    with ARRAYS.working():  # rows that are not finite raise no warnings
-        return _compared(motion, trajectories, limit, step_sizes)
-
-
-def _compared(
-    motion: Motion,
-    trajectories: Sequence[Trajectory],
-    limit: float,
-    step_sizes: Sequence[float] | None,
-) -> tuple[list[Comparison], Convergence | None]:
     read = [_with_order(motion, trajectory) for trajectory in trajectories]
     results = [_measured(motion, *one) for one in read]
     found = None
@@ -234,11 +224,8 @@ def _with_order(motion: Motion, trajectory: Trajectory) -> tuple[Trajectory, str
     known = trajectory.named.get("quaternion", NAMELESS).says or trajectory.conventions.quaternion
     if known or "quaternion" not in trajectory.given:
         return trajectory, None
-    errors = {}
-    for order in ORDERS:
-        one = trajectory.with_order(order)
-        errors[order] = float(np.nan_to_num(np.nanmedian(one.few().errors(motion)), nan=np.inf))
-    best = min(ORDERS, key=errors.__getitem__)
+    few = trajectory.few(1000)
+    best = min(ORDERS, key=lambda order: few.with_order(order).greatest(motion))
     return trajectory.with_order(best), best
 
 
@@ -297,11 +284,10 @@ def convergence(results: Sequence[Comparison]) -> Convergence | None:
     """
     if len({x.step for x in results}) < 2:
         return None
-    curves = [
-        (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf)))
-        for x in results
-        if x.t is not None and x.error is not None
-    ]
+    curves = []
+    for x in results:
+        error = np.fmax.accumulate(np.nan_to_num(np.asarray(x.error), nan=np.inf))
+        curves.append((abs(np.asarray(x.t) - np.asarray(x.t)[0]), error))
     until = min(t[max(np.searchsorted(error, LOST_PHASE) - 1, 0)] for t, error in curves)
     errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
     points = sorted((x.step or 0.0, error) for x, error in zip(results, errors, strict=True))

@@ -68,12 +68,10 @@ class Alignment(NamedTuple):
         if seen.quaternion is None and (axis != "z" or self.left):
             word = f"axis={axis}" if axis != "z" else "left"
             raise LagtopError(f"align {word} needs the whole attitude: leave it out", "align")
-        if self.up != "z" and all(
-            x is None for x in (seen.quaternion, seen.axis, seen.space_rates)
-        ):
-            raise LagtopError(
-                f"align up={self.up} needs the axis or the whole attitude: leave it out", "align"
-            )
+        directed = (seen.quaternion, seen.axis, seen.space_rates)
+        if self.up != "z" and all(x is None for x in directed):
+            wanted = "the axis or the whole attitude"
+            raise LagtopError(f"align up={self.up} needs {wanted}: leave it out", "align")
         seen = seen.turned(rotations.to_z(self.up), rotations.to_z(axis))
         if self.left:  # as is usual: Unreal turns y round, Unity exchanges y and z
             seen = _mirrored(seen, np.diag([1.0, -1, 1]) if self.up[-1] == "z" else _EXCHANGE_XY)
@@ -121,7 +119,7 @@ class Trajectory(NamedTuple):
         """Return the trajectory with another order of its quaternion."""
         return self._replace(conventions=self.conventions._replace(quaternion=order))
 
-    def few(self, most: int = 1000) -> Trajectory:
+    def few(self, most: int) -> Trajectory:
         """Return at most so many rows, evenly spread."""
         every = -(-len(self.given["t"]) // most)
         return self._replace(given=rows_of(self.given, slice(None, None, every)))
@@ -135,6 +133,10 @@ class Trajectory(NamedTuple):
         found = differences(motion, self.align.aligned(change(self.seen()), motion))
         worst: Array = np.maximum(found["error"], found.get("rates", 0.0))
         return worst
+
+    def greatest(self, motion: Motion, change: Callable[[Seen], Seen] = lambda x: x) -> float:
+        """Return the greatest error that is known, infinite if none is."""
+        return float(np.nan_to_num(np.fmax.reduce(self.errors(motion, change)), nan=np.inf))
 
 
 def differences(motion: Motion, seen: Seen) -> dict[str, Array]:

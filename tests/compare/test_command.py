@@ -41,20 +41,29 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     run = rk4(Body.of(TOP.replace(r0=-50)), 2e-3, 0.5)
     run[1][:, :4] *= 1.00001
     other = write(tmp_path / "other.csv", run)
-    result = lagtop("compare", right, other, *OPTIONS, "--plot", tmp_path / "a.svg")
+    result = lagtop("compare", right, other, *OPTIONS)
     assert result.exit_code == 1
     why = f"Error: 1 of 2 trajectories failed; the first: {other}: off from the start, at "
     assert result.stderr.startswith(why)
     assert "right.csv: fine, at most" in result.stdout
     assert "The norm of its quaternion or matrix is up to 1.0e-05 off 1." in result.stdout
     assert "Most likely cause: r0 has the wrong sign. With that corrected, the" in result.stdout
-    assert "</svg>" in (tmp_path / "a.svg").read_text()
     rows = json.loads(lagtop("compare", right, other, *OPTIONS, "--format", "json").stdout)["rows"]
     assert [row["verdict"] for row in rows] == ["fine", "off from the start"]
     assert [list(row) for row in rows] == [[*COMPARISON_KEYS]] * 2
     assert lagtop("compare", "-", *OPTIONS, input=right.read_bytes()).exit_code == 0
     strict = lagtop("compare", right, *OPTIONS, "--max-error", "1e-9")
     assert (strict.exit_code, "none of the known" in strict.stdout.lower()) == (1, True)
+
+
+@pytest.mark.slow
+def test_pictures(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
+    sizes = []
+    for how in ([], ["--step-sizes", "1e-3,2e-3"]):  # a second panel
+        command = ["compare", right, right, *OPTIONS, "--plot", tmp_path / "a.svg", *how]
+        assert lagtop(*command).exit_code == 0
+        sizes.append((tmp_path / "a.svg").stat().st_size)
+    assert sizes[0] < sizes[1]
 
 
 def test_steps(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
