@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..errors import LagtopError
-from ..inputs.scene_file import is_scene_file
+from ..inputs.scenes import is_scene_file
 from . import shared as opt
 from .app import complain
 

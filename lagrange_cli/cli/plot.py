@@ -19,7 +19,7 @@ from ..plot.style import DARK, FORMATS, LEAST_DPI, LIGHT, MOST_DPI, check_pictur
 from . import shared as opt
 
 if TYPE_CHECKING:
-    from ..inputs.value import Value
+    from ..inputs.values import Value
     from ..plot.map import Axis, MapOptions
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
@@ -176,7 +176,7 @@ def _axis(option: str, text: str, top: opt.TopOptions) -> Axis:
     from ..inputs.input_keys import DECLARED
     from ..inputs.ranges import parse_range
     from ..inputs.units import factor_of
-    from ..inputs.value import parse_value
+    from ..inputs.values import parse_value
     from ..plot.map import checked_axis
 
     name, _, grid = text.partition("=")
