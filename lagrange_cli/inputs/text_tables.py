@@ -10,7 +10,6 @@ import csv
 import re
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import json_text, parse_number, quoted, shortened
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
 _SAMPLE = 1000
 """Number of rows that decide whether numbers have decimal commas."""
 _TITLES = 5
-"""The headings are within these first rows, perhaps below a title such as Tracker's `mass A`."""
-_LINES_AT_ONCE = 50_000
+"""Most rows above the headings, such as the title `mass A` of Tracker."""
+_ROWS_AT_ONCE = 50_000
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
@@ -38,22 +37,70 @@ Known = Callable[[Sequence[str]], int]
 
 
 class Table:
-    """The rows of a file in memory: cells of text, values of JSON, or numbers."""
+    """The rows of a file in memory."""
 
     place = "line"
-    """The unit of the places of rows in messages: `line` or `row`."""
+    """The unit of `lines` in messages: `line` or `row`."""
+    decimal = ""
+    """The decimal mark, a point or a comma; empty if it is not decided."""
 
-    def __init__(self, name: str, headings: Sequence[str] | None, width: int) -> None:
-        """Take the name of the file for messages, the names of its columns, and their number."""
-        self.name, self.headings, self.width = name, headings, width
+    def __init__(
+        self,
+        name: str,
+        headings: Sequence[str] | None,
+        rows: Sequence[Any],
+        lines: Sequence[int],
+        delimiter: str = "",
+    ) -> None:
+        """Take the name of the file and its rows: lines of text, or lists of values of JSON.
 
-    def rows(self) -> Sequence[Sequence[Any]]:
-        """Return the cells of all rows, or the values of JSON.  Raises DataError."""
-        raise NotImplementedError
+        `lines` are their numbers in messages.  `headings` are None if the file has none.
+        """
+        self.name, self.headings, self.texts, self.lines = name, headings, rows, lines
+        self.delimiter, self.comments = delimiter, list[str]()
+        self.width = len(headings or (self.cells(0, whole=False) if rows else ()))
+
+    def where(self, row: int) -> str:
+        """Return the name of the file and the place of a row."""
+        return f"{self.name}, {self.place} {self.lines[row]}"
+
+    def cells(self, row: int, *, whole: bool = True) -> list[Any]:
+        """Return the cells of a row.
+
+        Raises DataError for a wrong quote and, if `whole`, for another number of cells.
+        """
+        text = self.texts[row]
+        try:
+            cells = split_row(text, self.delimiter) if isinstance(text, str) else text
+            if whole and len(cells) != self.width:
+                raise LagtopError(f"a row must have {self.width} cells, got {len(cells)}")
+        except LagtopError as error:
+            raise DataError(f"{self.where(row)}: {error}") from None
+        return cells
 
     def column(self, index: int) -> list[Any]:
-        """Return the cells of one column.  Raises DataError for a row of another width."""
-        return [row[index] for row in self.rows()]
+        """Return the cells of one column.  Raises DataError as `cells` does."""
+        return [self.cells(row)[index] for row in range(len(self.texts))]
+
+    def decide(self, columns: Iterable[int]) -> None:
+        """Set the decimal mark from the first rows of some columns, unless it is set.
+
+        Raises DataError if a comma may be a decimal mark or separate thousands.
+        """
+        if self.delimiter in {"", ","}:
+            self.decimal = "."
+        if self.decimal:
+            return
+        wanted, places = set(columns), dict[str, int]()
+        for row, text in enumerate(self.texts[:_SAMPLE]):
+            for i, cell in enumerate(self.cells(row, whole=False) if "," in text else ()):
+                if i in wanted and "," in cell and _NUMBER.fullmatch(cell):
+                    places.setdefault(cell, row)
+        if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
+            cell, row = next(iter(places.items()))
+            wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
+            raise DataError(f"{self.where(row)}: {wrong}: pass --decimal point or --decimal comma")
+        self.decimal = "," if places else "."
 
     def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
         """Return columns of numbers, shape (rows, columns), with NaN for empty cells.
@@ -61,112 +108,26 @@ class Table:
         `names` are the names of all columns in messages.  Raises DataError with the place of a cell
         that is no number.
         """
-        raise NotImplementedError
-
-    def decide(self, columns: Iterable[int]) -> None:
-        """Set the decimal mark from the first rows of some columns, unless it is set.
-
-        Raises DataError if a comma may be a decimal mark or separate thousands.
-        """
-
-    def number(self, cell: Any) -> Fraction:
-        """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
-        raise NotImplementedError
-
-    @property
-    def lines(self) -> Sequence[int]:
-        """The line of each row, or its number, from 1."""
-        raise NotImplementedError
-
-    def where(self, row: int) -> str:
-        """Return the name of the file and the place of a row."""
-        return f"{self.name}, {self.place} {self.lines[row]}"
-
-
-class TextTable(Table):
-    """Rows of cells."""
-
-    def __init__(
-        self,
-        name: str,
-        lines: Sequence[str],
-        first: int,
-        headings: Sequence[str] | None,
-        *,
-        delimiter: str,
-        decimal: str = "",
-        comments: Sequence[str] = (),
-    ) -> None:
-        """Take all lines, and the index of the `first` one below the headings.
-
-        `decimal` is a point or a comma, or empty if the first rows decide.  `comments` are the
-        texts of comments above the headings.
-        """
-        self.name, self.comments, self._all, self._first = name, comments, lines, first
-        self.texts = [x for x in lines[first:] if _is_row(x)]
-        self.delimiter, self.decimal = delimiter, "." if delimiter == "," else decimal
-        width = len(headings or (self._cells(0) if self.texts else ()))
-        super().__init__(name, headings, width)
-
-    @cached_property
-    def lines(self) -> Sequence[int]:
-        """The line of each row, from 1."""
-        return [i + 1 for i in range(self._first, len(self._all)) if _is_row(self._all[i])]
-
-    def rows(self) -> Sequence[Sequence[str]]:
-        """Return the cells of all rows.  Raises DataError for a row of another width."""
-        return list(map(self.row, range(len(self.texts))))
-
-    def row(self, index: int) -> list[str]:
-        """Return the cells of a row.  Raises DataError for a row of another width."""
-        cells = self._cells(index)
-        if len(cells) != self.width:
-            wrong = f"a row must have {self.width} cells, got {len(cells)}"
-            raise DataError(f"{self.where(index)}: {wrong}")
-        return cells
-
-    def _cells(self, index: int) -> list[str]:
-        try:
-            return cells_of(self.texts[index], self.delimiter)
-        except LagtopError as error:
-            raise DataError(f"{self.where(index)}: {error}") from None
-
-    def decide(self, columns: Iterable[int]) -> None:
-        """Set the decimal mark from the first rows of some columns, unless it is set."""
-        if self.decimal:
-            return
-        wanted, places = set(columns), dict[str, int]()
-        for i, text in enumerate(self.texts[:_SAMPLE]):
-            for j, cell in enumerate(self._cells(i) if "," in text else ()):
-                if j in wanted and "," in cell and _NUMBER.fullmatch(cell):
-                    places.setdefault(cell, i)
-        if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
-            cell, i = next(iter(places.items()))
-            wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
-            raise DataError(f"{self.where(i)}: {wrong}: pass --decimal point or --decimal comma")
-        self.decimal = "," if places else "."
-
-    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
-        """Return columns of numbers, shape (rows, columns), with NaN for empty cells."""
         import numpy as np
 
         self.decide(columns)
-        blocks = []
-        for first in range(0, len(self.texts), _LINES_AT_ONCE):
-            texts = self.texts[first : first + _LINES_AT_ONCE]
-            values = self._plain(texts)
-            if values is None:
-                rows = range(first, first + len(texts))
-                blocks.append(np.array([self._doubles(i, columns, names) for i in rows]))
-            else:
+        blocks = [np.empty((0, len(columns)))]
+        for first in range(0, len(self.texts), _ROWS_AT_ONCE):
+            rows = range(first, min(first + _ROWS_AT_ONCE, len(self.texts)))
+            values = self._by_numpy(self.texts[rows.start : rows.stop])
+            if values is not None:
                 blocks.append(values[:, columns])
-        return np.concatenate(blocks) if blocks else np.empty((0, len(columns)))
+                continue
+            each = ((row, self.cells(row)) for row in rows)
+            found = [[self._double(row, i, names[i], x[i]) for i in columns] for row, x in each]
+            blocks.append(np.array(found))
+        return np.concatenate(blocks)
 
-    def _plain(self, texts: Sequence[str]) -> Array | None:
-        """Return all columns of some rows, or None if NumPy does not read them."""
+    def _by_numpy(self, texts: Sequence[Any]) -> Array | None:
+        """Return all columns of some rows, or None if NumPy cannot read them."""
         import numpy as np
 
-        text = "\n".join(texts)
+        text = "\n".join(texts) if self.delimiter else '"'
         if not text.isascii() or '"' in text or "\0" in text:
             return None
         if self.decimal == ",":
@@ -178,148 +139,78 @@ class TextTable(Table):
             return None
         return values if values.shape == (len(texts), self.width) else None
 
-    def _doubles(self, index: int, columns: Sequence[int], names: Sequence[str]) -> list[float]:
-        cells = self.row(index)
-        return [self._double(index, i, names[i], cells[i]) for i in columns]
+    def _double(self, row: int, column: int, name: str, cell: Any) -> float:
+        """Return the number in a cell, NaN if it is empty.  Raises DataError."""
+        if type(cell) in {int, float}:
+            return float(cell)
+        if not cell and cell is not False:
+            return float("nan")
+        plain = self._plain(cell) if isinstance(cell, str) else ""
+        if "," in plain or not _NUMBER.fullmatch(plain):
+            wrong = f"{name} must be a number, got {_shown(cell)}{self._hint(cell)}"
+            raise DataError(f"{self.where(row)}, column {column + 1}: {wrong}")
+        return float(plain)
 
-    def _double(self, index: int, column: int, name: str, cell: str) -> float:
-        plain = self.plain(cell)
-        if plain and ("," in plain or not _NUMBER.fullmatch(plain)):
-            wrong = f"{name} must be a number, got {quoted(cell)}{self._hint(cell)}"
-            raise DataError(f"{self.where(index)}, column {column + 1}: {wrong}")
-        return float(plain or "nan")
+    def number(self, cell: Any) -> Fraction:
+        """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
+        if type(cell) in {int, float}:
+            return parse_number(repr(cell))
+        if not isinstance(cell, str):
+            raise LagtopError(f"must be a finite number, got {_shown(cell)}")
+        try:
+            return parse_number(self._plain(cell))
+        except LagtopError:
+            if self.decimal == "," or self._hint(cell):
+                wrong = f"must be a finite decimal number, got {quoted(cell)}{self._hint(cell)}"
+                raise LagtopError(wrong) from None
+            raise
 
-    def plain(self, cell: str) -> str:
+    def _plain(self, cell: str) -> str:
         """Return a cell with a decimal point; a number with the other mark then fails to parse."""
         return cell.translate(_SWAPPED) if self.decimal == "," else cell
 
-    def number(self, cell: str) -> Fraction:
-        """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
-        try:
-            return parse_number(self.plain(cell))
-        except LagtopError as error:
-            hint = self._hint(cell)
-            if hint or self.decimal == ",":
-                wrong = f"must be a finite decimal number, got {quoted(cell)}{hint}"
-                raise LagtopError(wrong) from None
-            raise error from None
-
-    def _hint(self, cell: str) -> str:
+    def _hint(self, cell: Any) -> str:
         """Return a hint in parentheses if a cell is a number with the other decimal mark."""
         other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
-        fits = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
+        fits = self.delimiter not in {"", ","} and mark in cell and _NUMBER.fullmatch(cell)
         return f" (use --decimal {other})" if fits else ""
-
-
-class JsonTable(Table):
-    """JSON objects as rows; a list of numbers becomes several columns."""
-
-    def __init__(self, name: str, objects: Sequence[dict[str, Any]], lines: Sequence[int]) -> None:
-        """Take the objects, and the line of each; no lines if they are parts of one array."""
-        self._lines = lines or range(1, len(objects) + 1)
-        self.place = "line" if lines else "row"
-        self._sizes: dict[str, int] = {}
-        for row in objects:
-            for key, value in row.items():
-                if not self._sizes.get(key):
-                    self._sizes[key] = len(value) if isinstance(value, list) else 0
-        self._objects = objects
-        headings = [part for key, size in self._sizes.items() for part in parts(key, size)]
-        super().__init__(name, headings, len(headings))
-
-    @property
-    def lines(self) -> Sequence[int]:
-        """The line of each object, or its number in the array, from 1."""
-        return self._lines
-
-    def rows(self) -> Sequence[Sequence[Any]]:
-        """Return the values of all objects.  Raises DataError for a list of another length."""
-        return self._values
-
-    @cached_property
-    def _values(self) -> list[list[Any]]:
-        return [self._row(i, x) for i, x in enumerate(self._objects)]
-
-    def _row(self, index: int, entries: dict[str, Any]) -> list[Any]:
-        row: list[Any] = []
-        for key, size in self._sizes.items():
-            value = entries.get(key)
-            if size and value is not None and not (isinstance(value, list) and len(value) == size):
-                wrong = f"must be {size} numbers, got {_shown(value)}"
-                raise DataError(f"{self.where(index)}, column {key}: {wrong}")
-            row += value or [None] * size if size else [value]
-        return row
-
-    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
-        """Return columns of numbers, shape (rows, columns), with NaN for null."""
-        import numpy as np
-
-        rows = self.rows()
-        for i in columns:
-            for j, row in enumerate(rows):
-                if type(row[i]) not in {int, float, type(None)}:
-                    wrong = f"{names[i]} must be a number, got {_shown(row[i])}"
-                    raise DataError(f"{self.where(j)}, column {self.headings[i]}: {wrong}")  # type: ignore[index]
-        chosen = [[row[i] for i in columns] for row in rows]
-        return np.array(chosen, np.float64).reshape(-1, len(columns))
-
-    def number(self, cell: Any) -> Fraction:
-        """Return a number exactly, as the shortest decimal of its double.
-
-        Raises LagtopError for anything else.
-        """
-        if type(cell) not in {int, float}:
-            raise LagtopError(f"must be a finite number, got {_shown(cell)}")
-        return parse_number(repr(cell))
 
 
 def read_table(
     content: bytes, name: str, known: Known, decimal: str = "", width: int | None = None
-) -> TextTable | JsonTable:
+) -> Table:
     """Read a text table.
 
     `known` distinguishes headings from titles.  `decimal` is a point, a comma, or empty if the
     first rows decide.  `width` is the number of columns if their names are given; headings in the
     file are then ignored.  Raises DataError.
     """
-    lines = decoded(content, name).split("\n")
-    start = 0
+    lines, start = decoded(content, name).split("\n"), 0
     if lines[0].startswith(_LABVIEW):
-        start = 1 + max(
-            (i for i, x in enumerate(lines) if x.startswith(_END_OF_HEADER)), default=-1
-        )
-    rows = [i for i in range(start, len(lines)) if _is_row(lines[i])][: _TITLES + 1]
-    if rows and re.fullmatch('"?sep=."?', lines[rows[0]].strip()):
-        del rows[0]
-    if not rows:
-        return TextTable(name, lines, len(lines), None, delimiter=" ", decimal=decimal)
-    comments = [x.strip("# \t") for x in lines[start : rows[0]] if x.lstrip().startswith("#")]
-    if lines[rows[0]].lstrip()[0] in "{[":
-        return _json_table(name, lines, rows[0])
-    at, delimiter = _layout([lines[i] for i in rows], known, decimal, width)
-    headings, first = None, rows[0]
-    if at is not None:
-        first = rows[at] + 1
-        headings = None if width else _headings(name, lines, rows[at], delimiter)
-    more = {"delimiter": delimiter, "decimal": decimal}
-    return TextTable(name, lines, first, headings, comments=comments, **more)
-
-
-def _headings(name: str, lines: Sequence[str], at: int, delimiter: str) -> list[str]:
-    """Return the headings in a line.  Raises DataError for a quoted one that does not end."""
-    if delimiter != " ":
-        try:
-            return cells_of(lines[at], delimiter)
-        except LagtopError as error:
-            raise DataError(f"{name}, line {at + 1}: {error}") from None
-    widths = {len(x.split()) for x in lines[at + 1 :] if _is_row(x)}
-    return [lines[at].strip()] if widths == {1} else _split(lines[at], delimiter)
-
-
-def _is_row(line: str) -> bool:
-    """Return whether a line has a row: it is not blank, a comment, or a rule of a drawn table."""
-    bare = line.strip()
-    return bool(bare) and bare[0] not in "#\u2500"
+        ends = (i for i, x in enumerate(lines, 1) if x.startswith(_END_OF_HEADER))
+        start = max(ends, default=0)
+    kept = [
+        i for i in range(start, len(lines)) if (x := lines[i].strip()) and x[0] not in "#\u2500"
+    ]
+    if kept and re.fullmatch('"?sep=."?', lines[kept[0]].strip()):
+        del kept[0]
+    if kept and lines[kept[0]].lstrip()[0] in "{[":
+        return _json_table(name, lines, kept)
+    top = [lines[i] for i in kept[: _TITLES + 1]]
+    at, delimiter = _layout(top, known, decimal, width) if top else (None, " ")
+    headings, below = None, kept if at is None else kept[at + 1 :]
+    rows = [lines[i] for i in below]
+    if at is not None and not width:
+        headings = _split(top[at], delimiter)
+        if delimiter == " " and {len(x.split()) for x in rows} == {1}:
+            headings = [top[at].strip()]
+        elif delimiter != " ":
+            headings = Table(name, None, [top[at]], [kept[at] + 1], delimiter).cells(0)
+    table = Table(name, headings, rows, [i + 1 for i in below], delimiter)
+    table.decimal = decimal
+    above = lines[start : kept[0]] if kept else []
+    table.comments = [x.strip("# \t") for x in above if x.lstrip().startswith("#")]
+    return table
 
 
 def _layout(
@@ -340,7 +231,12 @@ def _layout(
     first = found[0] + 1 if best else next(numeric, len(texts))
     if first == len(texts) or (best and (width is None or found[1] != " ")):
         return found
-    return first - 1 if first else None, _delimiter_of(texts[first], decimal, width)
+
+    def fits(delimiter: str) -> tuple[bool, bool]:
+        cells = _split(texts[first], delimiter)
+        return width in {None, len(cells)}, _are_numbers(cells)
+
+    return first - 1 if first else None, max([*_delimiters(texts[first], decimal), " "], key=fits)
 
 
 def _delimiters(text: str, decimal: str) -> list[str]:
@@ -359,27 +255,17 @@ def _are_numbers(cells: Sequence[str]) -> bool:
     return all(_NUMBER.fullmatch(x) for x in cells if x)
 
 
-def _delimiter_of(text: str, decimal: str, width: int | None) -> str:
-    """Return the delimiter with which most cells are numbers and the row has `width` cells."""
-
-    def fits(delimiter: str) -> tuple[bool, bool]:
-        cells = _split(text, delimiter)
-        return width in {None, len(cells)}, _are_numbers(cells)
-
-    return max([*_delimiters(text, decimal), " "], key=fits)
-
-
 def _split(text: str, delimiter: str) -> list[str]:
     """Return the headings in a row; a blank before a unit in brackets is not a delimiter."""
     if delimiter == " ":
         return [x.strip('"') for x in _HEADING.findall(text)]
     try:
-        return cells_of(text, delimiter)
+        return split_row(text, delimiter)
     except LagtopError:
         return [x.strip() for x in text.split(delimiter)]
 
 
-def cells_of(text: str, delimiter: str) -> list[str]:
+def split_row(text: str, delimiter: str) -> list[str]:
     """Return the cells of a line.  Raises LagtopError for a quoted cell that does not end on it."""
     if '"' not in text:
         return text.split() if delimiter == " " else [x.strip() for x in text.split(delimiter)]
@@ -391,19 +277,37 @@ def cells_of(text: str, delimiter: str) -> list[str]:
         raise LagtopError(f"{wrong}: {error}") from None
 
 
-def _json_table(name: str, lines: Sequence[str], first: int) -> JsonTable:
-    """Return JSON objects, one per line or in one array, as a table.  Raises DataError."""
+def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
+    """Return JSON objects, one per line or in one array; a list in them becomes several columns.
+
+    Raises DataError.
+    """
+    first, place = kept[0], "line"
     if lines[first].lstrip()[0] == "[":
-        rows = _parsed(name, "\n".join(lines[first:]), first)
-        wrong = [f"row {i}" for i, x in enumerate(rows, 1) if not isinstance(x, dict)]
-        numbers: list[int] = []
+        objects, place = _parsed(name, "\n".join(lines[first:]), first), "row"
+        numbers: Sequence[int] = range(1, len(objects) + 1)
     else:
-        numbers = [i for i in range(first, len(lines)) if _is_row(lines[i])]
-        rows = [_parsed(name, lines[i], i) for i in numbers]
-        wrong = [f"line {i + 1}" for i, x in zip(numbers, rows, strict=True) if type(x) is not dict]
-    if wrong:
-        raise DataError(f"{name}, {wrong[0]}: a row must be a JSON object")
-    return JsonTable(name, rows, [i + 1 for i in numbers])
+        objects = [_parsed(name, lines[i], i) for i in kept]
+        numbers = [i + 1 for i in kept]
+    sizes: dict[str, int] = {}
+    for number, row in zip(numbers, objects, strict=True):
+        if not isinstance(row, dict):
+            raise DataError(f"{name}, {place} {number}: a row must be a JSON object")
+        for key, value in row.items():
+            if not sizes.get(key):
+                sizes[key] = len(value) if isinstance(value, list) else 0
+    rows: list[list[Any]] = []
+    for number, row in zip(numbers, objects, strict=True):
+        rows.append([])
+        for key, size in sizes.items():
+            value = row.get(key)
+            if size and value is not None and not (isinstance(value, list) and len(value) == size):
+                wrong = f"column {key}: must be {size} numbers, got {_shown(value)}"
+                raise DataError(f"{name}, {place} {number}, {wrong}")
+            rows[-1] += (value or [None] * size) if size else [value]
+    table = Table(name, [x for key, size in sizes.items() for x in parts(key, size)], rows, numbers)
+    table.place = place
+    return table
 
 
 def _parsed(name: str, text: str, first: int) -> Any:
@@ -418,8 +322,8 @@ def _parsed(name: str, text: str, first: int) -> Any:
 
 
 def _shown(value: Any) -> str:
-    """Return a JSON value as text for a message."""
-    return shortened(json_text(value))
+    """Return a cell as text for a message, a value of JSON as it writes it."""
+    return quoted(value) if isinstance(value, str) else shortened(json_text(value))
 
 
 def parts(name: str, size: int) -> list[str]:

@@ -20,7 +20,7 @@ from .headings import name_and_unit
 from .input_keys import TILT, checked_double, one_of_each, overridden
 from .names import repeated
 from .text_lines import UNDECIDED, Dialect
-from .text_tables import Table, TextTable, cells_of, read_table
+from .text_tables import Table, read_table, split_row
 from .top import INPUTS
 from .values import STEADY_WORDS, InputArrays, Value, steady_refused
 
@@ -86,9 +86,8 @@ class TopsFile(NamedTuple):
     """The extra columns, which are copied to the output, in their order."""
     units: Mapping[str, Value]
     """The value 1 in the unit of its heading, for each column of an input."""
-    number: Callable[[Any], Fraction]
-    """Returns the number in a cell exactly."""
-    delimiter: str
+    form: Table
+    """The table without its rows."""
     factors: Mapping[str, Fraction] = {}
     """The conversion factor of each column whose heading has a unit."""
 
@@ -121,7 +120,7 @@ class TopsFile(NamedTuple):
         inputs: dict[str, float] = {}
         error = None
         try:
-            cells = cells_of(raw, self.delimiter) if isinstance(raw, str) else raw
+            cells = split_row(raw, self.form.delimiter) if isinstance(raw, str) else raw
             values = dict(zip(self.columns, cells, strict=False))
             if len(cells) != len(self.columns):
                 raise LagtopError(f"a row must have {len(self.columns)} cells, got {len(cells)}")
@@ -138,7 +137,7 @@ class TopsFile(NamedTuple):
         if cell in STEADY_WORDS:
             raise LagtopError(f"{name} {steady_refused(cell)}")
         try:
-            return checked_double(name, self.number(cell) * self.factors.get(name, 1))
+            return checked_double(name, self.form.number(cell) * self.factors.get(name, 1))
         except LagtopError as error:
             raise LagtopError(str(error) if error.key else f"{name} {error}") from None
 
@@ -154,8 +153,7 @@ def read_tops(
     """
     table = read_table(read_bytes(path), shown_path(path), _known_inputs, decimal)
     file = _format(table, computed)
-    raw: Sequence[Any] = table.texts if isinstance(table, TextTable) else table.rows()
-    rows = list(zip(table.lines, raw, strict=True))
+    rows = list(zip(table.lines, table.texts, strict=True))
     return file, (Lines(file, rows[i : i + size]) for i in range(0, len(rows), size))
 
 
@@ -176,12 +174,10 @@ def _format(table: Table, computed: Collection[str]) -> TopsFile:
         )
     _check_units(units, name)
     table.decide(i for i, x in enumerate(columns) if x in units)
-    number, delimiter = table.number, ""
-    if isinstance(table, TextTable):
-        # Blocks of rows go to other processes, without the rest of the file.
-        delimiter, decimal = table.delimiter, table.decimal
-        number = TextTable(name, [], 0, headings, delimiter=delimiter, decimal=decimal).number
-    return TopsFile(name, columns, carried, units, number, delimiter)
+    # Blocks of rows go to other processes, without the rest of the file.
+    form = Table(name, headings, (), (), table.delimiter)
+    form.decimal = table.decimal
+    return TopsFile(name, columns, carried, units, form)
 
 
 def _column_of(heading: str) -> tuple[str, str]:

@@ -17,7 +17,7 @@ from ..errors import DataError, LagtopError, UnavailableError
 from .files import LARGEST_FILE, read_bytes, shown_path
 from .names import ANGLES, repeated
 from .text_lines import UNDECIDED, Dialect
-from .text_tables import Table, TextTable, parts, read_table
+from .text_tables import Table, parts, read_table
 from .trajectory_columns import (
     QUANTITIES,
     FoundQuantity,
@@ -182,7 +182,7 @@ def _column_names(table: Table, columns: Sequence[str] | None) -> Sequence[str]:
             "columns",
         )
     names = table.headings if columns is None else columns
-    if names is None and isinstance(table, TextTable):
+    if names is None:
         names = _names_in_comments(table.comments, table.width)
     if names is None:
         raise DataError(
@@ -223,24 +223,19 @@ class ArrayTable(Table):
     place = "row"
 
     def __init__(self, name: str, names: Sequence[str] | None, columns: Sequence[Array]) -> None:
-        super().__init__(name, names, len(columns))
-        self._columns = columns
-
-    @property
-    def lines(self) -> Sequence[int]:
-        """The number of each row, from 1."""
-        return range(1, len(self._columns[0]) + 1)
+        super().__init__(name, names, (), range(1, len(columns[0]) + 1))
+        self.columns, self.width = columns, len(columns)
 
     def column(self, index: int) -> list[float]:
         """Return one column as a list."""
-        numbers: list[float] = self._columns[index].tolist()
+        numbers: list[float] = self.columns[index].tolist()
         return numbers
 
     def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
         """Return columns as doubles, shape (rows, columns)."""
         import numpy as np
 
-        return np.stack([self._columns[i] for i in columns], axis=1).astype(np.float64)
+        return np.stack([self.columns[i] for i in columns], axis=1).astype(np.float64)
 
 
 def _read_arrays(content: bytes, name: str, kind: str) -> ArrayTable:

@@ -201,7 +201,7 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(
     path.write_text("t,theta\n" + "\n".join(rows))
     plain = read_trajectory(str(path)).values()["theta"][:, 0].tolist()
     assert plain == list(map(float, cells))
-    monkeypatch.setattr(text_tables, "_LINES_AT_ONCE", 16)
+    monkeypatch.setattr(text_tables, "_ROWS_AT_ONCE", 16)
     rows[3] = '"3","3."'
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
     assert read_trajectory(str(path)).values()["theta"][:, 0].tolist() == plain
