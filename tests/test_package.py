@@ -17,10 +17,7 @@ import lagtop
 import numpy as np
 import pytest
 from conftest import ROOT
-from lagtop import Comparison, Top
 
-from lagrange_cli.fits.record import Outcome
-from lagrange_cli.motion.numbers import Numbers
 from lagrange_cli.sweep.results import Results
 
 
@@ -45,24 +42,6 @@ def test_examples_in_docstrings_run(name: str) -> None:
         assert doctest.DocTestRunner().run(test).failed == 0
 
 
-INSIDE = {
-    Top: {"tilt", "cosine", "texts", "pole", "steady_word", "options"},
-    Outcome: {"found", "products", "derived", "failure", "shown_as", "leaves_noise"},
-}
-"""Methods that other modules use: no user needs them."""
-
-
-@pytest.mark.parametrize("owner", [Top, lagtop.Motion, Results, Outcome, Comparison])
-def test_examples_use_every_method(owner: type) -> None:
-    parents = {x for x in owner.__mro__ if x.__module__.startswith("lagrange_cli")} - {Numbers}
-    members = {name: x for parent in parents for name, x in vars(parent).items()}
-    methods = {name for name, x in members.items() if callable(x) or isinstance(x, property)}
-    public = {name for name in methods if name[0] != "_"} - INSIDE.get(owner, set())
-    examples = "".join(re.findall(r">>> .*", "".join(x.__doc__ or "" for x in EXAMPLES.values())))
-    assert len(public) >= 3
-    assert {name for name in public if not re.search(rf"\.{name}\b", examples)} == set()
-
-
 def test_an_unknown_name_is_no_attribute() -> None:
     with pytest.raises(AttributeError, match="module 'lagtop' has no attribute 'nothing'"):
         _ = lagtop.nothing  # type: ignore[attr-defined]
@@ -74,12 +53,6 @@ def test_the_import_alone_loads_nothing_heavy() -> None:
     code = "import sys, lagtop; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
     assert not {"numpy", "mpmath", "scipy", "click", "rich"} & set(done.stdout.split())
-
-
-def test_public_names_stand_beside_subpackages_of_the_same_name() -> None:
-    code = "import lagtop, lagrange_cli.sweep.records as r; print(lagtop.sweep is r.sweep)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
-    assert done.stdout == "True\n"
 
 
 @pytest.fixture(scope="module")
