@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 from lagtop import Top
+from ours import ManyDigits
 
-from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
 from lagrange_cli.motion.solve import solve

@@ -9,11 +9,7 @@ from functools import partial
 from typing import Any, ClassVar
 
 import pytest
-
-from lagrange_cli.elliptic.many_digits import ManyDigits
-
-ar = ManyDigits(60)
-"""Arithmetic of the identities, apart from every other context."""
+from ours import ar
 
 Sides = Iterator[tuple[Any, Any]]
 """Pairs of a left and a right side: one by our functions, the other independent of them."""

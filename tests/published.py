@@ -15,10 +15,8 @@ import mpmath
 from ball_judge import Judge
 from conftest import ROOT
 from lagtop import Motion, read_scene, solve
+from ours import ManyDigits, Ours
 
-from lagrange_cli.elliptic.jacobi import jacobi
-from lagrange_cli.elliptic.many_digits import ManyDigits
-from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.inputs.names import ANGLES
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
 
@@ -227,7 +225,7 @@ def exact(x: Printed) -> Many:
     with mpmath.workdps(DIGITS):
         if x.scene == ELLIPJ:
             ar = ManyDigits(DIGITS)
-            return mpmath.mpf(ar.nstr(jacobi(ar, 50, modulus(ar, k=ar.mpf(_K))).cn, DIGITS))
+            return mpmath.mpf(ar.nstr(Ours(ar).jacobi(50, ar.mpf(_K))[2], DIGITS))
         if not x.t:
             return mpmath.mpf(
                 str(motion(x.scene).record(digits=DIGITS, keys=[x.quantity])[x.quantity])

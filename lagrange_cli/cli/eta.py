@@ -77,7 +77,7 @@ def eta_command(
     ),
     columns: list[str] | None = opt.names(
         "Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
-        offered=opt.late("elliptic.eta_table", "ETA_COLUMNS"),
+        offered=opt.late("elliptic.eta", "ETA_COLUMNS"),
     ),
     rad: bool = opt.rad,
     digits: int | None = opt.digits(opt.MOST_TABLE_DIGITS),
@@ -96,15 +96,15 @@ def eta_command(
     Without --tau, the constants are printed.  At tau = 0, eta is delta*.  h1, theta and xi' are
     defined in (3.2.9) to (3.2.11).
     """
-    from ..elliptic.eta_table import record
+    from ..elliptic.eta import eta_record
 
     quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
     if tau is None:
         if columns is not None:
             raise LagtopError("--columns needs --tau")
-        write_constants(record(quadrature, digits), "Roots", _ETA, out)
+        write_constants(eta_record(quadrature, digits), "Roots", _ETA, out)
         return
-    from ..elliptic.eta_table import ETA_COLUMNS, EtaTable
+    from ..elliptic.eta import ETA_COLUMNS, EtaTable
 
     names = check_names("columns", columns or ["eta"], ETA_COLUMNS)
     write_functions(

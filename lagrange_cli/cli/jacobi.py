@@ -12,12 +12,12 @@ from ..errors import LagtopError
 from ..inputs.names import check_names, split_names
 from ..output.terminal import with_progress
 from . import options as opt
-from .app import complain
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
+    from ..elliptic.function_table import ComplexPoints
     from ..elliptic.modulus import ModulusInput
-    from ..elliptic.request import ComplexPoints, FunctionRequest
+    from ..elliptic.nome_series import SeriesTable
     from ..elliptic.tables import TableOfFunctions
     from ..inputs.ranges import Multiple, Multiples
     from ..output.destination import Output
@@ -78,7 +78,7 @@ def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
     return [_parse_argument(part) for part in text.split(",")]
 
 
-def write_functions(table: TableOfFunctions, digits: int | None, out: Output) -> None:
+def write_functions(table: TableOfFunctions | SeriesTable, digits: int | None, out: Output) -> None:
     """Write a table of functions, with its progress."""
     if digits is not None and out.fmt == "parquet":
         raise LagtopError(f"--format {out.fmt} holds doubles: with --digits use csv or json")
@@ -186,15 +186,17 @@ def jacobi_command(
     elif series is not None:
         _write_series(modulus, arguments, in_quarters, series, out)
     elif arguments is not None:
-        from ..elliptic.request import FunctionRequest
+        from ..elliptic.function_table import FunctionRequest, FunctionTable
 
         v = parameter.nearest() if digits is None else parameter
-        request = FunctionRequest(given, asked, v, imaginary, rad, in_quarters)
-        write_functions(_table(arguments, request, real=real), digits, out)
+        request = FunctionRequest(given, asked, v, imaginary, rad, in_quarters, real)
+        write_functions(FunctionTable(arguments, request), digits, out)
     elif families is not None:
         raise LagtopError("--functions needs --u")
     else:
-        write_constants(_constants(given, digits), "Moduli", _JACOBI, out)
+        from ..elliptic.modulus import constants_record
+
+        write_constants(constants_record(given, digits), "Moduli", _JACOBI, out)
 
 
 def _modulus(**named: Fraction | None) -> tuple[str, Fraction]:
@@ -203,27 +205,6 @@ def _modulus(**named: Fraction | None) -> tuple[str, Fraction]:
     if len(chosen) != 1:
         raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
     return chosen[0]
-
-
-def _table(arguments: ComplexPoints, request: FunctionRequest, *, real: bool) -> TableOfFunctions:
-    """Return the table of real or of complex functions."""
-    if real:
-        from ..elliptic.function_table import FunctionTable
-
-        return FunctionTable(arguments.real, request)
-    from ..elliptic.complex_table import ComplexTable
-
-    return ComplexTable(arguments, request)
-
-
-def _constants(given: ModulusInput | ExactComplex, digits: int | None) -> dict[str, Any]:
-    if isinstance(given, ExactComplex):
-        from ..elliptic.complex_table import any_constants_record
-
-        return any_constants_record(given, digits)
-    from ..elliptic.modulus import constants_record
-
-    return constants_record(given, digits)
 
 
 def write_constants(record: dict[str, Any], group: str, table: str, out: Output) -> None:
@@ -241,7 +222,7 @@ def _arguments(
     Raises LagtopError for factors of K unless all numbers are real.
     """
     from ..arithmetic.points import ListedPoints
-    from ..elliptic.request import ComplexPoints
+    from ..elliptic.function_table import ComplexPoints
     from ..inputs.ranges import Multiple, listed_multiples
 
     imag: list[Fraction] = []
@@ -277,12 +258,10 @@ def _write_series(
     terms: int,
     out: Output,
 ) -> None:
-    """Write the sums, and on standard error the sufficient number of terms."""
-    from ..elliptic.nome_series import TOLERANCE, SeriesTable
+    """Write the partial sums."""
+    from ..elliptic.nome_series import SeriesTable
 
     if arguments is not None and arguments.real.count != 1:
         raise LagtopError(f"--series takes one --u, got {arguments.real.count}")
     u = None if arguments is None else next(arguments.real.decimals())
-    table = SeriesTable(modulus, u, terms, in_quarters=in_quarters)
-    write_functions(table, None, out)
-    complain(f"Terms whose error is proved to be below {TOLERANCE}: {table.needed()}")
+    write_functions(SeriesTable(modulus, u, terms, in_quarters=in_quarters), None, out)

@@ -7,27 +7,27 @@ The two outer roots p +- q have these layouts:
 - One lies on each side of the band [delta*, delta] (the satellite).
 - Both lie on one side, or beside the band as a complex pair (hyperbolic motion).
 - One or both are at infinity (parabolic motion; Lagrange's top).
-
-The roots are exact rationals, and so are their gaps.  All constants are sums and products of
-positive functions of the gaps, so that no digits are lost as roots approach each other.
-
-In doubles, sizes are from 1e-100 to 1e100.  The error of eta is at most 4 units of eps (max(1,
-|eta|) + |tau d eta/d tau|).  Here tau is counted from the nearest passage of delta*.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Iterator
 from fractions import Fraction
 from math import prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ..arithmetic.protocol import FunctionArithmetic, Numeric
+from flint import arb
+
+from ..arithmetic.arb_ball import balls
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..errors import LagtopError
-from .complete import agm
-from .modulus import Modulus
+from .enclosures import FIRST_DIGITS, Value, equality_digits, exact, record
+from .functions import Functions, Point
+from .modulus import Kind, Modulus
+from .tables import TableOfFunctions, nearest
 
-LEAST, MOST = Fraction("1e-100"), Fraction("1e100")
-"""Sizes of roots, gaps and g in doubles."""
+ETA_COLUMNS = ("tau", "eta", "etadot", "h1", "theta", "xi_prime")
+"""The columns; tau is always included."""
 
 
 class Quadrature(NamedTuple):
@@ -47,16 +47,11 @@ class Quadrature(NamedTuple):
     height: Fraction = Fraction(0)
     """Absolute value of the imaginary parts of a complex pair."""
 
-    def check(self, *, doubles: bool) -> None:
-        """Raise LagtopError unless lower <= upper, g > 0 and the band has no real outer root.
-
-        In doubles, sizes outside 1e-100 to 1e100 raise it, too.
-        """
+    def check(self) -> None:
+        """Raise LagtopError unless lower <= upper, g > 0 and the band has no real outer root."""
+        low, high = float(self.lower), float(self.upper)
         if self.upper < self.lower:
-            raise LagtopError(
-                f"delta must be >= delta_star = {float(self.lower)}, got {float(self.upper)}",
-                "delta",
-            )
+            raise LagtopError(f"delta must be >= delta_star = {low}, got {high}", "delta")
         if self.g <= 0:
             raise LagtopError(f"g must be > 0, got {float(self.g)}", "g")
         for root in () if self.height else self.outer:
@@ -68,32 +63,18 @@ class Quadrature(NamedTuple):
             if self.lower <= root <= self.upper:
                 raise LagtopError(
                     "the outer roots must lie outside the band from delta* to delta, "
-                    f"[{float(self.lower)}, {float(self.upper)}], got {float(root)}"
+                    f"[{low}, {high}], got {float(root)}"
                 )
 
-        if doubles:
-            self._check_sizes()
+    @property
+    def inputs(self) -> list[Fraction]:
+        """All numbers."""
+        return [self.lower, self.upper, *self.outer, self.g, self.height]
 
-    def _check_sizes(self) -> None:
-        """Raise LagtopError for sizes outside 1e-100 to 1e100."""
-        gaps = [abs(end - root) for root in self.outer for end in (self.lower, self.upper)]
-        sizes = {
-            "delta": [self.upper],
-            "delta_star": [self.lower],
-            "g": [self.g],
-            "delta - delta_star": [self.upper - self.lower],
-            "the gap to an outer root": [] if self.height else gaps,
-            "q": [self.height],
-            "p": self.outer[:1] if self.height else [],
-        }
-        for name, values in sizes.items():
-            for value in values:
-                if value and not LEAST <= abs(value) <= MOST:
-                    raise LagtopError(
-                        f"{name} must be from 1e-100 to 1e100 in size, got {float(value)} "
-                        "(or give --digits)",
-                        name,
-                    )
+    @property
+    def is_still(self) -> bool:
+        """Whether the band is a double root, so that eta is constant."""
+        return self.lower == self.upper
 
     @property
     def squares(self) -> tuple[Fraction, Fraction]:
@@ -118,7 +99,7 @@ class Quadrature(NamedTuple):
     def kind(self) -> str:
         """The degree of the radicand and its degeneracy, if any, in words."""
         degree = ("quadratic", "cubic", "quartic")[len(self.outer)]
-        if self.lower == self.upper:
+        if self.is_still:
             return f"{degree}, the band is a double root: eta is constant"
         if not self.outer:
             return "quadratic, k1 = 0: a harmonic oscillation"
@@ -128,118 +109,161 @@ class Quadrature(NamedTuple):
 
 
 class EtaConstants(NamedTuple):
-    """The constants of (3.2.3) to (3.2.12) and the complement k1', in some arithmetic."""
+    """The constants of (3.2.3) to (3.2.12) and the complement k1', in balls."""
 
-    m1: Numeric
+    m1: arb
     """m' (3.2.3)."""
-    m2: Numeric
+    m2: arb
     """m'' (3.2.3)."""
-    k: Numeric
+    k: arb
     """Modulus k (3.2.5), or k/i for a complex pair of roots."""
-    k1: Numeric
+    k1: arb
     """Modulus k1 (3.2.8), or k1/i for a complex pair of roots."""
-    k1_prime: Numeric
+    k1_prime: arb
     """Complement of k1; it is above 1 if k1 is imaginary."""
-    sigma1: Numeric
+    sigma1: arb
     """Rate of the argument (3.2.8)."""
-    s: Numeric
+    s: arb
     """Amplitude of sn (3.2.12)."""
-    d: Numeric
+    d: arb
     """Coefficient of the denominator (3.2.12)."""
-    gamma: Numeric
+    gamma: arb
     """Shift (3.2.12)."""
-    period: Numeric
-    """Period in tau, 4 K1/sigma1."""
+    period: arb
+    """Period of eta, 4 K1/sigma1."""
+
+    def modulus(self, quadrature: Quadrature) -> Modulus:
+        """Return k1, reduced to [0, 1]; if it is imaginary, k/i is the reduced modulus."""
+        if quadrature.height:
+            return Modulus(self.k, 1 / self.k1_prime, Kind.IMAGINARY, self.k1_prime)
+        return Modulus(self.k1, self.k1_prime)
 
 
-def eta_constants(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstants:
-    """Return the constants in balls, or in an mpmath context."""
-    found = _of_pair(ar, quadrature) if quadrature.height else _of_real_roots(ar, quadrature)
-    m1, m2, sigma1 = found["m1"], found["m2"], found["sigma1"]
-    lower, upper, g = (ar.convert(x) for x in (quadrature.lower, quadrature.upper, quadrature.g))
-    rise, fall = _sum_and_difference(ar, quadrature, m2 * upper, m1 * lower)
-    square1, square2 = quadrature.squares
+def eta_constants(quadrature: Quadrature) -> EtaConstants:
+    """Return the constants in balls."""
+    lower, upper, outer, g, height = quadrature
+    m1, m2 = (exact(square).sqrt() for square in quadrature.squares)
+    width, total, product = exact(upper - lower), m1 + m2, exact(g) * m1 * m2
+    if height:
+        # k^2 is negative in (3.2.5) and above -1
+        square = (width**2 - (m1 - m2) ** 2).nonnegative_part() / (4 * m1 * m2)
+        k = arb(0) if quadrature.is_still else square.sqrt()
+        sigma1 = (exact(g) * (total - width) * (total + width)).sqrt() / 2
+        k1_prime = product.sqrt() / sigma1
+        k1 = k * k1_prime
+    else:
+        crossed, apart = total, Fraction(len(outer))
+        if len(outer) > 1:
+            ways = (exact(abs((outer[i] - lower) * (outer[1 - i] - upper))) for i in (0, 1))
+            crossed, apart = sum((way.sqrt() for way in ways), arb(0)), abs(outer[0] - outer[1])
+        k1, k1_prime = width * exact(apart) / crossed**2, 2 * (m1 * m2).sqrt() / crossed
+        k, sigma1 = k1 / k1_prime, exact(g).sqrt() * crossed / 2
     return EtaConstants(
-        **found,
-        s=fall / (m1 + m2),
-        d=ar.convert(square2 - square1) / (m1 + m2) ** 2,
-        gamma=rise / (m1 + m2),
-        period=2 * ar.pi / agm(ar, sigma1, ar.sqrt(g * m1 * m2)),
+        *(m1, m2, k, k1, k1_prime, sigma1),
+        s=(m2 * exact(upper) - m1 * exact(lower)) / total,
+        d=(m2 - m1) / total,
+        gamma=(m2 * exact(upper) + m1 * exact(lower)) / total,
+        period=2 * arb.pi() / sigma1.agm(product.sqrt()),
     )
 
 
-def _of_real_roots(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Numeric]:
-    """Return m', m'', the moduli and sigma1 for real outer roots.
+class EtaTable(TableOfFunctions):
+    """Tables of eta, its rate, h1, theta and xi' over tau, with eta = delta* at tau = 0.
 
-    The squares m'^2 and m''^2 are products of the distances of delta and delta* from the outer
-    roots.  In each layout, 2 sigma1/sqrt(g) is a sum of square roots of such products.
+    Raises LagtopError as `Quadrature.check` does and, in doubles, for times beyond 2^50 periods.
     """
-    lower, upper, outer, g, _ = quadrature
-    to_lower = [ar.convert(abs(root - lower)) for root in outer]
-    to_upper = [ar.convert(abs(root - upper)) for root in outer]
-    m1, m2 = ar.sqrt(prod(to_upper)), ar.sqrt(prod(to_lower))
-    crossed, apart = m1 + m2, Fraction(len(outer))
-    if len(outer) > 1:
-        crossed = ar.sqrt(to_lower[0] * to_upper[1]) + ar.sqrt(to_lower[1] * to_upper[0])
-        apart = abs(outer[0] - outer[1])
-    k1 = ar.convert(upper - lower) * ar.convert(apart) / crossed**2
-    k1_prime, sigma1 = 2 * ar.sqrt(m1 * m2) / crossed, ar.sqrt(ar.convert(g)) * crossed / 2
-    moduli = {"k": k1 / k1_prime, "k1": k1, "k1_prime": k1_prime}
-    return {"m1": m1, "m2": m2, "sigma1": sigma1, **moduli}
+
+    def __init__(
+        self,
+        points: Points,
+        quadrature: Quadrature,
+        *,
+        names: Collection[str] = ("eta",),
+        angle: str = "deg",
+    ) -> None:
+        """Take the inputs; `names` are some of ETA_COLUMNS, `angle` is the unit, deg or rad."""
+        super().__init__()
+        self.points, self.count, self.quadrature = points, points.count, quadrature
+        self.names, self.angle = {"tau", *names}, angle
+
+    def check(self, *, doubles: bool) -> None:
+        """Raise LagtopError unless the motion is periodic; see the class for doubles."""
+        self.quadrature.check()
+        if doubles:
+            with balls(10 * FIRST_DIGITS):
+                period = float(eta_constants(self.quadrature).period.mid())
+            check_reach("tau", self.points, min(MAX_PERIODS * period, MAX_TIME))
+
+    def arguments(self, *, doubles: bool) -> Iterator[Fraction]:
+        """Yield the times."""
+        times = self.points.decimals()
+        return map(nearest, times) if doubles else times
+
+    def inputs(self, x: Fraction) -> Iterable[Fraction]:
+        """Return the time and the numbers of the quadrature."""
+        return [x, *self.quadrature.inputs]
+
+    def constants(self) -> tuple[EtaConstants, Functions]:
+        """Return the constants, and the functions of k1."""
+        found = eta_constants(self.quadrature)
+        return found, Functions(found.modulus(self.quadrature))
+
+    def columns(self, x: Fraction, constants: tuple[EtaConstants, Functions]) -> dict[str, Value]:
+        """Return the columns at a time.
+
+        h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1),
+        eta = (gamma + s xi')/(1 + d xi') (3.2.11)
+        """
+        c, functions = constants
+        h1 = c.sigma1 * (exact(x) - c.period / 4)
+        am, sn, cn, dn = (z.real for z in functions.jacobi(Point(h1)) if z is not None)
+        below = 1 + c.d * sn
+        eta: Value = (c.gamma + c.s * sn) / below
+        rate: Value = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / below**2
+        if self.quadrature.is_still:
+            eta, rate = self.quadrature.lower, Fraction(0)
+        theta = am if self.angle == "rad" else am * 180 / arb.pi()
+        values = dict(zip(ETA_COLUMNS, (x, eta, rate, h1, theta, sn), strict=True))
+        found = {name: value for name, value in values.items() if name in self.names}
+        return {f"theta_{self.angle}" if x == "theta" else x: y for x, y in found.items()}
 
 
-def _of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Numeric]:
-    """Return m', m'', the moduli and sigma1 for outer roots p +- i height.
+def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
+    """Return the roots and constants, correctly rounded to doubles or to `digits` digits.
 
-    The moduli k and k1 are imaginary, and m' and m'' are the distances of delta and delta* from
-    these roots.  With D = delta - delta*,
-
-        kappa^2 = -k^2 = (D^2 - (m' - m'')^2)/(4 m' m''),
-        kappa' = sqrt((m' + m'' - D)(m' + m'' + D)/(4 m' m'')) = sigma1/sqrt(g m' m'').
-
-    All numbers that are subtracted in kappa^2 are exact.
+    Raises LagtopError as `Quadrature.check` does, and for numbers beyond the doubles.
     """
-    lower, upper, (p, *_) = quadrature.lower, quadrature.upper, quadrature.outer
-    above, below = upper - p, lower - p
-    g, width, height = (ar.convert(x) for x in (quadrature.g, upper - lower, quadrature.height))
-    m1, m2 = (ar.sqrt(ar.convert(square)) for square in quadrature.squares)
-    product, crossed = m1 * m2, ar.convert(above * below)
-    if above * below > 0:
-        rest = ar.convert(above**2 + below**2 + quadrature.height**2)
-        between = height**2 * rest / (product + crossed)
-    else:
-        between = product - crossed
-    kappa = width * ar.sqrt((height**2 + between) / (2 * product)) / (m1 + m2)
-    excess = _beyond(ar, m1, above, height) + _beyond(ar, m2, -below, height)
-    sigma1 = ar.sqrt(g * excess * (m1 + m2 + width)) / 2
-    kappa_prime = sigma1 / ar.sqrt(g * product)
-    moduli = {"k": kappa, "k1": kappa / kappa_prime, "k1_prime": 1 / kappa_prime}
-    return {"m1": m1, "m2": m2, "sigma1": sigma1, **moduli}
+    quadrature.check()
+    most = equality_digits(quadrature.inputs, digits)
+    return record(lambda: _constants_by_key(quadrature), digits, most)
 
 
-def _beyond(ar: FunctionArithmetic, distance: Numeric, part: Fraction, height: Numeric) -> Numeric:
-    """Return distance - part, where distance = sqrt(part^2 + height^2); part may be negative."""
-    exact = ar.convert(part)
-    return height**2 / (distance + exact) if part > 0 else distance - exact
-
-
-def _sum_and_difference(
-    ar: FunctionArithmetic, quadrature: Quadrature, high: Numeric, low: Numeric
-) -> tuple[Numeric, Numeric]:
-    """Return m'' delta + m' delta* and m'' delta - m' delta* from the two terms.
-
-    If the terms cancel, the exact difference of their squares gives the result.
-    """
-    square1, square2 = quadrature.squares
-    difference = ar.convert(square2 * quadrature.upper**2 - square1 * quadrature.lower**2)
-    if quadrature.upper * quadrature.lower > 0:
-        return high + low, difference / (high + low)
-    moves = quadrature.upper or quadrature.lower
-    return (difference / (high - low) if moves else high + low), high - low
-
-
-def modulus_in_use(c: EtaConstants, quadrature: Quadrature) -> Modulus:
-    """Return k1 or, if it is imaginary, kappa = k/i, for which k1 = i kappa/kappa'."""
-    if quadrature.height:
-        return Modulus(c.k, 1 / c.k1_prime, 0 * c.k)
-    return Modulus(c.k1, c.k1_prime, 0 * c.k1)
+def _constants_by_key(quadrature: Quadrature) -> dict[str, Value]:
+    """Return the record in balls; None for keys that the layout does not have."""
+    c, outer = eta_constants(quadrature), quadrature.outer
+    is_pair, is_imaginary = len(outer) > 1, bool(quadrature.height)
+    return {
+        "delta": quadrature.upper,
+        "delta_star": quadrature.lower,
+        "p": (outer[0] + outer[-1]) / 2 if is_pair else None,
+        "q": abs(outer[0] - outer[1]) / 2 if is_pair and not is_imaginary else None,
+        "q_imag": quadrature.height if is_imaginary else None,
+        "outer_root": outer[0] if len(outer) == 1 else None,
+        "g": quadrature.g,
+        "layout": quadrature.layout,
+        "kind": quadrature.kind,
+        "m_prime": c.m1,
+        "m_double_prime": c.m2,
+        "k": None if is_imaginary else c.k,
+        "k_imag": c.k if is_imaginary else None,
+        "k1": None if is_imaginary else c.k1,
+        "k1_imag": c.k1 if is_imaginary else None,
+        "k1_prime": c.k1_prime,
+        "K1": c.period * c.sigma1 / 4,
+        "sigma1": c.sigma1,
+        "s": c.s,
+        "d": c.d,
+        "gamma": c.gamma,
+        "period": c.period,
+        "tau3": -c.period / 4,
+    }

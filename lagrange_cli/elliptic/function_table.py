@@ -1,165 +1,228 @@
-"""Tables of the functions of one modulus in [0, 1], for real arguments."""
+"""Tables of am, sn, cn, dn and of the theta, Zeta, Omega and Pi functions of one modulus."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
-from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from ..arithmetic.balls import Balls, balls
-from ..arithmetic.numbers import DOUBLES
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ListedPoints, Points, check_reach
-from ..arithmetic.protocol import FunctionArithmetic, Numeric
-from ..arithmetic.rounding import decided, pair
+from flint import acb, arb
+
+from ..arithmetic.arb_ball import balls
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, Points, check_reach
 from ..errors import LagtopError
-from .complete import complete_k
-from .jacobi import Jacobi, jacobi, jacobi_at
-from .modulus import Modulus
-from .periods import INDICES, Periods, whole_and_rest
-from .request import THIRD, FunctionRequest, known_values, put_exact_values
-from .tables import TableOfFunctions
-from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
-from .third_kind import third_kind
-from .third_kind_series import ThirdKind
-
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
-    from .tables import Known
+from .enclosures import FIRST_DIGITS, Value, exact, rational
+from .functions import INDICES, THIRD, Functions, Point
+from .modulus import AnyModulus, Kind, check_modulus, numbers_of, reduced, split
+from .tables import TableOfFunctions, nearest
 
 
-class FunctionConstants(NamedTuple):
-    """The modulus of a request, and the constants that depend only on it and the parameter."""
+class FunctionRequest(NamedTuple):
+    """The functions to tabulate."""
 
-    modulus: Modulus
-    series: ThetaSeries | None
-    """None for k = 1, which has no periods."""
-    third: dict[str, ThirdKind]
-    K: Numeric
-    """The quarter period; a pair of doubles in a table of doubles, None for k = 1."""
+    modulus: AnyModulus
+    families: tuple[str, ...] = ("am",)
+    """Some of am (with sn, cn and dn), theta, zeta, omega and pi."""
+    parameter: ExactComplex = ExactComplex(Fraction(0))
+    """The parameter of omega and pi."""
+    imaginary: bool = False
+    """Whether the parameter of real functions is imaginary (0i counts as imaginary)."""
+    radians: bool = False
+    in_quarters: bool = False
+    """Whether the arguments are real multiples of K."""
+    is_real: bool = True
+    """Whether all numbers are real functions of a modulus in [0, 1], in one column each."""
 
-    def rounded(self, modulus: Modulus) -> FunctionConstants:
-        """Return the constants in doubles, with the given modulus in doubles."""
-        series = self.series and series_in_doubles(self.series)
-        third = {ij: kind.rounded() for ij, kind in self.third.items()}
-        return FunctionConstants(modulus, series, third, self.K and pair(self.K))
+    @property
+    def am(self) -> str:
+        """The name of the column of am, with its unit."""
+        return "am_rad" if self.radians else "am_deg"
+
+    @property
+    def has_parameter(self) -> bool:
+        """Whether Omega or Pi is among the families."""
+        return bool({"omega", "pi"} & set(self.families))
+
+
+class ComplexPoints(NamedTuple):
+    """Complex arguments: their real parts and, unless all are real, their imaginary parts."""
+
+    real: Points
+    imag: Points | None = None
+
+    def decimals(self) -> Iterator[ExactComplex]:
+        """Yield every argument exactly."""
+        if self.imag is None:
+            return map(ExactComplex, self.real.decimals())
+        return map(ExactComplex, self.real.decimals(), self.imag.decimals())
 
 
 class FunctionTable(TableOfFunctions):
-    """Tables of am, sn, cn, dn and the theta, Zeta, Omega and Pi functions of arguments u.
+    """Tables of the functions of a request.
 
-    The arguments are in units of K if the request says so.  For an imaginary parameter, Omega and
-    Pi are given by their imaginary parts.
+    Complex numbers have a column for each part.  am, sn, cn and dn of real arguments are real and
+    have one.  For an imaginary parameter of real functions, Omega and Pi are given by their
+    imaginary parts.
 
-    Raises LagtopError for a modulus or a parameter out of range.  In doubles it also refuses
-    arguments and parameters so large that doubles do not determine their place in a period.
+    Raises LagtopError for a modulus out of range, for multiples of an infinite K and for functions
+    that need two periods.  In doubles it also refuses arguments and parameters beyond 2^50 periods,
+    because doubles do not determine their place in a period.
     """
 
-    def __init__(self, points: Points, request: FunctionRequest) -> None:
-        super().__init__(points, points.count)
-        self.request, self.modulus = request, request.real_modulus
-        self.functions, self.rounds = 4 * len(request.families), not request.in_quarters
+    def __init__(self, points: ComplexPoints, request: FunctionRequest) -> None:
+        super().__init__()
+        self.points, self.request, self.count = points, request, points.real.count
+        self.parameter = point(request.parameter)
 
     def check(self, *, doubles: bool) -> None:
-        """Raise LagtopError if arguments are multiples of an infinite K; see the class."""
-        request, endless = self.request, "k_prime" in self.modulus.zeros()
-        if doubles or request.in_quarters:
-            self.modulus.check()
-        if request.in_quarters and endless:
+        """Raise LagtopError for invalid inputs; see the class."""
+        request = self.request
+        check_modulus(request.modulus)
+        with balls(FIRST_DIGITS):
+            functions = Functions(reduced(request.modulus))
+        if functions.is_1 and request.in_quarters:
             message = "u must be a number, without K, for k = 1, where K is infinite"
             raise LagtopError(message, "u")
-        if not doubles:
-            return
-        k_prime = self.modulus.in_doubles().k_prime
-        reach = MAX_TIME if endless else MAX_PERIODS * 2 * complete_k(DOUBLES, k_prime)
-        if request.in_quarters:
-            check_reach("u in units of K", self.points, 2 * MAX_PERIODS)
-        else:
-            check_reach("u", self.points, min(reach, MAX_TIME))
-        if request.has_parameter and not (endless or request.imaginary):
-            check_reach("param", ListedPoints([request.size]), reach)
+        if request.families != ("am",):
+            self._check_periods(functions)
+        if doubles:
+            self._check_reach(functions)
 
-    def constants(self, ar: Balls) -> FunctionConstants:
-        """Return the constants of the modulus and the parameter."""
-        request, exact = self.request, self.modulus.in_digits(ar)
-        endless = "k_prime" in self.modulus.zeros() and request.families == ("am",)
-        series = None if endless else series_for(ar, exact)
-        third: dict[str, ThirdKind] = {}
-        if request.has_parameter:
-            size, imaginary = ar.convert(request.size), request.imaginary
-            third = {ij: third_kind(ar, ij, size, exact, imaginary=imaginary) for ij in THIRD}
-        return FunctionConstants(
-            exact, series, third, None if endless else complete_k(ar, exact.k_prime)
-        )
-
-    def rounded_constants(self) -> FunctionConstants:
-        """Return the constants in doubles."""
-        modulus = self.modulus.in_doubles()
-        return decided(
-            "the constants of these functions",
-            lambda digits: self.constants(balls(digits)).rounded(modulus),
-        )
-
-    def columns(
-        self, ar: FunctionArithmetic, x: Numeric, constants: FunctionConstants, known: Known
-    ) -> dict[str, Numeric]:
-        """Return the columns at arguments x, without those that are `known`."""
-        u, series = ar.convert(x), constants.series
-        if not series:
-            columns = {"u": u} | dict(self._named(ar, jacobi(ar, u, constants.modulus)))
-            return columns | {name: known[name] for name in known.keys() & columns.keys()}
-        if self.request.in_quarters:
-            place = whole_and_rest(ar, u / 2)  # exact up to 2^52 K
-            u = times_quarter(ar, u, constants.K)
-        else:
-            place = in_periods(ar, u, series)
-        columns = {"u": u}
-        for name, compute in self._families(ar, place, constants, series):
-            columns[name] = known[name] if name in known else compute()
-        return columns
-
-    def _named(self, ar: FunctionArithmetic, found: Jacobi) -> Iterator[tuple[str, Numeric]]:
-        """Yield am (in the unit of the request), sn, cn and dn with the names of their columns."""
-        yield self.request.am, found.am * (1 if self.request.radians else 180 / ar.pi)
-        yield from zip(("sn", "cn", "dn"), found[1:], strict=True)
-
-    def _families(
-        self, ar: FunctionArithmetic, at: Periods, functions: FunctionConstants, series: ThetaSeries
-    ) -> Iterator[tuple[str, Callable[[], Numeric]]]:
-        """Yield the columns of the families by name, each with the function that computes it."""
-        suffix = "_imag" if self.request.imaginary else ""
-        for family in self.request.families:
-            if family == "am":
-                for name, value in self._named(ar, jacobi_at(ar, at, functions.modulus, series)):
-                    yield name, partial(ar.convert, value)
-            elif family in {"theta", "zeta"}:
-                function = theta_at if family == "theta" else zeta_at
-                for ij in INDICES:
-                    yield f"{family}{ij}", partial(function, ar, ij, at, series)
-            else:
-                for ij, kind in functions.third.items():
-                    yield f"{family}{ij}{suffix}", partial(getattr(kind, family), ar, at)
-
-    def known(self, x: Fraction) -> Known:
-        """Return the zeros, poles and other exact values at u; am is u if k = 0."""
+    def _check_periods(self, functions: Functions) -> None:
+        """Raise LagtopError for functions that need two periods."""
         request = self.request
-        is_u = "k" in request.real_modulus.zeros() and request.radians and not request.in_quarters
-        return known_values(x, request) | ({request.am: x} if is_u else {})
+        if request.is_real and functions.is_1:
+            raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
+        if not request.is_real and (functions.is_0 or functions.is_1):
+            message = "k must not be 0 or 1 for theta functions of complex arguments"
+            raise LagtopError(message, "k")
+        if request.has_parameter and request.imaginary and request.is_real:
+            height = exact(request.parameter.imag) * functions.across * 2
+            if abs(height) >= 1:
+                limit = (1 / (2 * functions.across)).mid()
+                raise LagtopError(
+                    f"param must be smaller than K' = {float(limit):.6g} in size "
+                    f"if it is imaginary, got {request.parameter}",
+                    "param",
+                )
 
-    def put_known(self, columns: dict[str, Array], x: Array) -> None:
-        """Put zeros, poles and other exact values into columns of doubles."""
-        put_exact_values(columns, x, self.request)
+    def _check_reach(self, functions: Functions) -> None:
+        """Raise LagtopError for arguments and parameters beyond 2^50 periods."""
+        rates = [float(rate.mid()) for rate in (functions.scale, functions.across)]
+        limits = [min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME for rate in rates]
+        real, imag = self.points
+        if self.request.in_quarters:
+            check_reach("u in units of K", real, 2 * MAX_PERIODS)
+        else:
+            check_reach("u", real, limits[0])
+        if imag is not None:
+            check_reach("the imaginary part of u", imag, limits[1])
+        parameter = self.request.parameter
+        for part, limit in zip(parameter, limits, strict=True):
+            if abs(part) > limit:
+                must = "be" if self.request.is_real else "have parts"
+                raise LagtopError(
+                    f"param must {must} within 2^50 periods = {limit:.3g} of 0, "
+                    f"got {parameter} (or give --digits)",
+                    "param",
+                )
 
-    def digits_lost(self, x: Fraction) -> int:
-        """Return the number of digits taken by the whole periods of u and of the parameter."""
-        return len(str(int(max(abs(x), abs(self.request.size)))))
+    def arguments(self, *, doubles: bool) -> Iterator[ExactComplex]:
+        """Yield the arguments; for doubles, multiples of K are not rounded."""
+        exact_points = self.points.decimals()
+        if not doubles or self.request.in_quarters:
+            return exact_points
+        return (ExactComplex(*map(nearest, x)) for x in exact_points)
+
+    def inputs(self, x: ExactComplex) -> Iterable[Fraction]:
+        """Return the parts of the argument, the parameter and the modulus."""
+        return [*x, *self.request.parameter, *numbers_of(self.request.modulus)]
+
+    def constants(self) -> Functions:
+        """Return the functions of the modulus."""
+        return Functions(reduced(self.request.modulus))
+
+    def columns(self, x: ExactComplex, constants: Functions) -> dict[str, Value]:
+        """Return the argument and the functions."""
+        request, u = self.request, point(x)
+        if request.in_quarters:
+            u = Point(u.real / (2 * constants.scale))
+        found: dict[str, acb | None] = {}
+        for family in request.families:
+            if family == "am":
+                found |= self._jacobi(constants, u)
+            elif family in {"theta", "zeta"}:
+                found |= _of_argument(constants, u, family)
+        if request.has_parameter:
+            found |= self._third(constants, u)
+        argument = u.real if request.in_quarters else x.real
+        if request.is_real:
+            return {"u": argument} | _real_parts(found)
+        jacobi = {name: found.pop(name) for name in (request.am, "sn", "cn", "dn") if name in found}
+        if self.points.imag is not None:
+            return {"u_re": x.real, "u_im": x.imag} | split(jacobi | found)
+        return {"u": argument} | _real_parts(jacobi) | split(found)
+
+    def _jacobi(self, functions: Functions, u: Point) -> dict[str, acb | None]:
+        """Return am in the unit of the request, sn, cn and dn."""
+        am, sn, cn, dn = functions.jacobi(u)
+        if am is not None and not self.request.radians:
+            am = am * 180 / arb.pi()
+        odd = {self.request.am: am, "sn": sn}
+        found = {name: _on_axes(z, u, odd=True) for name, z in odd.items()}
+        return found | {"cn": _on_axes(cn, u), "dn": _on_axes(dn, u)}
+
+    def _third(self, functions: Functions, u: Point) -> dict[str, acb | None]:
+        """Return Omega and Pi in the order of the families, or their imaginary parts."""
+        request, values = self.request, functions.third(u, self.parameter)
+        if request.is_real and self.parameter.is_0:
+            values["11"] = acb(0), None  # also at u = 0, as on all of the real axis
+        found: dict[str, acb | None] = {}
+        for family in request.families:
+            for ij in THIRD if family in {"omega", "pi"} else ():
+                z = values[ij][family == "pi"]
+                if request.imaginary and request.is_real:
+                    found[f"{family}{ij}_imag"] = None if z is None else acb(z.imag)
+                else:
+                    found[f"{family}{ij}"] = z
+        return found
 
 
-def times_quarter(ar: FunctionArithmetic, factor: Numeric, K: Numeric) -> Numeric:
-    """Return `factor` times K, which is a pair of doubles for arrays."""
-    if not ar.is_array:
-        return factor * K
-    from ..arithmetic.double_double import two_product  # start-up
+def point(x: ExactComplex) -> Point:
+    """Return an exact number as the functions take it."""
+    return Point(*map(rational, x))
 
-    product, error = two_product(factor, K.high)
-    return product + (error + factor * K.low)
+
+def _real_parts(numbers: dict[str, acb | None]) -> dict[str, Value]:
+    return {name: None if z is None else z.real for name, z in numbers.items()}
+
+
+def _of_argument(functions: Functions, u: Point, family: str) -> dict[str, acb | None]:
+    """Return the theta or the Zeta functions of u."""
+    kind = functions.kind
+    values: Mapping[str, acb | None]
+    if family == "zeta":
+        values = functions.zetas(u)
+        has_symmetry = dict.fromkeys(INDICES, kind is not Kind.LARGE)
+    else:
+        values = functions.thetas(u)
+        has_symmetry = {
+            ij: kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0") for ij in INDICES
+        }
+    return {
+        f"{family}{ij}": _on_axes(z, u, odd=family == "zeta" or ij == "11")
+        if has_symmetry[ij]
+        else z
+        for ij, z in values.items()
+    }
+
+
+def _on_axes(z: acb | None, u: Point, *, odd: bool = False) -> acb | None:
+    """Return an even or odd function that is real on the real axis, without parts that are 0."""
+    if z is None:
+        return z
+    if u.imag == 0:
+        z = acb(z.real)
+    if u.real == 0:
+        z = acb(0, z.imag) if odd else acb(z.real)
+    return z

@@ -13,14 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS, PAIRS, blocks
-from ..arithmetic.double_double import DoubleDouble, reduce_phase
+from ..arithmetic.double_double import DoubleDouble, reduce_phase, sqrt_pair, two_product, two_sum
 from ..arithmetic.numbers import polynomial
 from ..arithmetic.protocol import Numeric
 from ..arithmetic.rounding import Pair
 from ..arithmetic.types import Array
 from .complete import agm, nome
-from .modulus import Modulus
-from .periods import Periods
 
 _LARGEST_ARGUMENT = 350.0
 """Greatest argument of sinh; beyond it, for k' = 0 only, cn and dn are exponentials."""
@@ -32,6 +30,22 @@ Powers = tuple[Numeric, ...]
 """Coefficients of powers, the lowest power first."""
 JacobiArrays = tuple[Array, Array, Array, Array]
 """am, sn, cn, dn."""
+
+
+class Modulus(NamedTuple):
+    """k and its complement k', arrays of doubles, each good to an ulp."""
+
+    k: Numeric
+    k_prime: Numeric
+    rest: Numeric = 0.0
+    """The part of k' lost to rounding; the period needs it far away from 0."""
+
+
+def modulus_of_complement(k_prime: Array) -> Modulus:
+    """Return the modulus of a complement k' in [0, 1]."""
+    square, rest = two_product(k_prime, k_prime)
+    difference, error = two_sum(1.0, -square)
+    return Modulus(sqrt_pair(*two_sum(difference, error - rest))[0], k_prime, 0 * k_prime)
 
 
 def jacobi_of_arrays(u: Numeric, modulus: Modulus) -> JacobiArrays:
@@ -53,11 +67,6 @@ def jacobi_of_arrays(u: Numeric, modulus: Modulus) -> JacobiArrays:
             results[:, index] = _of_arguments(flat[0][index], series)
     am, sn, cn, dn = results.reshape(4, *u.shape)
     return am, sn, cn, dn
-
-
-def jacobi_of_places(x: Periods, modulus: Modulus) -> JacobiArrays:
-    """Return the functions at places in the periods of one modulus k < 1."""
-    return _evaluate(x.turns, x.rest, 0.0, _series(modulus), x.low)
 
 
 class _Series(NamedTuple):

@@ -1,252 +1,225 @@
-"""The modulus, given by the quantity that keeps its digits; its constants and their record."""
+"""The modulus: in [0, 1] by any of its quantities, imaginary, or above 1; its constants.
+
+A modulus of any kind is reduced to a modulus in [0, 1], whose argument is stretched by a factor:
+
+- k = i kbar has the modulus kbar/sqrt(1 + kbar^2) and the factor sqrt(1 + kbar^2).  tau = iK'/K
+  increases by 1 (Chrapan (1,1), (2,2) and (3,4)).
+- k > 1 has the modulus 1/k and the factor k, and tau/(1 - tau) replaces tau (DLMF 22.17).  K is the
+  limit for k^2 with a small negative imaginary part, as in mpmath.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
+from enum import Enum
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from ..arithmetic.balls import Balls, balls
-from ..arithmetic.exact_cosine import Cosine, below_quarters
-from ..arithmetic.numbers import in_arithmetic
-from ..arithmetic.rounding import decided, pair
+from flint import acb, arb
+
+from ..arithmetic.arb_ball import TooFewDigitsError
+from ..arithmetic.points import ExactComplex
 from ..errors import LagtopError
-from .complete import complete_e, complete_k, nome
-from .tables import ProvedNumbers
+from .enclosures import Value, decided, equality_digits, exact, record
 
-if TYPE_CHECKING:  # NumPy is loaded for arrays only
-    from ..arithmetic.protocol import FunctionArithmetic, Numeric
-    from ..arithmetic.types import Array
+
+class Kind(Enum):
+    """The kind of a modulus."""
+
+    UNIT = "in [0, 1]"
+    IMAGINARY = "imaginary"
+    LARGE = "above 1"
 
 
 class Modulus(NamedTuple):
-    """k and its complement k', scalars or arrays, each good to an ulp."""
+    """A modulus reduced to [0, 1], in balls; its complement keeps its digits next to k = 1."""
 
-    k: Numeric
-    k_prime: Numeric
-    rest: Numeric = 0.0
-    """The part of k' lost to rounding (arrays only); the period needs it far away from 0."""
-
-
-class Constants(NamedTuple):
-    """K, E and the nome q of k; K' and E' of the complement; for k = 1, K is inf and q = 1."""
-
-    K: Numeric
-    K_prime: Numeric
-    E: Numeric
-    E_prime: Numeric
-    q: Numeric
-
-
-@in_arithmetic
-def modulus(
-    ar: FunctionArithmetic,
-    *,
-    k: Numeric = None,
-    k_prime: Numeric = None,
-    m: Numeric = None,
-    angle: Numeric = None,
-    q: Numeric = None,
-) -> Modulus:
-    """Return the modulus from exactly one of k, k', m = k^2, the modular angle, the nome q.
-
-    The angle arcsin k is in radians.  Pass the complement k' if k is close to 1.
-
-    `ar` is numpy or an mpmath context.  Raises LagtopError for a value outside [0, 1] (the angle:
-    [0, pi/2]; the nome: [0, 1)), and unless exactly one value is given.
-    """
-    names = {"k": k, "k_prime": k_prime, "m": m, "angle": angle, "q": q}
-    named = [(name, value) for name, value in names.items() if value is not None]
-    if len(named) != 1:
-        raise LagtopError(f"exactly one of {', '.join(names)} must be given, got {len(named)}")
-    name, value = named[0]
-    if ar.is_array:
-        import numpy as np
-
-        value = np.asarray(value, dtype=float)
-    else:
-        value = ar.convert(value)
-    most = ar.pi / 2 if name == "angle" else 1
-    inside = value >= 0
-    if ar.everywhere(inside):  # an open comparison of balls asks for more digits
-        inside = value < 1 if name == "q" else value <= most
-    if not ar.everywhere(inside):
-        end = {"angle": "pi/2]", "q": "1)"}.get(name, "1]")
-        wrong = value[~inside].flat[0] if ar.is_array and value.ndim else value
-        raise LagtopError(f"{name} must be in [0, {end}, got {float(wrong)}", name)
-    return _FROM[name](ar, value)
-
-
-@in_arithmetic
-def constants(ar: FunctionArithmetic, modulus: Modulus) -> Constants:
-    """Return the complete integrals and the nome (2,4), each to a few eps."""
-    k, k_prime = modulus.k, modulus.k_prime
-    ordinary, other = ar.where(k_prime > 0, k_prime, 1 + 0 * k), ar.where(k > 0, k, 1 + 0 * k)
-    infinite = ar.inf
-    return Constants(
-        K=ar.where(k_prime > 0, complete_k(ar, ordinary), infinite),
-        K_prime=ar.where(k > 0, complete_k(ar, other), infinite),
-        E=ar.where(k_prime > 0, complete_e(ar, ordinary), 1 + 0 * k),
-        E_prime=ar.where(k > 0, complete_e(ar, other), 1 + 0 * k),
-        q=ar.where(k_prime > 0, nome(ar, m=k * k, k_prime=ordinary), 1 + 0 * k),
-    )
-
-
-def exact_modulus(ar: FunctionArithmetic, k: Fraction) -> Modulus:
-    """Return a modulus in [0, 1] whose complement keeps its digits however close k is to 1."""
-    return Modulus(ar.convert(k), ar.sqrt(ar.convert(1 - k * k)))
-
-
-def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
-    """Convert a modulus in doubles to balls or to an mpmath context."""
-    k, k_prime, rest = map(float, modulus)
-    return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
-
-
-def _from_k(ar: FunctionArithmetic, k: Numeric) -> Modulus:
-    """Return k and k' = sqrt(1 - k^2), with the part of k' lost to rounding."""
-    if not ar.is_array:
-        return Modulus(k, ar.sqrt((1 - k) * (1 + k)))
-    from ..arithmetic.double_double import two_product  # start-up
-
-    return Modulus(k, *_complement(*two_product(k, k)))
-
-
-def _from_m(ar: FunctionArithmetic, m: Numeric) -> Modulus:
-    if not ar.is_array:
-        return Modulus(ar.sqrt(m), ar.sqrt(1 - m))
-    return Modulus(ar.sqrt(m), *_complement(m, 0.0))
-
-
-def _complement(square: Array, rest: Array | float) -> tuple[Array, Array]:
-    """Return the square root of 1 - square - rest, and the part of it lost to rounding."""
-    from ..arithmetic.double_double import sqrt_pair, two_sum  # start-up
-
-    difference, error = two_sum(1.0, -square)
-    return sqrt_pair(*two_sum(difference, error - rest))
-
-
-def _from_q(ar: FunctionArithmetic, q: Numeric) -> Modulus:
-    """Return theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and k'."""
-    limit = ar.exp(-ar.pi)
-    large = ar.either(q > limit)
-    root = ar.where(large, ar.exp(ar.pi**2 / (2 * ar.log(ar.where(large, q, limit)))), ar.sqrt(q))
-    small = root * root
-    n, power, theta2, theta3, theta4 = 0, small**0, small * 0, small**0, small**0
-    while not ar.everywhere(power <= ar.eps / 4):
-        theta2 = theta2 + 2 * small ** (n * (n + 1))
-        n += 1
-        power = small ** (n * n)
-        theta3, theta4 = theta3 + 2 * power, theta4 + 2 * (-1) ** n * power
-    if ar.is_array and (root == 0)[large].any():
-        raise LagtopError("q must be at most 0.9934 in doubles: k' underflows beyond")
-    # each term is less than half of the one before: the truncation error is below 4 small^(n^2)
-    theta2, theta3, theta4 = (
-        ar.widened(x, lambda: (power,), lambda power: 4 * power, values_only=True)
-        for x in (theta2, theta3, theta4)
-    )
-    one, other = root * (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
-    return Modulus(ar.where(large, other, one), ar.where(large, one, other), 0 * q)
-
-
-_FROM: dict[str, Callable[[FunctionArithmetic, Numeric], Modulus]] = {
-    "k": _from_k,
-    "k_prime": lambda ar, other: Modulus(_from_k(ar, other).k_prime, other, 0 * other),
-    "m": _from_m,
-    "angle": lambda ar, angle: Modulus(ar.sin(angle), ar.cos(angle), 0 * angle),
-    "q": _from_q,
-}
-
-
-_LEAST_BELOW_1 = Fraction("1e-17")
-"""Least 1 - q for which exp(pi^2/log q) is within the exponents of decimals."""
+    k: arb
+    k_prime: arb
+    kind: Kind = Kind.UNIT
+    stretch: arb = arb(1)
+    """Factor of the argument."""
 
 
 class ModulusInput(NamedTuple):
-    """A modulus as given: k, k_prime, modular_angle (degrees, or radians) or nome."""
+    """A modulus in [0, 1], by one of its quantities.
+
+    `name` is k, k_prime, modular_angle (in degrees, or in radians) or nome.
+    """
 
     name: str
     value: Fraction
     radians: bool = False
 
     def check(self) -> None:
-        """Raise LagtopError unless the modulus is in its range."""
-        most, end = {"modular_angle": (90.0, "90]"), "nome": (1.0, "1)")}.get(
-            self.name, (1.0, "1]")
-        )
-        is_high = self.value > most or (self.name == "nome" and self.value == 1)
-        if self.name == "modular_angle" and self.radians:
-            is_high, end = below_quarters(1, self.value) < 0, "pi/2]"
-        if self.value < 0 or is_high:
-            value = float(self.value)
-            raise LagtopError(f"{self.name} must be in [0, {end}, got {value}", self.name)
+        """Raise LagtopError unless the value is in its range."""
+        name, value, is_high, end = self.name, self.value, self.value > 1, "1]"
+        if name == "nome":
+            is_high, end = value >= 1, "1)"
+        elif name == "modular_angle" and self.radians:
+            is_high, end = exceeds_quarter_turn(value), "pi/2]"
+        elif name == "modular_angle":
+            is_high, end = value > 90, "90]"
+        if value < 0 or is_high:
+            raise LagtopError(f"{name} must be in [0, {end}, got {float(value)}", name)
+        if name == "nome" and 1 - value < _LEAST_BELOW_1:
+            raise LagtopError("nome must be at most 1 - 1e-17: k' is too small beyond", name)
 
-    def zeros(self) -> set[str]:
-        """Return the constants that are exactly 0."""
-        ends = {"k": 1, "k_prime": 1, "modular_angle": None if self.radians else 90, "nome": None}
-        is_one = self.value == ends[self.name]  # pi/2 is irrational
-        k_vanishes = is_one if self.name == "k_prime" else not self.value
-        complement_vanishes = not self.value if self.name == "k_prime" else is_one
-        zeros = {"k", "nome", "modular_angle_deg", "modular_angle_rad"} if k_vanishes else set()
-        return zeros | ({"k_prime", "nome_prime"} if complement_vanishes else set())
+    @property
+    def is_0(self) -> bool:
+        """Whether k is 0."""
+        return self.value == (1 if self.name == "k_prime" else 0)
 
-    def in_digits(self, ar: FunctionArithmetic) -> Modulus:
-        """Return the modulus in balls or an mpmath context, with all digits of k and k'.
+    @property
+    def is_1(self) -> bool:
+        """Whether k is 1."""
+        ends = {"k": 1, "k_prime": 0, "modular_angle": None if self.radians else 90}
+        return self.value == ends.get(self.name)
 
-        Raises LagtopError if it is out of range.
-        """
-        self.check()
+    def ball(self) -> Modulus:
+        """Return k and k' in balls."""
+        if self.is_0 or self.is_1:
+            return Modulus(arb(int(self.is_1)), arb(int(self.is_0)))
+        value = exact(self.value)
         if self.name == "nome":
-            if isinstance(ar, Balls) and 1 - self.value < _LEAST_BELOW_1:
-                raise LagtopError("nome must be at most 1 - 1e-17: k' is too small beyond", "nome")
-            return modulus(ar, q=ar.convert(self.value))
+            # the squares of theta2, theta4 over that of theta3, at tau = i T
+            tau = acb(0, -value.log() / arb.pi())
+            _, *thetas = acb.modular_theta(acb(0), tau)
+            theta2, theta3, theta4 = (theta.real for theta in thetas)
+            return Modulus((theta2 / theta3) ** 2, (theta4 / theta3) ** 2)
         if self.name == "modular_angle":
-            angles = (None, self.value) if self.radians else (self.value, None)
-            tilt = Cosine(*angles).tilt(ar)
-            return Modulus(tilt.sin, tilt.cos)
-        exact = exact_modulus(ar, self.value)
-        return exact if self.name == "k" else Modulus(exact.k_prime, exact.k)
-
-    def in_doubles(self) -> Modulus:
-        """Return the modulus rounded once, with k' as two doubles.
-
-        Raises LagtopError if it is out of range, or if k' is too small for a double.
-        """
-
-        def rounded(digits: int) -> Modulus:
-            exact = self.in_digits(balls(digits))
-            return Modulus(float(exact.k), *pair(exact.k_prime))
-
-        found = decided(self.name, rounded)
-        if not found.k_prime and "k_prime" not in self.zeros():
-            raise LagtopError(
-                f"{self.name}: k' is too small for doubles (give --digits)", self.name
-            )
-        return found
+            if self.radians:
+                return Modulus(value.sin(), value.cos())
+            return Modulus(*(value / 180).sin_cos_pi())
+        other = exact(1 - self.value**2).sqrt()
+        return Modulus(value, other) if self.name == "k" else Modulus(other, value)
 
 
-def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[str, Numeric]:
-    """Return the record of a modulus in some arithmetic; None for infinite constants."""
-    exact, zeros = modulus_input.in_digits(ar), modulus_input.zeros()
-    K, K_prime, E, E_prime, q = constants(ar, exact)
-    other = constants(ar, Modulus(exact.k_prime, exact.k)).q
-    unit = "rad" if modulus_input.radians else "deg"
-    angle = ar.atan2(exact.k, exact.k_prime) * (1 if modulus_input.radians else 180 / ar.pi)
+_LEAST_BELOW_1 = Fraction("1e-17")
+"""Least 1 - q: the exponent of k' is then within the limits of printed numbers."""
+
+AnyModulus = ModulusInput | ExactComplex
+"""A modulus in [0, 1] by one of its quantities, or a number that is imaginary or above 1."""
+
+
+def exceeds_quarter_turn(angle: Fraction) -> bool:
+    """Return whether an angle in radians is above pi/2."""
+
+    def ask() -> bool:
+        rest = exact(angle) - arb.pi() / 2
+        if rest > 0 or rest < 0:
+            return bool(rest > 0)
+        raise TooFewDigitsError
+
+    return decided("whether an angle is above pi/2", ask, equality_digits([angle], None) + 2_000)
+
+
+def check_modulus(given: AnyModulus) -> None:
+    """Raise LagtopError unless the modulus is real and not negative, or i kbar with kbar > 0."""
+    if isinstance(given, ModulusInput):
+        given.check()
+    elif given.real < 0 or given.imag < 0 or (given.real and given.imag):
+        raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {given}", "k")
+
+
+def numbers_of(given: AnyModulus) -> list[Fraction]:
+    """Return the numbers of which a modulus consists."""
+    return [given.value] if isinstance(given, ModulusInput) else [*given]
+
+
+def reduced(given: AnyModulus) -> Modulus:
+    """Return a modulus that is checked, reduced to [0, 1]."""
+    if isinstance(given, ModulusInput):
+        return given.ball()
+    if given.imag:
+        root = exact(1 + given.imag**2).sqrt()
+        return Modulus(exact(given.imag) / root, 1 / root, Kind.IMAGINARY, root)
+    if given.real > 1:
+        k = exact(given.real)
+        return Modulus(1 / k, exact(given.real**2 - 1).sqrt() / k, Kind.LARGE, k)
+    return ModulusInput("k", given.real).ball()
+
+
+def quarter_period(k_prime: arb) -> arb:
+    """Return K = F(pi/2, k) from the complement k' in (0, 1] (DLMF 19.8.5)."""
+    return arb.pi() / (2 * arb(1).agm(k_prime))
+
+
+def second_kind(k_prime: arb) -> arb:
+    """Return E = E(pi/2, k) from the complement k' in [0, 1] (DLMF 19.25.1)."""
+    if k_prime == 0:
+        return arb(1)
+    square = acb(k_prime**2)
+    return 2 * acb.elliptic_rg(acb(0), square, acb(1)).real
+
+
+def nome(k: arb, k_prime: arb) -> arb:
+    """Return q = exp(-pi K'/K), equation (2,4); 0 for k = 0, and 1 for k = 1."""
+    if k == 0 or k_prime == 0:
+        return arb(int(k_prime == 0))
+    return (-arb.pi() * arb(1).agm(k_prime) / arb(1).agm(k)).exp()
+
+
+def constants_record(given: AnyModulus, digits: int | None) -> dict[str, Any]:
+    """Return the constants of a modulus, correctly rounded to doubles or to `digits` digits.
+
+    Numbers that are not real are split into `_re` and `_im`; infinite constants are None.  Raises
+    LagtopError for a modulus out of range.
+    """
+    check_modulus(given)
+
+    def compute() -> dict[str, Value]:
+        if isinstance(given, ModulusInput):
+            return _unit_constants(given)
+        return _other_constants(given)
+
+    return record(compute, digits, equality_digits(numbers_of(given), digits))
+
+
+def _unit_constants(given: ModulusInput) -> dict[str, Value]:
+    """Return the constants of a modulus in [0, 1]."""
+    k, k_prime, *_ = given.ball()
+    unit, factor = ("rad", 1) if given.radians else ("deg", 180 / arb.pi())
     return {
-        "k": exact.k,
-        "k_prime": exact.k_prime,
-        f"modular_angle_{unit}": angle,
-        "nome": q,
-        "nome_prime": other,
-        "K": None if "k_prime" in zeros else K,
-        "K_prime": None if "k" in zeros else K_prime,
-        "E": E,
-        "E_prime": E_prime,
+        "k": k,
+        "k_prime": k_prime,
+        f"modular_angle_{unit}": arb.atan2(k, k_prime) * factor,
+        "nome": nome(k, k_prime),
+        "nome_prime": nome(k_prime, k),
+        "K": None if given.is_1 else quarter_period(k_prime),
+        "K_prime": None if given.is_0 else quarter_period(k),
+        "E": second_kind(k_prime),
+        "E_prime": second_kind(k),
     }
 
 
-def constants_record(modulus_input: ModulusInput, digits: int | None) -> dict[str, Any]:
-    """Return the record of a modulus, correctly rounded to doubles or to `digits` digits."""
-    return ProvedNumbers(digits).of(
-        lambda ar: constants_in(ar, modulus_input), dict.fromkeys(modulus_input.zeros(), 0)
-    )
+def _other_constants(given: ExactComplex) -> dict[str, Value]:
+    """Return the constants of a modulus that is imaginary or above 1.
+
+    For k = i kbar, q is negative and K' = k'(K' - iK), with the constants of the reduced modulus on
+    the right.  For k > 1, k' = i sqrt(k^2 - 1), and K, E and q are complex.
+    """
+    k, k_prime, kind, s = reduced(given)
+    K, other = quarter_period(k_prime), quarter_period(k)
+    E, e_other = second_kind(k_prime), second_kind(k)
+    found: list[arb | acb]
+    # E of the inverse of a modulus (DLMF 19.7.3)
+    if kind is Kind.IMAGINARY:
+        beyond = acb(e_other - k**2 * other, E - k_prime**2 * K) / k_prime
+        found = [s, -nome(k, k_prime), K / s, acb(other, -K) / s, s * E, beyond]
+    else:
+        beyond = acb(E - k_prime**2 * K, e_other - k**2 * other) / k
+        tau = acb(0, other / K)
+        q = (tau / (1 - tau)).exp_pi_i()
+        found = [acb(0, s * k_prime), q, acb(K, -other) / s, other / s, beyond, s * e_other]
+    names = ("k_prime", "nome", "K", "K_prime", "E", "E_prime")
+    parts: dict[str, Value] = {"k_re": given.real, "k_im": given.imag}
+    return parts | split({name: acb(x) for name, x in zip(names, found, strict=True)})
+
+
+def split(numbers: Mapping[str, acb | None]) -> dict[str, Value]:
+    """Return the real and the imaginary parts of complex numbers."""
+    parts: dict[str, Value] = {}
+    for name, z in numbers.items():
+        parts[f"{name}_re"], parts[f"{name}_im"] = (None, None) if z is None else (z.real, z.imag)
+    return parts

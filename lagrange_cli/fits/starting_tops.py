@@ -16,8 +16,7 @@ import numpy as np
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from ..elliptic.complete import complete_k
-from ..elliptic.jacobi_arrays import jacobi_of_arrays
-from ..elliptic.modulus import modulus
+from ..elliptic.jacobi_arrays import jacobi_of_arrays, modulus_of_complement
 from .harmonics import Harmonics, frame_of, slowest_spin, turning_rate
 from .invert import SIGNS, Candidates, TurningPoints, candidates, with_mean_rate
 from .model import STATE, as_recorded, motion_angles, residuals
@@ -167,7 +166,7 @@ def _tilts(nutation: TurningPoints, tops: Candidates) -> Array:
     to_u1, to_u2 = (x + tops.u3_above for x in nutation.from_top)  # from u3
     k_prime = np.sqrt(to_u1 / to_u2)
     whole = 2 * complete_k(ARRAYS, k_prime)
-    sn = jacobi_of_arrays(whole * _PHASES, modulus(ARRAYS, k_prime=k_prime))[1]
+    sn = jacobi_of_arrays(whole * _PHASES, modulus_of_complement(k_prime))[1]
     tilts: Array = np.arccos(nutation.u2 + (nutation.u1 - nutation.u2) * sn * sn)
     return tilts
 

@@ -8,22 +8,19 @@ from itertools import islice
 from typing import Any, ClassVar
 
 import pytest
-from equations import EquationTests, Register, Sides, ar, slightly_wrong
+from equations import EquationTests, Register, Sides, slightly_wrong
 from errata import misprints
+from ours import ar, fraction, incomplete_f, jacobi, nome, ours, quarter_period
 
-from lagrange_cli.elliptic.complete import complete_k, nome
-from lagrange_cli.elliptic.eta import Quadrature, eta_constants
-from lagrange_cli.elliptic.eta_table import place_in_band
-from lagrange_cli.elliptic.incomplete import incomplete_f
-from lagrange_cli.elliptic.jacobi import jacobi
-from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.arithmetic.points import ListedPoints
+from lagrange_cli.elliptic.eta import EtaConstants, EtaTable, Quadrature, eta_constants
 from lagrange_cli.elliptic.nome_series import k_series, nome_series
 
 aksenov = Register()
 equation, as_printed = aksenov.equation, aksenov.as_printed
 misreading = aksenov.misreading
 
-MODULI = [modulus(ar, k=x) for x in ("0.03", "0.5", "0.9", "0.9999")]
+MODULI = [ar.mpf(x) for x in ("0.03", "0.5", "0.9", "0.9999")]
 ARGUMENTS = [ar.mpf(x) for x in ("-2.3", "0.4", "1.7", "11")]
 
 
@@ -46,7 +43,7 @@ def _() -> Sides:
 
     there = ar.quad(integrand, [0, ar.sqrt(y - b)])
     factor = 2 / ar.sqrt((a - c) * (b - d))
-    yield factor * incomplete_f(ar, phi, modulus(ar, k=ar.sqrt(m))), there
+    yield factor * incomplete_f(phi, ar.sqrt(m)), there
     pairs = [ar.mpc("0.3", x) for x in (1, -1)] + [ar.mpc("-0.8", x) for x in ("1.7", "-1.7")]
     yield from ((ar.im(x), 0) for x in _cross_ratios(pairs))
 
@@ -60,84 +57,84 @@ def _() -> Sides:
 
 @equation("(3.1.1)")
 def _() -> Sides:
-    for pair in MODULI:
-        x, m = ar.mpf("0.7"), pair.k**2
+    for k in MODULI:
+        x, m = ar.mpf("0.7"), k**2
         integral = ar.quad(lambda t: 1 / ar.sqrt((1 - t * t) * (1 - m * t * t)), [0, x])  # noqa: B023
-        yield jacobi(ar, integral, pair).sn, x
+        yield jacobi(integral, k)[1], x
 
 
 @equation("(3.1.2)")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for phi in (ar.mpf("0.7"), ar.mpf("4.4")):
-            yield incomplete_f(ar, phi, pair), ar.ellipf(phi, pair.k**2)
-        yield complete_k(ar, pair.k_prime), ar.ellipk(pair.k**2)
+            yield incomplete_f(phi, k), ar.ellipf(phi, k**2)
+        yield quarter_period(k), ar.ellipk(k**2)
 
 
 @equation("(3.1.3)")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for u in ARGUMENTS:
-            yield ar.ellipf(jacobi(ar, u, pair).am, pair.k**2), u
+            yield ar.ellipf(jacobi(u, k)[0], k**2), u
 
 
 @equation("section 3.1: definitions of sn, cn, dn")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for u in ARGUMENTS:
-            am, sn, cn, dn = jacobi(ar, u, pair)
+            am, sn, cn, dn = jacobi(u, k)
             yield sn, ar.sin(am)
             yield cn, ar.cos(am)
-            yield dn, ar.sqrt(1 - pair.k**2 * ar.sin(am) ** 2)
-            yield sn, ar.ellipfun("sn", u, m=pair.k**2)
+            yield dn, ar.sqrt(1 - k**2 * ar.sin(am) ** 2)
+            yield sn, ar.ellipfun("sn", u, m=k**2)
 
 
 @equation("section 3.1: property 1")
 def _() -> Sides:
-    for pair in MODULI:
-        K = ar.ellipk(pair.k**2)
+    for k in MODULI:
+        K = ar.ellipk(k**2)
         for u in ARGUMENTS:
-            here, half = jacobi(ar, u, pair), jacobi(ar, u + 2 * K, pair)
-            yield from zip(half, (here.am + ar.pi, -here.sn, -here.cn, here.dn), strict=True)
-            yield from zip(jacobi(ar, u + 4 * K, pair)[1:], here[1:], strict=True)
+            here, half = jacobi(u, k), jacobi(u + 2 * K, k)
+            yield from zip(half, (here[0] + ar.pi, -here[1], -here[2], here[3]), strict=True)
+            yield from zip(jacobi(u + 4 * K, k)[1:], here[1:], strict=True)
 
 
 @equation("section 3.1: property 2")
 def _() -> Sides:
-    for pair in MODULI:
-        K = ar.ellipk(pair.k**2)
-        values = [jacobi(ar, i * K / 2, pair) for i in range(-5, 6)]
+    for k in MODULI:
+        K = ar.ellipk(k**2)
+        values = [jacobi(i * K / 2, k) for i in range(-5, 6)]
         for extreme in (min, max):
             sign = 1 if extreme is max else -1
-            yield extreme(value.sn for value in values), sign
-            yield extreme(value.cn for value in values), sign
-        yield min(value.dn for value in values), pair.k_prime
-        yield max(value.dn for value in values), 1
+            yield extreme(value[1] for value in values), sign
+            yield extreme(value[2] for value in values), sign
+        yield min(value[3] for value in values), ar.sqrt(1 - k**2)
+        yield max(value[3] for value in values), 1
 
 
 @equation("section 3.1: table 2")
 def _() -> Sides:
-    for pair in MODULI:
-        K, less = ar.ellipk(pair.k**2), pair.k_prime
+    for k in MODULI:
+        K, less = ar.ellipk(k**2), ar.sqrt(1 - k**2)
         table = [(0, 1, 1), (1, 0, less), (0, -1, 1), (-1, 0, less), (0, 1, 1)]
         for quarter, values in enumerate(table):
-            yield from zip(jacobi(ar, quarter * K, pair)[1:], values, strict=True)
+            yield from zip(jacobi(quarter * K, k)[1:], values, strict=True)
 
 
 @equation("section 3.1: property 3")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for u in ARGUMENTS:
-            here, there = jacobi(ar, u, pair), jacobi(ar, -u, pair)
-            yield from zip(there, (-here.am, -here.sn, here.cn, here.dn), strict=True)
+            here, there = jacobi(u, k), jacobi(-u, k)
+            yield from zip(there, (-here[0], -here[1], here[2], here[3]), strict=True)
 
 
 @equation("section 3.1: property 4")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for u in ARGUMENTS:
-            _, sn, cn, dn = jacobi(ar, u, pair)
-            m = pair.k**2
+            _, sn, cn, dn = jacobi(u, k)
+            m = k**2
             yield sn**2 + cn**2, 1
             yield dn**2 + m * sn**2, 1
             yield dn**2 - m * cn**2 + m, 1
@@ -145,15 +142,15 @@ def _() -> Sides:
 
 @as_printed("section 3.1: property 4")
 def _() -> Sides:
-    _, sn, _, dn = jacobi(ar, ARGUMENTS[1], MODULI[1])
-    yield dn**2 + MODULI[1].k ** 2 * sn**2, -1
+    _, sn, _, dn = jacobi(ARGUMENTS[1], MODULI[1])
+    yield dn**2 + MODULI[1] ** 2 * sn**2, -1
 
 
 @equation("section 3.1: property 5")
 def _() -> Sides:
     for u in ARGUMENTS:
-        yield from zip(jacobi(ar, u, modulus(ar, k=0)), (u, ar.sin(u), ar.cos(u), 1), strict=True)
-        limit = jacobi(ar, u, modulus(ar, k=1))
+        yield from zip(jacobi(u, 0), (u, ar.sin(u), ar.cos(u), 1), strict=True)
+        limit = jacobi(u, 1)
         yield from zip(limit[1:], (ar.tanh(u), ar.sech(u), ar.sech(u)), strict=True)
 
 
@@ -162,64 +159,71 @@ def _() -> Sides:
     for u in ARGUMENTS[:3]:
         small = ar.mpf(10) ** -12
         circular = -ar.cos(u) * (u - ar.sin(u) * ar.cos(u)) / 4
-        yield (jacobi(ar, u, modulus(ar, k=small)).sn - ar.sin(u)) / small**2 * 1, circular
+        yield (jacobi(u, small)[1] - ar.sin(u)) / small**2 * 1, circular
         hyperbolic = (ar.sinh(u) * ar.cosh(u) - u) / ar.cosh(u) ** 2 / 4
-        near_one = jacobi(ar, u, modulus(ar, k_prime=small)).sn
+        near_one = jacobi(u, ar.sqrt(1 - small**2))[1]
         yield (near_one - ar.tanh(u)) / small**2, hyperbolic
 
 
-def last(sums: Any, terms: int = 4000) -> Any:
-    """Return the partial sum of so many terms."""
-    return next(islice(sums, terms, None))
+def partial_sum(name: str, k: Any, u: Any = 0, terms: int = 250) -> Any:
+    """Return the sum of so many terms of the series of K, am, sn or cn."""
+
+    def compute() -> Any:
+        modulus = ours.modulus(k)
+        series = k_series(modulus) if name == "K" else nome_series(ours.ball(u), modulus)[name]
+        return next(islice(series.sums, terms, None))
+
+    return ours.evaluated(compute)
 
 
 @equation("(3.1.4)")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for u in ARGUMENTS:
-            yield last(nome_series(ar, u, pair)["sn"].sums, 250), ar.ellipfun("sn", u, m=pair.k**2)
+            yield partial_sum("sn", k, u), ar.ellipfun("sn", u, m=k**2)
 
 
 @equation("(3.1.5)")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for u in ARGUMENTS:
-            yield last(nome_series(ar, u, pair)["cn"].sums, 250), ar.ellipfun("cn", u, m=pair.k**2)
+            yield partial_sum("cn", k, u), ar.ellipfun("cn", u, m=k**2)
 
 
 @equation("(3.1.6)")
 def _() -> Sides:
-    for pair in MODULI:
-        m = pair.k**2
+    for k in MODULI:
+        m = k**2
         there = ar.exp(-ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
-        yield nome(ar, m=m, k_prime=pair.k_prime), there
+        yield nome(k), there
 
 
 @as_printed("(3.1.6)")
 def _() -> Sides:
-    m = MODULI[1].k ** 2
-    left = nome(ar, m=m, k_prime=MODULI[1].k_prime)
+    m = MODULI[1] ** 2
+    left = nome(MODULI[1])
     yield left, ar.exp(ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
 
 
 @equation("(3.1.7)")
 def _() -> Sides:
-    for pair in MODULI:
+    for k in MODULI:
         for u in ARGUMENTS:
-            yield ar.ellipf(last(nome_series(ar, u, pair)["am"].sums, 250), pair.k**2), u
+            yield ar.ellipf(partial_sum("am", k, u), k**2), u
 
 
 @equation("(3.1.8)")
 def _() -> Sides:
-    for pair in MODULI[:3]:
-        yield last(k_series(ar, pair).sums, 600), ar.ellipk(pair.k**2)
+    for k in MODULI[:3]:
+        yield partial_sum("K", k, terms=600), ar.ellipk(k**2)
 
 
 # Section 3.2 on a generic quadrature: the integral, and each constant by the text's own formula.
 
 LOWER, UPPER, P, Q, G = (Fraction(x) for x in ("-0.5", "0.6", "0.1", "1.4", "2.5"))
 NESTED = Quadrature(LOWER, UPPER, (P - Q, P + Q), G)
-C = eta_constants(ar, NESTED)
+C = EtaConstants(*ours.evaluated(lambda: tuple(eta_constants(NESTED))))
+TABLE = EtaTable(ListedPoints([]), NESTED)
 DELTA, DELTA_STAR, P_, Q_, G_ = (
     ar.mpf(x.numerator) / x.denominator for x in (UPPER, LOWER, P, Q, G)
 )
@@ -228,7 +232,7 @@ K1 = ar.ellipk(C.k1**2)
 
 def eta_at(tau: Any) -> Any:
     """Return eta at a time since it was at delta*."""
-    return place_in_band(ar, C.sigma1 * tau / 2, C, NESTED).eta
+    return ours.evaluated(lambda: TABLE.columns(fraction(tau), TABLE.constants())["eta"])
 
 
 TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]
@@ -317,7 +321,7 @@ def _() -> Sides:
 def _() -> Sides:
     for tau in TAUS:
         h1 = C.sigma1 * tau - K1
-        theta = jacobi(ar, h1, modulus(ar, k=C.k1)).am
+        theta = jacobi(h1, C.k1)[0]
         yield eta_at(tau), (C.gamma + C.s * ar.sin(theta)) / (1 + C.d * ar.sin(theta))
 
 
@@ -360,7 +364,7 @@ class TestAksenov(EquationTests):
     def spoil(self, patch: pytest.MonkeyPatch) -> None:
         """Put wrong functions and constants of ours in place."""
         here = sys.modules[__name__]
-        for name in ("jacobi", "incomplete_f", "complete_k", "nome", "eta_at", "last"):
+        for name in ("jacobi", "incomplete_f", "quarter_period", "nome", "eta_at", "partial_sum"):
             patch.setattr(here, name, slightly_wrong(getattr(here, name)))
         wrong = [x * (1 + ar.mpf(i) / 100) for i, x in enumerate(C, 1)]
         patch.setattr(here, "C", type(C)(*wrong))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import random
 from fractions import Fraction
 from typing import Any
@@ -11,16 +12,12 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
-from error_units import error_in_units
-from function_tables import array_rows
 from hypothesis import given
 from hypothesis import strategies as st
 from lagtop import LagtopError, Top, solve
 
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.elliptic.eta import Quadrature, eta_constants
-from lagrange_cli.elliptic.eta_table import EtaTable, record
-from lagrange_cli.elliptic.many_digits import ManyDigits
+from lagrange_cli.elliptic.eta import EtaTable, Quadrature, eta_record
 
 
 def quadrature(
@@ -29,6 +26,22 @@ def quadrature(
     """Return the quadrature of roots that are written as decimals, the outer ones in one text."""
     roots = tuple(map(Fraction, outer.split()))
     return Quadrature(Fraction(lower), Fraction(upper), roots, Fraction(g), Fraction(height))
+
+
+def rows_of(table: EtaTable, digits: int | None = None) -> list[dict[str, str]]:
+    """Return the rows of a table by column, as text."""
+    header, blocks = table.rows(digits)
+    return [dict(zip(header, row, strict=True)) for block in blocks for row in block]
+
+
+def array_rows(table: EtaTable) -> list[dict[str, float]]:
+    """Return the rows of a table by column."""
+    return [{name: float(text) for name, text in row.items()} for row in rows_of(table)]
+
+
+def is_nearest(value: float, exact: Any) -> bool:
+    """Return whether a double is next to a number of mpmath, known to 1e-25."""
+    return bool(abs(mpmath.mpf(value) - exact) <= mpmath.mpf("0.501") * math.ulp(value) + 1e-25)
 
 
 ORBITS = {
@@ -94,12 +107,12 @@ class Integral:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ORBITS)
 def test_eta(name: str) -> None:
-    """Within 4 units of the quadrature; the worst seen is 1.6."""
+    """Every number is the double next to that of the quadrature."""
     of = ORBITS[name]
     with mpmath.workdps(60):
         integral = Integral(of)
         period = 2 * integral.tau(mpmath.pi)
-        assert abs(mpmath.mpf(eta_constants(ManyDigits(50), of).period) / period - 1) < 1e-45
+        assert abs(mpmath.mpf(eta_record(of, 45)["period"]) / period - 1) < 1e-44
         times = [Fraction(float(period) * part) for part in PARTS]
         rows = array_rows(EtaTable(ListedPoints(times), of, names=("eta", "etadot")))
         for exact_time, row in zip(times, rows, strict=True):
@@ -111,18 +124,14 @@ def test_eta(name: str) -> None:
             chi = integral.chi(abs(tau), guess)
             slope = mpmath.sign(tau) * (integral.upper - integral.lower) * mpmath.sin(chi) / 2
             slope /= integral.pace(chi)
-            assert error_in_units(eta, integral.eta(chi), slope, tau) <= 1.6
-            size = max(1, abs(slope)) * mpmath.sqrt(integral.g)
-            assert abs(rate - slope) <= 1e-13 * size + abs(tau) * 1e-12 * size
+            assert is_nearest(eta, integral.eta(chi))
+            assert is_nearest(rate, slope)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in ORBITS if "close" not in name])
 def test_chain(name: str) -> None:
-    """xi' and theta by (3.2.2) from the quadrature, and h1 by (3.2.7) from theta.
-
-    Within 4 units of eps (max(1, |f|) + |tau df/dtau|); the worst seen is below 2.
-    """
+    """xi' and theta by (3.2.2) from the quadrature, and h1 by (3.2.7) from theta."""
     of = ORBITS[name]
     with mpmath.workdps(60):
         integral = Integral(of)
@@ -150,11 +159,10 @@ def test_chain(name: str) -> None:
                 mpmath.sqrt(less) * mpmath.sin(chi / 2), mpmath.sqrt(more) * mpmath.cos(chi / 2)
             )
             within = mpmath.sign(tau) * 2 * half - mpmath.pi / 2
-            pace = sigma1 * mpmath.sqrt(1 - m * mpmath.sin(within) ** 2)
-            assert error_in_units(theta, within + 2 * mpmath.pi * turns, pace, tau) <= 2
-            assert error_in_units(xi, mpmath.sin(within), pace * mpmath.cos(within), tau) <= 2
+            assert is_nearest(theta, within + 2 * mpmath.pi * turns)
+            assert is_nearest(xi, mpmath.sin(within))
             exact_h1 = sigma1 * time - mpmath.ellipk(m)
-            assert error_in_units(h1, exact_h1, sigma1, tau) <= 2
+            assert is_nearest(h1, exact_h1)
             assert abs(mpmath.ellipf(within, m) + 4 * turns * mpmath.ellipk(m) - exact_h1) < 1e-15
 
 
@@ -167,7 +175,7 @@ def test_the_top_is_the_cubic_case() -> None:
     table = EtaTable(ListedPoints([Fraction(t) for t in times]), of)
     eta = np.array([row["eta"] for row in array_rows(table)])
     assert abs(eta - np.cos(motion.angles(times).theta)).max() < 1e-15
-    assert float(eta_constants(ManyDigits(50), of).period) == motion.T_nutation
+    assert eta_record(of)["period"] == motion.T_nutation
 
 
 @pytest.mark.slow
@@ -215,7 +223,6 @@ def test_far_times(lagtop: Lagtop) -> None:
 
 
 def test_digits_close_to_the_ends() -> None:
-    """Next to a turning point eta is reckoned from there."""
     of = quadrature("0", "1", "-1 2")
     (row,) = array_rows(EtaTable(ListedPoints([Fraction("1e-9")]), of))
     assert row["eta"] == pytest.approx(0.5e-18, rel=1e-12, abs=0)
@@ -223,8 +230,8 @@ def test_digits_close_to_the_ends() -> None:
 
 def test_the_order_of_the_outer_roots_is_free() -> None:
     one, other = quadrature("-0.5", "0.6", "-1.3 1.5"), quadrature("-0.5", "0.6", "1.5 -1.3")
-    assert record(one) == record(other)
-    assert record(one)["q"] == 1.4
+    assert eta_record(one) == eta_record(other)
+    assert eta_record(one)["q"] == 1.4
 
 
 def test_digits_agree_with_doubles() -> None:
@@ -232,10 +239,10 @@ def test_digits_agree_with_doubles() -> None:
     table = EtaTable(times, of, names=(*WITH_CHAIN, "etadot"), angle="rad")
     rows = array_rows(table)
     assert list(rows[0]) == ["tau", "eta", "etadot", "h1", "theta_rad", "xi_prime"]
-    for row, texts in zip(rows, table.digit_rows(30), strict=True):
+    for row, texts in zip(rows, rows_of(table, 30), strict=True):
         exact = {name: float(text) for name, text in texts.items()}
         assert row == pytest.approx(exact, abs=1e-15, rel=1e-15)
-    assert record(of)["sigma1"] == float(record(of, 30)["sigma1"])
+    assert eta_record(of)["sigma1"] == float(eta_record(of, 30)["sigma1"])
 
 
 @pytest.mark.parametrize(
@@ -269,7 +276,7 @@ def test_complex_pair_with_digits() -> None:
     ]
     for lower, upper, p, height in cases:
         of = quadrature(lower, upper, f"{p} {p}", height=height)
-        shown = record(of, 30)
+        shown = eta_record(of, 30)
         with mpmath.workdps(300):
             low, high, middle, far = map(mpmath.mpf, (lower, upper, p, height))
             m1, m2 = mpmath.hypot(high - middle, far), mpmath.hypot(low - middle, far)
@@ -286,9 +293,9 @@ def test_complex_pair_with_digits() -> None:
 
 
 def test_complex_pairs_at_random() -> None:
-    """Worst seen in 3900, against the cn form by mpmath: eta 2.0, the others 1.5 units."""
+    """The reference is the cn form by mpmath."""
     rng = random.Random(3)
-    for _ in range(25):
+    for _ in range(6):
         low, width = Fraction(rng.uniform(-2, 2)), Fraction(10 ** rng.uniform(-20, 2))
         middle = low + width * Fraction(rng.choice([0, 1, 0.3, -2, 5, 10 ** rng.uniform(-9, 6)]))
         height = width * Fraction(10 ** rng.uniform(-20, 5))
@@ -304,14 +311,13 @@ def test_complex_pairs_at_random() -> None:
             tau = mpmath.mpf(time.numerator) / time.denominator
             turns = mpmath.nint(tau * rate / (4 * K))
             since = tau - turns * 4 * K / rate
-            sn, cn, dn = (mpmath.ellipfun(f, rate * since, m=m) for f in ("sn", "cn", "dn"))
+            sn, cn = (mpmath.ellipfun(f, rate * since, m=m) for f in ("sn", "cn"))
             exact = (m1 * start * (1 + cn) + m2 * end * (1 - cn)) / (m1 * (1 + cn) + m2 * (1 - cn))
-            slope = mpmath.sqrt((end - exact) * (exact - start) * ((exact - p) ** 2 + far**2))
             theta = mpmath.atan2(sn, cn) - mpmath.pi / 2 + 2 * mpmath.pi * turns
             (row,) = array_rows(EtaTable(ListedPoints([time]), of, names=WITH_CHAIN, angle="rad"))
-            assert error_in_units(row["eta"], exact, slope, since) <= 2.5
-            assert error_in_units(row["theta_rad"], theta, rate * dn, since) <= 2
-            assert error_in_units(row["xi_prime"], -cn, rate * sn * dn, since) <= 2
+            assert is_nearest(row["eta"], exact)
+            assert is_nearest(row["theta_rad"], theta)
+            assert is_nearest(row["xi_prime"], -cn)
 
 
 def test_chain_of_the_command(lagtop: Lagtop) -> None:
@@ -331,26 +337,16 @@ def test_chain_of_the_command(lagtop: Lagtop) -> None:
 
 def test_check_names_the_root() -> None:
     with pytest.raises(LagtopError, match="outer roots must lie outside"):
-        record(quadrature("0", "1", "0.5"))
+        eta_record(quadrature("0", "1", "0.5"))
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "--delta -1.8182535735868077 --delta-star -1.8182538837638382 --p -0.00043 --q 1.7e308",
-        "--delta 1 --delta-star 0 --gap-above 1e200",
-        "--delta 1 --delta-star 0 --gap-below 1e-200",
-        "--delta 1 --delta-star 0 --gap-below 1 --g 1e300",
-    ],
-)
-def test_sizes_that_doubles_cannot_hold_are_refused(lagtop: Lagtop, line: str) -> None:
+def test_numbers_beyond_the_doubles_are_refused(lagtop: Lagtop) -> None:
     """No infinity is ever printed, JSON or not; with --digits there is no such bound."""
-    refused = lagtop("eta", *line.split(), "--format", "json")
-    assert (refused.exit_code, refused.stdout) == (2, "")
-    assert "must be from 1e-100 to 1e100 in size" in refused.stderr
-    digits = lagtop("eta", *line.split(), "--format", "json", "--digits", "5")
-    assert digits.exit_code == 0
-    assert "inf" not in digits.stdout
+    line = "eta --delta 1.7e308 --delta-star 0 --gap-above 1.7e308 --format json".split()
+    refused = lagtop(*line)
+    assert (refused.exit_code, refused.stdout) == (1, "")
+    assert "outer_root is beyond the doubles: use --digits" in refused.stderr
+    assert json.loads(lagtop(*line, "--digits", "5").stdout)["period"] > 0
 
 
 @pytest.mark.parametrize(
@@ -372,7 +368,7 @@ def test_zeros_of_the_constants_are_exact(of: Quadrature, zeros: str) -> None:
 
     The judge is (3.2.3) and (3.2.12) in fractions, m' and m'' by their squares.
     """
-    in_digits, in_doubles = record(of, 20), record(of)
+    in_digits, in_doubles = eta_record(of, 20), eta_record(of)
     assert {key for key, text in in_digits.items() if text == "0.0"} == set(zeros.split())
     assert {key for key, x in in_doubles.items() if x == 0} == set(zeros.split())
 
@@ -389,4 +385,4 @@ def test_constants_that_nearly_vanish_have_their_digits() -> None:
             mpmath.mpf(y.numerator) / y.denominator for y in (square1, square2, square2 - square1)
         )
         exact = difference / (mpmath.sqrt(first) + mpmath.sqrt(second)) ** 2
-        assert abs(mpmath.mpf(record(of, 20)["d"]) / exact - 1) < 1e-19
+        assert abs(mpmath.mpf(eta_record(of, 20)["d"]) / exact - 1) < 1e-19

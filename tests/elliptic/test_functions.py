@@ -1,376 +1,320 @@
-"""am, sn, cn, dn, theta and Carlson functions on arrays against mpmath; `lagtop jacobi`."""
+"""The functions of `lagtop jacobi`: every digit against mpmath by other formulas.
+
+`function_reference.py` has the formulas of the reference.  Extreme moduli are compared with the
+limits of the functions, whose next terms are far below the digits.
+"""
 
 from __future__ import annotations
 
-import json
 import math
 import random
-from collections.abc import Callable, Iterator
+from decimal import Decimal
+from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import mpmath
-import numpy as np
 import pytest
-from arb_balls import exact_arb
-from balls.scene import arb_bits
-from conftest import Lagtop
-from error_units import error_in_units
-from flint import acb
-from lagtop import LagtopError
-from scenes import EPS
+from function_reference import NUMBER, Reference
 
-from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rf, carlson_rj
-from lagrange_cli.elliptic.complete import complete_k
-from lagrange_cli.elliptic.jacobi import jacobi
-from lagrange_cli.elliptic.many_digits import ManyDigits
-from lagrange_cli.elliptic.modulus import Modulus, constants, modulus
-from lagrange_cli.elliptic.theta import theta, zeta
-from lagrange_cli.elliptic.third_kind import omega
+from lagrange_cli.arithmetic.points import ExactComplex, ListedPoints, parse_complex
+from lagrange_cli.elliptic.function_table import ComplexPoints, FunctionRequest, FunctionTable
+from lagrange_cli.elliptic.modulus import AnyModulus, ModulusInput
+
+EVERY = ("am", "theta", "zeta", "omega", "pi")
+MODULI = ["0.3", "0.8", "0.95", "0.999", "0.7071067811865476", "0.05i", "0.8i", "20i", "1.01", "2"]
+
+ORIGIN = ExactComplex(Fraction(0))
+Cells = dict[str, str]
 
 
-def moduli(rng: random.Random) -> Iterator[tuple[str, float]]:
-    """Yield ways to give k, each over all it can say; k' down to 1 - k^2 = 1e-300."""
-    while True:
-        yield rng.choice(
-            [
-                ("k", rng.random()),
-                ("k", 10 ** rng.uniform(-20, 0)),
-                ("k", 1 - 10 ** rng.uniform(-15, -1)),
-                ("k_prime", rng.random()),
-                ("k_prime", 10 ** rng.uniform(-150, 0)),
-                ("k_prime", 10 ** rng.uniform(-300, -150)),
-                ("m", rng.random()),
-            ]
-        )
-
-
-def arguments(rng: random.Random, K: float) -> float:
-    """Return an argument within K, up to 1e12 K, close to the zeros of sn and of cn."""
-    close = (
-        2 * rng.randrange(10**6)
-        + rng.choice([0, 1])
-        + rng.choice([-1, 1]) * 10 ** rng.uniform(-12, -3)
+def row(
+    k: AnyModulus | str,
+    u: ExactComplex,
+    v: ExactComplex = ORIGIN,
+    families: tuple[str, ...] = EVERY,
+    digits: int | None = None,
+    **how: Any,
+) -> Cells:
+    """Return the row of an argument; a modulus in [0, 1] may be given by its text."""
+    if isinstance(k, str):
+        value = parse_complex(k)
+        k = value if value.imag or value.real > 1 else ModulusInput("k", value.real)
+    imag = None if how.get("is_real", True) else ListedPoints([u.imag])
+    request = FunctionRequest(k, families, v, radians=True, **how)
+    header, blocks = FunctionTable(ComplexPoints(ListedPoints([u.real]), imag), request).rows(
+        digits
     )
-    parts = [rng.random(), 10 ** rng.uniform(-12, 0), 10 ** rng.uniform(0, 12), close]
-    return rng.choice([-1, 1]) * K * rng.choice(parts)
+    ((cells,),) = blocks
+    return dict(zip(header, cells, strict=True))
 
 
-def errors(name: str, value: float, u: float) -> list[float]:
-    """Return the errors of am, sn, cn, dn in units."""
-    ours = jacobi(ARRAYS, u, modulus(ARRAYS, **{name: value}))
-    with mpmath.workdps(700):
-        x = mpmath.mpf(value)
-        m = {"k": x**2, "k_prime": 1 - x**2, "m": x}[name]
-        K = mpmath.pi / 2 / mpmath.agm(1, mpmath.sqrt(1 - m))
-    with mpmath.workdps(60 if 1 - m > 1e-20 else 680):
-        halves = mpmath.nint(u / (2 * K))
-        tau = u - 2 * K * halves
-        sn, cn, dn = (mpmath.ellipfun(f, tau, m=m) for f in ("sn", "cn", "dn"))
-        am, sign = mpmath.atan2(sn, cn) + halves * mpmath.pi, (-1) ** int(halves % 2)
-        exact = [am, sign * sn, sign * cn, dn]
-        slopes = [dn, cn * dn, sn * dn, m * sn * cn]
-        return [
-            error_in_units(float(x), true, slope, tau)
-            for x, true, slope in zip(ours, exact, slopes, strict=True)
-        ]
+def columns(reference: Reference, u: Any, v: Any, families: tuple[str, ...]) -> dict[str, Any]:
+    """Return the columns by mpmath."""
+    found: dict[str, Any] = {}
+    for family in families:
+        if family == "am":
+            found |= dict(zip(("am_rad", "sn", "cn", "dn"), reference.jacobi(u), strict=True))
+        elif family in {"theta", "zeta"}:
+            function = getattr(reference, family)
+            found |= {f"{family}{ij}": function(ij, u) for ij in NUMBER}
+        else:
+            function = getattr(reference, family)
+            found |= {f"{family}{ij}": function(ij, u, v) for ij in ("01", "00", "11")}
+    return found
+
+
+def check(cells: Cells, k: str, u: str, v: str, digits: int) -> int:
+    """Check that every cell is the number of the reference, rounded to digits; return how many."""
+    reference = Reference(k, digits + 25)
+    ar, checked = reference.ar, 0
+    numbers = (parse_complex(text) for text in (u, v))
+    points = [ar.mpc(*(ar.mpf(x.numerator) / x.denominator for x in z)) for z in numbers]
+    for name, exact in columns(reference, *points, EVERY).items():
+        if exact is None:
+            assert cells[f"{name}_re"] == cells[f"{name}_im"] == ""
+            continue
+        for part, value in (("re", ar.re(exact)), ("im", ar.im(exact))):
+            text = cells[f"{name}_{part}"]
+            if text:
+                checked += 1
+                unit = Decimal(f"1e{Decimal(text).adjusted() - digits + 1}")
+                slack = ar.mpf("0.500001") * ar.mpf(str(unit)) if float(text) else ar.mpf("1e-30")
+                assert abs(ar.mpf(text) - value) <= slack, (name, part, k, u, v)
+    return checked
+
+
+@pytest.mark.parametrize("k", MODULI[1::2])
+@pytest.mark.parametrize(("u", "v"), [("-4.1-1.3i", "0.2+0.7i"), ("1e-9+2.5i", "100.25-0.5i")])
+def test_digits_of_every_column(k: str, u: str, v: str) -> None:
+    cells = row(k, parse_complex(u), parse_complex(v), digits=20, is_real=False)
+    assert check(cells, k, u, v, 20) >= 34
 
 
 @pytest.mark.slow
-def test_jacobi() -> None:
-    """Worst seen in 20 000: 1.23 units."""
-    rng = random.Random("sn")
-    for _, (name, value) in zip(range(150), moduli(rng), strict=False):
-        K = float(complete_k(ARRAYS, modulus(ARRAYS, **{name: value}).k_prime))
-        assert max(errors(name, value, arguments(rng, K))) <= 1.25
+@pytest.mark.parametrize("k", MODULI)
+def test_digits_of_every_column_anywhere(k: str) -> None:
+    """Real and imaginary numbers, and numbers of any size, among others."""
+    rng = random.Random(f"every {k}")
+
+    def some() -> str:
+        real, imag = (f"{rng.uniform(-1, 1) * 10 ** rng.uniform(-3, 1.5):.6f}" for _ in range(2))
+        return rng.choice([f"{real}+{imag}i".replace("+-", "-"), real, f"{imag}i"])
+
+    for _ in range(8):
+        u, v = some(), some()
+        cells = row(k, parse_complex(u), parse_complex(v), digits=25, is_real=False)
+        assert check(cells, k, u, v, 25) >= 30
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "u"),
-    [
-        ("m", 1 - 1e-10, 13.5),
-        ("m", 1 - 1e-12, 20.0),
-        ("k_prime", 1e-6, 40.0),
-        ("k_prime", 1e-8, 123.4),
-        ("m", 0.5, 1e6),
-        ("k", 0.9999999992240866, -3.079849288428686),  # 1 - k^2 is the sum of two doubles
-        ("k", 0.2738929647185465, 512232610885.36005),  # the period is known to 30 digits
-    ],
-)
-def test_where_scipy_fails(name: str, value: float, u: float) -> None:
-    """scipy.special.ellipj is off by up to 2 for 1 - m <= 1e-10 beyond K, and drifts far away."""
-    assert max(errors(name, value, u)) <= 1.25
+def half_periods(k: str) -> list[tuple[str, str]]:
+    """Return the doubles next to K, iK', K + iK', 3K and x + iK' in the period lattice of k."""
+    reference = Reference(k, 40)
+    K, height = (x / reference.stretch for x in (reference.K, reference.K_prime))
+    places = [(K, 0), (0, height), (K, height), (3 * K, 0), (0.3, height)]
+    return [(repr(float(x)), repr(float(y))) for x, y in places]
 
 
-def test_the_limits_of_the_modulus() -> None:
-    u = np.array([-800.0, -400.0, -1.5, 0.0, 1e-9, 0.5, 356.0, 1e300])
-    one = jacobi(ARRAYS, u, modulus(ARRAYS, k=1.0))
-    bounded = np.clip(u, -40, 40)
-    np.testing.assert_allclose(one.sn, np.tanh(bounded), rtol=4 * EPS)
-    np.testing.assert_allclose(
-        one.cn, 1 / np.cosh(np.clip(u, -700, 700)), atol=1e-150, rtol=4 * EPS
-    )
-    assert abs(one.am).max() <= np.pi / 2
-    u = u[2:6]
-    zero = jacobi(ARRAYS, u, modulus(ARRAYS, k=0.0))
-    for ours, exact in zip(zero, (u, np.sin(u), np.cos(u), 1 + 0 * u), strict=True):
-        np.testing.assert_allclose(ours, exact, rtol=4 * EPS)
+def assert_doubles(k: str, u: str, v: str) -> None:
+    """Check that Omega and Pi are the doubles next to those of the reference."""
+    reference, z = Reference(k, 60), [parse_complex(x).nearest() for x in (u, v)]
+    points = [reference.ar.mpc(*(reference.ar.mpf(float(x)) for x in y)) for y in z]
+    cells = row(k, *z, ("omega", "pi"), is_real=False)
+    for name, exact in columns(reference, *points, ("omega", "pi")).items():
+        found = complex(float(cells[f"{name}_re"]), float(cells[f"{name}_im"]))
+        assert found == complex(exact), (name, k, u, v)
 
 
-def test_arrays_of_moduli_give_what_single_ones_give() -> None:
-    rng = np.random.default_rng(5)
-    k, u = rng.random((40, 1)), rng.uniform(-9, 9, 30)
-    k[0], k[1] = 0, 1
-    together = jacobi(ARRAYS, u, modulus(ARRAYS, k=k))
-    for i in range(40):
-        alone = jacobi(ARRAYS, u, modulus(ARRAYS, k=k[i, 0]))
-        for one, other in zip(alone, together, strict=True):
-            np.testing.assert_allclose(other[i], one, rtol=1e-14, atol=4 * EPS)
-    assert jacobi(ARRAYS, np.empty((0, 3)), modulus(ARRAYS, k=0.5)).sn.shape == (0, 3)
+@pytest.mark.parametrize("k", MODULI)
+@pytest.mark.parametrize("place", [1, 2, 4])
+def test_parameters_next_to_half_periods(k: str, place: int) -> None:
+    """All digits were wrong for many of these in an earlier version."""
+    real, imag = half_periods(k)[place]
+    assert_doubles(k, "0.3+0.2i", f"{real}+{imag}i")
 
 
-@pytest.mark.parametrize("k", [0.25, 0.5, 0.9])
-def test_zeta_next_to_its_pole(k: float) -> None:
-    """Z10 has a pole at K; its relative digits are kept as close to it as doubles go."""
-    with mpmath.workdps(60):
-        first = mpmath.ellipk(mpmath.mpf(k) ** 2)
-        q = mpmath.exp(-mpmath.pi * mpmath.ellipk(1 - mpmath.mpf(k) ** 2) / first)
-        u = np.array(
-            [
-                float(first * (1 + sign * mpmath.mpf(10) ** -n))
-                for n in (1, 3, 6, 9, 13)
-                for sign in (-1, 1)
-            ]
-        )
-        places = [mpmath.pi * mpmath.mpf(x) / (2 * first) for x in u.tolist()]
-        slopes = [mpmath.jtheta(2, x, q, 1) / mpmath.jtheta(2, x, q) for x in places]
-        wanted = [mpmath.pi / (2 * first) * slope for slope in slopes]
-    with ARRAYS.working():
-        found = zeta(ARRAYS, "10", u, modulus(ARRAYS, k=k))
-    for got, exact in zip(found.tolist(), wanted, strict=True):
-        assert abs(got / exact - 1) < 4 * EPS
+@pytest.mark.slow
+@pytest.mark.parametrize("k", MODULI)
+def test_numbers_next_to_half_periods(k: str) -> None:
+    """Take arguments there as well, and the doubles on both sides."""
+    for real, imag in half_periods(k):
+        for towards in (-math.inf, 0.0, math.inf):
+            x, y = (math.nextafter(float(text), towards) for text in (real, imag))
+            for u in ("0.3+0.2i", "-2.7+3.1i"):
+                assert_doubles(k, u, f"{x!r}+{y!r}i".replace("+-", "-"))
+            assert_doubles(k, f"{x!r}+{y!r}i".replace("+-", "-"), "0.4-0.9i")
 
 
-def test_odd_and_imaginary_parameters_and_mixed_moduli() -> None:
-    """Omega_11 and Omega_10 below zero, over periods, at k = 0; values of mixed moduli."""
-    ar = ManyDigits(40)
-    eta = np.linspace(-7, 7, 29)
-    for k, alpha in ((0.3, -0.4), (0.95, -0.4), (0.0, 2.5)):
-        for ij in ("11", "10"):
-            exact = [
-                complex(omega(ar, ij, ar.mpf(x), ar.mpc(0, alpha), modulus(ar, k=k))) for x in eta
-            ]
-            ours = omega(ARRAYS, ij, eta, 1j * alpha, modulus(ARRAYS, k=k))
-            np.testing.assert_allclose(ours, exact, atol=2e-14)
-    mixed = modulus(ARRAYS, k=np.array([[0.3], [0.95]]))
-    for i, k in enumerate((0.3, 0.95)):
-        for function in (theta, zeta):
-            alone = function(ARRAYS, "11", eta + 0.1, modulus(ARRAYS, k=k))
-            together = function(ARRAYS, "11", eta + 0.1, mixed)[i]
-            np.testing.assert_allclose(together, alone, rtol=1e-13)
+@pytest.mark.parametrize(("k", "K"), [("0.8", "1.9953027776647294"), ("0.3", "1.6080486199305128")])
+def test_real_functions_are_parts_of_the_complex_ones(k: str, K: str) -> None:
+    """The parameters are real or imaginary, and next to K."""
+    families = ("omega", "pi")
+    for u in ("0.3", K, "-17.25"):
+        for v in ("0.7", K, "-1.3i"):
+            argument, parameter = parse_complex(u).nearest(), parse_complex(v).nearest()
+            real = row(k, argument, parameter, families, imaginary=v.endswith("i"))
+            both = row(k, argument, parameter, families, is_real=False)
+            for name, cell in real.items():
+                part = "im" if name.endswith("_imag") else "re"
+                assert cell == both[f"{name.removesuffix('_imag')}_{part}"], (name, u, v)
 
 
-@pytest.mark.parametrize("place", [0.55j, 0.5 + 0.55j, -0.5 + 0.55j, 1.5 + 0.55j, 0.3 + 2.6j])
-@pytest.mark.parametrize("k", [0.1, 0.76, 0.999])
-def test_complex_arguments(k: float, place: complex) -> None:
-    """On a tie between two ways of reduction; far away the largest term is not the first."""
-    ar = ManyDigits(40)
-    m = ar.mpf(k) ** 2
-    K, x = ar.ellipk(m), ar.convert(place)
-    q = ar.exp(-ar.pi * ar.ellipk(1 - m) / K)
-    for ij, n in {"01": 4, "00": 3, "11": 1, "10": 2}.items():
-        value, slope = (ar.jtheta(n, ar.pi * x, q, derivative=i) for i in (0, 1))
-        assert abs(theta(ar, ij, x, modulus(ar, k=k)) / value - 1) < 1e-37
-        computed = theta(ARRAYS, ij, place, modulus(ARRAYS, k=k))
-        assert abs(complex(computed) / complex(value) - 1) < 1e-14
-        zeta_there = zeta(ar, ij, 2 * K * x, modulus(ar, k=k))
-        size = abs(ar.pi * slope / value) + 1
-        assert abs(zeta_there * 2 * K - ar.pi * slope / value) < 1e-36 * size
+def test_the_side_of_a_line_of_zeros_is_decided() -> None:
+    """Omega01 jumps by i pi where Im(u - v) passes K', however close to K' the number is."""
+    found = []
+    for below in ("1e-6", "1e-45", "-1e-45", "-1e-6"):
+        with mpmath.workdps(80):
+            height = mpmath.ellipk(mpmath.mpf("0.36")) * (1 - mpmath.mpf(below))
+            u = parse_complex(f"0.1+{mpmath.nstr(height, 60)}i")
+        cells = row("0.8", u, parse_complex("0.3"), ("omega",), 4, is_real=False)
+        found.append(float(cells["omega01_im"]))
+    assert found[0] == found[1] == pytest.approx(found[2] - math.pi, abs=1e-3)
+    assert found[2] == found[3]
 
 
-def relative(value: Any, exact: Any) -> float:
-    return float(abs(mpmath.mpf(float(value)) / exact - 1) / EPS)
+@pytest.mark.parametrize(("k", "v"), [("0.8", "0.4+0.9i"), ("0.8i", "0.4-3i"), ("1.5", "0.4-3i")])
+def test_the_branch_has_no_jumps_between_lines_of_zeros(k: str, v: str) -> None:
+    """Along the real direction nothing jumps, in any strip."""
+    for height in ("0", "1.3", "-2.1", "7.7"):
+        steps = [parse_complex(f"{x / 16}+{height}i".replace("+-", "-")) for x in range(-24, 25)]
+        rows = [row(k, u, parse_complex(v), ("omega",), is_real=False) for u in steps]
+        for name in ("omega01_im", "omega00_im", "omega11_im"):
+            values = [float(cells[name]) for cells in rows]
+            assert max(abs(b - a) for a, b in pairwise(values)) < 1.5
 
 
-CARLSON: dict[str, tuple[Callable[..., Any], Callable[..., Any], int, float]] = {
-    "rf": (carlson_rf, acb.elliptic_rf, 3, 2.4),
-    "rc": (carlson_rc, acb.elliptic_rc, 2, 0.6),
-    "rd": (carlson_rd, lambda x, y, z: acb.elliptic_rj(x, y, z, z), 3, 2.6),
-    "rj": (carlson_rj, acb.elliptic_rj, 4, 0.6),
+# Limits for k -> 0 and k -> 1, of relative errors q and q' (U, V: arguments times pi/2K').
+
+
+def _circular(q: Any, u: Any, v: Any) -> dict[str, Any]:
+    sin, cos, cot = mpmath.sin, mpmath.cos, mpmath.cot
+    wave = 4 * q * sin(2 * v) * u
+    third = wave - 2 * q * sin(2 * u) * sin(2 * v)
+    return {
+        "sn": sin(u),
+        "cn": cos(u),
+        "theta11": 2 * q ** mpmath.mpf("0.25") * sin(u),
+        "zeta01": 4 * q * sin(2 * u),
+        "zeta11": cot(u),
+        "omega01": -2 * q * sin(2 * u) * sin(2 * v),
+        "omega11": mpmath.log(abs(sin(u - v) / sin(u + v))) / 2,
+        "pi01": third,
+        "pi00": -third,
+        "pi11": u * cot(v) + mpmath.log(abs(sin(u - v) / sin(u + v))) / 2,
+    }
+
+
+def _hyperbolic(q: Any, u: Any, v: Any) -> dict[str, Any]:
+    sinh, cosh, tanh = mpmath.sinh, mpmath.cosh, mpmath.tanh
+    K = -mpmath.log(q) / 2
+    odd = mpmath.log(abs(sinh(u - v) / sinh(u + v))) / 2
+    even = mpmath.log(cosh(u - v) / cosh(u + v)) / 2
+    return {
+        "sn": tanh(u),
+        "cn": 1 / cosh(u),
+        "dn": 1 / cosh(u),
+        "zeta01": tanh(u) - u / K,
+        "zeta00": -u / K,
+        "omega00": u * v / K,
+        "omega01": u * v / K + even,
+        "omega11": u * v / K + odd,
+        "pi01": u * tanh(v) + even,
+        "pi00": 4 * q * u * sinh(2 * v) - 2 * q * sinh(2 * u) * sinh(2 * v),
+        "pi11": u / tanh(v) + odd,
+    }
+
+
+def number(text: str) -> Any:
+    """Return a number whose exponent may have many digits."""
+    mantissa, _, exponent = text.partition("e")
+    return mpmath.mpf(mantissa) * mpmath.mpf(10) ** int(exponent or 0)
+
+
+EXTREME = {
+    "k 1e-200": (_circular, lambda: (mpmath.mpf("1e-200") / 4) ** 2),
+    "k-prime 1e-300": (_hyperbolic, lambda: (mpmath.mpf("1e-300") / 4) ** 2),
+    "nome 0.999999": (
+        _hyperbolic,
+        lambda: mpmath.exp(mpmath.pi**2 / mpmath.log(mpmath.mpf("0.999999"))),
+    ),
+    "nome 0.9999999999999": (
+        _hyperbolic,
+        lambda: mpmath.exp(mpmath.pi**2 / mpmath.log(mpmath.mpf("0.9999999999999"))),
+    ),
 }
-"""Our functions, those of Arb, the number of arguments, and the worst errors seen, in eps."""
 
 
-@pytest.mark.parametrize("name", CARLSON)
-def test_carlson(name: str) -> None:
-    """Arguments over forty decades, the first 0 or the last small; once R_J was off by 6.9 eps."""
-    ours, exact, count, most = CARLSON[name]
-    rng = np.random.default_rng(7)
-    arguments = 10 ** rng.uniform(-20, 20, (4, 400))
-    arguments[0, ::5] = 0
-    arguments[:, 1] = 1.15e-10, 4.28e-17, 6.09e-20, 68998445.29696697
-    with arb_bits(300):
-        for value, numbers in zip(
-            ours(ARRAYS, *arguments[:count]), arguments[:count].T, strict=True
-        ):
-            true = exact(*(acb(exact_arb(float(x))) for x in numbers)).real
-            assert float(abs(exact_arb(float(value)) / true - 1).mid()) <= most * EPS, numbers
-    assert ours(ARRAYS, *arguments[:count, 1]) == pytest.approx(
-        ours(ARRAYS, *arguments[:count])[1], rel=2 * EPS
-    )
-
-
-def test_carlson_at_equal_arguments_and_over_the_range() -> None:
-    x = np.array([0.5, 2.0, 1e60, 1e-60])
-    np.testing.assert_allclose(carlson_rc(ARRAYS, x, x), 1 / np.sqrt(x), rtol=2 * EPS)
-    np.testing.assert_allclose(carlson_rj(ARRAYS, x, x, x, x), x**-1.5, rtol=4 * EPS)
-    wide = np.array([1e100]), np.array([1e-100])
-    assert relative(carlson_rc(ARRAYS, *wide)[0], mpmath.elliprc(1e100, 1e-100)) <= 2
-
-
-def test_many_digits_of_carlson() -> None:
-    ar = ManyDigits(60)
-    x, y, z, p = (ar.mpf(text) for text in ("0.3", "0.2", "5", "0.01"))
-    assert abs(carlson_rj(ar, x, y, z, p) / ar.elliprj(x, y, z, p) - 1) < 1e-57
-    assert abs(carlson_rd(ar, x, y, z) / ar.elliprd(x, y, z) - 1) < 1e-57
-
-
-def test_loops_end_at_nan() -> None:
-    """Loops that wait for convergence do not wait for NaN."""
-    nan = np.array([1.0, math.nan])
-    with np.errstate(all="ignore"):
-        for values in (
-            carlson_rf(ARRAYS, nan, 1.0, 2.0),
-            carlson_rj(ARRAYS, nan, 1.0, 2.0, 3.0),
-            complete_k(ARRAYS, nan),
-        ):
-            assert np.isnan(values).tolist() == [False, True]
-
-
-@pytest.mark.slow
-def test_carlson_in_blocks() -> None:
-    """Arrays longer than a block, of elements that need different numbers of steps."""
-    x, y, z, p = np.exp(np.random.default_rng(3).normal(0, 4, (4, 40_000)))
-    together = carlson_rj(ARRAYS, x, y, z, p)
-    some = slice(None, None, 4001)
-    alone = [
-        carlson_rj(ARRAYS, *values)
-        for values in zip(x[some], y[some], z[some], p[some], strict=True)
-    ]
-    np.testing.assert_allclose(together[some], alone, rtol=8 * EPS)
-
-
-@pytest.mark.parametrize("q", [0.0, 1e-200, 0.01, 0.0432139, 0.0432140, 0.5, 0.99])
-def test_inverse_of_the_nome(q: float) -> None:
+@pytest.mark.parametrize("modulus", EXTREME)
+@pytest.mark.parametrize(("u", "v"), [("0.5", "0.3"), ("-1.25", "2.75"), ("1e-5", "0.125")])
+def test_extreme_moduli(modulus: str, u: str, v: str) -> None:
+    """Pi00 is as small as 1e-42863147299611, with all its digits."""
+    name, value = modulus.split()
+    limit, nome = EXTREME[modulus]
+    given = ModulusInput(name.replace("-", "_"), Fraction(value))
+    cells = row(given, parse_complex(u), parse_complex(v), digits=40)
+    with mpmath.workdps(90):
+        for column, exact in limit(nome(), mpmath.mpf(u), mpmath.mpf(v)).items():
+            assert abs(number(cells[column]) - exact) <= abs(exact) * 5.001e-40, column
+    doubles = row(given, parse_complex(u), parse_complex(v))
     with mpmath.workdps(60):
-        k, k_prime, _ = modulus(ARRAYS, q=q)
-        assert float(k) == pytest.approx(float(mpmath.kfrom(q=mpmath.mpf(q))), rel=4 * EPS)
-        there = mpmath.sqrt(1 - mpmath.kfrom(q=mpmath.mpf(q)) ** 2) if q < 0.6 else None
-        if there is not None:
-            assert float(k_prime) == pytest.approx(float(there), rel=8 * EPS)
-    if 0 < q < 1:
-        assert float(constants(ARRAYS, Modulus(k, k_prime)).q) == pytest.approx(q, rel=1e-13)
+        for column, text in cells.items():
+            assert doubles[column] == "" or float(doubles[column]) == pytest.approx(
+                float(number(text)), rel=1e-15, abs=5e-324
+            )
 
 
-def test_a_nome_next_to_1_takes_more_digits(lagtop: Lagtop) -> None:
-    """K is pi/2 theta3^2: -pi^2/(2 log q) but for a term as small as k'^2."""
-    nome = f"0.{'9' * 16}"
-    args = ["--nome", nome, "--digits", "30", "--format", "json"]
-    shown = json.loads(lagtop("jacobi", *args).stdout, parse_float=str)
-    with mpmath.workdps(60):
-        K = -(mpmath.pi**2) / (2 * mpmath.log(mpmath.mpf(nome)))
-        assert abs(mpmath.mpf(shown["K"]) / K - 1) < 1e-29
-        assert abs(mpmath.mpf(shown["nome_prime"]) / mpmath.exp(-2 * K) - 1) < 1e-29
+@pytest.mark.parametrize(("k", "factor"), [("1e-160", 1e-80), ("1e-300", 1e-150)])
+def test_odd_thetas_keep_their_digits_where_the_nome_leaves_the_doubles(
+    k: str, factor: float
+) -> None:
+    """q^(1/4) = sqrt(k)/2 there, while q itself is 0 in doubles."""
+    cells = row(k, parse_complex("1"), families=("theta",))
+    assert float(cells["theta11"]) == pytest.approx(factor * math.sin(1), rel=1e-15, abs=0)
+    assert float(cells["theta10"]) == pytest.approx(factor * math.cos(1), rel=1e-15, abs=0)
 
 
-@pytest.mark.parametrize("given", [{}, {"k": 0.1, "q": 0.1}, {"k": 1.1}, {"m": -0.1}, {"q": 1.0}])
-def test_one_modulus_in_range(given: dict[str, float]) -> None:
-    for ar in (ARRAYS, ManyDigits(30)):
-        with pytest.raises(LagtopError, match="must be"):
-            modulus(ar, **given)
+@pytest.mark.parametrize("u", ["0.7", "-3.25+0.5i", "25"])
+def test_moduli_0_and_1(u: str) -> None:
+    """Circular and hyperbolic functions; am is u, or the Gudermannian of u."""
+    argument = parse_complex(u)
+    with mpmath.workdps(50):
+        z = mpmath.mpc(mpmath.mpf(str(float(argument.real))), float(argument.imag))
+        circular = z, mpmath.sin(z), mpmath.cos(z), mpmath.mpf(1)
+        sech = 1 / mpmath.cosh(z)
+        hyperbolic = mpmath.atan(mpmath.sinh(z)), mpmath.tanh(z), sech, sech
+        for k, values in (("0", circular), ("1", hyperbolic)):
+            cells = row(k, argument, families=("am",), digits=25, is_real=False)
+            for name, exact in zip(("am_rad", "sn", "cn", "dn"), values, strict=True):
+                found = mpmath.mpc(cells[f"{name}_re"], cells[f"{name}_im"])
+                assert abs(found - exact) <= abs(exact) * 1e-24, (k, name)
 
 
-def test_constants_of_the_command(lagtop: Lagtop) -> None:
-    record = json.loads(lagtop("jacobi", "--modular-angle", "60", "--format", "json").stdout)
-    with mpmath.workdps(40):
-        m = mpmath.mpf(3) / 4
-        exact = {
-            "k": mpmath.sqrt(m),
-            "k_prime": mpmath.mpf(0.5),
-            "modular_angle_deg": 60,
-            "nome": mpmath.qfrom(m=m),
-            "nome_prime": mpmath.qfrom(m=1 - m),
-            "K": mpmath.ellipk(m),
-            "K_prime": mpmath.ellipk(1 - m),
-            "E": mpmath.ellipe(m),
-            "E_prime": mpmath.ellipe(1 - m),
-        }
-        assert record == {key: float(value) for key, value in exact.items()}
-    one = json.loads(lagtop("jacobi", "--modular-angle", "90", "--format", "json").stdout)
-    assert (one["k_prime"], one["K"], one["E"], one["nome"]) == (0.0, None, 1.0, 1.0)
-
-
-def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
-    """am, sn, cn and dn are the default, and beside other functions only if they are named."""
-    plain = "u,am_deg,sn,cn,dn"
-    for families, names in (
-        ("", plain),
-        ("--functions am", plain),
-        ("--functions zeta", "u,zeta01,zeta00,zeta11,zeta10"),
-        ("--functions am,pi --param 0.3", f"{plain},pi01,pi00,pi11"),
-    ):
-        for count in (2, 20):  # with and without NumPy
-            args = ["--k", "0.8", "--u", f"0.1:1:{count}", *families.split()]
-            shown = lagtop("jacobi", *args, "--format", "csv").stdout.splitlines()
-            assert (shown[0], len(shown)) == (names, count + 1)
-
-
-def test_rows_of_the_command(lagtop: Lagtop) -> None:
-    args = "--k 0.8 --u -3:3.5:6 --functions am,theta,zeta,omega,pi --param 0.4i".split()
-    plain = json.loads(lagtop("jacobi", *args, "--format", "json").stdout)
-    many = json.loads(lagtop("jacobi", *args, "--format", "json", "--digits", "25").stdout)
-    assert len(plain) == 6
-    assert list(plain[0])[:6] == ["u", "am_deg", "sn", "cn", "dn", "theta01"]
-    assert list(plain[0])[-1] == "pi11_imag"
-    for row, exact in zip(plain, many, strict=True):
-        assert row == pytest.approx(exact, abs=1e-13, rel=1e-10)
-    radians = json.loads(lagtop("jacobi", *args, "--rad", "--format", "json").stdout)
-    assert radians[5]["am_rad"] == pytest.approx(math.radians(plain[5]["am_deg"]), rel=1e-15)
-
-
-def test_poles_are_empty(lagtop: Lagtop) -> None:
-    for digits in ([], ["--digits", "20"]):
-        shown = lagtop(
-            "jacobi", "--k", "0.8", "--u", "0", "--functions", "zeta", "--format", "json", *digits
-        )
-        assert json.loads(shown.stdout)[0]["zeta11"] is None
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("u", ["1e25", "1e50", "1e300"])
-def test_digits_of_far_arguments(u: str, lagtop: Lagtop) -> None:
+@pytest.mark.parametrize("u", ["1e25", "1e300"])
+def test_arguments_far_away(u: str) -> None:
     """The precision grows with the argument; two that are too low could agree on a wrong number."""
-    shown = lagtop("jacobi", "--k", "0.5", "--u", u, "--digits", "3", "--format", "csv").stdout
+    cells = row("0.5", parse_complex(u), families=("am",), digits=12)
     with mpmath.workdps(400):
         exact = mpmath.ellipfun("sn", mpmath.mpf(u), m=mpmath.mpf("0.25"))
-    assert float(shown.splitlines()[1].split(",")[2]) == pytest.approx(float(exact), abs=6e-4)
-    refused = lagtop("jacobi", "--k", "0.5", "--u", u)
-    assert (refused.exit_code, refused.stdout) == (2, "")
-    assert "u must be within 2^50 periods" in refused.stderr
+        am = mpmath.mpf(u) * mpmath.pi / (2 * mpmath.ellipk(mpmath.mpf("0.25")))
+    assert float(cells["sn"]) == pytest.approx(float(exact), rel=1e-11)
+    assert float(cells["am_rad"]) == pytest.approx(float(am), rel=1e-11)
 
 
-def test_at_zero_modulus_zeta_has_a_limit(lagtop: Lagtop) -> None:
-    for digits in ([], ["--digits", "20"]):
-        args = ["--k", "0", "--u", "1", "--functions", "zeta", "--format", "json", *digits]
-        row = json.loads(lagtop("jacobi", *args).stdout)[0]
-        assert row["zeta11"] == pytest.approx(1 / math.tan(1), rel=1e-15)
-        assert row["zeta10"] == pytest.approx(-math.tan(1), rel=1e-15)
+def test_far_parameters() -> None:
+    """Pi of the parameter 1e300 is that of the parameter less whole periods."""
+    cells = row("0.5", parse_complex("1"), parse_complex("1e300"), ("pi",), 20)
+    with mpmath.workdps(700):
+        period = 2 * mpmath.ellipk(mpmath.mpf("0.25"))
+        v = mpmath.mpf("1e300")
+        near = Fraction(mpmath.nstr(v - period * mpmath.nint(v / period), 60))
+    near_cells = row("0.5", parse_complex("1"), ExactComplex(near), ("pi",), 20)
+    assert cells == near_cells
 
 
-def test_series_of_the_command(lagtop: Lagtop) -> None:
-    args = "--k 0.9 --u 1.1 --series 20 --format json".split()
-    rows = json.loads(lagtop("jacobi", *args).stdout)
-    assert [row["terms"] for row in rows] == list(range(1, 21))
-    assert rows[-1]["sn"] == pytest.approx(float(mpmath.ellipfun("sn", 1.1, k=0.9)), abs=1e-15)
-    assert rows[-1]["K_error"] == pytest.approx(2.2805491384227703 - rows[-1]["K"], abs=1e-15)
-    assert rows[0]["cn_error"] > 1e-3 > rows[9]["cn_error"] > rows[-1]["cn_error"]
+@pytest.mark.parametrize(("k", "height"), [("0.8", 1.75075), ("0.8i", 1.5307), ("0", math.inf)])
+def test_am_ends_at_its_branch_points(k: str, height: float) -> None:
+    """They are the poles of sn next to the real axis, at Im u = Re K'."""
+    for part, exists in ((0.999, True), (1.001, False)):
+        imag = Fraction(part * height) if height < math.inf else Fraction(500)
+        cells = row(k, ExactComplex(Fraction(7), imag), families=("am",), is_real=False)
+        assert bool(cells["am_rad_re"]) is (exists or k == "0")

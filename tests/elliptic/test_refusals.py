@@ -36,8 +36,6 @@ JACOBI = [
         "--k 1 --u i --functions theta",
         "--k must not be 0 or 1 for theta functions of complex arguments",
     ),
-    ("--k 1e-160 --u i", "--k must be 0 or at least 1e-150 in size, and so must k'"),
-    ("--k 1e30 --u i", "--k must be at most 1e+20 (or give --digits)"),
     ("--k 0.8 --u 1e20+i", "--u must be within 2^50 periods = 4.49e+15 of 0, got 1e+20"),
     ("--k 0.8 --u 1+1e20i", "the imaginary part of u must be within 2^50 periods"),
     ("--k 0.8 --u 1 --functions pi --param 1+1e20i", "--param must have parts within 2^50 periods"),
@@ -65,7 +63,7 @@ JACOBI = [
     ("--k 1 --u K --series 2", "the nome series need 0 < k < 1, got k = 1.0"),
     (
         "--k 1 --u 1e19 --digits 20",
-        "cn is below 1e-300000000000000000 in size, too small for --dig",
+        "1e+990000000000000000, the limits of --digits: take a smaller argument",
     ),
     # some of these never ended, others gave inf or warnings (which are errors in these tests)
     (

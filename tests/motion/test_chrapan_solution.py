@@ -30,12 +30,11 @@ from chrapan_top import (
 )
 from equations import EquationTests, Register, Sides
 from errata import misprints
-
-from lagrange_cli.elliptic.modulus import modulus
-from lagrange_cli.elliptic.third_kind import pi_function
+from ours import Ours
 
 chrapan = Register()
 equation, as_printed = chrapan.equation, chrapan.as_printed
+pi_function = Ours(ar).pi_function
 
 
 def rotation(motion: Motion, t: Any) -> Any:
@@ -468,13 +467,8 @@ def _() -> Sides:
 
 def _pi(motion: Motion, t: Any) -> tuple[Any, Any]:
     """Return Pi00 and Pi11 of section 4 j."""
-    kind = partial(_pi_function, modulus(ar, k=motion.k), motion.w(t), J * motion.alpha)
-    return kind("00"), kind("11")
-
-
-def _pi_function(k: Any, w: Any, parameter: Any, kind: str) -> Any:
-    """Return one of our functions Pi."""
-    return pi_function(ar, kind, w, parameter, k)
+    place = motion.w(t), J * motion.alpha, motion.k
+    return pi_function("00", *place), pi_function("11", *place)
 
 
 def _precession(motion: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:

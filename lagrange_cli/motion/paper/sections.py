@@ -264,11 +264,13 @@ class Sections(Generic[R]):
 
     def integral_of_amplitude(self) -> R:
         """Return the integral E(phi, k') of (7,1), as a sum of positive terms (DLMF 19.25.10)."""
-        from ...elliptic.incomplete import Amplitude, e_of  # for few keys
-        from ...elliptic.modulus import Modulus  # start-up
+        from ...elliptic.carlson import carlson_rd, carlson_rf  # for few keys
 
-        ar, gaps, whole = self.ar, self.gaps, self.gaps.a_below_u3
-        sine, cosine = ar.sqrt(gaps.a_u3_u2 / whole), ar.sqrt(self.state.a * gaps.below_u2 / whole)
-        modulus = Modulus(self.kind.k_prime, self.kind.k)
-        integral: R = e_of(ar, Amplitude(0, sine, cosine), modulus)
+        ar, gaps, whole, mc = self.ar, self.gaps, self.gaps.a_below_u3, self.kind.k_prime
+        sin2, cos2 = gaps.a_u3_u2 / whole, self.state.a * gaps.below_u2 / whole
+        delta2, one, m = cos2 + self.kind.m * sin2, 0 * cos2 + 1, self.kind.m
+        first = carlson_rf(ar, cos2, delta2, one)
+        second = mc * mc * sin2 * carlson_rd(ar, cos2, one, delta2) / 3
+        third = mc * mc * ar.sqrt(cos2 / delta2)
+        integral: R = ar.sqrt(sin2) * (m * (first + second) + third)
         return integral

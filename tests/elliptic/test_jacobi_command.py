@@ -1,0 +1,318 @@
+"""`lagtop jacobi`: columns, exact zeros and poles, multiples of K, constants, input."""
+
+from __future__ import annotations
+
+import json
+import math
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import pytest
+from conftest import Lagtop
+from function_reference import Reference
+from lagtop import LagtopError
+
+from lagrange_cli.arithmetic.points import parse_complex
+from lagrange_cli.inputs.ranges import Multiple, parse_multiple
+
+DIGITS = pytest.mark.parametrize("digits", ["", " --digits 20"])
+
+
+def cells(lagtop: Lagtop, args: str) -> dict[str, list[str]]:
+    """Return the cells of a CSV table by column."""
+    shown = lagtop("jacobi", *args.split(), "--format", "csv")
+    assert shown.exit_code == 0, shown.stderr
+    header, *lines = (line.split(",") for line in shown.stdout.splitlines())
+    return dict(zip(header, map(list, zip(*lines, strict=True)), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("args", "column", "value"),
+    [
+        ("--param 1.9953027776647294 --k 0.8", "pi01", "1.600702115026889e-20-7.909e-20i"),
+        ("--param 0.3+2.1565156474996434i --k 0.5", "pi01", "0.424-0.279i"),
+        ("--param 1.0782578237498217i --k 2", "pi00", "0-0i"),
+    ],
+)
+def test_parameters_that_are_rounded_half_periods(
+    args: str, column: str, value: str, lagtop: Lagtop
+) -> None:
+    found = cells(lagtop, f"--u 0.3+0.2i --functions pi {args}")
+    exact = complex(value.replace("i", "j"))
+    assert float(found[f"{column}_re"][0]) == pytest.approx(exact.real, rel=2e-3, abs=1e-15)
+    assert float(found[f"{column}_im"][0]) == pytest.approx(exact.imag, rel=2e-3, abs=1e-15)
+
+
+@DIGITS
+@pytest.mark.parametrize("modulus", ["--k 0.8", "--k-prime 0.6"])
+def test_table_2_prints_exactly(digits: str, modulus: str, lagtop: Lagtop) -> None:
+    """Aksenov's table 2, for k = 0.8 and k' = 0.6."""
+    shown = cells(lagtop, f"{modulus} --u 0:4K:5{digits}")
+    assert shown["sn"] == ["0.0", "1.0", "0.0", "-1.0", "0.0"]
+    assert shown["cn"] == ["1.0", "0.0", "-1.0", "0.0", "1.0"]
+    assert shown["dn"] == ["1.0", "0.6", "1.0", "0.6", "1.0"]
+    assert shown["am_deg"] == ["0.0", "90.0", "180.0", "270.0", "360.0"]
+
+
+@DIGITS
+@pytest.mark.parametrize(
+    ("modulus", "parameter"), [("--k 0.3", "0.4"), ("--k-prime 1e-9", "0.4i"), ("--nome 0.2", "0")]
+)
+def test_zeros_and_poles_at_whole_quarters(
+    digits: str, modulus: str, parameter: str, lagtop: Lagtop
+) -> None:
+    """No other cell there is 0 or empty."""
+    args = f"{modulus} --u=-3K:3K:7 --functions am,theta,zeta,omega,pi --param {parameter}{digits}"
+    even, odd = [1, 3, 5], [0, 2, 4, 6]
+    imaginary, zero = parameter.endswith("i"), parameter == "0"
+    zeros: dict[str, Any] = {
+        **{"theta11": even, "theta10": odd, "zeta10": even, "zeta11": odd},
+        **dict.fromkeys(("zeta01", "zeta00", "omega01", "omega00"), range(7)),
+        "omega11": [4] if imaginary else range(7),
+        **dict.fromkeys(("pi01", "pi00"), range(7) if zero else [3]),
+        "pi11": [] if imaginary or zero else [3],
+        **{"sn": even, "cn": odd, "u": [3], "am_deg": [3]},
+    }
+    poles = {"zeta11": even, "zeta10": odd, "pi11": range(7) if zero else []}
+    for column, found in cells(lagtop, args).items():
+        name = column.removesuffix("_imag")
+        assert [i for i, x in enumerate(found) if x == "0.0"] == list(zeros.get(name, [])), name
+        assert [i for i, x in enumerate(found) if not x] == list(poles.get(name, [])), name
+
+
+def test_multiples_of_K(lagtop: Lagtop) -> None:
+    """Arguments are not rounded before the functions are evaluated."""
+    found = cells(lagtop, "--k 0.5 --u K/3,-2.5K,1e3K/7 --functions am,theta --digits 40")
+    reference = Reference("0.5", 60)
+    ar = reference.ar
+    for i, factor in enumerate((Fraction(1, 3), Fraction(-5, 2), Fraction(1000, 7))):
+        u = reference.K * factor.numerator / factor.denominator
+        am, sn, cn, dn = reference.jacobi(u)
+        exact = {"u": u, "am_deg": ar.re(am) * 180 / ar.pi, "sn": sn, "cn": cn, "dn": dn}
+        exact |= {f"theta{ij}": reference.theta(ij, u) for ij in ("01", "00", "11", "10")}
+        for name, value in exact.items():
+            assert abs(ar.mpf(found[name][i]) / value - 1) < 5.01e-40, name
+
+
+@pytest.mark.parametrize(
+    ("args", "column", "text"),
+    [
+        (
+            "--k 1e-30 --u 0.5 --functions omega --param 0.25",
+            "omega01",
+            "-5.0427835013916863e-62",
+        ),
+        ("--k 0.9 --u 1e12 --functions pi --param 0", "pi00", "0.0"),
+        ("--k 0.5 --u 0.3 --functions pi --param 0i", "pi11_imag", ""),
+        ("--k 0.5 --u 0.3 --functions pi --param 0i", "pi01_imag", "0.0"),
+        ("--k 0.5 --u 0.3 --functions omega,pi --param 0.3", "omega11", ""),
+        ("--k 0.5 --u 0.3 --functions omega,pi --param=-0.3", "pi11", ""),
+        ("--k 0 --u 1 --functions zeta", "zeta01", "0.0"),
+        ("--k 0.5 --u 0 --functions zeta", "zeta00", "0.0"),
+        ("--k 0.5 --u 0 --functions zeta", "zeta11", ""),
+        ("--k 0 --u 1 --functions omega --param 1e15i", "omega11_imag", "-0.57079632679489662"),
+    ],
+)
+def test_zeros_and_empty_cells(args: str, column: str, text: str, lagtop: Lagtop) -> None:
+    assert cells(lagtop, f"{args} --digits 17")[column] == [text]
+
+
+@pytest.mark.parametrize("k", ["5.874862083807e18i", "2", "0.5"])
+def test_the_quotient_of_two_zeros_is_no_number(k: str, lagtop: Lagtop) -> None:
+    args = f"--k {k} --u 0+0i --functions omega,pi --param 0"
+    plain, many = (cells(lagtop, f"{args}{digits}") for digits in ("", " --digits 30"))
+    assert plain == many
+    assert {name for name, (text,) in plain.items() if not text} == {
+        *("omega11_re", "omega11_im", "pi11_re", "pi11_im")
+    }
+
+
+@DIGITS
+def test_poles_and_zeros_of_complex_numbers(digits: str, lagtop: Lagtop) -> None:
+    found = cells(lagtop, f"--k 0.5 --u 0,1+i,-1-i,9i --functions am,zeta,pi --param 1+i{digits}")
+    assert [not x for x in found["pi11_re"]] == [False, True, True, False]
+    assert [not x for x in found["zeta11_im"]] == [True, False, False, False]
+    assert [not x for x in found["am_deg_re"]] == [False, False, False, True]
+    assert (found["sn_re"][0], found["pi01_im"][0], found["sn_re"][3]) == ("0.0", "0.0", "0.0")
+
+
+@pytest.mark.parametrize(
+    ("modulus", "u", "v", "zeros"),
+    [
+        ("--k 0.8", "0.3+0.7i", "0.3-0.7i", "omega01_im omega00_im"),
+        ("--k 0.8i", "0.25-0.5i", "0.25+0.5i", "omega01_im omega00_im"),
+        ("--k 0.8", "5.5+1i", "5.5-1i", "omega00_im"),
+        ("--k i", "1+i", "0.25-0.25i", "pi01_re pi11_re"),
+        ("--modular-angle 45", "1-i", "-0.25+0.25i", "pi00_im pi11_im"),
+        ("--modular-angle 45", "0.5+0.5i", "0.5-0.5i", "omega01_im omega00_im pi00_re pi11_re"),
+        ("--modular-angle 46", "1-i", "-0.25+0.25i", ""),
+    ],
+)
+def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lagtop) -> None:
+    """Parts that are 0 by a symmetry are printed as 0, and nothing else is."""
+    found = cells(lagtop, f"{modulus} --u={u} --functions omega,pi --param={v} --digits 9")
+    assert {name for name, (text,) in found.items() if text == "0.0"} == set(zeros.split())
+
+
+@pytest.mark.parametrize(
+    ("options", "row"),
+    [
+        ("--u 0.25 --digits 1", "0.2,0.2,0.2,1.0,1.0"),
+        ("--u 12345 --digits 4", "12340.0,12340.0,-0.9938,0.1114,1.0"),
+        ("--phi 0.25 --digits 1", "0.2,0.2,0.2"),
+        ("--u 0.25+1i --digits 1", "0.2,1.0,0.2,1.0,0.4,1.0,1.0,-0.3,1.0,0.0"),
+        ("--u 1+2.5i --digits 1", "1.0,2.0,1.0,2.0,5.0,3.0,3.0,-5.0,1.0,0.0"),
+    ],
+)
+def test_am_at_k_0_is_u_also_midway(options: str, row: str, lagtop: Lagtop) -> None:
+    """Midway between two roundings, the even digit is printed."""
+    result = lagtop("jacobi", "--k", "0", "--rad", "--format", "csv", *options.split())
+    assert result.stdout.splitlines()[1:] == [row]
+
+
+@pytest.mark.parametrize("options", ["--k 0 --u 1e19i", "--k 1 --u 1e19+0.5i", "--k 1 --u 1e19"])
+def test_sizes_beyond_decimals(options: str, lagtop: Lagtop) -> None:
+    """With --digits one line refuses them; in doubles they are 0, or empty cells."""
+    result = lagtop("jacobi", *options.split(), "--digits", "10")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "1e+990000000000000000, the limits of --digits" in result.stderr
+    assert lagtop("jacobi", *options.split()).exit_code == 0
+
+
+def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
+    """am, sn, cn and dn are the default, and beside other functions only if they are named."""
+    plain = "u am_deg sn cn dn".split()
+    for families, names in (
+        ("", plain),
+        ("--functions am", plain),
+        ("--functions zeta", "u zeta01 zeta00 zeta11 zeta10".split()),
+        ("--functions am,pi --param 0.3", [*plain, "pi01", "pi00", "pi11"]),
+        ("--functions pi --param 0i", "u pi01_imag pi00_imag pi11_imag".split()),
+    ):
+        shown = cells(lagtop, f"--k 0.8 --u 0.1:1:3 {families}")
+        assert (list(shown), len(shown["u"])) == (names, 3)
+
+
+def test_a_flag_of_a_function_means_its_name(lagtop: Lagtop) -> None:
+    """Flags and --functions add to each other; --phi excludes both."""
+    given = "--k 0.7 --u=-6.6+0.7i --param=8.5+0.7i"
+    named = cells(lagtop, f"{given} --functions theta,zeta,omega")
+    assert cells(lagtop, f"{given} --omega --zeta --functions theta") == named
+    assert float(named["omega11_im"][0]) == pytest.approx(0.0200677814681204, rel=1e-14)
+    refused = lagtop("jacobi", "--k", "0.7", "--phi", "30", "--omega")
+    assert (refused.exit_code, refused.stderr) == (2, "Error: use --phi or --functions, not both\n")
+
+
+def test_rows_in_degrees_and_radians(lagtop: Lagtop) -> None:
+    args = "--k 0.8 --u 3.5 --functions am,theta,zeta,omega,pi --param 0.4i"
+    plain, radians = cells(lagtop, args), cells(lagtop, f"{args} --rad")
+    assert [*plain][-1] == "pi11_imag"
+    assert float(radians.pop("am_rad")[0]) == pytest.approx(
+        math.radians(float(plain.pop("am_deg")[0])), rel=1e-15
+    )
+    assert plain == radians
+
+
+def test_constants(lagtop: Lagtop) -> None:
+    """Each is the double next to the number of mpmath, on its side of the cuts."""
+    record = json.loads(lagtop("jacobi", "--modular-angle", "60", "--format", "json").stdout)
+    with mpmath.workdps(40):
+        m = mpmath.mpf(3) / 4
+        exact: dict[str, Any] = {
+            "k": mpmath.sqrt(m),
+            "k_prime": mpmath.mpf(0.5),
+            "modular_angle_deg": 60,
+            "nome": mpmath.qfrom(m=m),
+            "nome_prime": mpmath.qfrom(m=1 - m),
+            "K": mpmath.ellipk(m),
+            "K_prime": mpmath.ellipk(1 - m),
+            "E": mpmath.ellipe(m),
+            "E_prime": mpmath.ellipe(1 - m),
+        }
+        assert record == {key: float(value) for key, value in exact.items()}
+        for text, square in (("0.8i", "-0.64"), ("1.5", "2.25")):
+            record = json.loads(lagtop("jacobi", "--k", text, "--format", "json").stdout)
+            m = mpmath.mpf(square)
+            exact = {"K": mpmath.ellipk(m), "K_prime": mpmath.ellipk(1 - m), "E": mpmath.ellipe(m)}
+            exact |= {"E_prime": mpmath.ellipe(1 - m), "nome": mpmath.qfrom(m=m)}
+            for name, value in exact.items():
+                found = complex(record[f"{name}_re"], record[f"{name}_im"])
+                assert found == complex(value), (text, name)
+    one = json.loads(lagtop("jacobi", "--modular-angle", "90", "--format", "json").stdout)
+    assert (one["k_prime"], one["K"], one["E"], one["nome"]) == (0.0, None, 1.0, 1.0)
+    assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
+
+
+def test_a_nome_next_to_1(lagtop: Lagtop) -> None:
+    """K is pi/2 theta3^2: -pi^2/(2 log q) but for a term as small as k'^2."""
+    nome = f"0.{'9' * 16}"
+    args = ["--nome", nome, "--digits", "30", "--format", "json"]
+    shown = json.loads(lagtop("jacobi", *args).stdout, parse_float=str)
+    with mpmath.workdps(60):
+        K = -(mpmath.pi**2) / (2 * mpmath.log(mpmath.mpf(nome)))
+        assert abs(mpmath.mpf(shown["K"]) / K - 1) < 1e-29
+        mantissa, exponent = shown["nome_prime"].split("e")
+        size = mpmath.mpf(mantissa) * mpmath.mpf(10) ** int(exponent)
+        assert abs(size / mpmath.exp(-2 * K) - 1) < 1e-29
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.3", 0.3),
+        ("i", 1j),
+        ("-i", -1j),
+        ("0.7i", 0.7j),
+        ("-0.5+i", -0.5 + 1j),
+        ("1e-3-2e-4i", 0.001 - 0.0002j),
+        ("-1e+3i", -1000j),
+    ],
+)
+def test_complex_numbers_are_read(text: str, value: complex) -> None:
+    assert complex(parse_complex(text)) == value
+
+
+@pytest.mark.parametrize("text", ["0.3+-0.7i", "xi", "0.3+0.7j", "1i2i", "0.3+0.7ii", "1e400i", ""])
+def test_other_texts_are_refused(text: str) -> None:
+    with pytest.raises(LagtopError, match="must be"):
+        parse_complex(text)
+
+
+@pytest.mark.parametrize("option", ["--u", "--k", "--param"])
+@pytest.mark.parametrize("text", ["1+2j", "0.7i+0.3", "0.3 + 0.7i"])
+def test_odd_spellings_are_told_the_right_one(option: str, text: str, lagtop: Lagtop) -> None:
+    """The line names all of the text, as it was typed, and the right spelling."""
+    given = {"--k": "0.8", "--u": "1", "--param": "0.3"} | {option: text}
+    result = lagtop(
+        "jacobi", "--functions", "pi", *(word for pair in given.items() for word in pair)
+    )
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert f"must be a finite number, complex as 0.3+0.7i, got {text!r}" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "multiple"),
+    [
+        ("K", Multiple(Fraction(1), True)),
+        ("+K/2", Multiple(Fraction(1, 2), True)),
+        (" 2K ", Multiple(Fraction(2), True)),
+        ("-2.5K", Multiple(Fraction(-5, 2), True)),
+        ("3K/4", Multiple(Fraction(3, 4), True)),
+        ("1e3K/7", Multiple(Fraction(1000, 7), True)),
+        ("0.5", Multiple(Fraction(1, 2), False)),
+    ],
+)
+def test_multiples_are_read(text: str, multiple: Multiple) -> None:
+    assert parse_multiple(text) == multiple
+
+
+@pytest.mark.parametrize("text", ["2K/0", "K/-2", "K/", "2KK", "K2", "aK", "1/2K", "2*K", "k", ""])
+def test_invalid_multiples_are_refused(text: str) -> None:
+    with pytest.raises(LagtopError, match=r"must be a (multiple of K such as|finite decimal)"):
+        parse_multiple(text)
+
+
+def test_zero_goes_with_both_kinds(lagtop: Lagtop) -> None:
+    for arguments in ("0,K", "0K,K", "0,1"):
+        assert cells(lagtop, f"--k 0.6 --u {arguments}")["sn"][0] == "0.0"

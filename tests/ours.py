@@ -1,0 +1,135 @@
+"""Our elliptic functions in numbers of mpmath, for the equations of the sources."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+from flint import acb, arb
+from mpmath.ctx_mp import MPContext
+
+from lagrange_cli.arithmetic.arb_ball import balls
+from lagrange_cli.arithmetic.points import ExactComplex
+from lagrange_cli.elliptic import incomplete, modulus
+from lagrange_cli.elliptic.enclosures import exact, rational
+from lagrange_cli.elliptic.functions import Functions, Point, nearest
+
+
+class ManyDigits(MPContext):  # type: ignore[misc]
+    """A context of mpmath of its own, which leaves other precisions alone."""
+
+    def __init__(self, digits: int) -> None:
+        super().__init__()
+        self.dps = digits
+
+
+def fraction(x: Any) -> Fraction:
+    """Return the exact value of a real number of mpmath."""
+    sign, mantissa, exponent, _ = x._mpf_
+    return (-1) ** sign * Fraction(int(mantissa)) * Fraction(2) ** exponent
+
+
+class Ours:
+    """Our functions in the numbers of a context, and with its digits.
+
+    A modulus k is a number: in [0, 1], imaginary or above 1.
+    """
+
+    def __init__(self, ar: ManyDigits) -> None:
+        self.ar = ar
+
+    def exact(self, z: Any) -> ExactComplex:
+        """Return the exact value of a number."""
+        return ExactComplex(*(fraction(self.ar.mpf(x)) for x in (self.ar.re(z), self.ar.im(z))))
+
+    def ball(self, x: Any) -> arb:
+        """Return a ball that contains a real number."""
+        return exact(self.exact(x).real)
+
+    def modulus(self, k: Any) -> modulus.Modulus:
+        """Return a modulus in balls."""
+        return modulus.reduced(self.exact(k))
+
+    def number(self, ball: arb | acb | None) -> Any:
+        """Return the middle of a ball, real if its imaginary part is 0."""
+        if ball is None:
+            return None
+        if isinstance(ball, acb):
+            real, imag = self.number(ball.real), self.number(ball.imag)
+            return self.ar.mpc(real, imag) if imag else real
+        mantissa, exponent = ball.mid().man_exp()
+        return self.ar.ldexp(self.ar.mpf(int(mantissa)), int(exponent))
+
+    def evaluated(self, compute: Callable[[], Any]) -> Any:
+        """Return what a function computes in balls, as numbers."""
+        with balls(self.ar.dps + 30):
+            found = compute()
+            many = isinstance(found, tuple)
+            return tuple(map(self.number, found)) if many else self.number(found)
+
+    def _functions(self, k: Any) -> Functions:
+        return Functions(self.modulus(k))
+
+    def _point(self, z: Any) -> Point:
+        return Point(*map(rational, self.exact(z)))
+
+    def jacobi(self, u: Any, k: Any) -> Any:
+        """Return am, sn, cn, dn."""
+        return self.evaluated(lambda: tuple(self._functions(k).jacobi(self._point(u))))
+
+    def theta(self, ij: str, v: Any, k: Any) -> Any:
+        """Return Theta_ij(v)."""
+        return self.evaluated(lambda: self._functions(k).thetas(self._point(v))[ij])
+
+    def zeta(self, ij: str, v: Any, k: Any) -> Any:
+        """Return Z_ij(v)."""
+        return self.evaluated(lambda: self._functions(k).zetas(self._point(v))[ij])
+
+    def omega(self, ij: str, eta: Any, v: Any, k: Any) -> Any:
+        """Return Omega_ij(eta, v)."""
+        return self._third(ij, eta, v, k, 0)
+
+    def pi_function(self, ij: str, eta: Any, v: Any, k: Any) -> Any:
+        """Return Pi_ij(eta, v)."""
+        return self._third(ij, eta, v, k, 1)
+
+    def _third(self, ij: str, eta: Any, v: Any, k: Any, which: int) -> Any:
+        points = self._point(eta), self._point(v)
+        return self.evaluated(lambda: self._functions(k).third(*points)[ij][which])
+
+    def quarter_period(self, k: Any) -> Any:
+        """Return K of a modulus in [0, 1)."""
+        return self.evaluated(lambda: modulus.quarter_period(self.modulus(k).k_prime))
+
+    def second_kind(self, k: Any) -> Any:
+        """Return E of a modulus in [0, 1]."""
+        return self.evaluated(lambda: modulus.second_kind(self.modulus(k).k_prime))
+
+    def nome(self, k: Any) -> Any:
+        """Return q of a modulus in [0, 1]."""
+        return self.evaluated(lambda: modulus.nome(*self.modulus(k)[:2]))
+
+    def incomplete_f(self, phi: Any, k: Any) -> Any:
+        """Return F(phi, k) of an amplitude in radians."""
+        return self._incomplete(incomplete.incomplete_f, modulus.quarter_period, phi, k)
+
+    def incomplete_e(self, phi: Any, k: Any) -> Any:
+        """Return E(phi, k) of an amplitude in radians."""
+        return self._incomplete(incomplete.incomplete_e, modulus.second_kind, phi, k)
+
+    def _incomplete(self, within: Any, complete: Any, phi: Any, k: Any) -> Any:
+        def compute() -> Any:
+            angle, given = self.ball(phi), self.modulus(k)
+            half_turns = nearest(angle / arb.pi())
+            sine, cosine = (angle - half_turns * arb.pi()).sin_cos()
+            return within(sine, cosine, given) + 2 * half_turns * complete(given.k_prime)
+
+        return self.evaluated(compute)
+
+
+ours = Ours(ManyDigits(60))
+ar = ours.ar
+jacobi, theta, zeta, omega = ours.jacobi, ours.theta, ours.zeta, ours.omega
+pi_function, quarter_period, second_kind = ours.pi_function, ours.quarter_period, ours.second_kind
+nome, incomplete_f, incomplete_e = ours.nome, ours.incomplete_f, ours.incomplete_e
