@@ -13,34 +13,25 @@ from typing import Any
 import numpy as np
 import pytest
 from engines import Array, Body, dop853
-from lagtop import Comparison, Top, compare
+from lagtop import Top, compare
 from scipy.spatial.transform import Rotation
 
-TOPS = {
-    "slim": Top(
-        m=0.35, A=8.5e-4, C=4e-4, s=0.03, g=9.81, r0=90, theta0_deg=40, thetadot0=1, psidot0=3
-    ),
-    "toy": Top(
-        m=1.2, A=0.018, C=0.004, s=0.1, g=9.81, r0=60, theta0_deg=55, thetadot0=-0.5, psidot0=1
-    ),
-    "disc": Top(
-        m=0.5, A=4e-3, C=2.5e-3, s=0.07, g=9.81, r0=-40, theta0_deg=75, thetadot0=1, psidot0=-2
-    ),
+_BODIES = {
+    "slim": (0.35, 8.5e-4, 4e-4, 0.03, 90, 40, 1, 3),
+    "toy": (1.2, 0.018, 0.004, 0.1, 60, 55, -0.5, 1),
+    "disc": (0.5, 4e-3, 2.5e-3, 0.07, -40, 75, 1, -2),
 }
+_INPUTS = ("m", "A", "C", "s", "r0", "theta0_deg", "thetadot0", "psidot0")
+TOPS = {name: Top(g=9.81, **dict(zip(_INPUTS, x, strict=True))) for name, x in _BODIES.items()}
 T = np.linspace(0, 1, 201)
 Given = dict[str, Any]
 
 
 @cache
-def _run(name: str, mistake: str, method: str) -> tuple[Rotation, Array]:
-    body = bodies(TOPS[name])[mistake]
-    _, states = dop853(body, T, 1e-10, method)
-    return Rotation.from_quat(states[:, :4], scalar_first=True), states[:, 4:]
-
-
 def run(name: str, mistake: str = "", method: str = "DOP853") -> tuple[Rotation, Array]:
     """Return the attitude and the body rates that an engine computes with a mistake or none."""
-    return _run(name, mistake, method)
+    _, states = dop853(bodies(TOPS[name])[mistake], T, 1e-10, method)
+    return Rotation.from_quat(states[:, :4], scalar_first=True), states[:, 4:]
 
 
 def wxyz(turn: Rotation) -> Array:
@@ -139,16 +130,12 @@ FORMS: dict[str, Callable[[Rotation, Array], Given]] = {
 }
 
 
-def result(name: str, given: Given) -> Comparison:
-    arguments: Given = {"t": T} | given
-    return compare(TOPS[name], **arguments)
-
-
 @pytest.mark.parametrize("method", ["DOP853", "LSODA"])
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", TOPS)
 def test_a_right_trajectory_is_fine(name: str, form: str, method: str) -> None:
-    assert result(name, FORMS[form](*run(name, method=method))).verdict == "fine"
+    given: Given = {"t": T} | FORMS[form](*run(name, method=method))
+    assert compare(TOPS[name], **given).verdict == "fine"
 
 
 @pytest.mark.parametrize(
@@ -160,11 +147,11 @@ def test_a_right_trajectory_is_fine(name: str, form: str, method: str) -> None:
     ],
 )
 def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
+    given: Given = {"t": T}
     if mistake in READINGS:
-        given = READINGS[mistake](*run(name))
+        given |= READINGS[mistake](*run(name))
     else:
-        turn, rates = run(name, mistake)
-        given = {"quaternion": wxyz(turn), "rates": rates}
-    found = result(name, given)
+        given |= FORMS["quaternion"](*run(name, mistake))
+    found = compare(TOPS[name], **given)
     assert found.verdict != "fine"
     assert (found.cause is None) if mistake in UNKNOWN else (mistake in (found.cause or ""))

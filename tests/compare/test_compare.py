@@ -11,7 +11,7 @@ from engines import Array, Body, dop853, rk4, semi_implicit_euler
 from lagtop import Comparison, LagtopError, Top, compare, solve
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.compare.compare import Convergence, compared
+from lagrange_cli.compare.compare import compared
 from lagrange_cli.compare.differences import Trajectory
 from lagrange_cli.inputs.seen import Conventions
 
@@ -55,14 +55,11 @@ def test_an_integrator_is_fine(inputs: dict[str, float]) -> None:
 ALL = {"attitude", "axis", "theta", "phi", "psi"}
 FORMS: dict[str, tuple[dict[str, Any], set[str]]] = {
     "long": ({"quaternion": -2 * Q}, ALL),
-    "xyzw": ({"quaternion": TURN.as_quat(), "quaternion_order": "xyzw"}, ALL),
     "order that is found": ({"quaternion": TURN.as_quat(), "quaternion_order": None}, ALL),
     "XYZ": ({"euler": TURN.as_euler("XYZ"), "euler_sequence": "XYZ"}, ALL),
-    "angles": ({"phi": PHI, "theta": THETA, "psi": PSI}, ALL),
     "position": ({"position": TURN.apply([0, 0, 4.0])}, {"axis", "theta", "psi"}),
     "phi and psi": ({"phi": PHI, "psi": PSI + 2 * np.pi}, {"phi", "psi"}),
     "body rates": ({"rates": RATES}, {"rates"}),
-    "space rates": ({"rates": TURN.apply(RATES), "rates_frame": "space"}, {"rates"}),
 }
 
 
@@ -193,12 +190,9 @@ def test_zeros_that_count_from_the_first_row() -> None:
 
 
 def with_steps(runs: list[tuple[Array, Array]], steps: list[float]) -> list[Comparison]:
-    motion, conventions = solve(TOP), Conventions("wxyz", radians=True)
     given = [{"t": t[:, np.newaxis], "quaternion": states[:, :4]} for t, states in runs]
-    results, found = compared(motion, [Trajectory(x, conventions) for x in given], 1e-3, steps)
-    assert isinstance(found, Convergence)
-    assert {x.order for x in results} == {found.order}
-    return results
+    conventions = Conventions("wxyz", radians=True)
+    return compared(solve(TOP), [Trajectory(x, conventions) for x in given], 1e-3, steps)[0]
 
 
 @pytest.mark.parametrize(
@@ -214,8 +208,8 @@ def test_order_of_convergence(method: Any, steps: list[float], order: int) -> No
 
 
 def test_the_error_of_another_top_does_not_fall() -> None:
-    steps, other = [4e-3, 2e-3], Body.of(TOP.replace(A=39032 * 1.03))
-    rows = with_steps([rk4(other, h, 1) for h in steps], steps)
+    other = Body.of(TOP.replace(A=39032 * 1.03))
+    rows = with_steps([rk4(other, h, 1) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
     assert {(row.verdict, row.cause) for row in rows} == {("another top", None)}
     rounded = with_steps([(T, np.round(STATES, 6))] * 2, [1e-3, 1e-4])
     assert {row.verdict for row in rounded} == {"fine"}
@@ -239,11 +233,8 @@ def test_rows_that_are_not_finite() -> None:
     ("arguments", "message"),
     [
         ({}, "compare must be given an attitude"),
-        ({"quaternion": Q[:5]}, r"quaternion must be real numbers of shape \(201, 4\)"),
         ({"angle_rates": RATES}, "angle_rates must come with an attitude or a part of it"),
         ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
-        ({"quaternion": Q, "euler_sequence": "xxz"}, "euler_sequence must be three axes"),
-        ({"quaternion": Q, "rates_frame": "world"}, "rates_frame must be body or space"),
         ({"quaternion": Q, "align": ["up=w"]}, "align must be among axis=y"),
         ({"quaternion": Q, "align": "start"}, "align must be a list of words"),
         ({"theta": THETA, "align": ["left"]}, "align left needs the whole attitude"),
