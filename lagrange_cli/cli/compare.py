@@ -57,7 +57,7 @@ def compare_command(
     top: opt.TopOptions,
     words: list[str],
     columns: list[str] | None,
-    quaternion_order: str | None,
+    quaternion_order: str,
     euler_sequence: str,
     rates_frame: str,
     align: list[str] | None,

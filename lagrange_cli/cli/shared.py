@@ -140,7 +140,9 @@ quaternion_order = option(
     "--quaternion-order",
     metavar="ORDER",
     type=click.Choice(["wxyz", "xyzw"]),
-    help="wxyz or xyzw.  [default: from the first row]",
+    default="wxyz",
+    show_default=True,
+    help="Order of a quaternion whose names do not show it: wxyz or xyzw.",
 )
 euler_sequence = option(
     "--euler-sequence",

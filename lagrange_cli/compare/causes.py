@@ -17,8 +17,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs import rotations
-from ..inputs.rotations import HALF_TURN_X, HALF_TURN_Z
-from ..inputs.seen import ORDERS, Seen
+from ..inputs.seen import Seen
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
 from .differences import Alignment, Trajectory, rate_size
@@ -51,25 +50,23 @@ class Cause(NamedTuple):
             return math.inf
 
 
-def likely_cause(
-    motion: Motion, trajectory: Trajectory, limit: float, *, guessed: bool
-) -> tuple[str, float] | None:
+def likely_cause(motion: Motion, trajectory: Trajectory, limit: float) -> tuple[str, float] | None:
     """Return the cause that explains the error best, and the greatest error without it.
 
     A cause explains an error if it takes off nine tenths.  Of those that bring the error below the
-    limit, return the simplest that leaves about as little as the best; else return the best.  If
-    the order of the quaternion was guessed, try the other order too.
+    limit, return the simplest that leaves about as little as the best; else return the best.
     """
     count = len(trajectory.given["t"])
-    before = Cause("").error(motion, trajectory, count)
-    readings = [trajectory.with_order(order) for order in ORDERS] if guessed else [trajectory]
-    tried = [(x, cause) for x in readings for cause in (*CAUSES, _shifted_clock(motion, x))]
-    hopeful = [(x, y) for x, y in tried if y.error(motion, x, 300) <= EXPLAINS * before]
-    found = [(cause.name, cause.error(motion, x, count)) for x, cause in hopeful]
+    enough = EXPLAINS * Cause("").error(motion, trajectory, count)
+    causes = [*CAUSES, _shifted_clock(motion, trajectory)]
+    hopeful = [x for x in causes if x.error(motion, trajectory, 300) <= enough]
+    found = [(x.name, x.error(motion, trajectory, count)) for x in hopeful]
     least = min((error for _, error in found), default=math.inf)
-    enough = max(_AS_GOOD * least, _ROUNDING) if least <= limit else least
-    best = (x for x in found if x[1] <= min(enough, max(limit, least), EXPLAINS * before))
-    return next(best, None)
+    if least <= limit:
+        enough = min(enough, limit, max(_AS_GOOD * least, _ROUNDING))
+    else:
+        enough = min(enough, least)
+    return next((x for x in found if x[1] <= enough), None)
 
 
 def _input(name: str, **changes: Callable[[Top], Any]) -> Cause:
@@ -78,7 +75,7 @@ def _input(name: str, **changes: Callable[[Top], Any]) -> Cause:
 
 
 def _gravity(g: str) -> Cause:
-    return _input(f"g is {g}", g=lambda _: Fraction(g))
+    return _input(f"g is {g} (or m or s is wrong by as much)", g=lambda _: Fraction(g))
 
 
 def _moment(name: str, sign: int) -> Cause:
@@ -96,28 +93,18 @@ def _tilt(top: Top) -> float:
 def _tilted(name: str, angle_of: Callable[[float], float]) -> Cause:
     """Return the cause that the tilt was another, perhaps to the other side of the vertical."""
 
-    def angle(top: Top) -> float:
-        return math.remainder(angle_of(_tilt(top)), 2 * math.pi)
-
     def moved(top: Top) -> Top:
-        rate = math.copysign(1.0, angle(top)) * float(top.thetadot0)
-        return top.replace(theta0_rad=abs(angle(top)), thetadot0=rate)
+        angle = math.remainder(angle_of(_tilt(top)), 2 * math.pi)
+        rate = math.copysign(1.0, angle) * float(top.thetadot0)
+        return top.replace(theta0_rad=abs(angle), thetadot0=rate)
 
-    def change(seen: Seen, top: Top) -> Seen:
-        return seen if angle(top) >= 0 else seen.turned(HALF_TURN_Z, HALF_TURN_Z)
-
-    return Cause(f"theta0 {name}", moved, change)
+    return Cause(f"theta0 {name}", moved, rows=_aligned("start"))
 
 
 def _upside_down(top: Top) -> Top:
     """Return the top seen upside down, so that gravity points upwards."""
     tilt = math.pi - _tilt(top)
     return top.replace(theta0_rad=tilt, psidot0=-top.psidot0, thetadot0=-top.thetadot0)
-
-
-def _seen_upside_down(seen: Seen, _: Top) -> Seen:
-    back = rotations.conjugate(HALF_TURN_Z)
-    return seen.turned(rotations.product(back, HALF_TURN_X), back)
 
 
 def _exchanged_moments(top: Top) -> Top:
@@ -177,17 +164,19 @@ def _angles(name: str, *, phi: str = "phi", psi: str = "psi") -> Cause:
     return Cause(name, change=change)
 
 
+def _aligned(words: str) -> Callable[[Trajectory], Trajectory]:
+    """Return the reading of a trajectory with these words of `--align`."""
+    new = Alignment.of(words.split(","))
+    return lambda x: x._replace(align=new._replace(time=x.align.time))
+
+
 def _framed(words: str) -> Cause:
     """Return the cause that the frames are those of some words of `--align`."""
-    new = Alignment.of(words.split(","))
     said = "spin and precession do not start at 0" if words == "start" else "the axes are others"
-    if new.left:
-        up, q = ("y", "(-x, -z, -y, w)") if new.up == "y" else ("z", "(-x, y, -z, w)")
+    if "left" in words:
+        up, q = ("y", "(-x, -z, -y, w)") if "up=y" in words else ("z", "(-x, y, -z, w)")
         said = f"the frame is left-handed with {up} up: read the quaternion as {q}"
-    return Cause(
-        f"{said} (--align {words})",
-        rows=lambda x: x._replace(align=new._replace(time=x.align.time)),
-    )
+    return Cause(f"{said} (--align {words})", rows=_aligned(words))
 
 
 def _shifted_rows(shift: int, trajectory: Trajectory) -> Trajectory:
@@ -254,10 +243,10 @@ CAUSES = [
     _tilted("in radians was taken as degrees", math.radians),
     _tilted("in degrees was taken as radians", math.degrees),
     *map(_gravity, ("0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981")),
-    Cause("g points upwards", _upside_down, _seen_upside_down),
+    Cause("g points upwards", _upside_down, rows=_aligned("up=-z,start")),
     _quaternion("the conjugate, from space to body", rotations.conjugate),
-    _quaternion("xyzw and was read as wxyz", lambda q: np.roll(q, 1, 1)),
-    _quaternion("wxyz and was read as xyzw", lambda q: np.roll(q, -1, 1)),
+    _quaternion("xyzw and was read as wxyz: --quaternion-order xyzw", lambda q: np.roll(q, 1, 1)),
+    _quaternion("wxyz and was read as xyzw: --quaternion-order wxyz", lambda q: np.roll(q, -1, 1)),
     _rates_in("space"),
     _rates_in("body"),
     _angles("phi and psi are exchanged", phi="psi", psi="phi"),

@@ -12,9 +12,8 @@ from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.files import shown_path, utf8_path
 from ..inputs.names import ANGLES
-from ..inputs.seen import ORDERS, Conventions, quantities_of
+from ..inputs.seen import Conventions, quantities_of
 from ..inputs.top import Top
-from ..inputs.trajectory_columns import NAMELESS
 from ..motion.notebook import HasRecord
 from ..motion.solve import Motion, solve
 from .causes import likely_cause
@@ -79,7 +78,6 @@ class Comparison(HasRecord):
     energy_drift: float | None = _key("greatest change of energy, over its size at the start")
     Lz_drift: float | None = _key("greatest change of the vertical angular momentum, likewise")
     lost_at: float | None = _key("time of the first row that is not finite")
-    quaternion_order: str | None = _key("order of the quaternion, if it was found from the rows")
     order: float | None = _key("order of convergence of all files (--step-sizes)")
     cause: str | None = _key("the most likely cause of the error")
     cause_error: float | None = _key("greatest error with this cause corrected")
@@ -134,7 +132,7 @@ def compare(
     position: ArrayLike | None = None,
     rates: ArrayLike | None = None,
     angle_rates: ArrayLike | None = None,
-    quaternion_order: str | None = "wxyz",
+    quaternion_order: str = "wxyz",
     euler_sequence: str = "xyz",
     rates_frame: str = "body",
     align: Sequence[str] = (),
@@ -197,19 +195,16 @@ def compared(
         raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
     if wrong := [step for step in step_sizes or [] if not step > 0]:
         raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
-    read = [_with_order(motion, trajectory) for trajectory in trajectories]
-    results = [_measured(motion, *one) for one in read]
-    found = None
+    results, found = [_measured(motion, trajectory) for trajectory in trajectories], None
     if step_sizes is not None:
         results = [replace(x, step=step) for x, step in zip(results, step_sizes, strict=True)]
         found = convergence(results)
         results = [replace(x, order=found and found.order) for x in results]
-    for i, (x, (trajectory, order)) in enumerate(zip(results, read, strict=True)):
+    for i, (x, trajectory) in enumerate(zip(results, trajectories, strict=True)):
         is_off, verdict = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit, "fine"
         name, remaining = None, None
         if is_off and not (found and found.falls):
-            cause = likely_cause(motion, trajectory, limit, guessed=order is not None)
-            name, remaining = cause or (None, None)
+            name, remaining = likely_cause(motion, trajectory, limit) or (None, None)
         if is_off:
             is_known = remaining is not None and remaining <= limit
             verdict = "another top" if is_known or (found and not found.falls) else "drifts"
@@ -219,17 +214,7 @@ def compared(
     return results, found
 
 
-def _with_order(motion: Motion, trajectory: Trajectory) -> tuple[Trajectory, str | None]:
-    """Return a trajectory with the order of its quaternion, and the order if it was unknown."""
-    known = trajectory.named.get("quaternion", NAMELESS).says or trajectory.conventions.quaternion
-    if known or "quaternion" not in trajectory.given:
-        return trajectory, None
-    few = trajectory.few(1000)
-    best = min(ORDERS, key=lambda order: few.with_order(order).greatest(motion))
-    return trajectory.with_order(best), best
-
-
-def _measured(motion: Motion, trajectory: Trajectory, order: str | None) -> Comparison:
+def _measured(motion: Motion, trajectory: Trajectory) -> Comparison:
     """Return a comparison without its verdict and its cause."""
     seen = trajectory.align.aligned(trajectory.seen(), motion)
     try:
@@ -257,7 +242,6 @@ def _measured(motion: Motion, trajectory: Trajectory, order: str | None) -> Comp
         compared=next((word for name, word in _COMPARED.items() if name in found), "rates"),
         error_final=None if np.isnan(error[-1]) else float(error[-1]),
         lost_at=float(t[lost[0]]) if lost.size else None,
-        quaternion_order=order,
         error_start=float(max(error[0], found.get("rates", error)[0])),
         t=t,
         error=error,

@@ -115,10 +115,6 @@ class Trajectory(NamedTuple):
     named: Named = MappingProxyType({})
     file: str | None = None
 
-    def with_order(self, order: str) -> Trajectory:
-        """Return the trajectory with another order of its quaternion."""
-        return self._replace(conventions=self.conventions._replace(quaternion=order))
-
     def few(self, most: int) -> Trajectory:
         """Return at most so many rows, evenly spread."""
         every = -(-len(self.given["t"]) // most)

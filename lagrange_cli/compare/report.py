@@ -64,8 +64,6 @@ def comparison_report(
         "regime": motion.regime,
         "errors": f"radians, those of rates relative; greatest of all rows; fine up to {limit:g}",
     }
-    if orders := {x.quaternion_order for x in results if x.quaternion_order}:
-        conditions["quaternion"] = f"{' or '.join(sorted(orders))}, which fits the rows better"
     lines = [line for x in results for line in _conclusions(x, limit, found)]
     if found is not None:
         lines.append(_order(results, found))

@@ -78,10 +78,9 @@ def test_conventions_by_options(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     """An option overrides what p, q and r say of their frame."""
     table = np.loadtxt(right, delimiter=",", skiprows=1)
     np.save(tmp_path / "a.npy", np.column_stack([table[:, 0] + 3, np.roll(table[:, 1:5], -1, 1)]))
-    how = ["--columns", "t,quaternion", "--align", "time"]
+    how = ["--columns", "t,quaternion", "--align", "time", "--quaternion-order", "xyzw"]
     result = lagtop("compare", tmp_path / "a.npy", *OPTIONS, *how)
     assert result.exit_code == 0
-    assert "quaternion xyzw, which fits the rows better" in result.stdout
     wrong = lagtop("compare", right, *OPTIONS, "--rates-frame", "space")
     assert "the rates are in the frame of body: --rates-frame body" in wrong.stdout
 
