@@ -24,7 +24,6 @@ __all__ = [
     "sensitivities",
     "solve",
     "sweep",
-    "sweep_angles",
     "view",
 ]
 
@@ -44,7 +43,6 @@ _MODULES = {
     "sensitivities": "motion.derivatives",
     "solve": "motion.solve",
     "sweep": "sweep.records",
-    "sweep_angles": "sweep.angles",
     "view": "plot.browser",
 }
 """The module of each public name; it is imported when the name is first used.

@@ -15,7 +15,6 @@ from lagrange_cli.motion.solve import solve as solve
 from lagrange_cli.plot import draw as draw
 from lagrange_cli.plot.browser import view as view
 from lagrange_cli.plot.reports import draw_outcome as draw_outcome
-from lagrange_cli.sweep.angles import sweep_angles as sweep_angles
 from lagrange_cli.sweep.records import sweep as sweep
 
 __version__: str

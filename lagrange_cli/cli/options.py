@@ -263,10 +263,6 @@ key_names = partial(names, offered=_all_keys, metavar="KEY,...")
 rad = flag("Use radians for all angles, in and out.", "--rad")
 certify = flag("Also print KEY_radius, a proven bound on the error.")
 plot = file("Also draw the report: FILE.svg or FILE.png.")
-jobs = option(
-    Parsed("N|auto", late("sweep.jobs", "parse_jobs")),
-    "Number of processes; auto: one per core.  [default: 1]",
-)
 
 
 def extension(path: str) -> str:

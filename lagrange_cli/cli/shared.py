@@ -122,7 +122,6 @@ certify = option(
 )
 keys = option("--keys", type=LIST, help="Compute and print only these keys (see lagtop explain).")
 plot = option("--plot", metavar="FILE", help="Also draw the report: FILE.svg or FILE.png.")
-jobs = option("--jobs", metavar="N|auto", help="Number of processes; auto: one per core.")
 decimal = option(
     "--decimal",
     metavar="MARK",

@@ -3,29 +3,35 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
+from ..inputs.files import shown_path
+from ..inputs.scenes import is_scene_file
 from ..output.terminal import with_progress
-from . import options as opt
+from . import shared as opt
 from .app import complain
-from .tables import header_comments_option, is_described, text_options, warn_no_tops
-from .top import SCENE, TopOptions, top_options, value_type, warn_missing, warn_unused, words
 
 if TYPE_CHECKING:
-    from ..inputs.text_lines import Dialect
     from ..inputs.units import System
+    from ..inputs.values import Value
     from ..motion.solve import Motion
     from ..output.destination import Output
-    from ..sweep.plan import Make
 
-_FORMATS = ("csv", "ndjson", "json", "parquet", "table")
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
-_KEYS = opt.key_names("Compute and print only these keys (see lagtop explain).")
+
+
+def _parse_input(text: str, *, read: str) -> Value:
+    """Return the value of an input; `read` names the reader of its numbers."""
+    from ..inputs import values
+
+    parse: Callable[[str], Any] = getattr(values, read)
+    return values.parse_value(text, parse)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -36,33 +42,40 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
+def _parse_jobs(text: str) -> int:
+    from ..sweep.workers import parse_jobs
+
+    return parse_jobs(text)
+
+
 @opt.command(
     "sweep",
-    """
-    lagtop sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv
-    lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
-    lagtop sweep tops.csv --keys r0,T_nutation -o solved.ndjson
-    """,
-    exclusive=["--jobs --dask"],
+    "sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv",
+    "sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate",
+    "sweep tops.csv --keys r0,T_nutation -o solved.ndjson",
 )
+@opt.top(
+    "[SCENE] [TOPS.csv|.ndjson|-]",
+    kind=opt.Parsed("X", partial(_parse_input, read="parse_values")),
+    is_scene=is_scene_file,
+)
+@opt.keys
+@opt.option("--jobs", type=opt.Parsed("N|auto", _parse_jobs), help="Processes; auto: one per core.")
+@opt.option("--parts", metavar="DIR", help="Write one file per part into this folder.")
+@opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")
+@opt.option("--dask", metavar="ADDRESS", help="Use a Dask cluster, or `local` for this machine.")
+@opt.decimal
+@opt.output("csv", "ndjson", "json", "parquet", "table", on_terminal="table")
 def sweep_command(
-    files: tuple[str, ...] = opt.arguments(SCENE, "[SCENE] [TOPS.csv|.ndjson|-]"),
-    top: TopOptions = top_options(value_type("parse_values", uncertain=True), None),
-    keys: list[str] | None = _KEYS,
-    fail_fast: bool = opt.flag("Stop at the first top that cannot be solved."),
-    jobs: int | None = opt.jobs,
-    folder: str | None = opt.option(
-        opt.FOLDER, "Write one file per part into this folder.", "--parts"
-    ),
-    shard: tuple[int, int] | None = opt.option(
-        opt.Parsed("I/N", _parse_shard), "Compute only every N-th part, starting with the I-th."
-    ),
-    cluster: str | None = opt.option(
-        opt.Parsed("ADDRESS", str), "Use a Dask cluster, or `local` for this machine.", "--dask"
-    ),
-    dialect: Dialect = text_options,
-    header_comments: bool = header_comments_option,
-    out: Output = opt.output(*_FORMATS, on_terminal="table"),
+    top: opt.TopOptions,
+    words: Sequence[str],
+    keys: list[str] | None,
+    jobs: int | None,
+    parts: str | None,
+    shard: tuple[int, int] | None,
+    dask: str | None,
+    decimal: str,
+    out: Output,
 ) -> None:
     """Solve each top of a grid or of a file.
 
@@ -71,74 +84,61 @@ def sweep_command(
 
     A file of tops is CSV with a header, or JSON lines, with names such as r0.  Options and the
     scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
-    unit: m [g].  If a top cannot be solved, the exit code is 1 and the column
-    error gives the reason; with --keys, list error to see it.
+    unit: m [g].  If a top cannot be solved, the exit code is 1 and the column error gives the
+    reason; with --keys, list error to see it.
+
+    A top takes about 1 us.  Keys on request that are formulas of the inputs, such as
+    stability_factor, Lz and the steady rates, cost no more; others take about 1 ms per top.
 
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.
     """
-    from ..output.formats import check_parquet
-    from ..sweep.cluster import computed, connected
-    from ..sweep.folder import Folder
-    from ..sweep.plan import Tally, plan, shard_of
+    from ..sweep.parts import Parts
+    from ..sweep.plan import ErrorCount, plan, shard_of
+    from ..sweep.workers import in_order
 
-    opt.exclude({"--parts": folder, "--output": out.path != "-"})
-    if folder is not None:
+    opt.exclude(jobs=jobs, dask=dask)
+    opt.exclude(parts=parts, output=out.path != "-")
+    if parts is not None:
         out = out.replace(fmt="csv") if not out.is_named else out
         if out.fmt in {"json", "table"}:
             raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
-    if out.fmt == "parquet":
-        check_parquet()
-    to_stdout = folder is None and out.path == "-"
+    if len(words) > 1:
+        raise LagtopError(f"a sweep has one file of tops, got {' '.join(words)}")
+    path = words[0] if words else None
     todo = plan(
-        files,
-        top.by_key(),
+        path,
+        top.inputs,
+        top.scene,
         keys=keys,
         radians=top.radians,
         fmt=out.fmt,
-        system=top.units,
-        until_error=fail_fast and to_stdout,
-        described=folder is not None,
-        dialect=dialect,
-        is_described=is_described(out, header_comments),
+        described=parts is not None,
+        decimal=decimal,
     )
-    warn_missing(todo.given)
+    opt.warn_missing(todo.given)
+    opt.warn_unused(todo.given)
     sweep = todo.sweep
     if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
         sweep, out = sweep._replace(fmt="csv"), out.replace(fmt="csv")
-    is_shown = "error" in sweep.header
-    tally = Tally(
-        fail_fast=fail_fast, remedy="" if is_shown else "; add error to --keys to see every reason"
-    )
-    blocks = shard_of(todo.blocks, shard)
-    parts_folder: Folder | None = None
-    with ExitStack() as stack:
-        stack.callback(todo.close)
-        client = stack.enter_context(connected(cluster))  # before anything is written
-        make: Make = sweep.part
-        if folder is not None:
-            parts_folder = Folder(folder, sweep, todo.description)
-            blocks = parts_folder.missing(blocks, tally)
-            if client is not None and not fail_fast:
-                make = stack.enter_context(parts_folder.made_by_workers())
-        parts = stack.enter_context(computed(make, blocks, client, jobs or 1))
-        passing = tally.passing(parts, ended=to_stdout)
-        if todo.size:
-            share = todo.size // (shard or (1, 1))[1]
-            passing = with_progress(passing, "rows", share, tally.progress)
+    hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
+    count, blocks = ErrorCount(hidden), shard_of(todo.blocks, shard)
+    folder = None if parts is None else Parts(parts, sweep, todo.description)
+    if folder:
+        blocks = folder.missing(blocks, count)
+    with closing(in_order(sweep.part, blocks, jobs or 1, dask)) as computed:
+        total = todo.size // (shard or (1, 1))[1] or None
+        done = with_progress(count.passing(computed), "tops", total, lambda part: part.size)
+        if folder:
+            folder.write(done)
         else:
-            passing = with_progress(passing, "parts")
-        if parts_folder:
-            parts_folder.write(passing)
-        else:
-            texts = (part.text for part in passing)
             names = _headings(sweep.header, sweep.system, out.fmt, radians=top.radians)
-            out.blocks(names, texts)
-    if parts_folder and parts_folder.found:
-        complain(f"Resumed: {parts_folder.found} parts were already in {folder}")
-    tally.check()
-    if todo.file is not None and shard is None and not tally.count:
-        warn_no_tops(todo.file)
+            out.blocks(names, (part.text for part in done))
+    if folder and folder.found:
+        complain(f"Resumed: {folder.found} parts were already in {parts}")
+    count.check()
+    if path is not None and shard is None and not count.tops:
+        complain(f"Warning: {shown_path(path)} holds no tops")
 
 
 def _headings(
@@ -154,34 +154,25 @@ def _headings(
     return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
 
 
-def _beginnings() -> list[str]:
-    """Return completions of words of the command: keys and shipped scenes."""
-    from ..inputs.scene_file import scene_names
-    from ..motion.record import all_keys
-
-    return [*(f"{key}=" for key in all_keys()), *scene_names()]
-
-
-CONDITION = opt.Parsed("CONDITION", str, _beginnings)
-
-
 @opt.command(
     "find",
-    """
-    lagtop find --r0 10:200 T_precession=2
-    lagtop find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43
-    lagtop find --psidot0 0:20 theta_max=60 'path=looping' --keys psidot0
-    """,
+    "find --r0 10:200 T_precession=2",
+    "find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43",
+    "find --psidot0 0:20 theta_max=60 'path=looping' --keys psidot0",
 )
+@opt.top(
+    "[SCENE] CONDITION...",
+    kind=opt.Parsed("X", partial(_parse_input, read="parse_number_or_span")),
+)
+@opt.option("--scan", type=opt.count(), help="Values of each unknown.  [default: 4000, 60 or 20]")
+@opt.keys
+@opt.output("csv", "ndjson", "json", "table", on_terminal="table")
 def find_command(
-    top: TopOptions = top_options(
-        value_type("parse_number_or_span"), words("[SCENE] CONDITION...", CONDITION), units=False
-    ),
-    scan: int | None = opt.count(
-        "Number of values of each unknown.  [default: 4000, 60 or 20 for 1, 2 or 3 unknowns]",
-    ),
-    keys: list[str] | None = _KEYS,
-    out: Output = opt.output("csv", "ndjson", "json", "table", on_terminal="table"),
+    top: opt.TopOptions,
+    words: Sequence[str],
+    scan: int | None,
+    keys: list[str] | None,
+    out: Output,
 ) -> None:
     """Find the inputs for which results take given values.
 
@@ -200,10 +191,10 @@ def find_command(
     chosen = record_keys(radians=top.radians)
     if keys is not None:
         chosen = check_names("keys", keys, all_keys(radians=top.radians))
-    search, given = search_of(top.by_key(), top.words, scene=top.scene, radians=top.radians)
+    search, given = search_of(top.inputs, words, scene=top.scene, radians=top.radians)
     motions, looked = find_tops(search, scan)
-    warn_missing(given)
-    warn_unused(given.stds)
+    opt.warn_missing(given)
+    opt.warn_unused(given)
     complain(f"{len(motions)} found; {looked}")
     _write_found(motions, given.system, chosen, top.radians, out)
 

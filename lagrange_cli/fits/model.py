@@ -25,7 +25,7 @@ from ..inputs.top import Top
 from ..motion.derivatives import AngleDerivatives, sensitivities
 from ..motion.record import KEYS, requested_keys
 from ..motion.solve import solve
-from ..sweep.angles import sweep_angles
+from .angles import sweep_angles
 from .recording import Recording
 
 MEANINGS = {
@@ -68,10 +68,10 @@ def motion_angles(states: Array, t: Array) -> Array:
     `states` are of shape (tops, 5), in the order of STATE; `t` is one row of times for all tops, or
     a row for each.  Raises LagtopError for an invalid state.
     """
-    found = sweep_angles(t, **inputs_of(*states.T))
-    if wrong := [error for error in found["error"] if error]:
+    angles, errors = sweep_angles(t, inputs_of(*states.T))
+    if wrong := [error for error in errors if error]:
         raise LagtopError(str(wrong[0]))
-    return np.stack([found[name] for name in ANGLES])
+    return angles
 
 
 def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:

@@ -112,8 +112,3 @@ def temporary_files() -> Iterator[None]:
         yield
     except OSError as error:
         raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
-
-
-def digested(path: str) -> tuple[None, str]:
-    """Return nothing, and the digest of a file, for the old sweeps."""
-    return None, digest_of(path)

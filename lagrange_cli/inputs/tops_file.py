@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -19,10 +20,9 @@ from .given import Given, gather
 from .headings import name_and_unit
 from .input_keys import TILT, checked_double, one_of_each, overridden
 from .names import repeated
-from .text_lines import UNDECIDED, Dialect
 from .text_tables import Table, read_table, split_row
 from .top import INPUTS
-from .values import STEADY_WORDS, InputArrays, Value, steady_refused
+from .values import STEADY_WORDS, InputArrays, Value, parse_value, steady_refused
 
 _TILTS = {"theta", "tilt", "elevation"}
 """Names of the tilt in trajectories, or of 90 degrees less the tilt, which no top is given by."""
@@ -139,7 +139,12 @@ class TopsFile(NamedTuple):
         try:
             return checked_double(name, self.form.number(cell) * self.factors.get(name, 1))
         except LagtopError as error:
-            raise LagtopError(str(error) if error.key else f"{name} {error}") from None
+            why = str(error) if error.key else f"{name} {error}"
+            with suppress(LagtopError):
+                if isinstance(cell, str) and parse_value(cell, uncertain=True).std is not None:
+                    shown = quoted(cell.strip())
+                    why = f"{name} must have no uncertainty, got {shown}: loop over solve"
+            raise LagtopError(why) from None
 
 
 def read_tops(
@@ -224,15 +229,3 @@ def _check_units(units: Mapping[str, Value], name: str) -> None:
             converted({column: one})
         except LagtopError as error:
             raise DataError(f"{name}, heading {column} [{one.unit}]: {error}") from None
-
-
-def open_tops(
-    path: str,
-    computed: Collection[str],
-    size: int,
-    stream: None = None,
-    dialect: Dialect = UNDECIDED,
-) -> tuple[TopsFile, Iterator[Lines], Callable[[], None]]:
-    """Return the result of `read_tops`, and how to close nothing, for the old sweeps."""
-    del stream
-    return *read_tops(path, computed, size, dialect.decimal), lambda: None

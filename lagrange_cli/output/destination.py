@@ -125,39 +125,6 @@ def opened(path: str, mark: str = "") -> Iterator[BinaryIO]:
         raise CannotWriteError(f"cannot write {name}: {error.strerror or error}") from None
 
 
-ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
-
-
-class Terminated(BaseException):
-    """A signal to end, raised so that temporary files are removed."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.number = number
-
-
-@contextmanager
-def terminated_by(names: Sequence[str]) -> Iterator[None]:
-    """Turn these signals into Terminated while the block runs."""
-    import signal
-
-    def terminate(number: int, _: object) -> None:
-        raise Terminated(number)
-
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    caught = []
-    try:
-        with suppress(ValueError):  # only the main thread can set handlers
-            for number in numbers:
-                if signal.getsignal(number) == signal.SIG_DFL:
-                    signal.signal(number, terminate)
-                    caught.append(number)
-        yield
-    finally:
-        for number in caught:
-            signal.signal(number, signal.SIG_DFL)
-
-
 @contextmanager
 def _standard_output() -> Iterator[BinaryIO]:
     if sys.stdout is None:

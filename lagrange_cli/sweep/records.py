@@ -26,10 +26,18 @@ from ..motion.quantity import degree_name
 from ..motion.regime import FAST, Regime
 from ..motion.solve import solve
 from ..motion.spin_precession import fast_remark
-from .results import TEXTS, ResultColumn, Results, Together
-from .start_arrays import StartArrays
+from .elementary import ELEMENTARY, elementary
+from .moving_tops import MovingTops
+from .results import ResultColumn, Results, SweepInputs
 from .top_arrays import TopArrays, facts_at_rest
 
+TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
+"""The columns of texts."""
+OF_MODULI: dict[str, Callable[[Any], Array]] = {
+    "k_squared": lambda motion: motion.m,
+    "comodular_angle_deg": lambda motion: np.degrees(np.arctan2(motion.k_prime, motion.k)),
+}
+"""Keys on request that a nutation after release from rest has, from its moduli."""
 BLOCK_ROWS = 1 << 12
 """Number of tops computed together, so that their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
@@ -43,43 +51,45 @@ def column_keys(*, radians: bool = False) -> list[str]:
 
 
 def sweep(
-    *, keys: Sequence[str] | None = None, radians: bool = False, **inputs: ArrayLike
+    *tops: object,
+    keys: Sequence[str] | None = None,
+    radians: bool = False,
+    **inputs: ArrayLike,
 ) -> Results:
-    """Return the records of many tops: arrays by key, in the shape of the inputs together.
+    """Return the records of many tops: arrays by key, in the shape to which the inputs broadcast.
 
-    Inputs are those of `Top`, as numbers, arrays or pandas Series.  Also accepted are xarray
-    DataArrays, broadcast by the names of their dimensions; the results keep their labels.
-    Quantities of pint are converted to SI.  Single numbers may be ufloats, which add `KEY_std`.
-    Only `keys` are computed; angles are in degrees or `radians`.  If a regime has no value for a
-    key, its number is NaN and its text None.  An invalid top has an `error` and no values.  If a
-    number is beyond the range of doubles, it is NaN, and `error` says so.  If `keys` lacks `error`,
-    the results have it only if a top has an error.  Raises LagtopError for an unknown input or key,
-    for labels that differ, or if shapes do not broadcast together.
+    Inputs are those of `Top`, as numbers, arrays or pandas Series: pass a DataFrame of inputs as
+    `sweep(**df)`.  Quantities of pint are converted to SI.  Only `keys` are computed; angles are in
+    degrees or `radians`.  A key on request costs as much as a key of the record if it is a formula
+    of the inputs (such as `stability_factor` or `Lz`), and about a millisecond per top otherwise.
+    If a regime has no value for a key, its number is NaN and its text None.  An invalid top has an
+    `error` and no values.  If a number is beyond the range of doubles, it is NaN, and `error` says
+    so.  If `keys` lacks `error`, the results have it only if a top has an error.  Raises
+    LagtopError for an unknown input or key, for uncertain inputs, or if shapes do not broadcast.
 
     >>> sweep(r0=[[50.0], [60.0]], theta0_deg=[30.0, 90.0], keys=["T_nutation"]).to_xarray().sizes
     Frozen({'r0': 2, 'theta0_deg': 2})
     """
+    if tops:
+        raise LagtopError("sweep takes inputs by name: pass columns by name: sweep(**df)")
     chosen = check_keys(keys, radians=radians)
-    together = Together(inputs)
-    size = together.size
-    found = _empty_columns([*dict.fromkeys([*chosen, "error"])] if together.stds else chosen, size)
+    given = SweepInputs(inputs)
+    size, found = given.size, _empty_columns(chosen, given.size)
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, first + step)
         part = records(
-            together.part(rows),
+            given.part(rows),
             list(found),
             radians=radians,
             columns={key: x[rows] for key, x in found.items()},
         )
         if part["error"].any():
             found.setdefault("error", np.full(size, None))[rows] = part["error"]
-    stds = together.stds_of(found) if together.stds else {}
     columns = {key: found[key] for key in chosen}
     if "error" in found and found["error"].any():
         columns["error"] = found["error"]
-    columns |= stds
-    return together.results({key: x.reshape(together.shape) for key, x in columns.items()})
+    return given.results(columns)
 
 
 def _empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
@@ -125,10 +135,11 @@ def records(
                 left &= ~rows
         if left.any() and (moving := left & tops.moving()).any():
             left &= ~block.fill_moving(moving)
-        alone = np.flatnonzero(left).tolist()
-        for row in range(tops.m.size) if block.requested else alone:
+        unsure = left | block.fill_elementary(~left)
+        for row in np.flatnonzero(unsure | bool(block.requested)).tolist():
             keys_left = [*block.texts, *block.numbers] if left[row] else []
-            block.solve(row, [*keys_left, *block.requested])
+            some = block.elementary if unsure[row] else []
+            block.solve(row, [*keys_left, *some, *block.requested])
         return block.columns
 
 
@@ -144,7 +155,10 @@ class _Block:
         others = {*given, *TEXTS}
         self.texts = [key for key in columns if key in motion_record.TEXT_KEYS]
         self.numbers = [key for key in columns if key in known and key not in others]
-        self.requested = [key for key in columns if key not in known and key not in others]
+        self.numbers += [key for key in columns if degree_name(key) in OF_MODULI]
+        others |= {*self.numbers, *self.texts}
+        self.elementary = [key for key in columns if key in ELEMENTARY]
+        self.requested = [key for key in columns if key not in {*others, *self.elementary}]
         for key, column in self.columns.items():
             column[:] = given.get(key, np.nan if column.dtype == np.float64 else None)
 
@@ -165,7 +179,13 @@ class _Block:
             remarks = self._fast_remarks(tops, motion)
         path = "cusped" if regime is Regime.REGULAR else None
         texts = {"regime": regime.value, "path": path, "remark": remarks}
-        self._write(chosen, lambda x: None if x in lacks else getattr(motion, x), texts)
+
+        def number(name: str) -> Array | None:
+            if name in OF_MODULI:
+                return OF_MODULI[name](motion) if path or facts.plane else None
+            return None if name in lacks else getattr(motion, name)
+
+        self._write(chosen, number, texts)
 
     def _write(
         self, rows: Any, number: Callable[[str], Array | None], texts: Mapping[str, Any]
@@ -194,14 +214,14 @@ class _Block:
     def fill_moving(self, rows: Mask) -> Mask:
         """Fill rows with other initial rates, if they can be trusted; return which these are."""
         tops = self.tops.part(slice(None) if rows.all() else np.flatnonzero(rows))
-        motions = StartArrays(tops)
+        motions = MovingTops(tops)
         trusted = motions.trusted(self.numbers)
         fine: Any = slice(None) if trusted.all() else trusted
         filled = rows.copy()
         filled[rows] = trusted
 
         def number(name: str) -> Array | None:
-            value = motions.number(name)
+            value = None if name in OF_MODULI else motions.number(name)
             return None if value is None else value[fine]
 
         regimes = np.array([Regime.REGULAR.value, Regime.NO_SPIN.value], dtype=object)
@@ -209,6 +229,15 @@ class _Block:
         texts = {"regime": regimes[without_spin], "path": motions.paths()[fine]}
         self._write(slice(None) if filled.all() else filled, number, texts)
         return filled
+
+    def fill_elementary(self, rows: Mask) -> Mask:
+        """Fill rows of the keys that are formulas of the inputs; return which `solve` must fill."""
+        left = np.zeros_like(rows)
+        for key in self.elementary:
+            values, unsure = elementary(self.tops, key)
+            self.columns[key][rows] = values[rows]
+            left |= unsure & rows
+        return left
 
     def solve(self, row: int, keys: Sequence[str]) -> None:
         """Fill some keys of one row by `solve`, unless it has an error."""

@@ -31,6 +31,8 @@ _LEAST_DISTANCE = 2.0**-45
 """Distance of lambda from 1 beyond which a pair of doubles gives lambda - 1 to its last bit."""
 _RATIONAL = (60, 90, 120)
 """Tilts in degrees whose cosines are rational, where a sum may be 0 or a tie."""
+PAIR_EPS = 2.0**-100
+"""Relative error of a few operations on pairs."""
 _LITTLE_LEFT = 1e-10
 """Ratio of a sum to its parts, below which the sum has lost digits of its pairs."""
 
@@ -114,12 +116,12 @@ class TopArrays(NamedTuple):
 
     def fast(self) -> Mask:
         """Return which tops released from rest precess pseudo-regularly, b^2 >= 50 a."""
-        a, b, *_ = self._constants().values()
+        a, b, *_ = self.constants().values()
         threshold = DoubleDouble(np.full_like(self.m, float(FAST)))
         fast: Mask = (b * b - a * threshold).high >= 0
         return fast
 
-    def _constants(self) -> dict[str, DoubleDouble]:
+    def constants(self) -> dict[str, DoubleDouble]:
         """Return the constants of the motion by their names in `State`."""
         m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
         a, b = (m * g * s / A).scaled(2), C * r0 / A
@@ -135,13 +137,13 @@ class TopArrays(NamedTuple):
 
     def state(self) -> State[Array]:
         """Return constants and start of tops released from rest, each rounded once."""
-        constants = {name: x.high for name, x in self._constants().items()}
+        constants = {name: x.high for name, x in self.constants().items()}
         return _state(constants, self.tilt(), np.zeros_like(self.m), np.zeros_like(self.m))
 
     def pair_state(self) -> State[DoubleDouble]:
         """Return constants and start of tops in pairs of doubles."""
         rates = DoubleDouble(self.thetadot0), DoubleDouble(self.psidot0)
-        return _state(self._constants(), self._tilt_in_pairs(), *rates)
+        return _state(self.constants(), self._tilt_in_pairs(), *rates)
 
     def tilt(self) -> Tilt[Array]:
         """Return sines and cosines of theta0 and theta0/2, each with full relative accuracy."""

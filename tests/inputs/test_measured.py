@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
-from lagtop import LagtopError, Motion, Top, solve, sweep, sweep_angles
+from lagtop import LagtopError, Top, solve, sweep
 
 TILTS = (0.0, 1e-9, 30.0, 60.0, 90.0, 90.00000001, 120.0, 179.9)
 
@@ -139,13 +139,6 @@ def test_sweeps_of_grids_and_files(lagtop: Lagtop) -> None:
     found = lagtop(*files, *keys, input=rows)
     assert found.stdout.splitlines()[1] == "5.0,0.0,"
     assert found.stdout.splitlines()[2].endswith('"line 3: A must be > 0, got -1.0"')
-
-
-def test_angles_of_many_tops() -> None:
-    found = sweep_angles([1.0, 2.0], phidot0=[3.0, 4.0], psidot0=1.0)
-    motions: list[Motion] = [solve(Top(phidot0=x, psidot0=1)) for x in (3.0, 4.0)]
-    for phi, motion in zip(found["phi"], motions, strict=True):
-        np.testing.assert_allclose(phi, motion.angles([1.0, 2.0]).phi, rtol=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Lagtop
-from lagtop import MixedBodyWarning, Top, read_scene, sweep, sweep_angles
+from lagtop import MixedBodyWarning, Top, read_scene, sweep
 
 BODY = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81}
 WHOLE = " ".join(f"--{name} {value}" for name, value in BODY.items()).split()
@@ -64,7 +64,6 @@ def test_parts_of_a_body_are_named_where_they_were_given(
         lambda: Top(**inputs),
         lambda: read_scene(str(path)),
         lambda: sweep(keys=["m"], **arrays),
-        lambda: sweep_angles(1.0, **arrays),
     ):
         with pytest.warns(MixedBodyWarning, match=said) as caught:
             ask()

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Lagtop
-from lagtop import LagtopError, Motion, Top, solve
+from lagtop import LagtopError, Motion, Top, solve, sweep
 from scenes import EPS, UNIT, random_scene
 
 from lagrange_cli.arithmetic.decimals import decimals
@@ -25,9 +25,9 @@ from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.motion.gaps import state as state_of
 from lagrange_cli.motion.regime import Regime
 from lagrange_cli.motion.regime import exact as exact_of
-from lagrange_cli.sweep import records as sweeps
-from lagrange_cli.sweep.records import column_keys, sweep
-from lagrange_cli.sweep.start_arrays import StartArrays
+from lagrange_cli.sweep import records
+from lagrange_cli.sweep.moving_tops import MovingTops
+from lagrange_cli.sweep.records import column_keys
 from lagrange_cli.sweep.top_arrays import TopArrays
 
 Record = dict[str, Any]
@@ -77,7 +77,7 @@ def test_only_what_is_unusual_is_solved_one_by_one(monkeypatch: pytest.MonkeyPat
         alone.append(top)
         return solve(top)
 
-    monkeypatch.setattr(sweeps, "solve", watched)
+    monkeypatch.setattr(records, "solve", watched)
     sweep(r0=[50, 0, 50, 50, 60], theta0_deg=[30, 30, 0, 180, 1e-40], psidot0=[0, 0, 0, 0, 0])
     assert [top.theta0_deg for top in alone] == [1e-40]
 
@@ -92,7 +92,7 @@ def test_no_top_of_a_usual_grid_is_solved_alone() -> None:
         }
     )
     assert tops.moving().all()
-    assert StartArrays(tops).trusted(column_keys()).all()
+    assert MovingTops(tops).trusted(column_keys()).all()
 
 
 def test_few_tops_of_a_grid_need_the_exact_way() -> None:
@@ -380,13 +380,12 @@ def test_a_range_and_a_file_exclude_each_other(lagtop: Lagtop) -> None:
     assert lagtop("sweep", "-", "--m", "1,2", input="r0\n1\n").exit_code == 2
 
 
-def test_fail_fast(tmp_path: Path, lagtop: Lagtop) -> None:
-    file = tmp_path / "out.csv"
-    file.write_text("old")
-    result = lagtop("sweep", "-", "--fail-fast", "-o", file, input="r0\n1\nx\ny\n")
+@pytest.mark.parametrize("text", ["r0\n500(5)\n", '{"r0": "500(5)"}\n'])
+def test_an_uncertain_cell_is_refused(text: str, lagtop: Lagtop) -> None:
+    result = lagtop("sweep", "-", "--keys", "K", input=text)
     assert result.exit_code == 1
-    assert result.stderr.startswith("Error: line 3: r0 must be")
-    assert file.read_text() == "old"
+    assert "r0 must have no uncertainty, got '500(5)': loop over solve" in result.stderr
+    assert lagtop("sweep", "--r0", "500(5)").stderr.startswith("Error: --r0 must have no unc")
 
 
 # Arguments of the library

@@ -13,12 +13,11 @@ import pytest
 from ball_judge import Judge
 from exact_scenes import KINDS
 from hard_scenes import in_doubles, nutating
-from lagtop import Top, solve
+from lagtop import Top, solve, sweep
 from scenes import UNIT
 
 from lagrange_cli.motion.record import NUMBER_KEYS
-from lagrange_cli.sweep.records import sweep
-from lagrange_cli.sweep.start_arrays import StartArrays
+from lagrange_cli.sweep.moving_tops import MovingTops
 from lagrange_cli.sweep.top_arrays import TopArrays
 
 COSINES = {"u1", "u2", "u_quarter"}
@@ -149,7 +148,7 @@ def roots_of(top: dict[str, Any]) -> tuple[Any, Any, Any, Any]:
 def test_bounds_of_gaps_hold_and_are_close() -> None:
     """The judge is mpmath; bounds that are too wide would leave most of these tops to `solve`."""
     given = starts_next_to_the_pole(400) | {"theta0_rad": np.full(400, np.nan)}
-    starts = StartArrays(TopArrays(*(given[name] for name in TopArrays._fields)))
+    starts = MovingTops(TopArrays(*(given[name] for name in TopArrays._fields)))
     assert starts.small.mean() > 0.9
     gaps, worst = starts.fine.gaps, starts.noise
     with mpmath.workdps(90):

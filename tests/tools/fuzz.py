@@ -8,8 +8,7 @@ Each scene is judged at twenty times: fifteen next to a whole, half or quarter n
 (the double and both its neighbours), five anywhere, from 1 to 1e14 periods on both sides of the
 start.  The report is the worst error of every kind, in units of `Judge.errors`; every key of
 `solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep` beyond
-10 eps, and angles of all scenes at once (`sweep_angles`), up to 1e5 periods from the start.  What
-exceeds the bounds is listed with a command that shows it, and the exit code is 1.
+10 eps.  What exceeds the bounds is listed with a command that shows it, and the exit code is 1.
 A third of the scenes are judged as decimals of twenty to sixty digits, and printed in 5 to 40.
 About 20 to 40 scenes a second and core; with --numbers, without times, more.
 """
@@ -48,14 +47,11 @@ from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
-from lagrange_cli.sweep.angles import sweep_angles
 
 UNITS, WRAPPED, HALF_ULP, SWEEP_EPS = 4.0, 5.0, 0.5 + 1e-9, 10.0
 """The bounds: of an angle or a part of the quaternion, of an angle without whole turns, of a key of
 `solve`, of one of `sweep`."""
 NAMES = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi", "wrapped")
-NEAR = 5
-"""Decades of periods up to which the angles of many tops at once are judged."""
 COSINES = ("u1", "u2", "u_quarter")
 NEIGHBOURS, ELSEWHERE = 5, 5
 CHUNK, MOST_SHOWN = 50, 40
@@ -241,30 +237,10 @@ def inputs_of(judges: Sequence[tuple[Scene, Judge]]) -> dict[str, list[float]]:
     return inputs
 
 
-def judge_many(tally: Tally, judges: Sequence[tuple[Scene, Judge]], rng: random.Random) -> None:
-    """Judge the angles of many tops at once."""
-    times = [times_of(rng, period_of(judge), NEAR) for _, judge in judges]
-    inputs: dict[str, Any] = inputs_of(judges)
-    found: dict[str, Any] = sweep_angles(times, **inputs)
-    for i, (scene, judge) in enumerate(judges):
-        if found["error"][i] is not None:
-            tally.counts["sweep_angles refused"] += 1
-            continue
-        show = f"sweep_angles of lagtop table {Top(**scene).options()} --t-min"
-        for j, t in enumerate(times[i]):
-            computed = tuple(float(found[name][i][j]) for name in ("theta", "phi", "psi"))
-            try:
-                errors = judge.angle_errors(t, computed)  # type: ignore[arg-type]
-            except Undecided:
-                tally.counts["undecided times"] += 1
-                continue
-            tally.note("many", max(errors), UNITS, f"{show} {t!r} --n 1")
-
-
 def judge_sweep(tally: Tally, judges: Sequence[tuple[Scene, Judge]]) -> None:
     """Judge every number of a sweep of scenes."""
-    inputs = inputs_of(judges)
-    columns = sweep(keys=[*NUMBER_KEYS, "error"], **inputs)  # type: ignore[arg-type]
+    inputs: dict[str, Any] = inputs_of(judges)
+    columns = sweep(keys=[*NUMBER_KEYS, "error"], **inputs)
     for i, (scene, judge) in enumerate(judges):
         if columns["error"][i] is not None:
             tally.counts["sweep refused"] += 1
@@ -323,7 +299,6 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
     for tilt in ("theta0_deg", "theta0_rad") if what == "sweep" else ():
         if some := [(scene, judge) for scene, judge in judges if tilt in scene]:
             judge_sweep(tally, some)
-            judge_many(tally, some, random.Random(f"{seed} {kind} {first} many"))
     return kind, tally
 
 
@@ -341,10 +316,10 @@ def run(kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, what: str) -
 
 def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
     """Yield the report, a line per kind and then what exceeds its bound."""
-    names = "theta    phi    psi   quat   dphi   dpsi   wrap    key digits  sweep   many"
+    names = "theta    phi    psi   quat   dphi   dpsi   wrap    key digits  sweep"
     yield f"{'kind':24} scenes  times  {names}  beyond"
     for kind, tally in tallies.items():
-        worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "digits", "sweep", "many")]
+        worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "digits", "sweep")]
         shown = " ".join(f"{error:6.3g}" for error in worst)
         beyond = len(tally.violations)
         yield f"{kind:24} {tally.scenes:6} {tally.times:6} {shown}  {beyond}"

@@ -27,8 +27,6 @@ class TableRequest(NamedTuple):
     wrap: bool
     rows_per_top: int | None
     """The number of times, if it is known from the options."""
-    same: bool
-    """Whether all tops have the same times."""
 
     def headings(self) -> list[str]:
         """Return the names of the columns, with the units of angles."""

@@ -21,10 +21,8 @@ from ..motion.any_start import gaps_from_start
 from ..motion.gaps import Gaps
 from ..motion.regime import Facts, Regime
 from ..motion.spin_precession import Nutating, mean_over
-from .top_arrays import TopArrays
+from .top_arrays import PAIR_EPS, TopArrays
 
-PAIR_EPS = 2.0**-100
-"""Relative error of a few operations on pairs."""
 _SETTLED = 2.0**-90
 """Relative error at which the largest root is settled."""
 _GOOD = 2.0**-54
@@ -45,7 +43,7 @@ _DIFFERENCES = frozenset("u1 u2 spin_rate_start spin_rate_half precession_rate_h
 """Keys in which larger numbers may cancel, so that they are computed in pairs."""
 
 
-class StartArrays:
+class MovingTops:
     """Motions of many tops with a torque, off the poles."""
 
     def __init__(self, tops: TopArrays) -> None:

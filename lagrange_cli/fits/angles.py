@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from ..arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, workspace
+from ..arithmetic.arrays import ARRAYS, BLOCK, blocks, workspace
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
+from ..inputs.input_keys import EXAMPLE
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..motion.regime import Regime
 from ..motion.solve import solve
+from ..sweep.records import BLOCK_ROWS
+from ..sweep.top_arrays import TopArrays, top_arrays
 from .angle_arrays import (
     ArraySampler,
     PairMotions,
@@ -21,41 +25,16 @@ from .angle_arrays import (
     moving_motions,
     released_motions,
 )
-from .records import BLOCK_ROWS
-from .results import ResultColumn, Results, Together
-from .top_arrays import TopArrays
 
 
-def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Results:
-    """Return theta, phi and psi (radians) of many tops at the times t, and `error`.
+def sweep_angles(t: Array, inputs: Mapping[str, Array]) -> tuple[Array, NDArray[np.object_]]:
+    """Return theta, phi and psi (radians), shape (3, tops, times), and the errors of the tops.
 
-    Inputs are as for `sweep`.  Pass one time or a list of n times for all tops, or an array of
-    shape (*inputs, n).  Here `inputs` is the shape to which the inputs broadcast.  The angles have
-    the shape (*inputs, n), and `error` has the shape of the inputs.  If a top has an `error`, its
-    angles are NaN.  The angles are as exact as those of `Motion.angles`.  Raises LagtopError for an
-    unknown input, or if shapes do not broadcast together.
-
-    >>> sweep_angles([0.0, 0.1], r0=[50.0, 60.0], theta0_deg=30.0)["theta"].shape
-    (2, 2)
+    `t` is one row of times for all tops, or a row for each.
     """
-    together = Together(inputs)
-    if together.stds:
-        name = min(together.stds)
-        raise LagtopError(f"{name} must be certain: the angles of sweeps have no stds", name)
-    tops, shape = together.part(slice(None)), together.shape
-    times = doubles_of("t", t)
-    if times.ndim > 1 and times.shape[:-1] != shape:
-        wanted = f"({', '.join(map(str, shape))}, n) or (n,)"
-        raise LagtopError(f"t must have the shape {wanted}, got {times.shape}", "t")
-    whole = times.shape if times.ndim > 1 else shape + times.shape
-    count = whole[-1] if times.ndim else 1
-    rows = times.reshape(-1, count) if count else np.empty((1, 0))
-    rows = np.broadcast_to(rows, (tops.m.size, count))
-    angles, error = angles_of_tops(tops, rows, wrap=wrap)
-    found: dict[str, ResultColumn] = {
-        name: values.reshape(whole) for name, values in zip(ANGLES, angles, strict=True)
-    }
-    return together.results(found | {"error": error.reshape(shape)}, times)
+    size = max(np.size(x) for x in inputs.values())
+    tops = top_arrays(EXAMPLE | {"theta0_deg": np.nan} | dict(inputs), size)
+    return angles_of_tops(tops, np.broadcast_to(t, (size, np.shape(t)[-1])), wrap=False)
 
 
 def angles_of_tops(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDArray[np.object_]]:

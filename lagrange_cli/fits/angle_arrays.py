@@ -30,8 +30,8 @@ from ..motion.over_time.theta_series import (
 )
 from ..motion.regime import Regime
 from ..motion.spin_precession import Nutating
-from .start_arrays import FACTS, PAIR_EPS, StartArrays
-from .top_arrays import TopArrays, facts_at_rest
+from ..sweep.moving_tops import FACTS, MovingTops
+from ..sweep.top_arrays import PAIR_EPS, TopArrays, facts_at_rest
 
 _SMALL = 2.0**-56
 """Error of a phase, or of a constant, that is far below a unit of the angles."""
@@ -96,7 +96,7 @@ def released_motions(tops: TopArrays) -> PairMotions:
 
 def moving_motions(tops: TopArrays) -> PairMotions:
     """Return the motions of tops that start with any rates."""
-    starts = StartArrays(tops)
+    starts = MovingTops(tops)
     with PAIRS.working():
         state, gaps = starts.fine.state, starts.fine.gaps
         signs, sure = {}, starts.small

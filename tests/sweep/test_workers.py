@@ -1,0 +1,251 @@
+"""Work shared by processes or a cluster: the bytes of one process, and nothing left behind."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, process, wait_until
+from lagtop import LagtopError
+
+from lagrange_cli.errors import UnavailableError
+from lagrange_cli.sweep.workers import in_order, parse_jobs
+
+LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1"]
+LOST = rb"Error: a process that shared the work was lost \(killed, or out of memory\).*\n"
+
+
+def late(x: int) -> tuple[int, int]:
+    """Return a number and the process that it was in; some take longer: the order is restored."""
+    time.sleep(0.05 if x % 5 == 0 else 0.01)
+    return x, os.getpid()
+
+
+def refuse(x: int) -> None:
+    """Fail."""
+    raise LagtopError(f"{x} is too large")
+
+
+def lose(x: int) -> int:
+    """Kill the process that has the item 5."""
+    if x == 5 and multiprocessing.parent_process() is not None:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return x
+
+
+def test_one_process_needs_no_others() -> None:
+    assert list(in_order(late, range(3))) == [(x, os.getpid()) for x in range(3)]
+
+
+@pytest.mark.slow
+def test_results_come_in_the_order_of_the_work() -> None:
+    numbers, places = zip(*in_order(late, range(60), 3), strict=True)
+    assert numbers == tuple(range(60))
+    assert os.getpid() not in places
+    assert len(set(places)) > 1
+    assert list(in_order(late, [], 2)) == []
+
+
+@pytest.mark.slow
+def test_errors_of_the_work_and_lost_processes_are_raised() -> None:
+    with pytest.raises(LagtopError, match="0 is too large"):
+        list(in_order(refuse, range(9), 2))
+    with pytest.raises(UnavailableError, match="was lost"):
+        list(in_order(lose, range(9), 2))
+
+
+def test_jobs(lagtop: Lagtop) -> None:
+    assert parse_jobs("3") == 3
+    assert parse_jobs("auto") >= 1
+    refused = lagtop("sweep", "--jobs", 2, "--dask", "local")
+    assert_one_line(refused, 2, "use --jobs or --dask, not both")
+
+
+@pytest.mark.parametrize("text", ["0", "-1", "1.5", "many", "1025", "²", "9" * 5000])
+def test_invalid_numbers_of_jobs_are_refused(text: str, lagtop: Lagtop) -> None:
+    result = lagtop("sweep", f"--jobs={text}")
+    assert_one_line(result, 2, "--jobs must be auto or in [1, 1024], got")
+    assert len(result.stderr) < 200
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [["--jobs", "2"], ["--jobs", "3"], ["--dask", "local"]])
+def test_bytes_are_those_of_one_process(how: Sequence[str], tmp_path: Path) -> None:
+    file = tmp_path / "tops.csv"
+    file.write_text("id,r0\n" + "".join(f"{i},{'x' if i % 999 == 5 else i}\n" for i in range(9000)))
+    grid = ["sweep", "--r0", "0:90:301", "--theta0", "0:180:31", "--keys", "r0,regime,K,error"]
+    for options in (grid, ["sweep", str(file), "--keys", "T_nutation"]):
+        alone, shared = (process(*options, *more, check=False) for more in ([], how))
+        assert shared.returncode == alone.returncode == (options is not grid)
+        assert (shared.stdout, shared.stderr) == (alone.stdout, alone.stderr)
+        process(*options, *how, "--parts", str(tmp_path / options[1]), check=False)
+    assert joined(tmp_path / "--r0") == process(*grid).stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", ["--jobs 2", "--dask local"])
+def test_no_module_of_the_current_folder_is_run(how: str, tmp_path: Path) -> None:
+    script = "import sys; sys.path.pop(0); from lagrange_cli.__main__ import main; main()"
+    names = "signal pickle socket selectors tempfile logging random struct lagrange_cli".split()
+    for name in names:
+        (tmp_path / f"{name}.py").write_text(f"open('RAN-{name}', 'w')\nraise SystemExit\n")
+    line = [sys.executable, "-P", "-c", script, "sweep", "--r0", "1:9:20000", "--keys", "r0"]
+    done = subprocess.run([*line, *how.split()], cwd=tmp_path, capture_output=True, check=False)
+    assert (done.returncode, done.stderr, done.stdout.count(b"\n")) == (0, b"", 20_001)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(f"{x}.py" for x in names)
+
+
+def children(process: int) -> dict[int, str]:
+    """Return the command lines of the processes that a process has started."""
+    found = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    return {int(pid): Path(f"/proc/{pid}/cmdline").read_text() for pid in found}
+
+
+@contextmanager
+def sharing(folder: Path, *options: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a long sweep in a process group of its own, and wait until it writes results."""
+    running = subprocess.Popen(
+        ["env", "--default-signal=HUP,INT,QUIT", *LAGTOP, *LONG, "-o", f"{folder}/o.csv", *options],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        start_new_session=True,
+        env=os.environ | {"TMPDIR": str(folder)},
+    )
+    try:
+        wait_until(lambda: any(x.stat().st_size for x in folder.glob(".lagtop-*")), running)
+        yield running
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [["--jobs", "3"], ["--dask", "local"]], ids="-".join)
+@pytest.mark.parametrize("send", [os.kill, os.killpg], ids=["process", "group"])
+@pytest.mark.parametrize("name", ["INT", "TERM", "HUP"])
+def test_a_signal_ends_all_processes(
+    name: str, send: Callable[[int, int], None], how: list[str], tmp_path: Path
+) -> None:
+    """A terminal that is closed and a batch system send it to the whole group."""
+    number = getattr(signal, f"SIG{name}")
+    with sharing(tmp_path, *how) as running:
+        begun = time.monotonic()
+        send(running.pid, number)
+        said = running.communicate(timeout=60)[1]
+        assert_gone(running.pid)
+    assert running.returncode in (-number, 128 + number)
+    assert said == b""
+    assert list(tmp_path.iterdir()) == []
+    assert time.monotonic() - begun < 10  # measured: 1
+
+
+@pytest.mark.slow
+def test_a_killed_worker_ends_the_sweep(tmp_path: Path) -> None:
+    with sharing(tmp_path, "--jobs", "3") as running:
+        pids = [pid for pid, line in children(running.pid).items() if "spawn_main" in line]
+        os.kill(pids[0], signal.SIGKILL)
+        said = running.communicate(timeout=60)[1]
+        assert_gone(running.pid)
+    assert running.returncode == 69
+    assert re.fullmatch(LOST, said)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [["--jobs", "3"], ["--dask", "local"]], ids="-".join)
+def test_workers_end_with_their_parent(how: list[str], tmp_path: Path) -> None:
+    with sharing(tmp_path, *how) as running:
+        running.kill()
+        running.wait()
+        assert_gone(running.pid)
+
+
+@contextmanager
+def ended(*command: str, **extra: Any) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a process, and kill it at the end if it runs then."""
+    with subprocess.Popen([sys.executable, *command], stderr=subprocess.PIPE, **extra) as running:
+        try:
+            yield running
+        finally:
+            running.kill()
+
+
+@contextmanager
+def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """Start a scheduler and some workers; yield its address, and the processes in this order."""
+    file = folder / "scheduler.json"
+    module = "distributed.cli.dask_"
+    options = ["--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+    with ended("-m", f"{module}scheduler", *options) as scheduler:
+        address = ""
+        while not address:
+            assert scheduler.poll() is None
+            time.sleep(0.01)
+            with suppress(FileNotFoundError, ValueError):  # not there yet, or half of it
+                address = json.loads(file.read_text())["address"]
+        command = ["-m", f"{module}worker", address, "--no-nanny", "--no-dashboard"]
+        started = [
+            subprocess.Popen(
+                [sys.executable, *command, "--nthreads", "1"], stderr=subprocess.DEVNULL, cwd=folder
+            )
+            for _ in range(workers)
+        ]
+        try:
+            yield address, [scheduler, *started]
+        finally:
+            for one in started:
+                one.kill()
+                one.wait()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("who", ["scheduler", "worker"])
+def test_a_killed_scheduler_or_worker(who: str, tmp_path: Path) -> None:
+    """Another worker computes the parts of a lost one; without its scheduler a sweep ends."""
+    options = ["sweep", "--r0", "1:100:150000", "--keys", "r0,K,E,nome"]
+    out = tmp_path / "out"
+    with (
+        cluster(tmp_path, 2) as (address, processes),
+        ended("-m", "lagrange_cli", *options, "--dask", address, "--parts", str(out)) as running,
+    ):
+        wait_until(lambda: len(list(out.glob("part-*"))) >= 2, running)
+        processes[who == "worker"].kill()
+        said = running.communicate(timeout=60)[1]
+    if who == "worker":
+        assert (running.returncode, joined(out)) == (0, process(*options).stdout)
+    else:
+        assert running.returncode == 69
+        assert re.fullmatch(rb"Error: .*lost.*\n", said)
+    assert list(out.glob(".lagtop-*")) == []
+
+
+@pytest.mark.slow
+def test_workers_of_another_version_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "lagrange_cli").mkdir()
+    (tmp_path / "lagrange_cli" / "__init__.py").write_text("__version__ = '0.0.9'")
+    with cluster(tmp_path, 1) as (address, _):
+        done = process("sweep", "--dask", address, check=False)
+    assert (done.returncode, done.stdout) == (69, b"")
+    assert re.fullmatch(rb"Error: the worker .* needs lagtop .*, has 0\.0\.9\n", done.stderr)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("address", "code"),
+    [("nowhere", 2), ("http://127.0.0.1:9", 2), ("", 2), ("tcp://127.0.0.1:9", 69)],
+)
+def test_no_cluster(address: str, code: int) -> None:
+    done = process("sweep", "--dask", address, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count(b"\n")) == (code, b"", 1)
+    assert done.stderr.startswith(b"Error: ")
