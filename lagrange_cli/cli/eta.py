@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ..arithmetic.points import ExactComplex, parse_complex
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from . import options as opt
+from . import shared as opt
 from .jacobi import RANGE, function_formats, write_constants, write_functions
 
 if TYPE_CHECKING:
@@ -54,50 +54,60 @@ def _parse_distance(text: str) -> ExactComplex:
 
 @opt.command(
     "eta",
-    """
-    lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4
-    lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0:9:99 -o e.csv
-    lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
-    """,
-    exclusive=["--p --gap-above", "--p --gap-below"],
+    "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4",
+    "eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0:9:99 -o e.csv",
+    "eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319",
 )
+@opt.option("--delta", type=opt.NUMBER, required=True, help="Upper end of the band.")
+@opt.option("--delta-star", type=opt.NUMBER, required=True, help="Lower end of the band.")
+@opt.option("--p", type=opt.NUMBER, help="Middle of the two outer roots p - q and p + q.")
+@opt.option(
+    "--q",
+    type=opt.Parsed("X", _parse_distance),
+    help="Half the distance between the outer roots; 0.7i for the roots p +- 0.7i.",
+)
+@opt.option("--gap-above", type=opt.NUMBER, help="Distance from delta up to an outer root.")
+@opt.option("--gap-below", type=opt.NUMBER, help="Distance from delta* down to an outer root.")
+@opt.option("--g", type=opt.NUMBER, default="1", show_default=True, help="Leading coefficient.")
+@opt.option("--tau", type=RANGE, help="Times: a list 0,1,2 or a range [log:]start:stop:count.")
+@opt.option(
+    "--columns",
+    type=opt.LIST,
+    help="Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
+)
+@opt.rad
+@opt.digits(opt.MOST_TABLE_DIGITS)
+@function_formats
 def eta_command(
-    delta: Fraction = opt.number("Upper end of the band.", required=True),
-    delta_star: Fraction = opt.number("Lower end of the band.", required=True),
-    p: Fraction | None = opt.number("Middle of the two outer roots p - q and p + q."),
-    q: ExactComplex | None = opt.option(
-        opt.Parsed("X", _parse_distance),
-        "Half the distance between the outer roots; 0.7i for the roots p +- 0.7i.",
-    ),
-    gap_above: Fraction | None = opt.number("Distance from delta up to an outer root."),
-    gap_below: Fraction | None = opt.number("Distance from delta* down to an outer root."),
-    g: Fraction = opt.number("Leading coefficient.  [default: 1]", default="1"),
-    tau: Points | None = opt.option(
-        RANGE, "Times: a list 0,1,2 or a range [log:]start:stop:count."
-    ),
-    columns: list[str] | None = opt.names(
-        "Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
-        offered=opt.late("elliptic.eta", "ETA_COLUMNS"),
-    ),
-    rad: bool = opt.rad,
-    digits: int | None = opt.digits(opt.MOST_TABLE_DIGITS),
-    out: Output = function_formats,
+    delta: Fraction,
+    delta_star: Fraction,
+    p: Fraction | None,
+    q: ExactComplex | None,
+    gap_above: Fraction | None,
+    gap_below: Fraction | None,
+    g: Fraction,
+    tau: Points | None,
+    columns: list[str] | None,
+    rad: bool,
+    digits: int | None,
+    out: Output,
 ) -> None:
-    """Compute the coordinate eta of a satellite (Aksenov 1977, section 3.2).
+    """Compute Aksenov's coordinate eta of a satellite (1977, 3.2).
 
     Eta oscillates between delta* and delta:
     (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2).
 
     Give the outer roots of the right-hand side with --p and --q (0.7i for a complex pair), or by
     their gaps from delta and delta*.  If you give one gap, the other root is at infinity, as for
-    Lagrange's top.  If you give no
-    outer root, both are at infinity.
+    Lagrange's top.  If you give no outer root, both are at infinity.
 
     Without --tau, the constants are printed.  At tau = 0, eta is delta*.  h1, theta and xi' are
     defined in (3.2.9) to (3.2.11).
     """
     from ..elliptic.eta import eta_record
 
+    opt.exclude(p=p, gap_above=gap_above)
+    opt.exclude(p=p, gap_below=gap_below)
     quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
     if tau is None:
         if columns is not None:

@@ -9,20 +9,18 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
 from ..arithmetic.values import Key
 from ..errors import LagtopError
-from ..inputs.names import check_names, split_names
+from ..inputs.names import check_names
 from ..output.terminal import with_progress
-from . import options as opt
+from . import shared as opt
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.function_table import ComplexPoints
-    from ..elliptic.modulus import ModulusInput
     from ..elliptic.nome_series import SeriesTable
     from ..elliptic.tables import TableOfFunctions
     from ..inputs.ranges import Multiple, Multiples
     from ..output.destination import Output
 
-RANGE = opt.Parsed("X", opt.late("inputs.ranges", "parse_values"))
 MOST_TERMS = 10_000
 _FAMILIES = ("am", "theta", "zeta", "omega", "pi")
 _JACOBI = """
@@ -57,10 +55,19 @@ def constant_keys(group: str, table: str) -> dict[str, Key]:
     return keys
 
 
-def _parse_argument(text: str) -> Multiple | ExactComplex:
-    from ..inputs.ranges import parse_multiple
+def _parse_range(text: str) -> Points:
+    from ..inputs.ranges import parse_values
 
-    return parse_complex(text) if looks_complex(text) else parse_multiple(text)
+    return parse_values(text)
+
+
+def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
+    """Return a range, or the arguments of a comma-separated list."""
+    from ..inputs.ranges import parse_multiple, parse_multiples
+
+    if ":" in text:
+        return parse_multiples(text)
+    return [parse_complex(x) if looks_complex(x) else parse_multiple(x) for x in text.split(",")]
 
 
 def _parse_parameter(text: str) -> tuple[ExactComplex, bool]:
@@ -69,149 +76,133 @@ def _parse_parameter(text: str) -> tuple[ExactComplex, bool]:
     return value, not value.real and text.strip().endswith("i")
 
 
-def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
-    """Return a range, or the arguments of a comma-separated list."""
-    if ":" in text:
-        from ..inputs.ranges import parse_multiples
-
-        return parse_multiples(text)
-    return [_parse_argument(part) for part in text.split(",")]
+RANGE = opt.Parsed("X", _parse_range)
+function_formats = opt.output("table", "csv", "json", "ndjson", "parquet")
 
 
 def write_functions(table: TableOfFunctions | SeriesTable, digits: int | None, out: Output) -> None:
     """Write a table of functions, with its progress."""
     if digits is not None and out.fmt == "parquet":
-        raise LagtopError(f"--format {out.fmt} holds doubles: with --digits use csv or json")
+        raise LagtopError("--format parquet holds doubles: with --digits use csv or json")
     header, blocks = table.rows(digits)
-    out.table(header, with_progress(blocks, "rows", table.count or None, len), table.count)
+    out.table(header, with_progress(blocks, "rows", table.count or None, len))
 
 
-_NAMES = opt.Parsed("NAME,...", split_names, lambda: _FAMILIES)
-_FUNCTIONS: Any = opt.Group(
-    lambda families: [name for named in families for name in named] or None,
-    [
-        opt.option(
-            _NAMES,
-            "Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
-            "omega, pi (of u and --param, after Chrapan).  [default: am]",
-            "--functions",
-            multiple=True,
-        )("families"),
-        *(
-            opt.option(_NAMES, "", f"--{name}", flag_value=name, multiple=True, hidden=True)(
-                "families"
-            )
-            for name in _FAMILIES
-        ),
-    ],
-)
-"""The option --functions, and flags such as --omega, which mean the same."""
-function_formats = opt.output("table", "csv", "json", "ndjson", "parquet")
+def write_constants(record: dict[str, Any], group: str, table: str, out: Output) -> None:
+    """Write the constants of a modulus or of a quadrature."""
+    if out.fmt == "parquet":
+        raise LagtopError("--format parquet holds tables: use json or csv for constants")
+    out.record(record, lambda: constant_keys(group, table))
 
 
 @opt.command(
     "jacobi",
-    """
-    lagtop jacobi --k 0.8
-    lagtop jacobi --modular-angle 45 --u 0:4K:101 -o sn.csv
-    lagtop jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i
-    """,
-    exclusive=[
-        *("--phi --u", "--phi --series", "--phi --functions"),
-        *("--series --digits", "--series --functions"),
-    ],
+    "jacobi --k 0.8",
+    "jacobi --k 0.8 --u 0:4K:101 -o sn.csv",
+    "jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i",
 )
+@opt.option(
+    "--k",
+    type=opt.Parsed("X", parse_complex),
+    help="Modulus, 0 to 1, above 1, or imaginary as 0.8i.",
+)
+@opt.option("--k-prime", type=opt.NUMBER, help="Complementary modulus k', for k close to 1.")
+@opt.option("--nome", type=opt.NUMBER, help="Nome q = exp(-pi K'/K), below 1.")
+@opt.option(
+    "--u",
+    type=opt.Parsed("X", _parse_arguments),
+    help="Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
+    "K such as K/2,-2.5K.",
+)
+@opt.option(
+    "--functions",
+    type=opt.LIST,
+    help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
+    "omega, pi (of u and --param, after Chrapan).  [default: am]",
+)
+@opt.option(
+    "--param",
+    type=opt.Parsed("V", _parse_parameter),
+    help="Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i.",
+)
+@opt.option("--phi", type=RANGE, help="Amplitudes: print F(phi, k) and E(phi, k) instead.")
+@opt.option(
+    "--series",
+    type=opt.count(MOST_TERMS),
+    help="Print the first N partial sums of the nome series instead.",
+)
+@opt.rad
+@opt.digits(opt.MOST_TABLE_DIGITS)
+@function_formats
 def jacobi_command(
-    k: ExactComplex | None = opt.option(
-        opt.Parsed("X", parse_complex), "Modulus, 0 to 1, above 1, or imaginary as 0.8i."
-    ),
-    k_prime: Fraction | None = opt.number("Complementary modulus k', for k close to 1."),
-    modular_angle: Fraction | None = opt.number("Modular angle arcsin k, 0 to 90 degrees."),
-    nome: Fraction | None = opt.number("Nome q = exp(-pi K'/K), below 1."),
-    u: Multiples | list[Multiple | ExactComplex] | None = opt.option(
-        opt.Parsed("X", _parse_arguments),
-        "Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
-        "K such as K/2,-2.5K.",
-    ),
-    families: list[str] | None = _FUNCTIONS,
-    param: tuple[ExactComplex, bool] | None = opt.option(
-        opt.Parsed("V", _parse_parameter), "Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
-    ),
-    phi: Points | None = opt.option(
-        RANGE, "Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
-    ),
-    series: int | None = opt.count(
-        "Print the first N partial sums of the nome series instead.", most=MOST_TERMS
-    ),
-    rad: bool = opt.rad,
-    digits: int | None = opt.digits(opt.MOST_TABLE_DIGITS),
-    out: Output = function_formats,
+    k: ExactComplex | None,
+    k_prime: Fraction | None,
+    nome: Fraction | None,
+    u: Multiples | list[Multiple | ExactComplex] | None,
+    functions: list[str] | None,
+    param: tuple[ExactComplex, bool] | None,
+    phi: Points | None,
+    series: int | None,
+    rad: bool,
+    digits: int | None,
+    out: Output,
 ) -> None:
-    """Compute elliptic integrals, Jacobi's functions and theta functions.
+    """Compute elliptic integrals, elliptic and theta functions.
 
     Without --u and --phi, the constants of the modulus are printed.
 
-    The error of a value f is at most 4 units, and in small tables every value is correctly rounded.
-    A unit is 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), where v = --param.  Whole
-    periods are first removed from u and from a real v; for k > 1 only in am, sn, cn and dn.
-
-    u and a real v may be up to 2^50 periods, an imaginary v up to K'.  An empty cell is a pole,
-    or am beyond its branch points.
+    Every value is correctly rounded, or has N correct digits with --digits N.  u and a real --param
+    may be up to 2^50 periods, an imaginary --param up to K'.  An empty cell is a pole, or am beyond
+    its branch points.
 
     The modulus is read as an exact decimal, u and --param as doubles unless --digits is given.
     Complex results have columns that end in _re and _im.
     """
     from ..elliptic.modulus import ModulusInput
 
-    beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
-    real_k = None if k is None else k.real
-    way = _modulus(k=real_k, k_prime=k_prime, modular_angle=modular_angle, nome=nome)
-    modulus = ModulusInput(*way, radians=rad)
-    if families is not None:
-        check_names("functions", families, _FAMILIES)
-    asked = tuple(name for name in _FAMILIES if name in (families or ["am"]))
+    opt.exclude(phi=phi, u=u)
+    opt.exclude(phi=phi, series=series, functions=functions)
+    opt.exclude(series=series, digits=digits)
+    given = {"k": k, "k_prime": k_prime, "nome": nome}
+    chosen = [(name, value) for name, value in given.items() if value is not None]
+    if len(chosen) != 1:
+        raise LagtopError("give exactly one of --k, --k-prime, --nome")
+    named = check_names("functions", functions or ["am"], _FAMILIES)
+    asked = tuple(name for name in _FAMILIES if name in named)
     parameter, imaginary = _parameter(param, asked)
+    beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
     has_complex = isinstance(u, list) and any(isinstance(x, ExactComplex) for x in u)
     real = not (beyond or has_complex or (parameter.real and parameter.imag))
-    if not real:
-        for name, wanted in (("--phi", phi), ("--series", series)):
-            if wanted:
-                raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")
+    if not real and (phi or series):
+        raise LagtopError("--phi and --series need a real --u, and a --k in [0, 1]")
+    name, value = chosen[0]
+    number = value.real if isinstance(value, ExactComplex) else value
+    modulus = ModulusInput(name, number, radians=rad)
+    any_modulus = k if k is not None and beyond else modulus
     arguments, in_quarters = (None, False) if u is None else _arguments(u, real=real)
-    given = k if k is not None and beyond else modulus
     if phi is not None:
         from ..elliptic.incomplete import AmplitudeTable
 
         write_functions(AmplitudeTable(phi, modulus), digits, out)
     elif series is not None:
-        _write_series(modulus, arguments, in_quarters, series, out)
+        from ..elliptic.nome_series import SeriesTable
+
+        if arguments is not None and arguments.real.count != 1:
+            raise LagtopError(f"--series takes one --u, got {arguments.real.count}")
+        at = None if arguments is None else next(arguments.real.decimals())
+        write_functions(SeriesTable(modulus, at, series, in_quarters=in_quarters), None, out)
     elif arguments is not None:
         from ..elliptic.function_table import FunctionRequest, FunctionTable
 
         v = parameter.nearest() if digits is None else parameter
-        request = FunctionRequest(given, asked, v, imaginary, rad, in_quarters, real)
+        request = FunctionRequest(any_modulus, asked, v, imaginary, rad, in_quarters, real)
         write_functions(FunctionTable(arguments, request), digits, out)
-    elif families is not None:
+    elif functions is not None:
         raise LagtopError("--functions needs --u")
     else:
         from ..elliptic.modulus import constants_record
 
-        write_constants(constants_record(given, digits), "Moduli", _JACOBI, out)
-
-
-def _modulus(**named: Fraction | None) -> tuple[str, Fraction]:
-    """Return the name and value of the modulus that is given.  Raises LagtopError."""
-    chosen = [(name, value) for name, value in named.items() if value is not None]
-    if len(chosen) != 1:
-        raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
-    return chosen[0]
-
-
-def write_constants(record: dict[str, Any], group: str, table: str, out: Output) -> None:
-    """Write the constants of a modulus or of a quadrature."""
-    if out.fmt == "parquet":
-        raise LagtopError(f"--format {out.fmt} holds tables: use json or csv for constants")
-    out.record(record, lambda: constant_keys(group, table))
+        write_constants(constants_record(any_modulus, digits), "Moduli", _JACOBI, out)
 
 
 def _arguments(
@@ -249,19 +240,3 @@ def _parameter(
     if param is None:
         raise LagtopError("the functions omega and pi need --param, as 0.7, 0.7i or 0.2+0.7i")
     return param
-
-
-def _write_series(
-    modulus: ModulusInput,
-    arguments: ComplexPoints | None,
-    in_quarters: bool,
-    terms: int,
-    out: Output,
-) -> None:
-    """Write the partial sums."""
-    from ..elliptic.nome_series import SeriesTable
-
-    if arguments is not None and arguments.real.count != 1:
-        raise LagtopError(f"--series takes one --u, got {arguments.real.count}")
-    u = None if arguments is None else next(arguments.real.decimals())
-    write_functions(SeriesTable(modulus, u, terms, in_quarters=in_quarters), None, out)

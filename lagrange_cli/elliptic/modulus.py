@@ -44,7 +44,7 @@ class Modulus(NamedTuple):
 class ModulusInput(NamedTuple):
     """A modulus in [0, 1], by one of its quantities.
 
-    `name` is k, k_prime, modular_angle (in degrees, or in radians) or nome.
+    `name` is k, k_prime or nome; `radians` is the unit of the modular angle and of amplitudes.
     """
 
     name: str
@@ -56,10 +56,6 @@ class ModulusInput(NamedTuple):
         name, value, is_high, end = self.name, self.value, self.value > 1, "1]"
         if name == "nome":
             is_high, end = value >= 1, "1)"
-        elif name == "modular_angle" and self.radians:
-            is_high, end = exceeds_quarter_turn(value), "pi/2]"
-        elif name == "modular_angle":
-            is_high, end = value > 90, "90]"
         if value < 0 or is_high:
             raise LagtopError(f"{name} must be in [0, {end}, got {float(value)}", name)
         if name == "nome" and 1 - value < _LEAST_BELOW_1:
@@ -73,7 +69,7 @@ class ModulusInput(NamedTuple):
     @property
     def is_1(self) -> bool:
         """Whether k is 1."""
-        ends = {"k": 1, "k_prime": 0, "modular_angle": None if self.radians else 90}
+        ends = {"k": 1, "k_prime": 0}
         return self.value == ends.get(self.name)
 
     def ball(self) -> Modulus:
@@ -87,10 +83,6 @@ class ModulusInput(NamedTuple):
             _, *thetas = acb.modular_theta(acb(0), tau)
             theta2, theta3, theta4 = (theta.real for theta in thetas)
             return Modulus((theta2 / theta3) ** 2, (theta4 / theta3) ** 2)
-        if self.name == "modular_angle":
-            if self.radians:
-                return Modulus(value.sin(), value.cos())
-            return Modulus(*(value / 180).sin_cos_pi())
         other = exact(1 - self.value**2).sqrt()
         return Modulus(value, other) if self.name == "k" else Modulus(other, value)
 

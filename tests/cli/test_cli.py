@@ -329,7 +329,7 @@ def test_the_right_keys_are_suggested(wrong: str, meant: str, lagtop: Lagtop) ->
 # help
 
 
-OLD = {"sweep", "find", "fit", "jacobi", "eta"}
+OLD = {"fit"}
 
 
 @pytest.mark.parametrize("command", ["", "-h", *(x for x in COMMANDS if x not in OLD)])

@@ -144,9 +144,6 @@ def test_poles_and_zeros_of_complex_numbers(digits: str, lagtop: Lagtop) -> None
         ("--k 0.8i", "0.25-0.5i", "0.25+0.5i", "omega01_im omega00_im"),
         ("--k 0.8", "5.5+1i", "5.5-1i", "omega00_im"),
         ("--k i", "1+i", "0.25-0.25i", "pi01_re pi11_re"),
-        ("--modular-angle 45", "1-i", "-0.25+0.25i", "pi00_im pi11_im"),
-        ("--modular-angle 45", "0.5+0.5i", "0.5-0.5i", "omega01_im omega00_im pi00_re pi11_re"),
-        ("--modular-angle 46", "1-i", "-0.25+0.25i", ""),
     ],
 )
 def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lagtop) -> None:
@@ -194,16 +191,6 @@ def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
         assert (list(shown), len(shown["u"])) == (names, 3)
 
 
-def test_a_flag_of_a_function_means_its_name(lagtop: Lagtop) -> None:
-    """Flags and --functions add to each other; --phi excludes both."""
-    given = "--k 0.7 --u=-6.6+0.7i --param=8.5+0.7i"
-    named = cells(lagtop, f"{given} --functions theta,zeta,omega")
-    assert cells(lagtop, f"{given} --omega --zeta --functions theta") == named
-    assert float(named["omega11_im"][0]) == pytest.approx(0.0200677814681204, rel=1e-14)
-    refused = lagtop("jacobi", "--k", "0.7", "--phi", "30", "--omega")
-    assert (refused.exit_code, refused.stderr) == (2, "Error: use --phi or --functions, not both\n")
-
-
 def test_rows_in_degrees_and_radians(lagtop: Lagtop) -> None:
     args = "--k 0.8 --u 3.5 --functions am,theta,zeta,omega,pi --param 0.4i"
     plain, radians = cells(lagtop, args), cells(lagtop, f"{args} --rad")
@@ -216,7 +203,7 @@ def test_rows_in_degrees_and_radians(lagtop: Lagtop) -> None:
 
 def test_constants(lagtop: Lagtop) -> None:
     """Each is the double next to the number of mpmath, on its side of the cuts."""
-    record = json.loads(lagtop("jacobi", "--modular-angle", "60", "--format", "json").stdout)
+    record = json.loads(lagtop("jacobi", "--k-prime", "0.5", "--format", "json").stdout)
     with mpmath.workdps(40):
         m = mpmath.mpf(3) / 4
         exact: dict[str, Any] = {
@@ -239,7 +226,7 @@ def test_constants(lagtop: Lagtop) -> None:
             for name, value in exact.items():
                 found = complex(record[f"{name}_re"], record[f"{name}_im"])
                 assert found == complex(value), (text, name)
-    one = json.loads(lagtop("jacobi", "--modular-angle", "90", "--format", "json").stdout)
+    one = json.loads(lagtop("jacobi", "--k", "1", "--format", "json").stdout)
     assert (one["k_prime"], one["K"], one["E"], one["nome"]) == (0.0, None, 1.0, 1.0)
     assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
 

@@ -7,11 +7,10 @@ from conftest import Lagtop
 
 JACOBI = [
     # real functions
-    ("", "give exactly one of --k, --k-prime, --modular-angle, --nome"),
+    ("", "give exactly one of --k, --k-prime, --nome"),
     ("--k 0.5 --nome 0.1", "give exactly one of"),
     ("--k=-1", "--k must be 0 or more, or imaginary as 0.8i, got -1.0"),
     ("--k-prime -1", "--k-prime must be in [0, 1], got -1.0"),
-    ("--modular-angle 91", "--modular-angle must be in [0, 90], got 91.0"),
     (f"--nome 0.{'9' * 300}", "--nome must be at most 1 - 1e-17: k' is too small beyond"),
     ("--nome 1", "--nome must be in [0, 1), got 1.0"),
     ("--k 0.5 --u 0:1", "--u must be a range [log:]start:stop:count"),
@@ -29,8 +28,8 @@ JACOBI = [
     ("--k 1+2i", "--k must be 0 or more, or imaginary as 0.8i, got 1.0+2.0i"),
     ("--k=-0.8i --u 1", "--k must be 0 or more, or imaginary as 0.8i, got -0.8i"),
     ("--k x", "--k must be a finite decimal number, got 'x'"),
-    ("--k 1.5 --phi 30", "--phi needs a real --u, and a --k in [0, 1]"),
-    ("--k 0.5 --u i --series 3", "--series needs a real --u, and a --k in [0, 1]"),
+    ("--k 1.5 --phi 30", "--phi and --series need a real --u, and a --k in [0, 1]"),
+    ("--k 0.5 --u i --series 3", "--phi and --series need a real --u, and a --k in [0, 1]"),
     ("--k 0.5 --u i,2K", "--u must not contain K if numbers are complex"),
     (
         "--k 1 --u i --functions theta",
@@ -51,7 +50,7 @@ JACOBI = [
     ("--k 0.8 --phi 1 --series 3", "use --phi or --series, not both"),
     ("--k 0.8 --phi 1 --param 3", "--param needs --functions omega or pi"),
     ("--k 0.8 --phi 1e30", "--phi must be within 2^50 periods = 2.03e+17 of 0, got 1e+30"),
-    ("--k 1.1 --phi 1", "--phi needs a real --u, and a --k in [0, 1]"),
+    ("--k 1.1 --phi 1", "--phi and --series need a real --u, and a --k in [0, 1]"),
     ("--k 0.8 --phi x", "--phi must be a finite decimal number, got 'x'"),
     # multiples of K
     ("--k 0.3 --u K/0", "--u must be a multiple of K such as K, -2.5K, K/2 or 3K/4, got 'K/0'"),
@@ -88,10 +87,10 @@ JACOBI = [
         "--nome 1.6e-274 --u 0.1 --functions pi --param=-478.87i",
         "--param must be smaller than K' = 315.219",
     ),
-    ("--modular-angle 0.999 --series 1 --u 1.7e308", "--u must be within 2^50 periods"),
+    ("--k 0.0174 --series 1 --u 1.7e308", "--u must be within 2^50 periods"),
 ]
 ETA = [
-    ("--delta 0.2 --delta-star 0.5 --p 0 --q 2", "--delta must be >= --delta-star = 0.5, got 0.2"),
+    ("--delta 0.2 --delta-star 0.5 --p 0 --q 2", "--delta must be >= delta_star = 0.5, got 0.2"),
     ("--delta 1 --delta-star 0 --p 0 --q 0.5", "outside the band from delta* to delta, [0.0, 1.0]"),
     ("--delta 1 --delta-star 0 --p 0 --q -2", "--q must be >= 0, or imaginary as 0.7i, got -2.0"),
     ("--delta 1 --delta-star 0 --p 0", "--p and --q belong together"),
