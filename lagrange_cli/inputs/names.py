@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
@@ -76,16 +75,3 @@ def suggestion(name: object, known: Iterable[str]) -> str:
 def _words(name: str) -> set[str]:
     """Return the words of a name; a period is T in the names of keys."""
     return set(name.lower().replace("period", "t").split("_"))
-
-
-def usual_spelling(text: str, units: Collection[str]) -> str:
-    """Return a question with the usual spelling of a unit, such as rpm for RPM, or an empty text.
-
-    A digit after a name counts as its power, as in `kg m2`.
-    """
-    known = {name.lower(): name for name in units}
-    usual = re.sub(r"[^\W\d_]+", lambda name: known.get(name[0].lower(), name[0]), text)
-    usual = re.sub(r"(?<=[^\W\d_])(?=\d)", "^", usual)
-    if usual == text or any(x not in units for x in re.findall(r"[^\W\d_]+|°", usual)):
-        return ""
-    return f"; did you mean {usual}?"

@@ -1,7 +1,7 @@
 """Rotations, and conversion between Euler angle rates and angular velocity (4,1).
 
-Quaternions are w, x, y, z along the last axis, and need not be normalised.  Functions of rates take
-numbers or arrays that broadcast.  Angles are in radians.  Equation numbers are Chrapan's.
+Quaternions are w, x, y, z along the last axis, and need not be normalised.  Angles are in
+radians.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -157,14 +157,6 @@ def of_vector(vectors: Array) -> Array:
     return np.concatenate([np.cos(angle / 2), np.sinc(angle / (2 * np.pi)) / 2 * vectors], axis=1)
 
 
-class BodyRates(NamedTuple):
-    """The angular velocity along body x, y and z."""
-
-    p: Array
-    q: Array
-    r: Array
-
-
 class EulerRates(NamedTuple):
     """The rates of tilt, spin and precession."""
 
@@ -174,51 +166,33 @@ class EulerRates(NamedTuple):
 
 
 def body_rates(
-    theta: ArrayLike, phi: ArrayLike, *, thetadot: ArrayLike, phidot: ArrayLike, psidot: ArrayLike
-) -> BodyRates:
-    """Return p, q, r of a top at a tilt and a spin angle, from the rates of its angles (4,1).
-
-    Raises LagtopError for anything but real numbers that broadcast.
-    """
-    tilt, spin, nutation, own, precession = _together(
-        theta=theta, phi=phi, thetadot=thetadot, phidot=phidot, psidot=psidot
-    )
-    sin, cos, around = np.sin(spin), np.cos(spin), precession * np.sin(tilt)
-    return BodyRates(
-        p=around * sin + nutation * cos,
-        q=around * cos - nutation * sin,
-        r=precession * np.cos(tilt) + own,
+    theta: ArrayLike, phi: ArrayLike, thetadot: ArrayLike, phidot: ArrayLike, psidot: ArrayLike
+) -> tuple[Array, Array, Array]:
+    """Return p, q, r of a top at a tilt and a spin angle, from the rates of its angles (4,1)."""
+    nutation, own, precession = (np.asarray(x, np.float64) for x in (thetadot, phidot, psidot))
+    sin, cos, around = np.sin(phi), np.cos(phi), precession * np.sin(theta)
+    return (
+        around * sin + nutation * cos,
+        around * cos - nutation * sin,
+        precession * np.cos(theta) + own,
     )
 
 
 def euler_rates(
-    theta: ArrayLike, phi: ArrayLike, *, p: ArrayLike, q: ArrayLike, r: ArrayLike
+    theta: ArrayLike, phi: ArrayLike, p: ArrayLike, q: ArrayLike, r: ArrayLike
 ) -> EulerRates:
     """Return the rates of the angles from p, q, r at a tilt and a spin angle, by solving (4,1).
 
-    Raises LagtopError for anything but real numbers that broadcast, and for a vertical axis, where
-    the rates of spin and precession are undefined.
+    Raises LagtopError for a vertical axis, where the rates of spin and precession are undefined.
     """
-    tilt, spin, x, y, z = _together(theta=theta, phi=phi, p=p, q=q, r=r)
-    sin, cos, sine = np.sin(spin), np.cos(spin), np.sin(tilt)
-    vertical = (sine == 0) | (abs(tilt) == np.pi)
+    x, y, z = (np.asarray(value, np.float64) for value in (p, q, r))
+    tilt, sin, cos = np.asarray(theta, np.float64), np.sin(phi), np.cos(phi)
+    vertical = (np.sin(tilt) == 0) | (abs(tilt) == np.pi)
     if vertical.any():
         raise LagtopError(
             f"theta must be off the vertical, got {tilt[vertical].flat[0]} "
             "(the rates of spin and precession are undefined)",
             "theta",
         )
-    precession = (x * sin + y * cos) / sine
+    precession = (x * sin + y * cos) / np.sin(tilt)
     return EulerRates(x * cos - y * sin, z - precession * np.cos(tilt), precession)
-
-
-def _together(**values: ArrayLike) -> list[Array]:
-    """Return the arguments as arrays of doubles of one shape."""
-    try:
-        arrays = [np.asarray(value) for value in values.values()]
-        if any(x.size and x.dtype.kind not in "iuf" for x in arrays):
-            raise TypeError
-        return [x.astype(np.float64) for x in np.broadcast_arrays(*arrays)]
-    except (TypeError, ValueError):
-        shown = ", ".join(f"{name} {repr(value)[:30]}" for name, value in values.items())
-        raise LagtopError(f"arguments must be numbers that broadcast, got {shown}") from None
