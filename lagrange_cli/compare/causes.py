@@ -114,6 +114,8 @@ def _exchanged_moments(top: Top) -> Top:
 
 def _spun_back(seen: Seen, top: Top) -> Seen:
     """Return the attitude of a body that spins as the top of `_exchanged_moments`."""
+    if seen.quaternion is None and seen.axis is None and not seen.angles:
+        raise LagtopError("there is no attitude")
     rate = float(Fraction(top.r0) * (1 - Fraction(top.A) / Fraction(top.C)))
     angles = {x: y - rate * seen.t if x == "phi" else y for x, y in seen.angles.items()}
     alone = Seen(seen.t, seen.quaternion, seen.axis, angles)
@@ -195,7 +197,7 @@ def _shifted_clock(motion: Motion, trajectory: Trajectory) -> Cause:
     few, t = trajectory.few(20), trajectory.given["t"][:, 0]
     step = 0.3 / rate_size(motion.top)
     reach = max(motion.T_nutation or 0.0, 2 * abs(t[0]), 10 * abs(t[-1] - t[0]) / len(t))
-    count = min(math.ceil(reach / step), _MOST_SHIFTS)
+    count = math.ceil(min(reach / step, _MOST_SHIFTS))
     shifts = step * np.arange(-count, count + 1.0)
     rows = {key: np.tile(x, (len(shifts), 1)) for key, x in few.given.items()}
     rows["t"] -= np.repeat(shifts, len(few.given["t"]))[:, np.newaxis]

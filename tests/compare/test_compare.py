@@ -100,6 +100,7 @@ def test_wrong_rates_of_a_right_attitude_are_not_fine() -> None:
     assert found.rates_error_max == pytest.approx(off, rel=0.01)
     assert compare(TOP, T, quaternion=Q, rates=1.0001 * RATES).verdict == "fine"
     assert compare(TOP, T, quaternion=Q, rates=1.01 * RATES).verdict == "off from the start"
+    assert compare(TOP, T, rates=1.01 * RATES).cause is None
 
 
 @pytest.mark.parametrize("rate", [1e-6, -0.1, 25.0])
