@@ -41,6 +41,10 @@ _REDUCED = {
 """The function of the reduced modulus that replaces each function, if the index differs."""
 
 
+Waves = list[tuple[acb, acb]]
+"""Terms of the series s(r), each as exp(2 pi i m r) and exp(-2 pi i m r) times a factor."""
+
+
 class Point(NamedTuple):
     """A complex number with exact parts, `fmpq`, or balls for multiples of K."""
 
@@ -99,6 +103,7 @@ class Functions:
         self.step = self.scale if self.direct else self.across
         self._half_turns = arb.pi() * self.step / 2
         self._p = (-arb.pi() * self.T0).exp()
+        self._p2, self._bits = self._p**2, 4.5 * float(self.T0.mid())
         self._reduced, self.tau = reduced, reduced
         if self.kind is Kind.IMAGINARY:
             self.tau = reduced + 1
@@ -227,7 +232,7 @@ class Functions:
         at, n, slope = self._slopes.get(inner, (None, 0, acb(0)))
         if at != v:
             cell = self._cell(inner, v)
-            n, slope = cell.n, cell.slope * self.step
+            n, slope = cell.n, cell.slope() * self.step
             self._slopes[inner] = v, n, slope
         return n, slope
 
@@ -249,46 +254,42 @@ class Functions:
         zeta = acb(p, q) * self.step
         if self.is_0:
             n = int(inner[0]) * (-1 if q < 0 else 1)
-            wave = (zeta * (2 * n)).exp_pi_i() * int(inner[0])
-            return _Cell(strip, n, p, q, -wave, acb(0, -2 * n) * arb.pi() * wave / (1 - wave))
+            wave = -(zeta * (2 * n)).exp_pi_i() * int(inner[0])
+            return _Cell(strip, n, p, q, [(wave, acb(0)) if n > 0 else (acb(0), wave)])
         index = inner if self.direct else inner[::-1]
         odd, sign = int(index[0]), -1 if index[1] == "1" else 1
         n = strip or odd
         if not self.direct:
             n = 2 * nearest(q * self.scale - odd / 2) + odd
         rest = zeta - acb(0, self.T0) * n / 2
-        return _Cell(strip, n, p, q, *self._series(rest, sign))
+        return _Cell(strip, n, p, q, self._waves(rest, sign))
 
     def _logarithm(self, inner: str, at: Point) -> _Logarithm:
         """Return log theta at a point; its imaginary part is known on the axes."""
         cell, alternating = self._cell(inner, at), int(inner[1])
-        rest = cell.small.log1p()
+        rest = cell.small().log1p()
         if at.axes:
             quarters = 0 if at.imag == 0 else cell.strip * alternating
             return _Logarithm(cell.n, fmpq(0), cell.q, acb(rest.real), quarters)
         quarters = cell.n * alternating if self.direct else cell.strip * (cell.n + alternating)
         return _Logarithm(cell.n, cell.p, cell.q, rest, quarters)
 
-    def _series(self, r: acb, sign: int) -> tuple[acb, acb]:
-        """Return s(r) and the derivative of log(1 + s(r)), for |Im r| <= T_0/2.
+    def _waves(self, r: acb, sign: int) -> Waves:
+        """Return the two parts of each term of s(r), for |Im r| <= T_0/2.
 
-        From each left-out term to the next, its size falls by a factor below exp(-2 pi).
+        The last pair is an error: twice the first term that is left out.  From each such term to
+        the next, the size falls by a factor below exp(-2 pi).
         """
         p, wave = self._p, sign * (2 * r).exp_pi_i()
         up, down = p * wave, p / wave
-        square = p * p
-        more_up, more_down = up * square, down * square
-        terms = 1 + isqrt(int(ctx.prec / (4.5 * float(self.T0.mid()))))
-        total, slope = acb(0), acb(0)
-        for m in range(1, terms + 1):
-            total += up + down
-            slope += m * (up - down)
+        more_up, more_down = up * self._p2, down * self._p2
+        waves = []
+        for _ in range(1 + isqrt(int(ctx.prec / self._bits))):
+            waves.append((up, down))
             up, down = up * more_up, down * more_down
-            more_up, more_down = more_up * square, more_down * square
-        size = 2 * (abs(up) + abs(down)).upper()
-        total += _around_0(size)
-        slope = acb(0, 2) * arb.pi() * (slope + _around_0(2 * (terms + 1) * size))
-        return total, slope / (1 + total)
+            more_up, more_down = more_up * self._p2, more_down * self._p2
+        part = arb(0, 2 * (up.abs_upper() + down.abs_upper()))
+        return [*waves, (acb(part, part), acb(0))]
 
 
 class _Cell(NamedTuple):
@@ -298,10 +299,16 @@ class _Cell(NamedTuple):
     n: int
     p: Any
     q: Any
-    small: acb
-    """s(r)."""
-    slope: acb
-    """The derivative of log(1 + s(r)) by zeta."""
+    waves: Waves
+
+    def small(self) -> acb:
+        """Return s(r)."""
+        return sum((up + down for up, down in self.waves), acb(0))
+
+    def slope(self) -> acb:
+        """Return the derivative of log(1 + s(r)) by zeta."""
+        slope = sum((m * (up - down) for m, (up, down) in enumerate(self.waves, 1)), acb(0))
+        return acb(0, 2) * arb.pi() * slope / (1 + self.small())
 
 
 class _Logarithm(NamedTuple):
@@ -317,11 +324,6 @@ class _Logarithm(NamedTuple):
         """Return the logarithm at the conjugate point of the plane of u."""
         n, p, q = (-self.n, self.p, -self.q) if direct else (self.n, -self.p, self.q)
         return _Logarithm(n, p, q, self.rest.conjugate(), -self.quarters)
-
-
-def _around_0(radius: arb) -> acb:
-    part = arb(0, radius)
-    return acb(part, part)
 
 
 def nearest(x: arb) -> int:
