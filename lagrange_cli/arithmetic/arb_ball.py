@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from functools import lru_cache
@@ -78,13 +79,14 @@ def _comparison(
 _UNBOUNDED = arb(0, float("inf"))
 
 
-def _known_to_exist(value: Any, *of: Any) -> Ball:
-    """Return a function of numbers that exist; Arb returns NaN if they may be outside its domain.
+def _result(value: Any, *of: Any) -> Ball:
+    """Return a function of numbers; Arb returns NaN if they may be outside of its domain.
 
-    It is unbounded instead, because more digits may show that they are not.
+    If they exist it is unbounded instead, because more digits may show that they are inside.
     """
-    found, *numbers = (isinstance(x, arb) and x.is_nan() for x in (value, *of))
-    return Ball(_UNBOUNDED if found and not any(numbers) else value)
+    if value.is_finite() or isinstance(value, acb) or not value.is_nan():
+        return Ball(value)
+    return Ball(value if any(isinstance(x, arb) and x.is_nan() for x in of) else _UNBOUNDED)
 
 
 class Ball:
@@ -115,9 +117,8 @@ class Ball:
 
     def __truediv__(self, other: Ball | float) -> Ball:
         divisor = other.x if isinstance(other, Ball) else other
-        if divisor == 0:
-            return Ball(self.x / divisor)
-        return _known_to_exist(self.x / divisor, self.x, divisor)
+        quotient = self.x / divisor
+        return Ball(quotient) if divisor == 0 else _result(quotient, self.x, divisor)
 
     def __rtruediv__(self, other: float) -> Ball:
         return Ball(arb(other)) / self
@@ -198,7 +199,8 @@ class Ball:
         """
         if not self.x.is_finite():
             raise TooFewDigitsError
-        middle, radius, exponent = map(int, self.x.mid_rad_10exp(int(ctx.prec / BITS) + 8))
+        digits = int(max(ctx.prec, self.x.bits()) / BITS) + 8
+        middle, radius, exponent = map(int, self.x.mid_rad_10exp(digits))
         if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
             raise OutOfRangeError(
                 "the size of a value is not within 1e-990000000000000000 and "
@@ -219,13 +221,13 @@ class Ball:
 
 _EXACT = Context(1_000_000, Emin=MIN_EMIN, Emax=MAX_EMAX, traps=[])
 """More digits than any ball has."""
-_LOCK = RLock()
+_LOCK, _NOTHING = RLock(), nullcontext()
 
 
 def _function(name: str) -> staticmethod[[Ball], Ball]:
     """Return the method for an elementary function of a real or complex ball."""
     function = operator.methodcaller(name)
-    return staticmethod(lambda x: _known_to_exist(function(x.x), x.x))
+    return staticmethod(lambda x: _result(function(x.x), x.x))
 
 
 class Balls(Scalars):
@@ -250,9 +252,9 @@ class Balls(Scalars):
         ctx.prec = self._before.pop()
         _LOCK.release()
 
-    def working(self) -> Balls:
-        """Return the context manager that sets this precision, the arithmetic itself."""
-        return self
+    def working(self) -> AbstractContextManager[object]:
+        """Return a context manager that sets this precision unless it is in use."""
+        return _NOTHING if ctx.prec == self.bits else self
 
     @property
     def pi(self) -> Ball:
@@ -280,9 +282,10 @@ class Balls(Scalars):
     def sqrt(self, x: Ball | int) -> Ball:
         """Return the square root; of a real ball, that of its part that is not negative."""
         square = self.convert(x).x
-        if isinstance(square, arb) and square.is_finite() and not square < 0:
-            square = square.nonnegative_part()
-        return _known_to_exist(square.sqrt(), square)
+        root = square.sqrt()
+        if not root.is_finite() and isinstance(square, arb) and square.is_finite():
+            root = arb("nan") if square < 0 else square.nonnegative_part().sqrt()
+        return _result(root, square)
 
     def atan2(self, y: Ball, x: Ball) -> Ball:
         """Return the angle of the point (x, y); all angles if it may lie on the cut or at 0."""

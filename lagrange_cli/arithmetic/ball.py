@@ -14,8 +14,12 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal, DecimalException, Inexa
 from functools import cached_property
 from typing import Any
 
-from .decimals import TRAPS, Decimals, decimals, own_context
+from .arb_ball import OPEN, TooFewDigitsError, UndefinedError
+from .decimals import TRAPS, Decimals, decimals
 from .numbers import power
+from .text import own_context
+
+__all__ = ["OPEN", "Ball", "TooFewDigitsError", "UndefinedError"]
 
 Truth = Any
 """True, False or OPEN."""
@@ -36,26 +40,8 @@ UP, DOWN, FLOOR, CEILING = (
 add_up, multiply_up, fma_up, divide_up = UP.add, UP.multiply, UP.fma, UP.divide
 
 
-class TooFewDigitsError(Exception):
-    """A question that cannot be decided with the digits in use."""
-
-
 class TooSmallError(TooFewDigitsError):
     """A number too close to 0 for the exponents of decimals: no number of digits decides it."""
-
-
-class UndefinedError(ArithmeticError):
-    """A question about a number that does not exist."""
-
-
-class Open:
-    """The result of a comparison that is neither proved nor disproved."""
-
-    def __bool__(self) -> bool:
-        raise TooFewDigitsError
-
-
-OPEN = Open()
 
 
 def _sum_by(operation: str) -> Callable[[Ball, Ball | float], Ball]:

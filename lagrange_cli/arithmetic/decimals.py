@@ -13,6 +13,7 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 
 from .numbers import Scalars, Unenclosed
+from .text import own_context
 
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
 TRAPS: list[type[decimal.DecimalException]] = [
@@ -23,24 +24,6 @@ TRAPS: list[type[decimal.DecimalException]] = [
 ]
 """Conditions that raise an exception, because numbers beyond the exponents would lose digits."""
 _GUARD = 5
-
-
-def own_context(
-    digits: int,
-    traps: list[type[decimal.DecimalException]],
-    rounding: str = decimal.ROUND_HALF_EVEN,
-) -> decimal.Context:
-    """Return a decimal context that does not depend on the context of the host program."""
-    return decimal.Context(
-        prec=digits,
-        rounding=rounding,
-        Emin=decimal.MIN_EMIN,
-        Emax=decimal.MAX_EMAX,
-        capitals=0,
-        clamp=0,
-        flags=[],
-        traps=traps,
-    )
 
 
 class Decimals(Scalars, Unenclosed):

@@ -8,8 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import LagtopError
-from .decimals import own_context
-from .text import is_decimal, parse_number
+from .text import is_decimal, own_context, parse_number
 
 if TYPE_CHECKING:
     import numpy as np

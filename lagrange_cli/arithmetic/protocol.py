@@ -6,7 +6,6 @@ any precision, arrays of doubles, and arrays of pairs of doubles.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any, Protocol, Self, TypeVar
@@ -88,25 +87,6 @@ class Arithmetic(Protocol[R]):
 
     def either(self, condition: Any, /) -> Any:
         """Return a condition that chooses between two valid methods; for balls it may be open."""
-
-    def widened(
-        self,
-        x: R,
-        small: Callable[[], tuple[R, ...]],
-        bound: Callable[..., R],
-        /,
-        *,
-        values_only: bool = False,
-    ) -> R:
-        """Return x and, in an arithmetic of balls, the truncation error of an iteration.
-
-        `bound`, at the sizes of the `small` numbers, bounds the truncation error.  Unless
-        `values_only` is set, the derivatives of `bound` also bound the derivatives of the error.
-        Other arithmetics return x and compute neither.
-        """
-
-    def fixed(self, x: R, /) -> R:
-        """Return x as a constant, without derivatives."""
 
 
 Numeric = Any

@@ -1,20 +1,26 @@
 """Proved rounding: more digits, until both ends of an enclosure round alike (Ziv 1991).
 
 A number is rounded to a double, to N digits, or to a sum of two or three doubles.
+
+Two numbers that agree to D digits are equal.  D is 1,200, plus ten times the digits of the longest
+input or of the output, whichever has more.  Nine doubles hold less than 180 digits: numbers
+computed from them that differ at all differ, for all practical purposes, within some hundreds of
+digits.  A sign that D digits leave open is 0, and a number that they cannot round is a tie.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from decimal import ROUND_UP, Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..errors import LagtopError, OutOfRangeError
-from .ball import SMALLEST, Ball, TooFewDigitsError, TooSmallError
-from .decimals import own_context
-from .text import NumberText
+from .arb_ball import BITS, Ball, TooFewDigitsError, balls
+from .ball import SMALLEST, TooSmallError
+from .text import NumberText, own_context
 
 if TYPE_CHECKING:
     from .types import Array
@@ -23,6 +29,8 @@ S = TypeVar("S")
 
 FIRST_DIGITS, MOST_DIGITS = 32, 4_500
 """Digits of the first enclosure of a double, and of the last before a question stays open."""
+_EQUAL_DIGITS = 1_200
+"""Least number of digits that equal numbers have in common."""
 _GUARD = 10
 """Extra digits of an enclosure beyond the N digits requested."""
 _OUTWARDS, _SHORT = own_context(20, [], ROUND_UP), own_context(2, [], ROUND_UP)
@@ -47,15 +55,25 @@ class Settled(NamedTuple):
         return text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec)
 
 
-def precisions(digits: int = 0, more: int = 0) -> Iterator[int]:
-    """Yield the digits of enclosures to try for a number of `digits` digits.
+def equal_digits(numbers: Iterable[Fraction], digits: int = 0) -> int:
+    """Return D: two numbers that are computed from some exact numbers are equal to D digits or not.
+
+    `digits` is the number of digits of the output.
+    """
+    bits = max(max(x.numerator.bit_length(), x.denominator.bit_length()) for x in numbers)
+    return _EQUAL_DIGITS + 10 * max(int(bits / BITS), digits)
+
+
+def precisions(digits: int = 0, more: int = 0, most: int = MOST_DIGITS) -> Iterator[int]:
+    """Yield the digits of enclosures to try for a number of `digits` digits, at most `most`.
 
     `more` is the number of digits that are lost in any case, for example to whole turns.
     """
-    working = max(FIRST_DIGITS, digits + _GUARD) + more
-    while working <= MOST_DIGITS + more:
+    working, last = max(FIRST_DIGITS, digits + _GUARD) + more, most + more
+    while working < last:
         yield working
-        working = working * 3 // 2 if working < 100 else working * 2
+        working *= 4
+    yield last
 
 
 def too_small(what: str) -> LagtopError:
@@ -65,19 +83,34 @@ def too_small(what: str) -> LagtopError:
     )
 
 
-def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int = 0) -> S:
-    """Return the first result that some number of digits decides.
+def decided(
+    what: str, compute: Callable[[int], S], digits: int = 0, more: int = 0, most: int = MOST_DIGITS
+) -> S:
+    """Return the first result that some number of digits decides, at that precision of Arb.
 
     Raises LagtopError if no number of digits does.
     """
-    for working in precisions(digits, more):
+    for working in precisions(digits, more, most):
         try:
-            return compute(working)
+            with balls(working):
+                return compute(working)
         except TooSmallError:
             raise too_small(what) from None
         except TooFewDigitsError:
             continue
-    raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {MOST_DIGITS} digits")
+    raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
+
+
+def sign_of(number: Callable[[int], Ball | None], most: int) -> int:
+    """Return the sign of a number from its balls; 0 if `most` digits leave it open.
+
+    The sign of a number that does not exist is 0.
+    """
+    for working in precisions(most=most):
+        with balls(working), suppress(TooFewDigitsError):
+            ball = number(working)
+            return 0 if ball is None or not ball else 1 if ball > 0 else -1
+    return 0
 
 
 def settled(
@@ -87,39 +120,41 @@ def settled(
     *,
     digits: int = 0,
     more: int = 0,
-    exactly: Callable[[], Fraction | None] = lambda: None,
+    most: int = MOST_DIGITS,
 ) -> Settled | None:
-    """Return the rounding of a number from enclosures with more and more digits; None for None.
+    """Return the rounding of a number from balls with more and more digits; None for None.
 
-    If the first enclosure leaves the number open, `exactly` is asked once for its value as a
-    fraction. Raises LagtopError if nothing decides.
+    A ball of `most` digits that still cannot be rounded holds a 0 or a tie: the number is then the
+    simplest fraction in it.  Raises LagtopError for a ball that is wide even then.
     """
-    known: Fraction | None = None
-    asked = False
 
     def attempt(working: int) -> Settled | None:
-        nonlocal known, asked
+        ball = enclosure(working)
+        if ball is None:
+            return None
         try:
-            ball = enclosure(working)
-            return None if ball is None else alike(ball, rounding)
+            return alike(ball, rounding)
         except TooFewDigitsError:
-            known, asked = (known if asked else exactly()), True
-            if known is None:
+            if working < most + more:
                 raise
-            return Settled(rounding(known), (known,))
+            value = ball.simplest()
+            if not ball.x.rel_one_accuracy_bits() > most:
+                raise
+            return Settled(rounding(value), (value,))
 
-    return decided(what, attempt, digits, more)
+    return decided(what, attempt, digits, more, most)
 
 
-def alike(ball: Ball, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
+def alike(ball: Any, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
     """Return the number to which both ends of a ball are rounded.
 
     It is 0 only if the ball is exactly 0.  Raises TooFewDigitsError if the ends round differently,
     or if they are too far apart to determine the size of the number.
     """
     low, high = ball.ends()
-    if not ball.is_sharp:
-        raise TooSmallError if 0 < ball.greatest <= SMALLEST else TooFewDigitsError
+    small, large = sorted((low.copy_abs(), high.copy_abs()))
+    if low.is_signed() != high.is_signed() or large > _OUTWARDS.multiply(small, 2):
+        raise TooFewDigitsError
     value = rounding(low)
     if value != rounding(high):
         raise TooFewDigitsError
@@ -232,4 +267,4 @@ def triple(value: Any) -> Triple:
 
 
 def _less(value: Any, part: float) -> Any:
-    return value - (part if isinstance(value, Ball) else type(value)(part))
+    return value - (type(value)(part) if isinstance(value, Decimal | Fraction) else part)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import decimal
 import math
 from fractions import Fraction
 from typing import Any
@@ -16,6 +17,24 @@ class NumberText(str):
     """A number written out, to be printed unchanged."""
 
     __slots__ = ()
+
+
+def own_context(
+    digits: int,
+    traps: list[type[decimal.DecimalException]],
+    rounding: str = decimal.ROUND_HALF_EVEN,
+) -> decimal.Context:
+    """Return a decimal context that does not depend on the context of the host program."""
+    return decimal.Context(
+        prec=digits,
+        rounding=rounding,
+        Emin=decimal.MIN_EMIN,
+        Emax=decimal.MAX_EMAX,
+        capitals=0,
+        clamp=0,
+        flags=[],
+        traps=traps,
+    )
 
 
 def value_text(value: Any) -> str:

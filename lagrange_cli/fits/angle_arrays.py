@@ -63,7 +63,7 @@ class PairMotions(NamedTuple):
         whole, facts = self.motion, self.motion.facts
         signs = {name: getattr(facts, name)[rows] for name in ("sign_plus", "sign_minus")}
         state, gaps = State(*(x[rows] for x in whole.state)), Gaps(*(x[rows] for x in whole.gaps))
-        motion = Nutating(whole.ar, facts.replace(**signs), state, gaps)
+        motion = Nutating(whole.ar, facts._replace(**signs), state, gaps)
         known = {name: x[rows] for name, x in vars(whole).items() if isinstance(x, DoubleDouble)}
         vars(motion).update(known)
         return PairMotions(motion, *_rows_of(list(self[1:]), rows))
@@ -86,7 +86,7 @@ def released_motions(tops: TopArrays) -> PairMotions:
     with PAIRS.working():
         state, facts = tops.pair_state(), facts_at_rest(Regime.REGULAR, tops.r0)
         sign = DoubleDouble(facts.sign_plus)
-        facts = facts.replace(sign_plus=sign, sign_minus=-sign)
+        facts = facts._replace(sign_plus=sign, sign_minus=-sign)
         motion = Nutating(PAIRS, facts, state, gaps_from_rest(PAIRS, state))
         parts = np.maximum(state.a.high, state.b.high**2 / 2)
         noise = PAIR_EPS * (1 + parts / abs(state.sleep.high))  # the cancellation is in lambda - 1
@@ -99,12 +99,13 @@ def moving_motions(tops: TopArrays) -> PairMotions:
     starts = MovingTops(tops)
     with PAIRS.working():
         state, gaps = starts.fine.state, starts.fine.gaps
-        signs, sure = {}, starts.small
+        signs: dict[str, Any] = {}
+        sure = starts.small
         terms = 2 * (abs(state.psi_rate.high) + abs(state.b.high))
         for name, momentum in (("plus", gaps.beta_plus_b), ("minus", gaps.beta_minus_b)):
             signs[f"sign_{name}"] = DoubleDouble(np.where(momentum.high < 0, -1.0, 1.0))
             sure = sure & (abs(momentum.high) > _SMALL * terms)
-        motion = Nutating(PAIRS, FACTS.replace(**signs), state, gaps)
+        motion = Nutating(PAIRS, FACTS._replace(**signs), state, gaps)
         # sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2)), (4,22)
         sn2, cn2 = gaps.u1_u * gaps.a_u3_u2, gaps.a_u3_u1 * gaps.u_u2
         size = starts.precession_size + abs(state.r0.high)

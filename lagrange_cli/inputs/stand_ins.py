@@ -11,11 +11,10 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.ball import Ball
-from ..arithmetic.balls import balls
-from ..arithmetic.exact_cosine import Cosine, Polynomial, U
-from ..arithmetic.numbers import DOUBLES, Number, R
-from ..arithmetic.rounding import nearest_double, rounding_of, settled
+from ..arithmetic.angle import Angle
+from ..arithmetic.arb_ball import Ball, balls
+from ..arithmetic.numbers import Number, R
+from ..arithmetic.rounding import equal_digits, nearest_double, rounding_of, settled
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError
@@ -60,17 +59,17 @@ def spin(inputs: Mapping[str, Number]) -> Number:
     phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
     degrees, radians = inputs.get("theta0_deg"), inputs.get("theta0_rad")
     keeps = is_exact(*(x for x in (inputs["phidot0"], inputs["psidot0"], degrees, radians) if x))
-    cosine = Cosine(*(None if x is None else Fraction(x) for x in (degrees, radians)))
+    tilt = Angle(*(None if x is None else Fraction(x) for x in (degrees, radians)))
     if not 0 <= (degrees or 0) <= 180 or not 0 <= (radians or 0) <= 4:
         return inputs["phidot0"]  # `Top` refuses such a tilt
-    rational = cosine.rational if psi_rate else Fraction(0)
+    rational = tilt.rational_cosine if psi_rate else Fraction(0)
     if rational is not None:
         exact = phi_rate + psi_rate * rational
         return exact if keeps else _nearest(exact)
 
     def enclosure(digits: int) -> Ball:
         ar = balls(digits)
-        return ar.convert(phi_rate) + ar.convert(psi_rate) * cosine.value(ar)
+        return ar.convert(phi_rate) + ar.convert(psi_rate) * tilt.cosine(ar)
 
     if not keeps:
         found = settled("r0", enclosure, nearest_double("r0"))
@@ -133,18 +132,23 @@ class SteadyRates(Values):
 
     a: Fraction
     b: Fraction
-    cosine: Cosine
+    tilt: Angle
+
+    def sign(self, *coefficients: Fraction | int) -> int:
+        """Return the sign of a polynomial in the cosine of the tilt, the constant first."""
+        inputs = [self.a, self.b, *(x for x in self.tilt if x is not None)]
+        return self.tilt.sign(*coefficients, most=equal_digits(inputs))
 
     @property
-    def discriminant(self) -> Polynomial:
-        """The discriminant b^2 - 2 a cos(theta) as a polynomial in the cosine."""
-        return Polynomial(self.b * self.b, -2 * self.a)
+    def discriminant(self) -> int:
+        """The sign of b^2 - 2 a cos(theta)."""
+        return self.sign(self.b * self.b, -2 * self.a)
 
     def exists(self, word: str) -> bool:
         """Return whether a root is real and finite; at 90 degrees only the slow one is."""
-        if self.cosine.vanishes(U):
+        if not self.sign(0, 1):
             return word == SLOW and bool(self.b)
-        return self.cosine.sign(self.discriminant) >= 0
+        return self.discriminant >= 0
 
     def rate(self, ar: Arithmetic[R], a: R, b: R, cos: R, word: str) -> R:
         """Return an existing root from a, b and the cosine, in the arithmetic `ar`.
@@ -155,31 +159,15 @@ class SteadyRates(Values):
         """
         if not (self.a or self.b):
             return 0 * a
-        root = 0 * b if self.cosine.vanishes(self.discriminant) else ar.sqrt(b * b - 2 * a * cos)
-        return self._from_root(a, b, cos, root, word)
-
-    def _from_root(self, a: R, b: R, cos: R, root: R, word: str) -> R:
+        root = ar.sqrt(b * b - 2 * a * cos) if self.discriminant else 0 * b
         q = b - root if self.b < 0 else b + root
         return q / (2 * cos) if word == FAST else a / q
 
     def in_balls(self, digits: int, word: str) -> Ball:
-        """Return a ball that contains an existing root."""
+        """Return a ball that contains an existing root, at the precision in use."""
         ar = balls(digits)
-        with ar.working():
-            a, b = ar.convert(self.a), ar.convert(self.b)
-            return self.rate(ar, a, b, self.cosine.value(ar), word)
-
-    def fraction(self, word: str) -> Fraction | None:
-        """Return a root if it is rational, else None; without torque the slow root is 0."""
-        u = self.cosine.rational
-        if not self.exists(word):
-            return None
-        if not self.a and (word == SLOW or not self.b):
-            return Fraction(0)
-        root = None if u is None else rational_root(self.b * self.b - 2 * self.a * u)
-        if u is None or root is None:
-            return None
-        return self._from_root(self.a, self.b, u, root, word)
+        a, b = ar.convert(self.a), ar.convert(self.b)
+        return self.rate(ar, a, b, self.tilt.cosine(ar), word)
 
 
 def steady_rate_of(top: Any, word: str) -> SteadyRate:
@@ -208,7 +196,6 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
         "psidot0",
         lambda digits: rates.in_balls(digits, word),
         nearest_double("psidot0"),
-        exactly=lambda: rates.fraction(word),
     )
     assert found is not None
     return SteadyRate(word, found.value)
@@ -217,19 +204,13 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
 def rates_of(top: Any) -> SteadyRates:
     """Return the rates of steady precession of a top."""
     m, A, C, s, g, r0 = (Fraction(getattr(top, x)) for x in ("m", "A", "C", "s", "g", "r0"))
-    return SteadyRates(2 * m * g * s / A, C * r0 / A, top.cosine)
+    return SteadyRates(2 * m * g * s / A, C * r0 / A, top.angle)
 
 
 def _why(top: Any, rates: SteadyRates) -> str:
     """Return the reason why a top has no rate of steady precession."""
-    if rates.cosine.vanishes(U):
+    if not rates.sign(0, 1):
         return f"at 90 degrees {'the fast rate is infinite' if rates.b else 'r0 must not be 0'}"
     ratio = float(Fraction(top.A) / Fraction(top.C))
-    least = ratio * math.sqrt(2 * float(rates.a) * rates.cosine.value(DOUBLES))
+    least = ratio * math.sqrt(2 * float(rates.a) * float(rates.tilt.cosine(balls(40)).middle))
     return f"|r0| must be at least {least:.6g} at this tilt, got r0 = {float(top.r0)}"
-
-
-def rational_root(square: Fraction) -> Fraction | None:
-    """Return the square root of a non-negative fraction if it is rational, else None."""
-    root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
-    return root if root * root == square else None

@@ -9,9 +9,10 @@ from fractions import Fraction
 from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, ParamSpec, Self
 
-from ..arithmetic.decimals import own_context
-from ..arithmetic.exact_cosine import Cosine, Tilt, below_quarters
-from ..arithmetic.numbers import DOUBLES, Number, R, is_real, unrounded
+from ..arithmetic.angle import Angle, Tilt
+from ..arithmetic.arb_ball import Balls, balls, pi_to
+from ..arithmetic.numbers import DOUBLES, Number, is_real, unrounded
+from ..arithmetic.text import own_context
 from ..arithmetic.values import Values
 from ..errors import LagtopError
 from .input_keys import (
@@ -178,15 +179,18 @@ class Top(Values):
         words = {"psidot0": self.steady_word} if self.steady_word else {}
         return {key: _shown(x) for key, x in given.items()} | words
 
-    def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
+    def tilt(self, ar: Any) -> Tilt[Any]:
         """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
-        return self.cosine.tilt(ar)
+        if isinstance(ar, Balls):
+            return self.angle.tilt(ar)
+        with balls(40) as exact:
+            return Tilt(*(float(x.middle) for x in self.angle.tilt(exact)))
 
     @property
-    def cosine(self) -> Cosine:
-        """The cosine of theta0, exactly."""
+    def angle(self) -> Angle:
+        """The angle theta0, exactly."""
         tilts = self.theta0_deg, self.theta0_rad
-        return Cosine(*(None if x is None else Fraction(x) for x in tilts))
+        return Angle(*(None if x is None else Fraction(x) for x in tilts))
 
     @property
     def steady_word(self) -> str | None:
@@ -274,7 +278,8 @@ def _check_ranges(top: Top) -> None:
 
 def _is_at_most(tilt: Number, most: str) -> bool:
     """Return whether a tilt is at most 180 degrees, or pi rad."""
-    return tilt <= 180 if most == "180" else tilt < 3 or below_quarters(2, Fraction(tilt)) > 0
+    exact = Fraction(tilt)
+    return exact <= 180 if most == "180" else exact < pi_to(exact.denominator.bit_length() + 20)
 
 
 def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:

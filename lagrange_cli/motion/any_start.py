@@ -6,12 +6,9 @@ Equation numbers are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Callable
-from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.ball import Ball, TooFewDigitsError
-from ..arithmetic.balls import Balls
-from ..arithmetic.decimals import Decimals, decimals
+from ..arithmetic.arb_ball import Ball, Balls, TooFewDigitsError
 from ..arithmetic.numbers import R
 from .gaps import Gaps, State, zero_gaps
 from .regime import Facts
@@ -71,7 +68,7 @@ def gaps_from_start(
         beta_plus_b=below * (start.psi_rate * above + b),
         beta_minus_b=above * (start.psi_rate * below - b),
     )
-    return gaps.replace(**dict.fromkeys(zero_gaps(facts), zero))
+    return gaps._replace(**dict.fromkeys(zero_gaps(facts), zero))
 
 
 def cubic(start: State[R]) -> tuple[R, R, R]:
@@ -93,6 +90,9 @@ def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
 def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
     """Return a ball with the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
+    Laguerre's method descends to the root from a point `above`.  Each step triples the number of
+    correct digits, except at a double root.
+
     Some root is within 3 |f/f'| of any point p, because f'/f is the sum of 1/(p - root).  If f' and
     f'' are positive in this ball X around p, they are positive above it too: X contains the largest
     root and no other.  By the mean value theorem, Newton's step p - f(p)/f'(X) then contains the
@@ -105,30 +105,17 @@ def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
     def slope(x: Ball) -> Ball:
         return (3 * x + 2 * c2) * x + c1
 
-    middles = (x.middle for x in (c2, c1, c0, above))
-    point = ar.exact(near_largest_root(decimals(ar.digits), *middles))
-    around = point.enlarged((3 * cubic(point) / slope(point)).greatest)
+    point, least = above.middle, 1000 * ar.eps
+    for _ in range(4 * ar.digits):
+        value, down = cubic(point), slope(point)
+        step = (
+            3 * value / (down + ar.sqrt(4 * down * down - 12 * value * (3 * point + c2)))
+        ).middle
+        point = (point - step).middle
+        if (step > least * abs(point)) is not True:
+            break
+    away = (3 * cubic(point) / slope(point)).greatest
+    around = ar.between(point - away, point + away)
     if not (slope(around) > 0 and 3 * around + c2 > 0):
         raise TooFewDigitsError
     return point - cubic(point) / slope(around)
-
-
-def near_largest_root(
-    ar: Decimals, c2: Decimal, c1: Decimal, c0: Decimal, above: Decimal
-) -> Decimal:
-    """Return a point next to the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
-
-    Laguerre's method descends to the root from a point above.  Each step triples the number of
-    correct digits, except at a double root.
-    """
-    with ar.working():
-        x, least = above, 1000 * ar.eps
-        for _ in range(4 * ar.digits):
-            value, slope = ((x + c2) * x + c1) * x + c0, (3 * x + 2 * c2) * x + c1
-            curved = max(4 * slope * slope - 12 * value * (3 * x + c2), Decimal(0))
-            divisor = slope + curved.sqrt()
-            step = 3 * value / divisor if divisor else divisor
-            x -= step
-            if not step > least * abs(x):
-                break
-        return x

@@ -8,17 +8,17 @@ number extend his to starts that are not at rest.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
 from ..arithmetic.numbers import R, absolute
-from ..arithmetic.values import Over, Values
 from .regime import Exact, Facts
 
 if TYPE_CHECKING:
+    from ..arithmetic.arb_ball import Ball, Balls
     from ..arithmetic.protocol import Arithmetic
 
 
-class State(Values, Over[R]):
+class State(NamedTuple, Generic[R]):
     """Constants of the motion and the state at t = 0, each rounded once from its exact value."""
 
     a: R
@@ -55,7 +55,7 @@ class State(Values, Over[R]):
         return self.psi_rate * self.sin * self.sin
 
 
-class Gaps(Values, Over[R]):
+class Gaps(NamedTuple, Generic[R]):
     """Distances between roots, poles and start, and beta - b u (4,7) at the roots and the poles."""
 
     u1_u: R
@@ -85,23 +85,17 @@ class Gaps(Values, Over[R]):
     beta_minus_b: R
 
 
-def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
-    """Return the constants and the start of one top in an arithmetic."""
+def state(ar: Balls, exact: Exact) -> State[Ball]:
+    """Return the constants and the start of one top in balls."""
     a, b, r0 = exact.a, exact.b, exact.r0
-    tilt, u = exact.cosine.tilt(ar), exact.cosine.rational
-    psi_rate = exact.psi_rate
-    if u is None:
-        cos_half, sin_half = tilt.cos_half, tilt.sin_half
-        below, cos, above = 2 * cos_half * cos_half, tilt.cos, 2 * sin_half * sin_half
-    else:
-        below, cos, above = ar.convert(1 + u), ar.convert(u), ar.convert(1 - u)
-    if psi_rate is None:
+    tilt = exact.tilt.tilt(ar)
+    if exact.psi_rate is None:
         from ..inputs.stand_ins import rates_of  # start-up: for few tops
 
         rates, word = rates_of(exact.top), str(exact.top.steady_word)
-        rate = rates.rate(ar, ar.convert(a), ar.convert(b), cos, word)
+        psi_rate = rates.rate(ar, ar.convert(a), ar.convert(b), tilt.cos, word)
     else:
-        rate = ar.convert(psi_rate)
+        psi_rate = ar.convert(exact.psi_rate)
     return State(
         a=ar.convert(a),
         b=ar.convert(b),
@@ -110,13 +104,13 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
         spin_drift=ar.convert(r0 - b / 2),
         pole_drift=ar.convert(r0 - b),
         sin=tilt.sin,
-        cos=cos,
+        cos=tilt.cos,
         sin_half=tilt.sin_half,
         cos_half=tilt.cos_half,
-        below=below,
-        above=above,
+        below=2 * tilt.cos_half * tilt.cos_half,
+        above=2 * tilt.sin_half * tilt.sin_half,
         theta_rate=ar.convert(exact.theta_rate),
-        psi_rate=rate,
+        psi_rate=psi_rate,
     )
 
 

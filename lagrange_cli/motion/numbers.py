@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..arithmetic.ball import Ball, TooFewDigitsError
-from ..arithmetic.balls import balls
+from ..arithmetic.arb_ball import Ball, TooFewDigitsError, balls
 from ..arithmetic.numbers import R
-from ..arithmetic.rounding import FIRST_DIGITS, Settled, decided, rounding_of, settled
+from ..arithmetic.rounding import FIRST_DIGITS, Settled, decided, rounding_of, settled, sign_of
 from ..errors import OutOfRangeError
 from ..inputs.top import Top
 from .gaps import Gaps, State, are_told_apart, gaps_from_rest, state
@@ -27,6 +25,8 @@ _S = TypeVar("_S")
 
 SAMPLER_DIGITS = 40
 """Digits of the gaps of a sampler: 2^50 periods use 16 of them, and a double 16 more."""
+MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
+"""The mean rate of each period of one turn, which does not exist if the rate is 0."""
 
 
 def gaps_of(ar: Any, facts: Facts, start: State[R]) -> Gaps[R]:
@@ -62,6 +62,7 @@ class Numbers:
         self._kinds: dict[int, Kind[Ball]] = {}
         self._requested: dict[int, Any] = {}
         self._doubles: dict[str, Settled | None] = {}
+        self._zeros: dict[str, bool] = {}
         self._sampler: Sampler | None = None
 
     @property
@@ -100,44 +101,33 @@ class Numbers:
             lambda working: self.enclosure(name, working, radians=in_radians),
             rounding_of(name, digits),
             digits=digits or 0,
-            exactly=lambda: self.fraction(name, digits or 0, radians=in_radians),
+            most=self.exact.equal + 10 * (digits or 0),
         )
         if is_usual:
             self._doubles[name] = found
         return found
 
-    def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
-        """Return a number known as a fraction, else None; a root may be a tie in `digits`."""
-        from .exact.rational_keys import fraction_in, known_fraction  # start-up: for few tops
-
-        if name in NUMBER_KEYS:
-            known = known_fraction(self.exact, name, radians=radians)
-        else:
-            from .paper.requested import requested_fraction  # start-up
-
-            known = requested_fraction(self.exact, name, lambda u: self.fraction(u, digits))
-        if known is not None:
-            return known
-        return fraction_in(self.exact, name, lambda x: self.enclosure(x, 2 * digits + 80))
+    def is_zero(self, name: str) -> bool:
+        """Return whether a number is 0, or agrees with 0 to D digits."""
+        if name not in self._zeros:
+            sign = sign_of(lambda digits: self.enclosure(name, digits), self.exact.equal)
+            self._zeros[name] = sign == 0
+        return self._zeros[name]
 
     def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
         """Return a ball that contains a number, by key; None if the motion has no such number.
 
-        Angles are in degrees or `radians`.  Raises TooFewDigitsError if the digits do not decide
+        Angles are in degrees or `radians`.  The ball is computed at the precision in use, with the
+        roots of the cubic in `digits` digits.  Raises TooFewDigitsError if the digits do not decide
         which formula holds.
         """
         if name in self.kind_class.lacks:
             return None
+        if name in MEAN_RATES and self.is_zero(MEAN_RATES[name]):
+            return None
         kind = self.kind(digits)
-        try:
-            source = kind if name in NUMBER_KEYS else self._on_request(digits)
-            value: Ball | None = getattr(source, name)
-        except TooFewDigitsError:
-            from .exact.rational_keys import is_endless  # start-up: for few tops only
-
-            if is_endless(self.exact, name):
-                return None
-            raise
+        source = kind if name in NUMBER_KEYS else self._on_request(digits)
+        value: Ball | None = getattr(source, name)
         return value * kind.degree if radians and value is not None else value
 
     def absence(self, name: str) -> str:
@@ -169,43 +159,34 @@ class Numbers:
         Raises TooFewDigitsError if they do not separate the roots.
         """
         if digits not in self._kinds:
-            ar, facts = balls(digits), self.exact.facts
-            start = state(ar, self.exact)
-            gaps = gaps_of(ar, facts, start)
-            if not are_told_apart(facts, gaps):
-                raise TooFewDigitsError
+            facts = self.exact.facts
+            with balls(digits) as ar:
+                start = state(ar, self.exact)
+                gaps = gaps_of(ar, facts, start)
+                if not are_told_apart(facts, gaps):
+                    raise TooFewDigitsError
             self._kinds[digits] = self.kind_class(ar, facts, start, gaps)
         return self._kinds[digits]
 
-    def middle(self, digits: int = SAMPLER_DIGITS) -> Kind[Decimal]:
-        """Return the motion in decimals, from a start and gaps proved to `digits` digits.
+    def sharp(self, digits: int = SAMPLER_DIGITS) -> Kind[Ball]:
+        """Return the motion in balls, from a start and gaps proved to `digits` digits."""
 
-        The constants of its series need no balls, because no digits cancel in them.
-        """
-
-        def sharp(working: int) -> Kind[Ball]:
+        def kind_in(working: int) -> Kind[Ball]:
             kind = self.kind(working)
             constant = kind.facts.steady  # no gap is used
             if not (constant or all(gap.is_known_to(digits) for gap in kind.gaps)):
                 raise TooFewDigitsError
             return kind
 
-        middle: Kind[Decimal] = middle_of(decided("the roots of the cubic", sharp, digits))
-        return middle
+        return decided("the roots of the cubic", kind_in, digits)
 
     def sampler(self) -> Sampler:
         """Return the series used by `angles`, computed once."""
         from .over_time.theta_sampler import sampler_of  # start-up: loads NumPy
 
         if self._sampler is None:
-            self._sampler = sampler_of(self.middle())
+            self._sampler = sampler_of(self.sharp())
         return self._sampler
-
-
-def middle_of(kind: Any) -> Any:
-    """Return a motion in decimals, from the midpoints of the balls of its start and its gaps."""
-    middles = (type(x)(*(number.middle for number in x)) for x in (kind.state, kind.gaps))
-    return type(kind)(kind.ar.middles, kind.facts, *middles)
 
 
 def record_in_range(
@@ -221,7 +202,7 @@ def record_in_range(
     wanted = set(names if keys is None else keys)
     if not wanted <= set(names):
         names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
-    found, beyond = _inputs(motion.top, digits, radians=radians), []
+    found, beyond = _inputs(motion.exact, digits, radians=radians), []
     for name in numbers:
         shown = unit_name(name, radians=radians)
         if shown in wanted:
@@ -245,8 +226,9 @@ def record_in_range(
     return record, beyond
 
 
-def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
+def _inputs(exact: Exact, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
     """Return the inputs as they are printed; None for a word."""
+    top = exact.top
 
     def shown(name: str, value: Any) -> Settled | None:
         rounding = rounding_of(name, digits)
@@ -257,6 +239,7 @@ def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled
             lambda working: top.inputs(radians=radians, ar=balls(working))[name],
             rounding,
             digits=digits or 0,
+            most=exact.equal + 10 * (digits or 0),
         )
 
     given = top.inputs(radians=radians, ar=balls(FIRST_DIGITS))

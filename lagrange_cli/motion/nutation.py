@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic
 
 from ..arithmetic.numbers import R
-from ..arithmetic.values import Over
 from ..elliptic.complete import complete_e, complete_k, first_kind, nome, period_mean
 from .gaps import Gaps, State
 from .quantity import V, key, quantity
@@ -37,7 +36,7 @@ def root_key(
     return key("Roots", u, meaning, equation, formula, absent=absent)
 
 
-class Nutation(Over[R]):
+class Nutation(Generic[R]):
     """The numbers of sections 4 and 5 by key; None if the motion has no such number."""
 
     def __init__(self, ar: Arithmetic[R], facts: Facts, state: State[R], gaps: Gaps[R]) -> None:

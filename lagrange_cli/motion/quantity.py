@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
-from ..arithmetic.values import Key, Over
+from ..arithmetic.values import Key
 
 V = TypeVar("V")
 
 
-class quantity(Over[V]):
+class quantity(Generic[V]):
     """A lazy attribute whose formula runs within the precision of the arithmetic of its object."""
 
     def __init__(self, formula: Callable[[Any], V], key: Key | None = None) -> None:

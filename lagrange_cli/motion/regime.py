@@ -1,18 +1,19 @@
-"""Determine the kind of motion of a scene once, exactly, in fractions.
+"""Determine the kind of motion of a scene once, from the signs of polynomials in u = cos(theta0).
 
-In each degenerate motion a polynomial in u = cos(theta0) with rational coefficients vanishes.  No
-later code compares a computed gap with a threshold.  Equation numbers are Chrapan's.
+The coefficients are fractions.  In each degenerate motion such a polynomial is 0 to D digits (see
+`arithmetic.rounding`).  No later code compares a computed gap with a threshold.  Equation numbers
+are Chrapan's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from enum import StrEnum
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
-from ..arithmetic.exact_cosine import Cosine, Polynomial, U
-from ..arithmetic.values import Values
+from ..arithmetic.angle import Angle
+from ..arithmetic.rounding import equal_digits
 from ..errors import LagtopError, check_type
 from ..inputs.top import Top
 
@@ -44,7 +45,7 @@ within 1.03 % of the elementary rate.
 """
 
 
-class Facts(Values):
+class Facts(NamedTuple):
     """Properties of a motion that are decided before any computation: bools, or arrays of bools."""
 
     regime: Regime
@@ -97,7 +98,7 @@ class Facts(Values):
         return self.over_bottom and not self.spins
 
 
-class Exact(Values):
+class Exact(NamedTuple):
     """A scene in exact arithmetic: the constants of (4,4) and (4,5), the start, and the facts."""
 
     top: Top
@@ -107,39 +108,12 @@ class Exact(Values):
     """C r0/A (4,5)."""
     r0: Fraction
     theta_rate: Fraction
-    psi_rate: Any
-    """The precession rate as a fraction; None for an irrational rate of steady precession."""
-    cosine: Cosine
+    psi_rate: Fraction | None
+    """The precession rate; None for a steady precession that is given by its word."""
+    tilt: Angle
+    equal: int
+    """D: two numbers that agree to D digits are equal."""
     facts: Facts
-
-    @property
-    def energy(self) -> Polynomial:
-        """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4), as a polynomial in u0."""
-        return self.momentum * Polynomial(self.psi_rate) + self.theta_rate**2
-
-    @property
-    def momentum(self) -> Polynomial:
-        """psi' sin^2(theta0) = beta - b u0 (4,5), as a polynomial in u0."""
-        return Polynomial(self.psi_rate, 0, -self.psi_rate)
-
-    @property
-    def alpha(self) -> Polynomial:
-        """The constant alpha (4,4), as a polynomial in u0."""
-        return self.energy + self.a * U
-
-    @property
-    def beta(self) -> Polynomial:
-        """The constant beta (4,5), as a polynomial in u0."""
-        return self.momentum + self.b * U
-
-    @property
-    def fall(self) -> Polynomial:
-        """u''/sin^2(theta0) as a polynomial in u0, for a start without nutation rate."""
-        return _fall(self.a, self.b, self.psi_rate)
-
-
-def _fall(a: Fraction, b: Fraction, psi_rate: Fraction) -> Polynomial:
-    return Polynomial(2 * b * psi_rate - a, -2 * psi_rate * psi_rate)
 
 
 def exact(top: Top) -> Exact:
@@ -148,47 +122,48 @@ def exact(top: Top) -> Exact:
     Raises LagtopError for an impossible start: precession on the vertical.
     """
     check_type("top", top, Top)
-    m, A, C, s, g, r0, theta_rate = (
-        Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0, top.thetadot0)
-    )
-    a, b = 2 * m * g * s / A, C * r0 / A
-    degrees, radians = (
-        None if x is None else Fraction(x) for x in (top.theta0_deg, top.theta0_rad)
-    )
-    cosine = Cosine(degrees, radians)
+    given = [Fraction(x) for x in top.parts.body.values()]
+    m, A, C, s, g = given
+    r0, theta_rate, psi_rate = (Fraction(x) for x in (top.r0, top.thetadot0, top.psidot0))
+    a, b, tilt = 2 * m * g * s / A, C * r0 / A, top.angle
+    equal = equal_digits([*given, r0, theta_rate, psi_rate, *(x for x in tilt if x is not None)])
     if top.steady_word:
-        from ..inputs.stand_ins import rates_of  # start-up: for few tops
-
-        psi_rate = rates_of(top).fraction(str(top.steady_word))
-    else:
-        psi_rate = Fraction(top.psidot0)
-    if psi_rate is None:
         regime = Regime.STEADY if a else Regime.TORQUE_FREE
         facts = Facts(regime, at_rest=False, steady=True, free=not a, spins=bool(b))
-    else:
-        if top.pole and psi_rate:
-            raise LagtopError(
-                f"psidot0 must be 0 if the axis is vertical, got {float(psi_rate)} "
-                "(a vertical axis cannot precess; count the rate as spin)",
-                "psidot0",
-            )
-        facts = _facts(top.pole, a, b, (theta_rate, psi_rate), cosine)
-    return Exact(top, a, b, r0, theta_rate, psi_rate, cosine, facts)
+        return Exact(top, a, b, r0, theta_rate, None, tilt, equal, facts)
+    if top.pole and psi_rate:
+        raise LagtopError(
+            f"psidot0 must be 0 if the axis is vertical, got {float(psi_rate)} "
+            "(a vertical axis cannot precess; count the rate as spin)",
+            "psidot0",
+        )
+
+    def sign(*coefficients: Fraction) -> int:
+        return tilt.sign(*coefficients, most=equal)
+
+    facts = _facts(top.pole, a, b, (theta_rate, psi_rate), sign)
+    return Exact(top, a, b, r0, theta_rate, psi_rate, tilt, equal, facts)
 
 
 def _facts(
-    pole: int, a: Fraction, b: Fraction, rates: tuple[Fraction, Fraction], cosine: Cosine
+    pole: int,
+    a: Fraction,
+    b: Fraction,
+    rates: tuple[Fraction, Fraction],
+    sign: Callable[..., int],
 ) -> Facts:
-    """Determine the facts, each from the sign of a polynomial in u = cos(theta0)."""
+    """Determine the facts, each from the `sign` of a polynomial in u = cos(theta0)."""
     theta_rate, psi_rate = rates
     at_rest, vertical = not theta_rate and not psi_rate, bool(pole) and not theta_rate
     # beta - b = (1 - u) (psi' (1 + u) - b) and beta + b = (1 + u) (psi' (1 - u) + b) (4,5)
-    minus = 0 if pole == 1 else cosine.sign(Polynomial(psi_rate - b, psi_rate))
-    plus = 0 if pole == -1 else cosine.sign(Polynomial(psi_rate + b, -psi_rate))
+    minus = 0 if pole == 1 else sign(psi_rate - b, psi_rate)
+    plus = 0 if pole == -1 else sign(psi_rate + b, -psi_rate)
     # if beta = b, 1 is a root, and alpha - a = theta'^2 - (1 - u) (a - psi' b) says which
     slope = a - psi_rate * b
-    over = 0 if minus else cosine.sign(Polynomial(theta_rate * theta_rate - slope, slope))
-    steady = not theta_rate and (vertical or cosine.vanishes(_fall(a, b, psi_rate)))
+    over = 0 if minus else sign(theta_rate * theta_rate - slope, slope)
+    # without nutation rate, u''/sin^2(theta0) is this polynomial
+    falls = sign(2 * b * psi_rate - a, -2 * psi_rate * psi_rate) if not theta_rate else 1
+    steady = vertical or not falls
     separatrix = not minus and not over and bool(a) and not vertical
     upper_root = 0
     if not minus and not vertical and not separatrix:
@@ -196,9 +171,7 @@ def _facts(
     # beta/b is a root: b theta'^2 + psi' (b psi' - a) (1 - u^2); it is u1 if it is less than 1,
     # and u3 if it is more
     stands = psi_rate * (b * psi_rate - a)
-    is_root = bool(minus * b) and cosine.vanishes(
-        Polynomial(stands + b * theta_rate * theta_rate, 0, -stands)
-    )
+    is_root = bool(minus * b) and not sign(stands + b * theta_rate * theta_rate, 0, -stands)
     named = regimes(
         upright=vertical and pole > 0,
         hanging=vertical and pole < 0,

@@ -16,7 +16,7 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.ball import TooFewDigitsError
+from ..arithmetic.arb_ball import TooFewDigitsError
 from ..arithmetic.numbers import R, absolute
 from ..elliptic.complete import period_mean
 from .nutation import Nutation, period_key

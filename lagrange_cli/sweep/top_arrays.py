@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.angle import Tilt
 from ..arithmetic.arrays import PAIRS
 from ..arithmetic.double_double import DoubleDouble, two_sum
-from ..arithmetic.exact_cosine import Tilt
 from ..arithmetic.numbers import R, polynomial
 from ..arithmetic.types import Array, Mask
 from ..inputs.stand_ins import spin
@@ -176,7 +176,7 @@ def _state(constants: Mapping[str, R], tilt: Tilt[R], theta_rate: R, psi_rate: R
     """Return the start of tops from their constants, tilts and rates."""
     return State(
         **constants,
-        **tilt.as_dict(),
+        **tilt._asdict(),
         below=2 * tilt.cos_half * tilt.cos_half,
         above=2 * tilt.sin_half * tilt.sin_half,
         theta_rate=theta_rate,

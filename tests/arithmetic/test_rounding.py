@@ -11,37 +11,37 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from lagrange_cli.arithmetic.ball import Ball, TooFewDigitsError
-from lagrange_cli.arithmetic.balls import balls
+from lagrange_cli.arithmetic.arb_ball import Ball, TooFewDigitsError, balls
 from lagrange_cli.arithmetic.rounding import (
-    MOST_DIGITS,
     Settled,
     decided,
     nearest_double,
     precisions,
     rounded,
     settled,
+    sign_of,
     text_of,
 )
 from lagrange_cli.errors import LagtopError, OutOfRangeError
 
 
 def noisy(exact: str | Decimal | Fraction | float) -> Callable[[int], Ball]:
-    """Return enclosures of a number whose middles are off by most of their radius."""
+    """Return balls of a number whose middles are off by most of their radius."""
     rng = random.Random(str(exact))
 
     def enclosure(digits: int) -> Ball:
         ar = balls(digits)
         ball = ar.convert(Fraction(exact))
         off = ball * rng.uniform(-80, 80) * (100 * ar.eps)
-        return (ball + off).enlarged((2 * off).greatest)
+        return ar.between(ball - off, ball + 3 * off)
 
     return enclosure
 
 
 def hidden(digits: int) -> Ball:
-    """Return an enclosure of 0 that never proves it."""
-    return balls(digits).exact(0).enlarged(balls(digits).eps.greatest)
+    """Return a ball around 0 that never proves it."""
+    ar = balls(digits)
+    return ar.between(-ar.eps, 2 * ar.eps)
 
 
 def value_of(found: Settled | None) -> float:
@@ -50,6 +50,7 @@ def value_of(found: Settled | None) -> float:
     return value
 
 
+UP = 1 + 2.0**-52
 TIES = [
     (1 + Fraction(1, 2**53), 1.0),
     (1 + Fraction(3, 2**53), 1 + 2.0**-51),
@@ -60,10 +61,22 @@ TIES = [
 
 
 @pytest.mark.parametrize(("value", "nearest"), TIES)
-def test_a_tie_is_decided_by_the_fraction_alone(value: Fraction, nearest: float) -> None:
-    assert value_of(settled("x", noisy(value), float, exactly=lambda: value)) == nearest
-    with pytest.raises(LagtopError, match=f"x cannot be dist.* with {MOST_DIGITS} digits"):
-        settled("x", noisy(value), float)
+def test_what_most_digits_leave_open_is_the_simplest_fraction(
+    value: Fraction, nearest: float
+) -> None:
+    found = settled("x", noisy(value), float, most=1400)
+    assert found is not None
+    assert (found.value, found.ends) == (nearest, (value,))
+
+
+def test_a_ball_that_stays_wide_holds_no_tie() -> None:
+    with pytest.raises(LagtopError, match="x cannot be distinguished from 0 or a tie with 300 dig"):
+        settled(
+            "x",
+            lambda _: balls(20).between(balls(20).convert(1), balls(20).convert(UP)),
+            float,
+            most=300,
+        )
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -80,16 +93,17 @@ def test_random_numbers_are_rounded_as_python_rounds_fractions() -> None:
         assert value_of(settled("x", noisy(value), nearest_double("x"))) == float(value)
 
 
-def test_zero_is_returned_only_if_it_is_exact() -> None:
+def test_zero_is_returned_only_to_most_digits() -> None:
     def cancels(digits: int) -> Ball:
-        one = balls(digits).exact(1)
-        return (one + balls(digits).exact(Decimal("1e-100"))) - one
+        one = balls(digits).convert(1)
+        return (one + balls(digits).convert(Fraction("1e-100"))) - one
 
     assert value_of(settled("x", cancels, nearest_double("x"))) == 1e-100
-    assert value_of(settled("x", lambda digits: balls(digits).exact(0), float)) == 0
-    assert value_of(settled("x", hidden, float, exactly=lambda: Fraction(0))) == 0
-    with pytest.raises(LagtopError, match="x cannot be distinguished from 0"):
-        settled("x", hidden, float)
+    assert value_of(settled("x", lambda digits: balls(digits).convert(0), float)) == 0
+    assert value_of(settled("x", hidden, float, most=300)) == 0
+    assert sign_of(cancels, 1200) == 1
+    assert [sign_of(noisy(x), 100) for x in (-1e-300, 3)] == [-1, 1]
+    assert sign_of(hidden, 1200) == sign_of(lambda _: None, 1200) == 0
 
 
 def test_a_derivative_may_be_0_by_its_size() -> None:
@@ -99,17 +113,6 @@ def test_a_derivative_may_be_0_by_its_size() -> None:
     assert rounded("x", lambda digits: balls(digits).nan) != 0
 
 
-def test_the_fraction_is_asked_for_once() -> None:
-    asked = []
-
-    def exactly() -> None:
-        asked.append(1)
-
-    assert value_of(settled("x", noisy(1 + Fraction(1, 2**53) + Fraction("1e-99")), float)) > 1
-    settled("x", noisy(1 + Fraction(1, 2**53) + Fraction("1e-99")), float, exactly=exactly)
-    assert asked == [1]
-
-
 def test_precisions_with_too_few_digits_are_passed_over() -> None:
     asked = []
 
@@ -117,7 +120,7 @@ def test_precisions_with_too_few_digits_are_passed_over() -> None:
         asked.append(digits)
         if digits < 200:
             raise TooFewDigitsError
-        return balls(digits).exact(Decimal("0.5"))
+        return balls(digits).convert(0.5)
 
     assert value_of(settled("x", late, float)) == 0.5
     assert asked == [digits for digits in precisions() if digits <= asked[-1]]
@@ -147,8 +150,8 @@ def test_a_wide_enclosure_is_not_out_of_range() -> None:
     """The lower end may be smaller than all doubles, and the number is not."""
 
     def enclosure(digits: int) -> Ball:
-        ball = balls(digits).exact(Decimal("0.5"))
-        return ball.enlarged(ball.greatest) if digits < 40 else ball
+        ar = balls(digits)
+        return ar.between(ar.convert(0), ar.convert(0.7)) if digits < 40 else ar.convert(0.5)
 
     assert value_of(settled("x", enclosure, nearest_double("x"))) == 0.5
 

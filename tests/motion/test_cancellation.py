@@ -144,7 +144,7 @@ def test_no_zero_is_false_in_the_command(lagtop: Lagtop) -> None:
 
 @pytest.mark.parametrize(
     ("theta0_deg", "thetadot0", "most"),
-    [(1e-150, 5e-324, 432), (1e-150, 1e-200, 432), (1e-100, 0, 48), (1e-12, 1e-13, 48)],
+    [(1e-150, 5e-324, 512), (1e-150, 1e-200, 512), (1e-100, 0, 128), (1e-12, 1e-13, 128)],
 )
 def test_tiny_tilts_take_few_digits(
     theta0_deg: float, thetadot0: float, most: int, monkeypatch: pytest.MonkeyPatch

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import random
-from decimal import Decimal
 from fractions import Fraction
 
-from lagrange_cli.arithmetic.ball import TooFewDigitsError
-from lagrange_cli.arithmetic.balls import balls
+import pytest
+
+from lagrange_cli.arithmetic.arb_ball import TooFewDigitsError, balls
 from lagrange_cli.motion.any_start import largest_root
 
 
 def test_the_largest_root_is_enclosed_or_too_few_digits_are_said() -> None:
     """Cubics with known roots and coefficients of any accuracy, often nearly double."""
     rng, found, refused = random.Random("largest root"), 0, 0
-    for _ in range(3000):
+    for _ in range(1500):
         ar = balls(rng.choice([8, 12, 20]))
         top = Fraction(rng.randrange(-9, 10), 10)
         middle = top - Fraction(10) ** rng.randrange(-9, 1)
@@ -24,14 +24,27 @@ def test_the_largest_root_is_enclosed_or_too_few_digits_are_said() -> None:
             roots[0] * roots[1] + roots[0] * roots[2] + roots[1] * roots[2],
             -roots[0] * roots[1] * roots[2],
         )
-        blur = Decimal(10) ** rng.randrange(-14, -2)
-        c2, c1, c0 = (ar.convert(x).enlarged(blur * rng.randrange(2)) for x in exact)
-        try:
-            root = largest_root(ar, c2, c1, c0, ar.convert(max(roots) + 3))
-        except TooFewDigitsError:
-            refused += 1
-            continue
+        blur = Fraction(10) ** rng.randrange(-14, -2) * rng.randrange(2)
+        with ar:
+            c2, c1, c0 = (ar.between(ar.convert(x - blur), ar.convert(x + blur / 3)) for x in exact)
+            try:
+                root = largest_root(ar, c2, c1, c0, ar.convert(max(roots) + 3))
+            except TooFewDigitsError:
+                refused += 1
+                continue
         found += 1
         low, high = map(Fraction, root.ends())
         assert low <= top <= high, roots
-    assert min(found, refused) > 500
+    assert min(found, refused) > 250
+
+
+@pytest.mark.parametrize(("above", "proved"), [(100, True), (5.0001, True), (2, False), (1, False)])
+def test_the_root_is_proved_to_be_the_largest(above: float, proved: bool) -> None:
+    """Start from a point next to another root of (x - 1)(x - 2)(x - 5)."""
+    with balls(60) as ar:
+        cubic = [ar.convert(x) for x in (-8, 17, -10, above)]
+        if proved:
+            assert largest_root(ar, *cubic).x.contains(5)
+        else:
+            with pytest.raises(TooFewDigitsError):
+                largest_root(ar, *cubic)

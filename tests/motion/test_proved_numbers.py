@@ -9,17 +9,14 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from arb_balls import exact_arb, holds
+from arb_balls import exact_arb
 from ball_judge import Judge, assert_nearest
 from balls.scene import arb_bits
 from conftest import Lagtop
 from lagtop import Top, solve
 from scenes import EVERY_KIND, NAMED, random_scene
 
-from lagrange_cli.arithmetic.ball import TooFewDigitsError
-from lagrange_cli.arithmetic.balls import balls
 from lagrange_cli.errors import OutOfRangeWarning
-from lagrange_cli.motion import any_start
 from lagrange_cli.motion.record import NUMBER_KEYS, all_keys, requested_keys
 
 BODY = "--m 1 --A 1 --C 1 --s 1 --g 1"
@@ -162,42 +159,3 @@ def test_a_number_that_underflows_is_not_printed_as_zero(lagtop: Lagtop) -> None
     shown = lagtop("solve", "--r0", "1e90", "--format", "json")
     assert json.loads(shown.stdout)["nome"] is None
     assert "use --digits" in shown.stderr
-
-
-@pytest.mark.parametrize(("near", "proved"), [(5, True), (5.0001, True), (2, False), (1, False)])
-def test_the_root_is_proved_to_be_the_largest(
-    near: float, proved: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Start from a point next to another root of (x - 1)(x - 2)(x - 5)."""
-    ar = balls(60)
-    cubic = [ar.convert(x) for x in (-8, 17, -10, 100)]
-    with arb_bits(300):
-        assert holds(any_start.largest_root(ar, *cubic), exact_arb(5))
-        monkeypatch.setattr(any_start, "near_largest_root", lambda *_: Decimal(near))
-        if proved:
-            assert holds(any_start.largest_root(ar, *cubic), exact_arb(5))
-        else:
-            with pytest.raises(TooFewDigitsError):
-                any_start.largest_root(ar, *cubic)
-
-
-@pytest.mark.parametrize("theta0", ["0.00001", "1.570796326794", "1.5707963267948966192", "3.1415"])
-def test_tilts_in_radians_keep_their_relative_accuracy(theta0: str) -> None:
-    """Next to 0, pi/2 and pi the sines and cosines of the tilt have nearly all digits."""
-    for digits in (32, 60):
-        ar = balls(digits)
-        for text in (theta0, theta0 + "9265358979323846264338327950288419"):
-            tilt = Top(theta0_rad=Fraction(text)).tilt(ar)
-            with arb_bits(600):
-                exact = exact_arb(text)
-                truths = exact.sin(), exact.cos(), (exact / 2).sin(), (exact / 2).cos()
-                for found, truth in zip(tilt, truths, strict=True):
-                    assert holds(found, truth)
-                    assert found.radius <= found.greatest * Decimal(10) ** (3 - digits)
-
-
-def test_a_tilt_beyond_pi_is_refused() -> None:
-    pi = "3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803"
-    assert Top(theta0_rad=Fraction(pi)).theta0_rad
-    with pytest.raises(ValueError, match=r"theta0_rad must be in \[0, pi rad\]"):
-        Top(theta0_rad=Fraction(pi) + Fraction(1, 10**80))

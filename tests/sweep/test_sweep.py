@@ -20,7 +20,7 @@ from conftest import Lagtop
 from lagtop import LagtopError, Motion, Top, solve, sweep
 from scenes import EPS, UNIT, random_scene
 
-from lagrange_cli.arithmetic.decimals import decimals
+from lagrange_cli.arithmetic.arb_ball import balls
 from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.motion.gaps import state as state_of
 from lagrange_cli.motion.regime import Regime
@@ -60,13 +60,13 @@ def test_what_the_formulas_start_from_is_rounded_once() -> None:
     scenes = [random_scene(rng) for _ in range(300)]
     tops = tops_of(arrays(scenes))
     regular = tops.regimes()[Regime.REGULAR]
-    ar, found, tilts = decimals(40), tuple(tops.state()), tops.tilt()
+    ar, found, tilts = balls(40), tuple(tops.state()), tops.tilt()
     for i in np.flatnonzero(regular).tolist():
         top = Top(**scenes[i])
         with ar.working():
             state = tuple(state_of(ar, exact_of(top)))
-            exact = [float(x) for x in top.tilt(ar)]
-        assert [x[i] for x in found[:6]] == [float(x) for x in state[:6]]
+            exact = [float(x.middle) for x in top.tilt(ar)]
+        assert [x[i] for x in found[:6]] == [float(x.middle) for x in state[:6]]
         assert [x[i] for x in tilts] == pytest.approx(exact, rel=1.0 * EPS, abs=0)
 
 

@@ -9,6 +9,9 @@ Each scene is judged at twenty times: fifteen next to a whole, half or quarter n
 start.  The report is the worst error of every kind, in units of `Judge.errors`; every key of
 `solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep` beyond
 10 eps.  What exceeds the bounds is listed with a command that shows it, and the exit code is 1.
+With --mpmath N, one scene in N is also judged by the formulas of `bench.reference` in mpmath, which
+share neither formulas nor arithmetic with lagtop: the roots, the moduli, the period, the mean rates
+and, in doubles, the attitude, if the top nutates under a torque and passes over no pole.
 A third of the scenes are judged as decimals of twenty to sixty digits, and printed in 5 to 40.
 About 20 to 40 scenes a second and core; with --numbers, without times, more.
 """
@@ -29,6 +32,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
+import mpmath
 import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
@@ -44,6 +48,8 @@ from hard_scenes import HardTimes, Scene
 from lagtop import LagtopError, Motion, Top, solve, sweep
 
 from lagrange_cli.arithmetic.points import ListedPoints
+from lagrange_cli.bench.reference import DIGITS, Reference, rotation_angle
+from lagrange_cli.bench.reference import inputs_of as inputs_in_mpmath
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
@@ -178,6 +184,55 @@ def judge_digits(tally: Tally, judge: Judge, motion: Motion, digits: int) -> Non
             tally.violations.append(f"{key} is no zero: {show}")
 
 
+def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[float]) -> None:
+    """Judge numbers and attitudes by `Reference`, which shares no formula with lagtop."""
+    facts = motion.exact.facts
+    if facts.free or facts.steady or facts.meets_a_pole or not motion.T_nutation:
+        return
+    reference = Reference(inputs_in_mpmath(motion.top))
+    with mpmath.workdps(DIGITS):
+        parts = [
+            momentum * whole / (at_u2 * reference.speed) / reference.T
+            for momentum, (_, at_u2), whole in zip(
+                reference.momenta, reference.gaps, reference.wholes, strict=True
+            )
+        ]
+        rates = 2 * reference.drift + parts[0] - parts[1], parts[0] + parts[1]
+        noise = sum(map(abs, (*parts, reference.drift)))
+        exact = {name: (getattr(reference, name), 1) for name in ("u1", "u2", "u3")}
+        exact |= {"K": (reference.K, 0), "T_nutation": (reference.T, 0)}
+        exact |= {"k": (mpmath.sqrt(reference.k2), 0)}
+        exact |= {"k_prime": (mpmath.sqrt(reference.k2_prime), 0)}
+        exact |= {"mean_spin_rate": (rates[0], noise), "mean_precession_rate": (rates[1], noise)}
+        record = motion.record(digits=digits or None, keys=list(exact))
+        for key, (value, size) in exact.items():
+            text = record[key]
+            unit = mpmath.mpf(math.ulp(text)) if not digits else _last_digit(text, digits)
+            scale = (size + abs(value)) / min(1, reference.k2_prime)  # next to k = 1 K loses digits
+            if scale * mpmath.mpf(10) ** (5 - DIGITS) > unit / 10**9:
+                tally.counts["too few digits in mpmath"] += 1
+                continue
+            tally.counts["numbers by mpmath"] += 1
+            show = f"{typed(motion.top)} --digits {digits or 17} --get {key}  # {text}"
+            tally.note("mpmath", float(abs(value - mpmath.mpf(text)) / unit), HALF_ULP, show)
+        if digits:
+            return
+        columns = motion.table(times, ["quaternion"]).values()
+        speed = 2 * sum(abs(float(x)) for x in (*rates, 1 / reference.T))
+        for t, *computed in zip(times, *columns, strict=True):
+            away = rotation_angle(computed, reference.attitude(t))
+            tau = float(mpmath.mpf(t) - mpmath.nint(t / reference.T) * reference.T)
+            size = 2.0**-52 * (1 + abs(tau) * speed)
+            tally.counts["attitudes by mpmath"] += 1
+            show = f"lagtop table {motion.top.options()} --columns quaternion --t-min {t!r} --n 1"
+            tally.note("attitude", away / size, 2 * UNITS, show)
+
+
+def _last_digit(text: str, digits: int) -> Any:
+    """Return a unit in the last digit of a number with some digits."""
+    return mpmath.mpf(10) ** (Decimal(text).adjusted() + 1 - digits)
+
+
 def judge_path(tally: Tally, judge: Judge, motion: Motion) -> None:
     """Judge the path by the signs of b (beta - b u) at both turning points, where these tell."""
     if judge.facts.steady or motion.path is None:
@@ -263,13 +318,14 @@ def sweep_error(judge: Judge, key: str, value: float) -> float:
     return judge.relative(key, value)
 
 
-Task = tuple[str, int, int, int, str]
-"""A kind, a seed, the first scene, how many, and what is judged besides numbers and angles."""
+Task = tuple[str, int, int, int, str, int]
+"""A kind, a seed, the first scene, how many, what is judged besides numbers and angles, and N: one
+scene in N is judged by mpmath too."""
 
 
 def run_chunk(task: Task) -> tuple[str, Tally]:
     """Judge some scenes of one kind."""
-    kind, seed, first, count, what = task
+    kind, seed, first, count, what, share = task
     tally, judges = Tally(), []
     for i in range(first, first + count):
         rng = random.Random(f"{seed} {kind} {i}")
@@ -281,6 +337,9 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
             motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
             judge.record, judge.requested  # noqa: B018 - made here, so that what is undecided is counted once
             judge_path(tally, judge, motion)
+            if share and i % share == 0:
+                times = times_of(rng, period_of(judge)) if what != "numbers" else []
+                judge_by_mpmath(tally, motion, digits, times)
             if digits:
                 judge_digits(tally, judge, motion, digits)
                 continue
@@ -302,11 +361,13 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
     return kind, tally
 
 
-def run(kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, what: str) -> Any:
+def run(
+    kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, what: str, mpmath_share: int
+) -> Any:
     """Yield the tally of each chunk, as they come."""
     share = -(-scenes // len(kinds))
     tasks = [
-        (kind, seed, first, min(CHUNK, share - first), what)
+        (kind, seed, first, min(CHUNK, share - first), what, mpmath_share)
         for first in range(0, share, CHUNK)
         for kind in kinds
     ]
@@ -316,10 +377,11 @@ def run(kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, what: str) -
 
 def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
     """Yield the report, a line per kind and then what exceeds its bound."""
-    names = "theta    phi    psi   quat   dphi   dpsi   wrap    key digits  sweep"
-    yield f"{'kind':24} scenes  times  {names}  beyond"
+    heads = "theta    phi    psi   quat   dphi   dpsi   wrap    key digits  sweep mpmath attit."
+    yield f"{'kind':24} scenes  times  {heads}  beyond"
     for kind, tally in tallies.items():
-        worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "digits", "sweep")]
+        names = (*NAMES, "key", "digits", "sweep", "mpmath", "attitude")
+        worst = [tally.worst.get(name, 0.0) for name in names]
         shown = " ".join(f"{error:6.3g}" for error in worst)
         beyond = len(tally.violations)
         yield f"{kind:24} {tally.scenes:6} {tally.times:6} {shown}  {beyond}"
@@ -337,6 +399,7 @@ def main() -> int:
     parser.add_argument("--kinds", help="only these, with commas between: " + ", ".join(KINDS))
     parser.add_argument("--sweep", action="store_true", help="judge `sweep` too")
     parser.add_argument("--numbers", action="store_true", help="judge the keys of `solve` alone")
+    parser.add_argument("--mpmath", type=int, default=0, help="judge one scene in N by mpmath too")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     options = parser.parse_args()
     kinds = [kind.strip() for kind in options.kinds.split(",")] if options.kinds else list(KINDS)
@@ -344,7 +407,8 @@ def main() -> int:
         parser.error(f"kinds must be among {', '.join(KINDS)}, got {min(unknown)!r}")
     tallies, begun = {kind: Tally() for kind in kinds}, time.monotonic()
     what = "numbers" if options.numbers else "sweep" if options.sweep else ""
-    for kind, tally in run(kinds, options.scenes, options.seed, jobs=options.jobs, what=what):
+    how: dict[str, Any] = {"jobs": options.jobs, "what": what, "mpmath_share": options.mpmath}
+    for kind, tally in run(kinds, options.scenes, options.seed, **how):
         tallies[kind].add(tally)
     print("\n".join(lines_of(tallies)))
     done = sum(tally.scenes for tally in tallies.values())

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...arithmetic.arb_ball import Ball
 from ...arithmetic.double_double import (
     MANY,
     PI,
@@ -22,8 +23,6 @@ from ...arithmetic.double_double import (
     two_sum,
     whole_periods,
 )
-from ...arithmetic.numbers import R
-from ...arithmetic.protocol import Arithmetic
 from ...arithmetic.rounding import Pair, Triple, pair, triple
 from ...arithmetic.types import Array
 
@@ -118,7 +117,7 @@ class Growths(NamedTuple):
 
 
 def growths(
-    ar: Arithmetic[R], rates: tuple[R, R], starts: tuple[R, R] | tuple[int, int] = (0, 0)
+    ar: Any, rates: tuple[Ball, Ball], starts: tuple[Ball, Ball] | tuple[int, int] = (0, 0)
 ) -> Growths:
     """Return the growths of the angles from the mean rates of spin and precession.
 
@@ -128,10 +127,16 @@ def growths(
     (phi, psi), (x, y) = rates, starts
 
     def growth(rate: Any, start: Any) -> Growth:
-        turns = triple(rate / (2 * ar.pi))
-        turn = pair(2 * ar.pi / rate) if rate else Pair(0.0, 0.0)
+        if not rate.is_known_to(10):  # the sampler's digits do not distinguish it from 0
+            rate = ar.convert(0)
+        start = ar.convert(start).middle
+        turns = triple((rate / (2 * ar.pi)).middle)
+        turn = pair((2 * ar.pi / rate).middle) if rate else Pair(0.0, 0.0)
         return Growth(
-            pair(start) if start else None, pair(rate), period_of(turn, float(turns.high)), turns
+            pair(start) if start else None,
+            pair(rate.middle),
+            period_of(turn, float(turns.high)),
+            turns,
         )
 
     @cache

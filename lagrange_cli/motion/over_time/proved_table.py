@@ -12,13 +12,10 @@ from functools import cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from ...arithmetic.ball import Ball
-from ...arithmetic.balls import Balls, balls
+from ...arithmetic.arb_ball import Ball, balls
 from ...arithmetic.numbers import Number
-from ...arithmetic.rounding import Settled, rounding_of, settled
+from ...arithmetic.rounding import Settled, equal_digits, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
-from ..exact.rational_columns import known_column
-from ..exact.rational_keys import known_fraction
 from ..kinds import Constant, Separatrix
 from ..numbers import Numbers
 from ..quantity import quantity
@@ -38,6 +35,8 @@ _EXTRA = 16
 class BallSample(ColumnParts[Ball]):
     """A motion at one time in balls."""
 
+    ar: Any
+
     def __init__(
         self,
         motion: Numbers,
@@ -46,8 +45,9 @@ class BallSample(ColumnParts[Ball]):
         t: Ball,
         at: Pose[Ball],
     ) -> None:
-        self.exact, self.kind = motion.exact, motion.kind(digits)
-        self.top, self.t, self.ar = top, t, t.ar
+        self.motion, self.kind = motion, motion.kind(digits)
+        self.top, self.t = top, t
+        self.ar = balls(digits)
         self.tilting = at.tilting
         vars(self).update(x=at.x, y=at.y, within=at.phi, around=at.psi)
 
@@ -67,10 +67,10 @@ class BallSample(ColumnParts[Ball]):
 
     def wrapped(self, angle: Ball) -> Ball:
         """Return an angle in (-pi, pi]."""
-        ar: Balls = self.t.ar
+        pi: Ball = self.ar.pi
         if self.kind.facts.plane:  # half turns: both ends belong to pi
-            return ar.pi * int(ar.nint(angle / ar.pi) % 2)
-        return angle - 2 * ar.pi * int(ar.ceiling(angle / (2 * ar.pi) - ar.convert(0.5)))
+            return pi * int(self.ar.nint(angle / pi) % 2)
+        return angle - 2 * pi * int(self.ar.ceiling(angle / (2 * pi) - 0.5))
 
     @quantity
     def spin_wave(self) -> Ball:
@@ -86,7 +86,7 @@ class BallSample(ColumnParts[Ball]):
         """Return an angle less its mean rate times t; on the separatrix the rate is its limit."""
         if isinstance(self.kind, Constant):
             return 0 * self.t
-        if known_fraction(self.exact, name) == 0:
+        if not isinstance(self.kind, Separatrix) and self.motion.is_zero(name):
             return angle
         rate = limit if isinstance(self.kind, Separatrix) else getattr(self.kind, name)
         return angle - rate * self.t
@@ -98,10 +98,13 @@ class BallSample(ColumnParts[Ball]):
 
     @quantity
     def thetadot(self) -> Ball:
-        """The nutation rate, with the sign of `tilting`."""
+        """The nutation rate, with the sign of `tilting`; on the separatrix as a product."""
+        if isinstance(self.kind, Separatrix) and self.t:
+            along: Ball = self.ar.tanh(self.tilting) / self.x
+            return 2 * self.kind.argument_rate * self.y * along
         if not self.tilting:
             return 0 * self.t
-        speed = self.ar.sqrt(self.theta_square)
+        speed: Ball = self.ar.sqrt(self.theta_square)
         return speed if self.tilting > 0 else -speed
 
 
@@ -159,9 +162,7 @@ class ProvedTable:
             rounding,
             digits=self.digits or 0,
             more=turns // _EXTRA * _EXTRA,
-            exactly=lambda: known_column(
-                self.motion.exact, name, time, radians=self.radians, wrap=self.wrap
-            ),
+            most=max(self.motion.exact.equal, equal_digits([time], self.digits or 0)),
         )
         assert number is not None
         return number
@@ -172,7 +173,7 @@ class ProvedTable:
         if self.wrap and name in {"phi", "psi"}:
             value = sample.wrapped(value)
         in_degrees = self.chosen[name].is_angle and not self.radians
-        return value * 180 / sample.t.ar.pi if in_degrees else value
+        return value * 180 / sample.ar.pi if in_degrees else value
 
     def rows(
         self, times: Points, *, radii: bool = False

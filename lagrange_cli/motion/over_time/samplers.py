@@ -12,13 +12,14 @@ a nutating top.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...arithmetic.arb_ball import Ball
 from ...arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, workspace
 from ...arithmetic.points import MAX_PERIODS, MAX_TIME
 from ...arithmetic.types import Array
@@ -60,7 +61,9 @@ class Sampler:
                 angles.theta[part] = at.theta()
                 at.phi(wrap=wrap, out=angles.phi[part])
                 at.psi(wrap=wrap, out=angles.psi[part])
-        angles.theta[flat == 0.0] = self.tilt
+        at_start = flat == 0.0
+        for angle, value in zip(angles, (self.tilt, 0.0, 0.0), strict=True):
+            angle[at_start] = value
         return Angles(*(angle.reshape(times.shape) for angle in angles))
 
     def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
@@ -130,21 +133,21 @@ def check_times(times: Array, most: float, name: str = "t") -> float:
     )
 
 
-def constant_sampler(motion: Constant[Decimal]) -> ConstantSampler:
+def constant_sampler(motion: Constant[Ball]) -> ConstantSampler:
     """Return the sampler of a constant tilt and constant rates."""
     ar: Any = motion.ar
     with ar.working():
         rates = motion.mean_spin_rate, motion.state.psi_rate
         return ConstantSampler(
             tilt=start_tilt(motion),
-            x=float(motion.state.cos_half),
-            y=float(motion.state.sin_half),
+            x=near(motion.state.cos_half),
+            y=near(motion.state.sin_half),
             growths=growths(ar, rates),
-            max_time=_reach(max(map(abs, rates))),
+            max_time=_reach(rates),
         )
 
 
-def separatrix_sampler(motion: Separatrix[Decimal]) -> SeparatrixSampler:
+def separatrix_sampler(motion: Separatrix[Ball]) -> SeparatrixSampler:
     """Return the sampler of the separatrix."""
     ar: Any = motion.ar
     with ar.working():
@@ -152,21 +155,27 @@ def separatrix_sampler(motion: Separatrix[Decimal]) -> SeparatrixSampler:
         rates = motion.r0 - motion.b / 2, motion.b / 2
         return SeparatrixSampler(
             tilt=start_tilt(motion),
-            speed=float(speed),
-            swing=SeparatrixConstants(*map(float, swing)),
+            speed=near(speed),
+            swing=SeparatrixConstants(*(near(x) if isinstance(x, Ball) else x for x in swing)),
             growths=growths(ar, rates, (swing.start, 0 * swing.start)),
-            max_time=_reach(max(map(abs, (*rates, speed)))),
+            max_time=_reach((*rates, speed)),
         )
 
 
 def start_tilt(motion: Any) -> float:
     """Return the tilt at the start."""
     state = motion.state
-    return float(2 * motion.ar.atan2(state.sin_half, state.cos_half))
+    return near(2 * motion.ar.atan2(state.sin_half, state.cos_half))
 
 
-def _reach(rate: Decimal) -> float:
-    return float(int(MAX_PERIODS) / rate) if rate else float("inf")
+def near(x: Ball) -> float:
+    """Return the double nearest to the midpoint of a ball of many digits."""
+    return float(x.middle)
+
+
+def _reach(rates: Sequence[Ball]) -> float:
+    rate = max(abs(near(rate)) for rate in rates)
+    return int(MAX_PERIODS) / rate if rate else float("inf")
 
 
 def tilt_of(x2: Array, y2: Array, out: Array | None = None) -> Array:

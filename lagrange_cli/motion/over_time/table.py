@@ -21,6 +21,7 @@ from .attitude import Attitude, needed
 from .column_parts import ColumnConstants, ColumnParts, column_constants
 from .columns import DEFAULT_COLUMNS, Column, chosen_columns, headings
 from .proved_table import ProvedTable
+from .samplers import near
 from .series_constants import direction
 
 
@@ -131,9 +132,9 @@ def samples(
 
     The next sample overwrites the one before.
     """
-    sampler, kind = motion.sampler(), motion.middle()
+    sampler, kind = motion.sampler(), motion.sharp()
     needs = reduce(or_, (column.needs for column in chosen.values()))
-    constants = ColumnConstants(*(np.array(float(x)) for x in column_constants(kind, motion.exact)))
+    constants = ColumnConstants(*(np.array(near(x)) for x in column_constants(kind, motion.exact)))
     farthest = sampler.check(t)
     with workspace(min(t.size, BLOCK)) as space:
         for part in blocks(t.size):

@@ -12,13 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from ...arithmetic.arb_ball import Ball
 from ...arithmetic.arrays import order_by_parity, placed, taken
 from ...arithmetic.double_double import Period, period_of, whole_periods
 from ...arithmetic.numbers import power
@@ -29,7 +29,7 @@ from ..kinds import Kind, Separatrix
 from ..spin_precession import Nutating
 from .attitude import Attitude, Times, growths
 from .columns import MODULI, TILT, TURN, Needs
-from .samplers import Sampler, constant_sampler, separatrix_sampler, start_tilt, tilt_of
+from .samplers import Sampler, constant_sampler, near, separatrix_sampler, start_tilt, tilt_of
 from .series_constants import series_from_start
 from .theta_series import Coefficients, Component, Frame, Series
 
@@ -194,7 +194,7 @@ def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> 
     value += coefficients[0]
 
 
-def sampler_of(motion: Kind[Decimal]) -> Sampler:
+def sampler_of(motion: Kind[Ball]) -> Sampler:
     """Return the attitude of a motion as a function of arrays of doubles."""
     if isinstance(motion, Nutating):
         return nutating_sampler(motion)
@@ -203,7 +203,7 @@ def sampler_of(motion: Kind[Decimal]) -> Sampler:
     return constant_sampler(motion)
 
 
-def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
+def nutating_sampler(motion: Nutating[Ball]) -> ThetaSampler:
     """Return the sampler of a nutating top."""
     ar: Any = motion.ar
     with ar.working():
@@ -215,18 +215,20 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
         )
         return ThetaSampler(
             tilt=start_tilt(motion),
-            step=period_of(pair(period / 2), float(steps)),
-            offset=float(found.offset),
-            max_time=float(int(MAX_PERIODS) * period),
-            scale=float(series.scale),
-            speed=float(series.scale * steps),
-            first=float(series.scale * found.offset),
+            step=period_of(pair((period / 2).middle), near(steps)),
+            offset=near(found.offset),
+            max_time=near(int(MAX_PERIODS) * period),
+            scale=near(series.scale),
+            speed=near(series.scale * steps),
+            first=near(series.scale * found.offset),
             hyperbolic=series.hyperbolic,
             frames=[
-                kept_frame(frame, ar, series, _NEGLIGIBLE).mapped(_doubles, _doubles)
+                kept_frame(frame.mapped(_middles, _middles), ar, series, _NEGLIGIBLE).mapped(
+                    _doubles, _doubles
+                )
                 for frame in found.frames
             ],
-            slopes=[float(slope / series.scale) for slope in slopes],
+            slopes=[near(slope / series.scale) for slope in slopes],
             growths=growths(ar, (motion.mean_spin_rate, motion.mean_precession_rate), (x, y)),
         )
 
@@ -240,7 +242,7 @@ def kept_frame(frame: Frame, ar: Any, series: Series, negligible: Fraction) -> F
     greatest = ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
     least = ar.convert(negligible)
     parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
-    exponent = math.frexp(float(max(abs(part[0]) for part in parts)))[1]
+    exponent = math.frexp(max(abs(near(part[0])) for part in parts))[1]
     size = ar.convert(Fraction(2) ** exponent / _SIZE)
 
     def kept(coefficients: Coefficients, size: Any) -> Coefficients:
@@ -252,5 +254,9 @@ def kept_frame(frame: Frame, ar: Any, series: Series, negligible: Fraction) -> F
     return frame.mapped(lambda x: kept(x, size), lambda x: kept(x, power(size, 4)))
 
 
+def _middles(coefficients: Coefficients) -> Coefficients:
+    return [x.middle for x in coefficients]
+
+
 def _doubles(coefficients: Coefficients) -> list[float]:
-    return [float(x) + 0.0 for x in coefficients]  # no -0
+    return [near(x) + 0.0 for x in coefficients]  # no -0

@@ -18,6 +18,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from ...arithmetic.arb_ball import Balls
 from ...arithmetic.numbers import polynomial
 from ...arithmetic.protocol import Arithmetic, FunctionArithmetic, Numeric
 from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
@@ -197,12 +198,10 @@ def _weights(ar: Arithmetic[Any], q: Numeric, first: int, terms: int) -> list[Nu
     for _ in range(terms - 1):
         weights.append(weights[-1] * power)
         power = power * q * q
-    last, factor = weights[-1], 4 * (2 * terms + 1) * (2 * terms + 1)
-    first_two = (
-        ar.widened(weight, lambda: (last,), lambda last: factor * last, values_only=True)
-        for weight in weights[:2]
-    )
-    return [*first_two, *weights[2:]]
+    if isinstance(ar, Balls):
+        rest = 4 * (2 * terms + 1) * (2 * terms + 1) * weights[-1]
+        weights[:2] = [ar.between(weight - rest, weight + rest) for weight in weights[:2]]
+    return weights
 
 
 def _hyperbolic_components(

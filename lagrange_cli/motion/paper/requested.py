@@ -7,16 +7,11 @@ their keys is requested.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
-from inspect import signature
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic
 
-from ...arithmetic.exact_cosine import Polynomial, U
 from ...arithmetic.numbers import R, absolute
-from ...arithmetic.values import Over
-from ...inputs.stand_ins import FAST, SLOW, SteadyRates, rational_root
-from ..exact.rational_keys import keys_by_u1, rational_keys, starts_at_u1, starts_at_u2
+from ...inputs.stand_ins import FAST, SLOW, SteadyRates
 from ..gaps import State
 from ..kinds import Kind
 from ..quantity import declared_keys, keys_of, unit_name
@@ -31,7 +26,7 @@ _number = declared_keys(_GROUP)
 _rate = declared_keys(_GROUP, unit="rad/time")
 
 
-class Textbook(Over[R]):
+class Textbook(Generic[R]):
     """Numbers of the elementary theory for any start; None if a number does not exist.
 
     They depend only on a = 2mgs/A (4,4), b = C r0/A (4,5), the tilt and A/C.  They need no
@@ -39,11 +34,11 @@ class Textbook(Over[R]):
     """
 
     def __init__(self, ar: Arithmetic[R], exact: Exact, start: State[R]) -> None:
-        self.ar, self.exact, self.steady = ar, exact, SteadyRates(exact.a, exact.b, exact.cosine)
+        self.ar, self.exact, self.steady = ar, exact, SteadyRates(exact.a, exact.b, exact.tilt)
         self.a, self.b, self.cos = start.a, start.b, start.cos
         with ar.working():
             self.ratio = ar.convert(ratio_of(exact))
-        self.upper = exact.cosine.sign(U) >= 0
+        self.upper = self.steady.sign(0, 1) >= 0
         """Whether the tilt is at most 90 degrees."""
 
     stability_factor = _number(
@@ -111,118 +106,6 @@ REQUESTED = keys_of(Requested)
 def ratio_of(exact: Exact) -> Fraction:
     """Return A/C."""
     return Fraction(exact.top.A) / Fraction(exact.top.C)
-
-
-def _textbook_fractions(exact: Exact) -> dict[str, Fraction | None]:
-    """Return the keys of elementary theory as fractions, or None if a value is not known as one."""
-    a, b, u, ratio = exact.a, exact.b, exact.cosine.rational, ratio_of(exact)
-    steady, side = SteadyRates(a, b, exact.cosine), exact.cosine.sign(U)
-    sleeping = rational_root(2 * a)
-    least = Fraction(0) if side <= 0 or not a else None if u is None else rational_root(2 * a * u)
-    return {
-        "stability_factor": b * b / (2 * a) if a else None,
-        "r0_sleeping": None if sleeping is None else ratio * sleeping,
-        "steady_rate_slow": steady.fraction(SLOW),
-        "steady_rate_fast": steady.fraction(FAST),
-        "r0_steady_min": None if least is None else ratio * least,
-        "precession_rate_elementary": a / (2 * b) if b else None,
-    }
-
-
-def _known_fractions(exact: Exact) -> dict[str, Fraction]:
-    """Return the keys on request whose values are known as fractions."""
-    known, facts, zero = rational_keys(exact), exact.facts, Fraction(0)
-    keys = _textbook_fractions(exact)
-    keys["spin_share"] = 1 - Fraction(exact.top.C) / (2 * Fraction(exact.top.A))
-    if facts.steady or facts.regime == "separatrix":
-        keys["f_slope_u1"] = zero
-    even = (starts_at_u1(exact) or starts_at_u2(exact)) and not facts.meets_a_pole
-    for angle, rate in (("phi", "mean_spin_rate"), ("psi", "mean_precession_rate")):
-        if known.get(rate) == 0:
-            keys[f"{angle}_period_deg"] = zero
-        # in a plane this is a multiple of half turns, so 0 if enclosures cannot round it
-        if facts.plane or (even and known.get(rate) == 0):
-            keys[f"{angle}_half_deg"] = zero
-    keys |= {name: exact.cosine.fraction(P) for name, P in _polynomials(exact).items()}
-    return {name: value for name, value in keys.items() if value is not None}
-
-
-def _polynomials(exact: Exact) -> dict[str, Polynomial]:
-    """Return the keys that are polynomials in cos(theta0)."""
-    if exact.psi_rate is None:
-        return {}
-    a, b, alpha, beta, A = exact.a, exact.b, exact.alpha, exact.beta, Fraction(exact.top.A)
-    keys = {
-        "energy_constant": alpha,
-        "energy_without_spin": A / 2 * alpha,
-        "momentum_constant": beta,
-        "Lz": A * beta,
-        "f_upright": -1 * (beta - b) * (beta - b),
-        "f_hanging": -1 * (beta + b) * (beta + b),
-    }
-    if exact.facts.at_rest and a:
-        total = b * b / a
-        product = total * U - 1
-        keys |= {
-            "roots_sum": Polynomial(total),
-            "roots_sum_squared": Polynomial(total * total),
-            "roots_product": product,
-            "roots_product_fourfold": -4 * product,
-            "roots_gap_squared": total * total - 4 * product,
-        }
-    return keys
-
-
-_OF_ROOTS: dict[str, Callable[..., Fraction]] = {
-    "u2_twice": lambda u2: 2 * u2,
-    "u3_twice": lambda u3: 2 * u3,
-    "roots_gap": lambda u2, u3: u3 - u2,
-    "k_squared": lambda u1, u2, u3: (u1 - u2) / (u3 - u2),
-}
-"""Formulas of keys whose values are fractions if the roots are, by the names of the roots."""
-
-
-def requested_fraction(
-    exact: Exact, name: str, root: Callable[[str], Fraction | None]
-) -> Fraction | None:
-    """Return a key on request if it is known as a fraction.
-
-    `root` returns a root of (4,9) by its name, or None if the root is not rational.
-    """
-    known = _known_fractions(exact).get(name)
-    if known is not None:
-        return known
-    if name in {"f_slope_u1", "u2_criterion", "discriminant"}:
-        return _fraction_by_u1(exact, name, root)
-    formula = _OF_ROOTS.get(name)
-    if formula is None:
-        return None
-    roots = {u: root(u) for u in signature(formula).parameters}
-    return None if None in roots.values() else formula(**roots)
-
-
-def _fraction_by_u1(
-    exact: Exact, name: str, root: Callable[[str], Fraction | None]
-) -> Fraction | None:
-    """Return a key that is a polynomial in the root u1 (4,9), if it is a fraction.
-
-    The root must be a fraction or a polynomial in the cosine of the start.  The discriminant does
-    not depend on it without torque.
-    """
-    facts, rational = exact.facts, root("u1")
-    if exact.psi_rate is None:
-        return None
-    if name == "u2_criterion" and root("u2") == 0:
-        return Fraction(0)
-    if rational is not None:
-        u1 = Polynomial(rational)
-    elif starts_at_u1(exact) or facts.steady or (facts.free and name == "discriminant"):
-        u1 = U
-    elif facts.plane and exact.a:
-        u1 = exact.alpha * (1 / exact.a)
-    else:
-        return None
-    return exact.cosine.fraction(keys_by_u1(exact, u1)[name])
 
 
 CHAIN = {

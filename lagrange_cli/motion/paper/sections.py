@@ -11,7 +11,7 @@ the worked example, for any release from rest.  Equation numbers in parentheses 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Generic, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
 from ...arithmetic.numbers import R
 from ..kinds import Kind
@@ -263,14 +263,10 @@ class Sections(Generic[R]):
         return 4 * (middle - first) / kind.T_nutation, 4 * (last - middle) / kind.T_nutation
 
     def integral_of_amplitude(self) -> R:
-        """Return the integral E(phi, k') of (7,1), as a sum of positive terms (DLMF 19.25.10)."""
-        from ...elliptic.carlson import carlson_rd, carlson_rf  # for few keys
-
-        ar, gaps, whole, mc = self.ar, self.gaps, self.gaps.a_below_u3, self.kind.k_prime
+        """Return the integral E(phi, k') of (7,1) by Carlson's R_F and R_D (DLMF 19.25.9)."""
+        ar: Any = self.ar
+        gaps, whole, mc = self.gaps, self.gaps.a_below_u3, self.kind.k_prime * self.kind.k_prime
         sin2, cos2 = gaps.a_u3_u2 / whole, self.state.a * gaps.below_u2 / whole
-        delta2, one, m = cos2 + self.kind.m * sin2, 0 * cos2 + 1, self.kind.m
-        first = carlson_rf(ar, cos2, delta2, one)
-        second = mc * mc * sin2 * carlson_rd(ar, cos2, one, delta2) / 3
-        third = mc * mc * ar.sqrt(cos2 / delta2)
-        integral: R = ar.sqrt(sin2) * (m * (first + second) + third)
+        at = cos2, cos2 + self.kind.m * sin2, 0 * cos2 + 1
+        integral: R = ar.sqrt(sin2) * (ar.carlson_rf(*at) - mc * sin2 * ar.carlson_rd(*at) / 3)
         return integral

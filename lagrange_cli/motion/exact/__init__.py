@@ -1,1 +1,0 @@
-"""Keys and columns whose values are known as fractions."""

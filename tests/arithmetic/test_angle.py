@@ -1,0 +1,92 @@
+"""Angles that are given exactly: sines and cosines against mpmath, and signs of polynomials."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import mpmath
+import pytest
+from lagtop import Top
+
+from lagrange_cli.arithmetic.angle import Angle, Tilt
+from lagrange_cli.arithmetic.arb_ball import balls
+from lagrange_cli.arithmetic.numbers import DOUBLES
+
+MOST = 1_400
+MINIMAL = {
+    0: (-1, 1),
+    22.5: (1, 0, -8, 0, 8),
+    30: (-3, 0, 4),
+    36: (-1, -2, 4),
+    45: (-1, 0, 2),
+    60: (-1, 2),
+    72: (-1, 2, 4),
+    90: (0, 1),
+    108: (-1, -2, 4),
+    120: (1, 2),
+    135: (-1, 0, 2),
+    180: (1, 1),
+}
+"""Polynomials with the root cos(theta), the constant first, by theta in degrees."""
+
+
+def sign_by_mpmath(degrees: Fraction, coefficients: tuple[Fraction | int, ...]) -> int:
+    with mpmath.workdps(400):
+        u = mpmath.cos(mpmath.pi * degrees.numerator / degrees.denominator / 180)
+        terms = [mpmath.mpf(Fraction(c).numerator) / Fraction(c).denominator for c in coefficients]
+        return int(mpmath.sign(sum(c * u**i for i, c in enumerate(terms))))
+
+
+@pytest.mark.parametrize("degrees", MINIMAL)
+def test_a_polynomial_vanishes_at_its_root_and_not_one_bit_beside(degrees: float) -> None:
+    exact, coefficients = Fraction(degrees), MINIMAL[degrees]
+    third = [Fraction(c, 3) for c in coefficients]
+    assert Angle(exact, None).sign(*coefficients, most=MOST) == 0
+    assert Angle(exact, None).sign(*third, most=MOST) == 0
+    tiny = Fraction(math.ulp(degrees)) if degrees else Fraction(1, 10**100)
+    for beside in (exact - tiny, exact + tiny):
+        if 0 <= beside <= 180:
+            found = Angle(beside, None).sign(*coefficients, most=MOST)
+            assert found == sign_by_mpmath(beside, coefficients) != 0
+    for small in (Fraction(1, 2**53), -Fraction(1, 10**300)):
+        other = [Fraction(x) for x in coefficients]
+        other[0] += small
+        assert Angle(exact, None).sign(*other, most=MOST) == (1 if small > 0 else -1)
+
+
+@pytest.mark.parametrize("theta0", ["0.00001", "1.570796326794", "1.5707963267948966192", "3.1415"])
+@pytest.mark.parametrize("degrees", [False, True])
+def test_tilts_next_to_the_quarters_have_all_digits_asked_for(theta0: str, degrees: bool) -> None:
+    """In degrees no digits are lost; in radians those are lost that agree with pi."""
+    given = Fraction(theta0)
+    angle = Angle(given * 57, None) if degrees else Angle(None, given)
+    with balls(60) as ar, mpmath.workdps(100):
+        exact = mpmath.mpf(given.numerator) / given.denominator
+        exact = exact * 57 * mpmath.pi / 180 if degrees else exact
+        truths = [f(x) for x in (exact, exact / 2) for f in (mpmath.sin, mpmath.cos)]
+        for found, truth in zip(angle.tilt(ar), truths, strict=True):
+            low, high = (mpmath.mpf(str(end)) for end in found.ends())
+            assert low <= truth <= high
+            assert found.is_known_to(58 if degrees else 38)
+
+
+@pytest.mark.parametrize("degrees", [Fraction(1, 10**120), 180 - Fraction(1, 10**120)])
+def test_no_digits_are_lost_next_to_the_poles(degrees: Fraction) -> None:
+    with balls(40) as ar:
+        assert all(x.is_known_to(38) for x in Angle(degrees, None).tilt(ar))
+
+
+def test_a_tilt_in_doubles() -> None:
+    tilt: Tilt[float] = Top(theta0_deg=60).tilt(DOUBLES)
+    assert tuple(tilt) == (math.sqrt(3) / 2, 0.5, 0.5, math.sqrt(3) / 2)
+    assert tilt.degrees(DOUBLES) == pytest.approx(60, rel=1e-15)
+    assert Angle(None, Fraction(0)).rational_cosine == 1
+    assert Angle(None, Fraction(1)).rational_cosine is None
+
+
+def test_a_tilt_beyond_pi_is_refused() -> None:
+    pi = "3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803"
+    assert Top(theta0_rad=Fraction(pi)).theta0_rad
+    with pytest.raises(ValueError, match=r"theta0_rad must be in \[0, pi rad\]"):
+        Top(theta0_rad=Fraction(pi) + Fraction(1, 10**80))
