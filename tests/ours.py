@@ -9,7 +9,7 @@ from typing import Any
 from flint import acb, arb
 from mpmath.ctx_mp import MPContext
 
-from lagrange_cli.arithmetic.arb_ball import balls
+from lagrange_cli.arithmetic.ball import balls
 from lagrange_cli.arithmetic.points import ExactComplex
 from lagrange_cli.elliptic import incomplete, modulus
 from lagrange_cli.elliptic.enclosures import exact, rational

@@ -7,7 +7,7 @@ from typing import Any, Generic, NamedTuple
 
 from flint import arb, fmpq
 
-from .arb_ball import Ball, Balls, balls
+from .ball import Ball, Balls, balls
 from .numbers import R, polynomial
 from .rounding import sign_of
 

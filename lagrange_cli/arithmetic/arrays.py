@@ -23,13 +23,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import LagtopError
 from .double_double import PI, DoubleDouble
-from .numbers import Unenclosed
 from .rounding import pair
 from .text import quoted
 from .types import Array
 
 
-class Arrays(Unenclosed):
+class Arrays:
     """The part of the arithmetic of float64 arrays that both kinds of arrays share."""
 
     is_array = True
@@ -41,6 +40,11 @@ class Arrays(Unenclosed):
     cos = staticmethod(np.cos)
     atan2: Any = staticmethod(np.arctan2)
     where: Any = staticmethod(np.where)
+
+    @staticmethod
+    def either(condition: Any) -> Any:
+        """Return a condition that chooses between two valid methods; for balls it may be open."""
+        return condition
 
     @staticmethod
     def working() -> AbstractContextManager[object]:

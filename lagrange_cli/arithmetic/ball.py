@@ -1,284 +1,381 @@
-"""A ball: a middle and a radius that provably enclose the exact value.
+"""Balls of Arb (python-flint): real and complex numbers with proved error bounds.
 
-Each operation adds a bound on its own rounding error to the radius.  A comparison that the balls do
-not settle is `OPEN`.  It raises TooFewDigitsError when a decision depends on it, and the caller
-repeats the computation with more digits.  A ball of radius 0 is exact, and stays exact through
-exact sums and products.
+A ball holds the exact value of a number.  A comparison that the balls do not settle is `OPEN`.  It
+raises TooFewDigitsError when a decision depends on it, and the caller repeats the computation with
+more digits (see `rounding.decided`).
+
+The precision of Arb is global.  `with balls(digits):` sets it, for one thread at a time, and
+restores the precision of the host program.  Operations at another precision give valid but wider
+balls.
 """
 
 from __future__ import annotations
 
-import decimal
+import math
+import operator
 from collections.abc import Callable
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal, DecimalException, Inexact
-from functools import cached_property
-from typing import Any
+from contextlib import AbstractContextManager, nullcontext
+from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
+from fractions import Fraction
+from functools import lru_cache
+from threading import RLock
+from typing import Any, Self
 
-from .arb_ball import OPEN, TooFewDigitsError, UndefinedError
-from .decimals import TRAPS, Decimals, decimals
-from .numbers import power
-from .text import own_context
+from flint import acb, arb, ctx, fmpq
 
-__all__ = ["OPEN", "Ball", "TooFewDigitsError", "UndefinedError"]
+from ..errors import OutOfRangeError
+from .numbers import Scalars
+
+BITS = 3.3219280948873626
+"""Bits per decimal digit."""
+LARGEST_EXPONENT = 990_000_000_000_000_000
+"""The greatest size of an exponent of a number that is printed in decimal."""
 
 Truth = Any
 """True, False or OPEN."""
 
-ZERO, INFINITE = Decimal(0), Decimal("Infinity")
-SHORT = 6
-"""Digits of a radius."""
-SMALLEST = Decimal("1e-300000000000000000")
-"""A size far above every value below the exponents of decimals; products of it can be formed."""
-_MARGIN = 6
-"""Extra digits of elementary functions, besides the digits of the number of digits itself."""
+
+class TooFewDigitsError(Exception):
+    """A question that cannot be decided with the digits in use."""
 
 
-UP, DOWN, FLOOR, CEILING = (
-    own_context(SHORT, TRAPS, rounding)
-    for rounding in (decimal.ROUND_UP, decimal.ROUND_DOWN, ROUND_FLOOR, ROUND_CEILING)
-)
-add_up, multiply_up, fma_up, divide_up = UP.add, UP.multiply, UP.fma, UP.divide
+class UndefinedError(ArithmeticError):
+    """A question about a number that does not exist."""
 
 
-class TooSmallError(TooFewDigitsError):
-    """A number too close to 0 for the exponents of decimals: no number of digits decides it."""
+class Open:
+    """The result of a comparison that is neither proved nor disproved."""
+
+    def __bool__(self) -> bool:
+        raise TooFewDigitsError
 
 
-def _sum_by(operation: str) -> Callable[[Ball, Ball | float], Ball]:
-    """Return the method that adds or subtracts; the radii of both balls add up."""
+OPEN = Open()
 
-    def total(self: Ball, other: Ball | float) -> Ball:
-        ar: Ring = self.ar
-        if isinstance(other, Ball):
-            term, radius = other.middle, add_up(self.radius, other.radius)
-        else:
-            term, radius = Decimal(other), self.radius
-        if not radius:
-            return ar.exactly(operation, self.middle, term)
-        middle = getattr(ar, operation)(self.middle, term)
-        return Ball(ar, middle, fma_up(middle.copy_abs(), ar.unit, radius))
 
-    return total
+def _operation(of: Callable[[Any, Any], Any]) -> Callable[[Ball, Ball | float], Ball]:
+    """Return the method for an operation of Arb on a ball and a ball or an exact number."""
+    return lambda x, y: Ball(of(x.x, y.x if isinstance(y, Ball) else y))
+
+
+def _comparison(
+    holds: Callable[[Any, Any], bool], fails: Callable[[Any, Any], bool]
+) -> Callable[[Ball, Ball | float], Truth]:
+    """Return a comparison from the relation that proves it and the relation that disproves it."""
+
+    def compare(x: Ball, y: Ball | float) -> Truth:
+        left, right = x.x, y.x if isinstance(y, Ball) else y
+        if holds(left, right):
+            return True
+        if fails(left, right):
+            return False
+        if x.is_nan or (isinstance(y, Ball) and y.is_nan):
+            raise UndefinedError
+        return OPEN
+
+    return compare
+
+
+_UNBOUNDED = arb(0, float("inf"))
+
+
+def _result(value: Any, *of: Any) -> Ball:
+    """Return a function of numbers; Arb returns NaN if they may be outside of its domain.
+
+    If they exist it is unbounded instead, because more digits may show that they are inside.
+    """
+    if value.is_finite() or isinstance(value, acb) or not value.is_nan():
+        return Ball(value)
+    return Ball(value if any(isinstance(x, arb) and x.is_nan() for x in of) else _UNBOUNDED)
 
 
 class Ball:
-    """All numbers at most `radius` away from `middle`; comparisons are True, False or OPEN.
+    """A ball of Arb `x`, real or complex, whose comparisons are True, False or OPEN.
 
-    An infinite radius means that nothing is known of the number; NaN, that it does not exist, as
-    x/0.
+    A number that does not exist, such as x/0, is NaN.  A ball without bounds says nothing of its
+    number: more digits are needed.
     """
 
-    __slots__ = ("ar", "middle", "radius")
-
-    def __init__(self, ar: Ring, middle: Decimal, radius: Decimal) -> None:
-        self.ar: Any = ar  # a Balls
-        self.middle, self.radius = middle, radius
-
-    def __repr__(self) -> str:
-        return f"Ball({self.middle} +- {self.radius})"
-
-    __add__, __sub__ = _sum_by("add"), _sum_by("subtract")
-
-    def __rsub__(self, other: float) -> Ball:
-        return -self + other
-
-    def __mul__(self, other: Ball | float) -> Ball:
-        ar: Ring = self.ar
-        x, r = self.middle, self.radius
-        try:
-            if not isinstance(other, Ball):
-                y = Decimal(other)
-                if not (r and y):
-                    return ar.exactly("multiply", x, y) if r.is_finite() else ar.exact(0)
-                middle = ar.multiply(x, y)
-                rounding = multiply_up(middle.copy_abs(), ar.unit)
-                return Ball(ar, middle, fma_up(r, y.copy_abs(), rounding))
-            y, s = other.middle, other.radius
-            if not (r or s):
-                return ar.exactly("multiply", x, y)
-            middle = ar.multiply(x, y)
-            # |x| s + (|y| + s) r + the rounding
-            radius = fma_up(x.copy_abs(), s, multiply_up(middle.copy_abs(), ar.unit))
-            return Ball(ar, middle, fma_up(add_up(y.copy_abs(), s), r, radius))
-        except DecimalException:
-            return ar.unbounded
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __truediv__(self, other: Ball | float) -> Ball:
-        ar: Ring = self.ar
-        x, r = self.middle, self.radius
-        y, s = (other.middle, other.radius) if isinstance(other, Ball) else (Decimal(other), ZERO)
-        try:
-            if not s:
-                if not y:
-                    return ar.nan
-                if not r:
-                    return ar.exactly("divide", x, y)
-            least = DOWN.subtract(y.copy_abs(), s)
-            if not least > 0:
-                return ar.unbounded
-            middle = ar.divide(x, y)
-            size = middle.copy_abs()
-            # |x' - q y'| <= |x - q y| + r + |q| s, and |x - q y| is the rounding of q times |y|
-            away = fma_up(multiply_up(size, ar.unit), y.copy_abs(), fma_up(size, s, r))
-            return Ball(ar, middle, divide_up(away, least))
-        except DecimalException:
-            return ar.nan if x.is_nan() or y.is_nan() else ar.unbounded
-
-    def __rtruediv__(self, other: float) -> Ball:
-        return Ball(self.ar, Decimal(other), ZERO) / self
-
-    def __pow__(self, exponent: int) -> Ball:
-        return power(self, exponent) if exponent else self.ar.exact(1)
-
-    def __neg__(self) -> Ball:
-        return Ball(self.ar, self.middle.copy_negate(), self.radius)
-
-    def __abs__(self) -> Ball:
-        return Ball(self.ar, self.middle.copy_abs(), self.radius)
-
-    def __bool__(self) -> bool:
-        if self.middle.copy_abs() > self.radius:
-            return True
-        if self.middle or self.radius:
-            raise TooFewDigitsError
-        return False
-
-    def __eq__(self, other: object) -> Truth:
-        if not isinstance(other, Ball | int | float):
-            return False
-        low, high = self._less(other)
-        return True if low == high == 0 else False if low > 0 or high < 0 else OPEN
-
+    __slots__ = ("x",)
     __hash__ = None  # type: ignore[assignment]
 
-    def __lt__(self, other: Ball | float) -> Truth:
-        low, high = self._less(other)
-        return True if high < 0 else False if low >= 0 else OPEN
+    def __init__(self, x: Any) -> None:
+        self.x = x
 
-    def __le__(self, other: Ball | float) -> Truth:
-        low, high = self._less(other)
-        return True if high <= 0 else False if low > 0 else OPEN
+    def __repr__(self) -> str:
+        return f"Ball({self.x})"
 
-    def __gt__(self, other: Ball | float) -> Truth:
-        low, high = self._less(other)
-        return True if low > 0 else False if high <= 0 else OPEN
+    __add__, __sub__, __mul__ = map(_operation, (operator.add, operator.sub, operator.mul))
+    __radd__, __rmul__ = __add__, __mul__
+    __rsub__ = _operation(lambda x, y: y - x)
+    __pow__ = _operation(operator.pow)
+    __lt__ = _comparison(operator.lt, operator.ge)
+    __le__ = _comparison(operator.le, operator.gt)
+    __gt__ = _comparison(operator.gt, operator.le)
+    __ge__ = _comparison(operator.ge, operator.lt)
+    __eq__ = _comparison(operator.eq, operator.ne)  # type: ignore[assignment]
 
-    def __ge__(self, other: Ball | float) -> Truth:
-        low, high = self._less(other)
-        return True if low >= 0 else False if high < 0 else OPEN
+    def __truediv__(self, other: Ball | float) -> Ball:
+        divisor = other.x if isinstance(other, Ball) else other
+        quotient = self.x / divisor
+        return Ball(quotient) if divisor == 0 else _result(quotient, self.x, divisor)
 
-    def _less(self, other: Ball | float) -> tuple[Decimal, Decimal]:
-        """Return lower and upper bounds on the difference from another ball."""
-        if isinstance(other, Ball):
-            term, radius = other.middle, add_up(self.radius, other.radius)
-        else:
-            term, radius = Decimal(other), self.radius
-        if not radius.is_finite():
-            if radius.is_nan():
-                raise UndefinedError
-            return -INFINITE, INFINITE
-        x = self.middle
-        low = FLOOR.subtract(FLOOR.subtract(x, term), radius)
-        return low, CEILING.add(CEILING.subtract(x, term), radius)
+    def __rtruediv__(self, other: float) -> Ball:
+        return Ball(arb(other)) / self
+
+    def __neg__(self) -> Ball:
+        return Ball(-self.x)
+
+    def __abs__(self) -> Ball:
+        return Ball(abs(self.x))
+
+    def __bool__(self) -> bool:
+        if self.x == 0:
+            return False
+        if self.x != 0:
+            return True
+        raise TooFewDigitsError
 
     def __float__(self) -> float:
         """Return the double nearest to every number in the ball.
 
         Raises TooFewDigitsError if the numbers round to different doubles.
         """
-        low, high = map(float, self.ends())
+        if self.x.is_exact():
+            return float(self.x)
+        low, high = float(self.x.lower()), float(self.x.upper())
         if low != high:
             raise TooFewDigitsError
         return low
 
+    def __complex__(self) -> complex:
+        """Return the nearest complex double; raise TooFewDigitsError if it is not determined."""
+        return complex(float(self.real), float(self.imag))
+
+    @property
+    def real(self) -> Ball:
+        """The real part."""
+        return Ball(self.x.real)
+
+    @property
+    def imag(self) -> Ball:
+        """The imaginary part."""
+        return Ball(self.x.imag)
+
     @property
     def is_nan(self) -> bool:
-        """Whether the number does not exist."""
-        return self.middle.is_nan()
+        """Whether the number does not exist; False for a complex number."""
+        return isinstance(self.x, arb) and bool(self.x.is_nan())
 
     @property
-    def greatest(self) -> Decimal:
-        """An upper bound on the size of all numbers in the ball, to six digits."""
-        return add_up(self.middle.copy_abs(), self.radius)
+    def middle(self) -> Ball:
+        """The midpoint, an exact number."""
+        return Ball(self.x.mid())
 
     @property
-    def least(self) -> Decimal:
-        """A lower bound on the size of all numbers in the ball, to six digits."""
-        return max(DOWN.subtract(self.middle.copy_abs(), self.radius), ZERO)
-
-    def enlarged(self, away: Decimal) -> Ball:
-        """Return the ball with `away` added to its radius."""
-        return Ball(self.ar, self.middle, add_up(self.radius, away))
+    def radius(self) -> Ball:
+        """The radius, an exact number."""
+        return Ball(self.x.rad())
 
     @property
-    def is_sharp(self) -> bool:
-        """Whether the sign of the number is known, and its size to a factor of 2."""
-        return self.greatest <= multiply_up(2, self.least)
+    def greatest(self) -> Ball:
+        """An upper bound of the sizes of all numbers in the ball, an exact number."""
+        return Ball(self.x.abs_upper())
+
+    @property
+    def least(self) -> Ball:
+        """A lower bound of the sizes of all numbers in the ball, an exact number."""
+        return Ball(self.x.abs_lower())
 
     def is_known_to(self, digits: int) -> bool:
-        """Return whether the radius is at most 10^-digits of every number in the ball."""
-        return self.radius <= DOWN.scaleb(self.least, -digits)
+        """Return whether the ball is 0, or its radius at most about 10^-digits of its numbers."""
+        return bool(self.x == 0 or self.x.rel_accuracy_bits() > digits * BITS)
 
     def ends(self) -> tuple[Decimal, Decimal]:
         """Return decimals below and above all numbers in the ball.
 
+        Raises TooFewDigitsError for a ball without bounds, and OutOfRangeError for a number whose
+        size is not within 1e-990000000000000000 and 1e+990000000000000000.
+        """
+        if not self.x.is_finite():
+            raise TooFewDigitsError
+        digits = int(max(ctx.prec, self.x.bits()) / BITS) + 8
+        middle, radius, exponent = map(int, self.x.mid_rad_10exp(digits))
+        if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
+            raise OutOfRangeError(
+                "the size of a value is not within 1e-990000000000000000 and "
+                "1e+990000000000000000, the limits of --digits: take a smaller argument"
+            )
+        low, high = Decimal(middle - radius), Decimal(middle + radius)
+        return _EXACT.scaleb(low, exponent), _EXACT.scaleb(high, exponent)
+
+    def simplest(self) -> Fraction:
+        """Return the fraction with the smallest denominator in the ball.
+
         Raises TooFewDigitsError for a ball without bounds.
         """
-        if not self.radius.is_finite():
+        if not self.x.is_finite():
             raise TooFewDigitsError
-        floor, ceiling = self.ar.outwards
-        return floor.subtract(self.middle, self.radius), ceiling.add(self.middle, self.radius)
+        return simplest_between(exact_fraction(self.x.lower()), exact_fraction(self.x.upper()))
 
 
-class Ring:
-    """Sums, products, quotients and functions of balls whose middles have `digits` digits."""
+_EXACT = Context(1_000_000, Emin=MIN_EMIN, Emax=MAX_EMAX, traps=[])
+"""More digits than any ball has."""
+_LOCK, _NOTHING = RLock(), nullcontext()
+
+
+def _function(name: str) -> staticmethod[[Ball], Ball]:
+    """Return the method for an elementary function of a real or complex ball."""
+    function = operator.methodcaller(name)
+    return staticmethod(lambda x: _result(function(x.x), x.x))
+
+
+class Balls(Scalars):
+    """The arithmetic of balls with `digits` digits, and the context that sets this precision."""
+
+    nan, inf, unbounded = Ball(arb("nan")), Ball(arb("inf")), Ball(_UNBOUNDED)
+    sin, cos, sinh, cosh, tanh, sech = map(_function, "sin cos sinh cosh tanh sech".split())
+    exp, expm1, log, log1p = map(_function, "exp expm1 log log1p".split())
+    asinh, atanh = map(_function, ("asinh", "atanh"))
 
     def __init__(self, digits: int) -> None:
-        self.digits = digits
-        context = own_context(digits, TRAPS)
-        self.add, self.subtract = context.add, context.subtract
-        self.multiply, self.divide = context.multiply, context.divide
-        self._context, self._tight = context, own_context(digits, [*TRAPS, Inexact])
-        self.unit = Decimal((0, (5,), -digits))
-        """Half a unit in the last digit, relative to the largest number with this exponent."""
-        self.unbounded = self.inf = Ball(self, ZERO, INFINITE)
-        self.nan = Ball(self, Decimal("NaN"), Decimal("NaN"))
+        self.digits, self.bits, self.magnitude = digits, int(digits * BITS) + 2, 1 - digits
+        self._before: list[int] = []
 
-    @cached_property
-    def outwards(self) -> tuple[decimal.Context, decimal.Context]:
-        """Contexts that round down and up, with enough digits for both ends of a ball."""
-        digits = self.digits + SHORT
-        return own_context(digits, [], ROUND_FLOOR), own_context(digits, [], ROUND_CEILING)
+    def __enter__(self) -> Self:
+        _LOCK.acquire()
+        self._before.append(ctx.prec)
+        ctx.prec = self.bits
+        return self
 
-    def exactly(self, operation: str, x: Decimal, y: Decimal | int) -> Ball:
-        """Return an operation on exact numbers; the result is exact if it has few digits."""
-        try:
-            return Ball(self, getattr(self._tight, operation)(x, y), ZERO)
-        except Inexact:
-            return self.about(getattr(self._context, operation)(x, y))
-        except DecimalException:  # division by 0
-            return self.unbounded
+    def __exit__(self, *_: object) -> None:
+        ctx.prec = self._before.pop()
+        _LOCK.release()
 
-    def about(self, middle: Decimal, units: int = 1) -> Ball:
-        """Return a ball around a rounded number, in error by at most `units` in the last digit."""
-        return Ball(self, middle, multiply_up(middle.copy_abs(), multiply_up(units, self.unit)))
+    def working(self) -> AbstractContextManager[object]:
+        """Return a context manager that sets this precision unless it is in use."""
+        return _NOTHING if ctx.prec == self.bits else self
 
-    def exact(self, value: Decimal | float) -> Ball:
-        """Return the ball of radius 0 around a decimal, which may have more digits."""
-        return Ball(self, Decimal(value), ZERO)
+    @property
+    def pi(self) -> Ball:
+        """The number pi."""
+        return Ball(arb.pi())
 
-    @cached_property
-    def plain(self) -> Decimals:
-        """Decimals whose elementary functions are correct to `digits` digits (see `Decimals`)."""
-        return decimals(self.digits + _MARGIN + len(str(self.digits)))
+    @property
+    def eps(self) -> Ball:
+        """The distance from 1 to the next number, about 10^(1 - digits)."""
+        return Ball(arb(2) ** -int((self.digits - 1) * BITS))
 
-    def function(self, function: Callable[..., Decimal], *at: Decimal) -> Ball:
-        """Return the value of a function of exact numbers, in `plain`, as a ball."""
-        try:
-            with self.plain.working():
-                value = function(*at)
-            return self.about(self._context.plus(value), 2)
-        except DecimalException:  # beyond all exponents
-            return self.unbounded
+    def convert(self, value: Ball | float | Fraction | arb | acb) -> Ball:
+        """Return a ball that holds an exact value, or a ball unchanged."""
+        if isinstance(value, Ball):
+            return value
+        if isinstance(value, int | float | arb | acb):
+            return Ball(value if isinstance(value, acb) else arb(value))
+        exact = Fraction(value)
+        return Ball(arb(fmpq(exact.numerator, exact.denominator)))
+
+    def mpc(self, real: Ball | float | Fraction, imag: Ball | float | Fraction) -> Ball:
+        """Return the complex number with the given parts."""
+        return Ball(acb(self.convert(real).x, self.convert(imag).x))
+
+    def sqrt(self, x: Ball | int) -> Ball:
+        """Return the square root; of a real ball, that of its part that is not negative."""
+        square = self.convert(x).x
+        root = square.sqrt()
+        if not root.is_finite() and isinstance(square, arb) and square.is_finite():
+            root = arb("nan") if square < 0 else square.nonnegative_part().sqrt()
+        return _result(root, square)
+
+    def atan2(self, y: Ball, x: Ball) -> Ball:
+        """Return the angle of the point (x, y); all angles if it may lie on the cut or at 0."""
+        return Ball(arb.atan2(y.x, x.x))
+
+    def where(self, condition: Truth, yes: Ball | float, no: Ball | float) -> Ball:
+        """Return one of two numbers, or a ball that holds both if the condition is open."""
+        yes, no = self.convert(yes), self.convert(no)
+        if condition is OPEN:
+            return self.between(yes, no)
+        return yes if condition else no
+
+    @staticmethod
+    def between(x: Ball, y: Ball) -> Ball:
+        """Return a ball that holds both numbers and all numbers between them."""
+        return Ball(x.x.union(y.x))
+
+    @staticmethod
+    def either(condition: Truth) -> bool:
+        """Return whether a condition is proved; both answers must lead to the right result."""
+        return condition is True
+
+    @staticmethod
+    def nint(x: Ball) -> int:
+        """Return an integer within 3/4 of all numbers in x.
+
+        Raises TooFewDigitsError for a ball wider than half a unit.
+        """
+        if not x.x.rad() <= 0.25:
+            raise TooFewDigitsError
+        return round(exact_fraction(x.x.mid()))
+
+    @staticmethod
+    def ceiling(x: Ball) -> int:
+        """Return the least integer >= x; raise TooFewDigitsError if x leaves it open."""
+        whole = x.x.ceil().unique_fmpz()
+        if whole is None:
+            raise TooFewDigitsError
+        return int(whole)
+
+    @staticmethod
+    def sign(x: Ball) -> int:
+        """Return 1, 0 or -1 with the sign of x; raise TooFewDigitsError if the sign is open."""
+        return 0 if not x else 1 if x > 0 else -1
+
+    @staticmethod
+    def agm(a: Ball | int, b: Ball) -> Ball:
+        """Return the arithmetic-geometric mean of numbers that are not negative."""
+        return Ball(b.x.agm(a.x if isinstance(a, Ball) else arb(a)))
+
+    @staticmethod
+    def carlson_rf(x: Ball, y: Ball, z: Ball) -> Ball:
+        """Return Carlson's R_F of real numbers that are not negative."""
+        return Ball(acb.elliptic_rf(acb(x.x), acb(y.x), acb(z.x)).real)
+
+    @staticmethod
+    def carlson_rd(x: Ball, y: Ball, z: Ball) -> Ball:
+        """Return Carlson's R_D of real numbers that are not negative."""
+        return Ball(acb.elliptic_rd(acb(x.x), acb(y.x), acb(z.x)).real)
+
+
+@lru_cache(maxsize=64)
+def balls(digits: int) -> Balls:
+    """Return the arithmetic of balls with `digits` digits, always the same object."""
+    return Balls(digits)
+
+
+def pi_to(digits: int) -> Fraction:
+    """Return pi to `digits` significant digits or a few more."""
+    with balls(digits + 4):
+        return exact_fraction(arb.pi().mid())
+
+
+def exact_fraction(x: arb) -> Fraction:
+    """Return the value of an exact number of Arb."""
+    ratio = x.fmpq()
+    return Fraction(int(ratio.p), int(ratio.q))
+
+
+def simplest_between(low: Fraction, high: Fraction) -> Fraction:
+    """Return the fraction with the smallest denominator in an interval, by continued fractions."""
+    if low <= 0 <= high:
+        return Fraction(0)
+    if high < 0:
+        return -simplest_between(-high, -low)
+    terms = []
+    while math.ceil(low) > high:
+        terms.append(math.floor(low))
+        low, high = 1 / (high - terms[-1]), 1 / (low - terms[-1])
+    value = Fraction(math.ceil(low))
+    for term in reversed(terms):
+        value = term + 1 / value
+    return value

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .decimals import pi_to
+from .ball import pi_to
 from .rounding import Pair, Triple, triple
 from .types import Array, Mask
 

@@ -1,6 +1,7 @@
-"""The numbers that formulas take from any arithmetic, and the arithmetic of plain floats.
+"""The operations that formulas may use of an arithmetic and of its numbers.
 
-`protocol` declares the numbers and operations of an arithmetic.  A record does not load `protocol`.
+A formula is written once and takes the arithmetic as its first argument: balls, doubles, arrays of
+doubles, or arrays of pairs of doubles.
 """
 
 from __future__ import annotations
@@ -11,21 +12,94 @@ from contextlib import AbstractContextManager, nullcontext
 from fractions import Fraction
 from functools import lru_cache, wraps
 from operator import index
-from typing import TYPE_CHECKING, Any, TypeVar, cast
-
-if TYPE_CHECKING:
-    from .protocol import Real
+from typing import Any, Protocol, Self, TypeVar, cast
 
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
 
 _NOT_REAL = (bool, str, bytes, bytearray, complex)
 
-R = TypeVar("R", bound="Real")
+
+class Real(Protocol):
+    """A number of some arithmetic, or an array of such numbers."""
+
+    def __add__(self, other: Self | int, /) -> Self: ...
+    def __radd__(self, other: int, /) -> Self: ...
+    def __sub__(self, other: Self | int, /) -> Self: ...
+    def __rsub__(self, other: int, /) -> Self: ...
+    def __mul__(self, other: Self | int, /) -> Self: ...
+    def __rmul__(self, other: int, /) -> Self: ...
+    def __truediv__(self, other: Self | int, /) -> Self: ...
+    def __rtruediv__(self, other: int, /) -> Self: ...
+    def __neg__(self, /) -> Self: ...
+    def __abs__(self, /) -> Self: ...
+    def __lt__(self, other: Self | int, /) -> Any: ...
+    def __le__(self, other: Self | int, /) -> Any: ...
+    def __gt__(self, other: Self | int, /) -> Any: ...
+    def __ge__(self, other: Self | int, /) -> Any: ...
+
+
+R = TypeVar("R", bound=Real)
 """The numbers of the arithmetic in use."""
 F = TypeVar("F", bound=Callable[..., Any])
 """A formula f(ar, ...)."""
 T = TypeVar("T")
+
+
+class Arithmetic(Protocol[R]):
+    """The operations that the formulas of the record use."""
+
+    def __hash__(self) -> int: ...
+
+    @property
+    def is_array(self) -> bool:
+        """Whether its numbers are arrays, so that a condition on them is a mask."""
+
+    @property
+    def pi(self) -> R:
+        """The number pi."""
+
+    @property
+    def eps(self) -> R:
+        """Distance from 1 to the next number."""
+
+    @property
+    def magnitude(self) -> float:
+        """The decimal logarithm of eps."""
+
+    @property
+    def nan(self) -> R:
+        """Not a number; it marks undefined elements of an array."""
+
+    def working(self) -> AbstractContextManager[object]:
+        """Return a context manager that sets this precision for the thread during a computation."""
+
+    def convert(self, value: float | Fraction, /) -> R:
+        """Return the number nearest to an exact value."""
+
+    def sqrt(self, x: R | int, /) -> R:
+        """Return the square root of x >= 0."""
+
+    def sin(self, x: R, /) -> R:
+        """Return the sine of x."""
+
+    def cos(self, x: R, /) -> R:
+        """Return the cosine of x."""
+
+    def atan2(self, y: R, x: R, /) -> R:
+        """Return the angle of the point (x, y), in (-pi, pi]."""
+
+    def where(self, condition: Any, yes: R | int, no: R | int, /) -> R:
+        """Return one of two numbers, or choose element by element between two arrays."""
+
+    def anywhere(self, condition: Any, /) -> bool:
+        """Return whether a condition holds, for an array whether it holds for any element."""
+
+    def everywhere(self, condition: Any, /) -> bool:
+        """Return whether a condition holds for every element of an array."""
+
+    def either(self, condition: Any, /) -> Any:
+        """Return a condition that chooses between two valid methods; for balls it may be open."""
 
 
 def is_real(value: object) -> bool:
@@ -108,29 +182,6 @@ def in_arithmetic(function: F) -> F:
     return cast(F, evaluate)
 
 
-class Unenclosed:
-    """An arithmetic whose numbers have no radii, so that truncation errors are ignored."""
-
-    def widened(
-        self,
-        x: T,
-        small: Callable[[], tuple[Any, ...]],
-        bound: Callable[..., Any],
-        *,
-        values_only: bool = False,
-    ) -> T:
-        """Return x, because the truncation error of an iteration is below the last digit."""
-        return x
-
-    def either(self, condition: Any) -> Any:
-        """Return a condition that affects only the path to the result."""
-        return condition
-
-    def fixed(self, x: T) -> T:
-        """Return x as a constant."""
-        return x
-
-
 class Scalars:
     """An arithmetic of single numbers, in which a condition is true or false."""
 
@@ -152,8 +203,13 @@ class Scalars:
 
     everywhere = anywhere
 
+    @staticmethod
+    def either(condition: Any) -> Any:
+        """Return a condition that chooses between two valid methods; for balls it may be open."""
+        return condition
 
-class Doubles(Scalars, Unenclosed):
+
+class Doubles(Scalars):
     """The arithmetic of floats."""
 
     eps, magnitude = 2.0**-52, -15.65

@@ -18,8 +18,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..errors import LagtopError, OutOfRangeError
-from .arb_ball import BITS, Ball, TooFewDigitsError, balls
-from .ball import SMALLEST, TooSmallError
+from .ball import BITS, Ball, TooFewDigitsError, balls
 from .text import NumberText, own_context
 
 if TYPE_CHECKING:
@@ -76,13 +75,6 @@ def precisions(digits: int = 0, more: int = 0, most: int = MOST_DIGITS) -> Itera
     yield last
 
 
-def too_small(what: str) -> LagtopError:
-    """Return the error for a number that decimals cannot hold with any number of digits."""
-    return OutOfRangeError(
-        f"{what} is below {SMALLEST:e} in size, too small for --digits: take a smaller argument"
-    )
-
-
 def decided(
     what: str, compute: Callable[[int], S], digits: int = 0, more: int = 0, most: int = MOST_DIGITS
 ) -> S:
@@ -94,8 +86,6 @@ def decided(
         try:
             with balls(working):
                 return compute(working)
-        except TooSmallError:
-            raise too_small(what) from None
         except TooFewDigitsError:
             continue
     raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")

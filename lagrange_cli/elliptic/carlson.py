@@ -9,11 +9,11 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING, Any, cast
 
-from ..arithmetic.arb_ball import Balls
+from ..arithmetic.ball import Balls
 from ..arithmetic.numbers import R, absolute, in_arithmetic, root_of_epsilon
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.numbers import Arithmetic
 
 
 @in_arithmetic

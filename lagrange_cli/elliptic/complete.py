@@ -14,12 +14,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..arithmetic.arb_ball import Balls
+from ..arithmetic.ball import Balls
 from ..arithmetic.numbers import R, in_arithmetic, root_of_epsilon
 from .carlson import carlson_rf
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.numbers import Arithmetic
 
 
 @in_arithmetic

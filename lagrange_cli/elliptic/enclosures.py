@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from flint import arb, fmpq
 
-from ..arithmetic.arb_ball import OPEN, Ball, TooFewDigitsError, balls
+from ..arithmetic.ball import OPEN, Ball, TooFewDigitsError, balls
 from ..arithmetic.rounding import text_of
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError, OutOfRangeError

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from flint import arb
 
-from ..arithmetic.arb_ball import balls
+from ..arithmetic.ball import balls
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..errors import LagtopError
 from .enclosures import FIRST_DIGITS, Value, equality_digits, exact, record

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from flint import acb, arb
 
-from ..arithmetic.arb_ball import balls
+from ..arithmetic.ball import balls
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, Points, check_reach
 from ..errors import LagtopError
 from .enclosures import FIRST_DIGITS, Value, exact, rational

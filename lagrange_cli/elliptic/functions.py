@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 from flint import acb, arb, ctx, fmpq
 
-from ..arithmetic.arb_ball import TooFewDigitsError
+from ..arithmetic.ball import TooFewDigitsError
 from .modulus import Kind, Modulus
 
 INDICES = ("01", "00", "11", "10")

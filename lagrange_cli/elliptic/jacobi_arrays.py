@@ -8,14 +8,13 @@ then at most exp(-pi), and four terms are enough, however close k is to 1.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS, PAIRS, blocks
 from ..arithmetic.double_double import DoubleDouble, reduce_phase, sqrt_pair, two_product, two_sum
 from ..arithmetic.numbers import polynomial
-from ..arithmetic.protocol import Numeric
 from ..arithmetic.rounding import Pair
 from ..arithmetic.types import Array
 from .complete import agm, nome
@@ -26,7 +25,7 @@ _SMALL = 1e-290
 """Size below which q' = (k'/4)^2 loses digits, being close to the end of the range."""
 
 
-Powers = tuple[Numeric, ...]
+Powers = tuple[Any, ...]
 """Coefficients of powers, the lowest power first."""
 JacobiArrays = tuple[Array, Array, Array, Array]
 """am, sn, cn, dn."""
@@ -35,9 +34,9 @@ JacobiArrays = tuple[Array, Array, Array, Array]
 class Modulus(NamedTuple):
     """k and its complement k', arrays of doubles, each good to an ulp."""
 
-    k: Numeric
-    k_prime: Numeric
-    rest: Numeric = 0.0
+    k: Any
+    k_prime: Any
+    rest: Any = 0.0
     """The part of k' lost to rounding; the period needs it far away from 0."""
 
 
@@ -48,7 +47,7 @@ def modulus_of_complement(k_prime: Array) -> Modulus:
     return Modulus(sqrt_pair(*two_sum(difference, error - rest))[0], k_prime, 0 * k_prime)
 
 
-def jacobi_of_arrays(u: Numeric, modulus: Modulus) -> JacobiArrays:
+def jacobi_of_arrays(u: Any, modulus: Modulus) -> JacobiArrays:
     """Return the functions of arguments and moduli that broadcast."""
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in modulus):
@@ -77,14 +76,14 @@ class _Series(NamedTuple):
     """
 
     circular: bool
-    k_prime: Numeric
+    k_prime: Any
     rate: Pair
     """Half periods per unit of u, 1/(2K)."""
-    stretch: Numeric
+    stretch: Any
     """Argument y per half period."""
     above: Powers
     below: Powers
-    q: Numeric
+    q: Any
     """The nome in use."""
 
 
@@ -102,14 +101,14 @@ def _series(modulus: Modulus) -> _Series:
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
 
 
-def rate_of_half_periods(k_prime: Numeric, rest: Numeric) -> Pair:
+def rate_of_half_periods(k_prime: Any, rest: Any) -> Pair:
     """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
     parts = np.broadcast_arrays(np.asarray(k_prime, dtype=float), rest)
     rate = agm(PAIRS, 1, DoubleDouble(*parts)) / PAIRS.pi
     return Pair(*(part.reshape(np.shape(k_prime)) for part in (rate.high, rate.low)))
 
 
-def _circular(q: Numeric, root: Numeric) -> tuple[Powers, Powers]:
+def _circular(q: Any, root: Any) -> tuple[Powers, Powers]:
     """Return theta1 and theta2 in powers of sin^2, up to a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
@@ -118,7 +117,7 @@ def _circular(q: Numeric, root: Numeric) -> tuple[Powers, Powers]:
     return above, tuple(root * c for c in below)
 
 
-def _hyperbolic(q: Numeric) -> tuple[Powers, Powers]:
+def _hyperbolic(q: Any) -> tuple[Powers, Powers]:
     """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, up to a factor."""
     q2 = q * q
     q4 = q2 * q2
@@ -144,9 +143,7 @@ def _of_arguments(u: Array, series: _Series) -> JacobiArrays:
     return _evaluate(*reduce_phase(u, series.rate), u, series)
 
 
-def _evaluate(
-    halves: Array, since: Array, u: Numeric, series: _Series, low: Numeric = 0.0
-) -> JacobiArrays:
+def _evaluate(halves: Array, since: Array, u: Any, series: _Series, low: Any = 0.0) -> JacobiArrays:
     """Return the functions at `halves` + `since` periods 2K, or at u itself if k' = 0.
 
     `low` is the part of `since` lost to rounding.

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from flint import acb, arb
 
-from ..arithmetic.arb_ball import TooFewDigitsError
+from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.points import ExactComplex
 from ..errors import LagtopError
 from .enclosures import Value, decided, equality_digits, exact, record

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from flint import arb
 
-from ..arithmetic.arb_ball import balls
+from ..arithmetic.ball import balls
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.text import NumberText
 from ..errors import LagtopError

@@ -23,7 +23,6 @@ import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.numbers import angle_unit
-from ..arithmetic.protocol import Numeric
 from ..arithmetic.types import Array
 from ..elliptic.complete import complete_k, period_mean
 from ..errors import LagtopError
@@ -49,8 +48,8 @@ SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 class TurningPoints(NamedTuple):
     """Observed turning points, tilts in radians or arrays of them, and the observed period."""
 
-    theta_min: Numeric
-    theta_max: Numeric
+    theta_min: Any
+    theta_max: Any
     period: float
 
     def checked(self, *, radians: bool = False) -> TurningPoints:
@@ -70,22 +69,22 @@ class TurningPoints(NamedTuple):
         return self
 
     @property
-    def u1(self) -> Numeric:
+    def u1(self) -> Any:
         """Cosine of the least tilt."""
         return np.cos(self.theta_min)
 
     @property
-    def u2(self) -> Numeric:
+    def u2(self) -> Any:
         """Cosine of the greatest tilt."""
         return np.cos(self.theta_max)
 
     @property
-    def from_top(self) -> tuple[Numeric, Numeric]:
+    def from_top(self) -> tuple[Any, Any]:
         """Distances 1 - u1 and 1 - u2 from the upper pole."""
         return 2 * np.sin(self.theta_min / 2) ** 2, 2 * np.sin(self.theta_max / 2) ** 2
 
     @property
-    def from_bottom(self) -> tuple[Numeric, Numeric]:
+    def from_bottom(self) -> tuple[Any, Any]:
         """Distances 1 + u1 and 1 + u2 from the lower pole."""
         return 2 * np.cos(self.theta_min / 2) ** 2, 2 * np.cos(self.theta_max / 2) ** 2
 
@@ -142,7 +141,7 @@ def candidates(nutation: TurningPoints, u3_above: Array, signs: tuple[int, int])
     return Candidates(u3_above, a, plus, minus, mean_rate)
 
 
-def mean_inverse(k_prime: Array, at_u1: Numeric, at_u2: Numeric) -> Array:
+def mean_inverse(k_prime: Array, at_u1: Any, at_u2: Any) -> Array:
     """Return the mean of 1/p over a period, for p > 0 linear in u, from p at u1 and u2.
 
     With u = u2 + (u1 - u2) sn^2 w it is the mean of 1/(p(u2) cn^2 + p(u1) sn^2).

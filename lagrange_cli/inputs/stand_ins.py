@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.angle import Angle
-from ..arithmetic.arb_ball import Ball, balls
+from ..arithmetic.ball import Ball, balls
 from ..arithmetic.numbers import Number, R
 from ..arithmetic.rounding import equal_digits, nearest_double, rounding_of, settled
 from ..arithmetic.text import quoted
@@ -22,7 +22,7 @@ from .input_keys import STANDS_FOR
 from .values import STEADY_WORDS
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.numbers import Arithmetic
 
 EXACT_DIGITS = 1100
 """Digits of a fraction that approximates an irrational number: more than any output shows."""

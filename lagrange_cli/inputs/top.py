@@ -10,7 +10,7 @@ from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, ParamSpec, Self
 
 from ..arithmetic.angle import Angle, Tilt
-from ..arithmetic.arb_ball import Balls, balls, pi_to
+from ..arithmetic.ball import Balls, balls, pi_to
 from ..arithmetic.numbers import DOUBLES, Number, is_real, unrounded
 from ..arithmetic.text import own_context
 from ..arithmetic.values import Values
@@ -27,7 +27,7 @@ from .input_keys import (
 )
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.numbers import Arithmetic
 
 _P = ParamSpec("_P")
 _EPS = Fraction(1, 1 << 52)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..arithmetic.arb_ball import pi_to
+from ..arithmetic.ball import pi_to
 from ..arithmetic.numbers import Number
 from ..arithmetic.points import Points
 from ..arithmetic.text import quoted

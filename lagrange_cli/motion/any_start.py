@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.arb_ball import Ball, Balls, TooFewDigitsError
+from ..arithmetic.ball import Ball, Balls, TooFewDigitsError
 from ..arithmetic.numbers import R
 from .gaps import Gaps, State, zero_gaps
 from .regime import Facts
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.numbers import Arithmetic
 
 FindRoot = Callable[..., R]
 """A function of an arithmetic, c2, c1, c0 and an upper bound; see `gaps_from_start`."""

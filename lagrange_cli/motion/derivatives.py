@@ -17,7 +17,7 @@ from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from ..arithmetic.arb_ball import TooFewDigitsError, UndefinedError
+from ..arithmetic.ball import TooFewDigitsError, UndefinedError
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.rounding import decided
 from ..arithmetic.values import Values
@@ -29,7 +29,7 @@ from .record import NUMBER_KEYS
 from .solve import Motion, solve
 
 if TYPE_CHECKING:
-    from ..arithmetic.arb_ball import Ball
+    from ..arithmetic.ball import Ball
     from ..arithmetic.types import Array
 
 DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]

@@ -14,8 +14,8 @@ from ..arithmetic.numbers import R, absolute
 from .regime import Exact, Facts
 
 if TYPE_CHECKING:
-    from ..arithmetic.arb_ball import Ball, Balls
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.ball import Ball, Balls
+    from ..arithmetic.numbers import Arithmetic
 
 
 class State(NamedTuple, Generic[R]):

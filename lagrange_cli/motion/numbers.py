@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..arithmetic.arb_ball import Ball, TooFewDigitsError, balls
+from ..arithmetic.ball import Ball, TooFewDigitsError, balls
 from ..arithmetic.numbers import R
 from ..arithmetic.rounding import FIRST_DIGITS, Settled, decided, rounding_of, settled, sign_of
 from ..errors import OutOfRangeError

@@ -16,7 +16,7 @@ from .quantity import V, key, quantity
 from .regime import Facts
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.numbers import Arithmetic
 
 
 _STARTED = "unless the top is released from rest"

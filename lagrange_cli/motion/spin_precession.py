@@ -16,14 +16,14 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.arb_ball import TooFewDigitsError
+from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.numbers import R, absolute
 from ..elliptic.complete import period_mean
 from .nutation import Nutation, period_key
 from .quantity import key, quantity
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.numbers import Arithmetic
 
 
 _Known = float | Decimal

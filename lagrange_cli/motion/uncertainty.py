@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.arb_ball import balls
+from ..arithmetic.ball import balls
 from ..arithmetic.rounding import decided
 from ..inputs.top import Top
 from ..inputs.values import Stds

@@ -10,7 +10,7 @@ import pytest
 from lagtop import Top
 
 from lagrange_cli.arithmetic.angle import Angle, Tilt
-from lagrange_cli.arithmetic.arb_ball import balls
+from lagrange_cli.arithmetic.ball import balls
 from lagrange_cli.arithmetic.numbers import DOUBLES
 
 MOST = 1_400

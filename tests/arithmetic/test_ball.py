@@ -13,7 +13,7 @@ import mpmath
 import pytest
 from flint import arb, ctx
 
-from lagrange_cli.arithmetic.arb_ball import (
+from lagrange_cli.arithmetic.ball import (
     OPEN,
     Ball,
     Balls,

@@ -11,7 +11,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from lagrange_cli.arithmetic.arb_ball import Ball, TooFewDigitsError, balls
+from lagrange_cli.arithmetic.ball import Ball, TooFewDigitsError, balls
 from lagrange_cli.arithmetic.rounding import (
     Settled,
     decided,

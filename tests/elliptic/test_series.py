@@ -11,7 +11,7 @@ import pytest
 from conftest import Lagtop
 from ours import ar, ours
 
-from lagrange_cli.arithmetic.arb_ball import balls
+from lagrange_cli.arithmetic.ball import balls
 from lagrange_cli.elliptic.nome_series import k_series, nome_series
 
 MODULI = ["1e-8", "0.03", "0.5", "0.9", "0.99", "0.9999"]

@@ -10,8 +10,8 @@ import pytest
 from lagtop import Top, solve
 from scenes import EPS, EVERY_KIND, NAMED
 
-from lagrange_cli.arithmetic.arb_ball import Ball, balls
 from lagrange_cli.arithmetic.arrays import ARRAYS, PAIRS
+from lagrange_cli.arithmetic.ball import Ball, balls
 from lagrange_cli.arithmetic.double_double import DoubleDouble
 from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.motion.any_start import gaps_from_start

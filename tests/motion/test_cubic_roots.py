@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from lagrange_cli.arithmetic.arb_ball import TooFewDigitsError, balls
+from lagrange_cli.arithmetic.ball import TooFewDigitsError, balls
 from lagrange_cli.motion.any_start import largest_root
 
 

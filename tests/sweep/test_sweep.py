@@ -20,7 +20,7 @@ from conftest import Lagtop
 from lagtop import LagtopError, Motion, Top, solve, sweep
 from scenes import EPS, UNIT, random_scene
 
-from lagrange_cli.arithmetic.arb_ball import balls
+from lagrange_cli.arithmetic.ball import balls
 from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.motion.gaps import state as state_of
 from lagrange_cli.motion.regime import Regime

@@ -208,7 +208,9 @@ def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[f
         for key, (value, size) in exact.items():
             text = record[key]
             unit = mpmath.mpf(math.ulp(text)) if not digits else _last_digit(text, digits)
-            scale = (size + abs(value)) / min(1, reference.k2_prime)  # next to k = 1 K loses digits
+            scale = (size + abs(value)) / min(
+                1, float(reference.k2_prime)
+            )  # K loses digits next to k = 1
             if scale * mpmath.mpf(10) ** (5 - DIGITS) > unit / 10**9:
                 tally.counts["too few digits in mpmath"] += 1
                 continue

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arithmetic.arb_ball import Ball
+from ...arithmetic.ball import Ball
 from ...arithmetic.double_double import (
     MANY,
     PI,

@@ -21,7 +21,7 @@ from ..quantity import quantity
 from .columns import SCALARS
 
 if TYPE_CHECKING:
-    from ...arithmetic.protocol import Arithmetic
+    from ...arithmetic.numbers import Arithmetic
     from ..regime import Exact
 
 

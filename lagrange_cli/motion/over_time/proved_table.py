@@ -12,7 +12,7 @@ from functools import cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from ...arithmetic.arb_ball import Ball, balls
+from ...arithmetic.ball import Ball, balls
 from ...arithmetic.numbers import Number
 from ...arithmetic.rounding import Settled, equal_digits, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text

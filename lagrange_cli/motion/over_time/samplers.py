@@ -19,8 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arithmetic.arb_ball import Ball
 from ...arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, workspace
+from ...arithmetic.ball import Ball
 from ...arithmetic.points import MAX_PERIODS, MAX_TIME
 from ...arithmetic.types import Array
 from ...errors import LagtopError

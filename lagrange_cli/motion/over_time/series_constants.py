@@ -10,7 +10,6 @@ from collections.abc import Callable
 from typing import Any, Generic, NamedTuple
 
 from ...arithmetic.numbers import R
-from ...arithmetic.protocol import FunctionArithmetic, Numeric
 from ...elliptic.complete import place
 from ..kinds import Constant, Kind, Separatrix
 from ..spin_precession import Nutating
@@ -82,8 +81,8 @@ def direction(motion: Kind[R]) -> int:
 
 
 def evaluate(
-    ar: FunctionArithmetic, series: Series, frame: Frame, phase: Numeric, rises: int
-) -> tuple[Numeric, Numeric, Numeric, Numeric]:
+    ar: Any, series: Series, frame: Frame, phase: Any, rises: int
+) -> tuple[Any, Any, Any, Any]:
     """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
 
     On the upper pole Y = 0.  Its argument is then the limit from later times if the tilt `rises`,
@@ -92,7 +91,7 @@ def evaluate(
     z = phase * series.scale
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
 
-    def polar(c: Component, side: int) -> tuple[Numeric, Numeric]:
+    def polar(c: Component, side: int) -> tuple[Any, Any]:
         real, imag = c.at(S, C)
         along = imag if real or S else side * c.imag[0]  # on the pole: the limit
         return ar.sqrt(real * real + imag * imag), ar.atan2(along, real)
@@ -108,9 +107,9 @@ class SeriesFromStart(NamedTuple):
     """The series about that turning point and about the other one."""
     first_is_upper: bool
     """Whether that turning point is u1."""
-    offset: Numeric
+    offset: Any
     """Steps of half a period from that turning point to the start, from -1/2 to 1/2."""
-    starts: tuple[Numeric, Numeric]
+    starts: tuple[Any, Any]
     """The arguments of X and Y at the start."""
 
 

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from ...arithmetic.arb_ball import Ball
 from ...arithmetic.arrays import order_by_parity, placed, taken
+from ...arithmetic.ball import Ball
 from ...arithmetic.double_double import Period, period_of, whole_periods
 from ...arithmetic.numbers import power
 from ...arithmetic.points import MAX_PERIODS

@@ -18,9 +18,8 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...arithmetic.arb_ball import Balls
-from ...arithmetic.numbers import polynomial
-from ...arithmetic.protocol import Arithmetic, FunctionArithmetic, Numeric
+from ...arithmetic.ball import Balls
+from ...arithmetic.numbers import Arithmetic, polynomial
 from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
 
 Coefficients = list[Any]
@@ -45,7 +44,7 @@ class Component(NamedTuple):
     imag: Coefficients
     even: bool = False
 
-    def at(self, S: Numeric, C: Numeric) -> tuple[Numeric, Numeric]:
+    def at(self, S: Any, C: Any) -> tuple[Any, Any]:
         """Return the real and the imaginary part."""
         s = S * S
         P, Q = polynomial(self.real, s), polynomial(self.imag, s)
@@ -74,32 +73,32 @@ class Frame(NamedTuple):
 class SquaredRatio(NamedTuple):
     """A number eta from 0 to K', as sn^2(eta, k') and cn^2(eta, k') up to a common factor."""
 
-    s2: Numeric
-    c2: Numeric
+    s2: Any
+    c2: Any
 
 
 class ThetaConstants(NamedTuple):
     """The constants of a nutating top in its series."""
 
-    quarter: Numeric
+    quarter: Any
     """K."""
-    quarter_prime: Numeric
+    quarter_prime: Any
     """K'; None without torque, as it is then infinite."""
-    m: Numeric
+    m: Any
     """k^2."""
-    k: Numeric
-    k_prime: Numeric
+    k: Any
+    k_prime: Any
     plus: SquaredRatio
     """The parameter of X, 2K y+/pi."""
     minus: SquaredRatio
     """The parameter of Y, 2K y-/pi."""
-    x_size: Numeric
+    x_size: Any
     """|X| at u1, which is cos(theta_min/2)."""
-    y_size: Numeric
+    y_size: Any
     """|Y| at u2, sin(theta_max/2), times sqrt(k'), the ratio of theta3 at u2 and at u1."""
-    sign_plus: Numeric
-    sign_minus: Numeric
-    nutation: Numeric
+    sign_plus: Any
+    sign_minus: Any
+    nutation: Any
     """-du/dt over the phase x near a passage of u1; None if it is not needed."""
 
 
@@ -108,13 +107,13 @@ class Series(NamedTuple):
 
     hyperbolic: bool
     frames: list[Frame]
-    scale: Numeric
+    scale: Any
     """Argument of the functions per step of the phase."""
-    slopes: tuple[Numeric, Numeric]
+    slopes: tuple[Any, Any]
     """Slopes per step that are added to arg X and arg Y to make them periodic."""
 
 
-def theta_series(ar: FunctionArithmetic, c: ThetaConstants, terms: int = TERMS) -> Series:
+def theta_series(ar: Any, c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in the smaller nome."""
     hyperbolic = c.quarter_prime is not None and ar.either(c.quarter > c.quarter_prime)
     return (hyperbolic_series if hyperbolic else circular_series)(ar, c, terms)
@@ -140,7 +139,7 @@ def circular_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) 
 
 def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in q'; Jacobi's transformation adds a linear exponent of its own."""
-    ratio: Numeric = c.quarter / c.quarter_prime
+    ratio: Any = c.quarter / c.quarter_prime
     mc = c.k_prime * c.k_prime
     q = nome(ar, m=mc, k_prime=c.k)
     plus, minus = (
@@ -165,7 +164,7 @@ def _frames(x: Components, y: Components, rate: Coefficients) -> list[Frame]:
 
 
 def _circular_components(
-    weights: list[Numeric], first: tuple[Numeric, Numeric], size: Numeric, sign: Numeric
+    weights: list[Any], first: tuple[Any, Any], size: Any, sign: Any
 ) -> Components:
     """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0.
 
@@ -183,7 +182,7 @@ def _circular_components(
     )
 
 
-def _weights(ar: Arithmetic[Any], q: Numeric, first: int, terms: int) -> list[Numeric]:
+def _weights(ar: Arithmetic[Any], q: Any, first: int, terms: int) -> list[Any]:
     """Return q^(n^2) or, for a first exponent of 2, q^(n(n+1)): weights of theta3 and theta2.
 
     The truncation error of N terms in a nome q <= 1/20 is added to the first two weights, which
@@ -205,11 +204,11 @@ def _weights(ar: Arithmetic[Any], q: Numeric, first: int, terms: int) -> list[Nu
 
 
 def _hyperbolic_components(
-    even: list[Numeric],
-    odd: list[Numeric],
-    first: tuple[Numeric, Numeric],
-    sign: Numeric,
-    size: Numeric,
+    even: list[Any],
+    odd: list[Any],
+    first: tuple[Any, Any],
+    sign: Any,
+    size: Any,
 ) -> Components:
     """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h.
 
@@ -233,7 +232,7 @@ def _hyperbolic_components(
     )
 
 
-def _rate(weights: list[Numeric], curvature: int, nutation: Numeric) -> Coefficients:
+def _rate(weights: list[Any], curvature: int, nutation: Any) -> Coefficients:
     """Return theta1(2x) over S C, scaled such that theta1(2x) begins with nutation * x."""
     if nutation is None:
         return []
@@ -243,7 +242,7 @@ def _rate(weights: list[Numeric], curvature: int, nutation: Numeric) -> Coeffici
     return summed(SIN_EVEN, curvature, unit, terms)
 
 
-def summed(family: Family, curvature: int, unit: Numeric, weights: list[Numeric]) -> Coefficients:
+def summed(family: Family, curvature: int, unit: Any, weights: list[Any]) -> Coefficients:
     """Return a weighted sum of the polynomials of a family, times a unit.
 
     The curvature is 1 for circular functions, -1 for hyperbolic ones.
@@ -267,19 +266,19 @@ def _polynomials(family: Family, count: int) -> list[list[int]]:
     return found[:count]
 
 
-def alternated(terms: list[Numeric]) -> list[Numeric]:
+def alternated(terms: list[Any]) -> list[Any]:
     """Return terms with every second sign changed, starting with the second."""
     return [-term if n % 2 else term for n, term in enumerate(terms)]
 
 
-def doubled(cos: Numeric, sin: Numeric, curvature: int) -> tuple[Numeric, Numeric]:
+def doubled(cos: Any, sin: Any, curvature: int) -> tuple[Any, Any]:
     """Return cosine and sine of twice an angle; hyperbolic functions for a curvature of -1."""
     return 1 - 2 * curvature * sin * sin, 2 * sin * cos
 
 
 def multiples(
-    first: tuple[Numeric, Numeric], step: tuple[Numeric, Numeric], curvature: int, count: int
-) -> tuple[list[Numeric], list[Numeric]]:
+    first: tuple[Any, Any], step: tuple[Any, Any], curvature: int, count: int
+) -> tuple[list[Any], list[Any]]:
     """Return cosines and sines of first, first + step, first + 2 step ..., from those of both.
 
     A common factor of all sines, or of all cosines, keeps its digits.

@@ -19,7 +19,7 @@ from ..regime import Exact
 from .sections import Sections
 
 if TYPE_CHECKING:
-    from ...arithmetic.protocol import Arithmetic
+    from ...arithmetic.numbers import Arithmetic
 
 _GROUP = "Steady precession and elementary theory"
 _number = declared_keys(_GROUP)
