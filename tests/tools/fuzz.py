@@ -221,13 +221,13 @@ def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[f
             return
         columns = motion.table(times, ["quaternion"]).values()
         speed = 2 * sum(abs(float(x)) for x in (*rates, 1 / reference.T))
-        for t, *computed in zip(times, *columns, strict=True):
-            away = rotation_angle(computed, reference.attitude(t))
-            tau = float(mpmath.mpf(t) - mpmath.nint(t / reference.T) * reference.T)
-            size = 2.0**-52 * (1 + abs(tau) * speed)
+        for time_, *computed in zip(times, *columns, strict=True):
+            away = rotation_angle(computed, reference.attitude(time_))
+            tau = float(mpmath.mpf(time_) - mpmath.nint(time_ / reference.T) * reference.T)
+            unit = 2.0**-52 * (1 + abs(tau) * speed)
             tally.counts["attitudes by mpmath"] += 1
-            show = f"lagtop table {motion.top.options()} --columns quaternion --t-min {t!r} --n 1"
-            tally.note("attitude", away / size, 2 * UNITS, show)
+            show = f"lagtop table {motion.top.options()} --columns quaternion --t-min {time_!r} --n 1"
+            tally.note("attitude", away / unit, 2 * UNITS, show)
 
 
 def _last_digit(text: str, digits: int) -> Any:
