@@ -226,7 +226,9 @@ def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[f
             tau = float(mpmath.mpf(time_) - mpmath.nint(time_ / reference.T) * reference.T)
             unit = 2.0**-52 * (1 + abs(tau) * speed)
             tally.counts["attitudes by mpmath"] += 1
-            show = f"lagtop table {motion.top.options()} --columns quaternion --t-min {time_!r} --n 1"
+            show = (
+                f"lagtop table {motion.top.options()} --columns quaternion --t-min {time_!r} --n 1"
+            )
             tally.note("attitude", away / unit, 2 * UNITS, show)
 
 
