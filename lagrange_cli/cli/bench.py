@@ -47,9 +47,7 @@ def _drawn(figure: Figure, path: str) -> bytes:
     type=opt.Parsed("X,...", _parse_spans),
     help="Lengths in nutation periods; several show how errors grow.  [default: 20.3]",
 )
-@opt.option(
-    "--n", type=opt.count(MOST_TIMES), default="1e4", show_default=True, help="Number of times."
-)
+@opt.option("--n", type=opt.count(MOST_TIMES), default="1e4", help="Number of times.")
 @opt.option("--methods", type=opt.LIST, help="Methods to compare.  [default: all]")
 @opt.plot
 @opt.output(*opt.REPORT_FORMATS)
@@ -97,14 +95,12 @@ def bench_command(
     "--samples",
     type=opt.count(MOST_SCENES),
     default="1",
-    show_default=True,
     help="Random scenes of each kind.",
 )
 @opt.option(
     "--seed",
     type=opt.count(),
     default="1952",
-    show_default=True,
     help="Seed of the random scenes.",
 )
 @opt.plot

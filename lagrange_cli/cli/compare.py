@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     metavar="FRAME",
     type=opt.Choice(["body", "space"]),
     default="body",
-    show_default=True,
     help="Frame of the angular velocity: body or space.",
 )
 @opt.option(

@@ -68,7 +68,7 @@ def _parse_distance(text: str) -> ExactComplex:
 )
 @opt.option("--gap-above", type=opt.NUMBER, help="Distance from delta up to an outer root.")
 @opt.option("--gap-below", type=opt.NUMBER, help="Distance from delta* down to an outer root.")
-@opt.option("--g", type=opt.NUMBER, default="1", show_default=True, help="Leading coefficient.")
+@opt.option("--g", type=opt.NUMBER, default="1", help="Leading coefficient.")
 @opt.option("--tau", type=RANGE, help="Times: a list 0,1,2 or a range [log:]start:stop:count.")
 @opt.option(
     "--columns",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -42,30 +41,10 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
         rows = explanations(opt.motion_of(found), words, radians=top.radians, named=named)
     else:
         rows = listed(radians=top.radians, named=named)
-    if out.fmt == "table":
-        width = width_of(out.path) or 80
-        out.text("\n".join((_block(row, width) for row in rows) if words else _lists(rows, width)))
+    if words and out.fmt == "table":
+        out.text("\n".join(_block(row, width_of(out.path) or 80) for row in rows))
     else:
         out.report(lambda: Report({}, _EXPLAINED if words else _LISTED, rows, []))
-
-
-_HEADINGS = {
-    "record": "Keys of the record",
-    "on request": "Keys on request",
-    "column": "Columns of lagtop table",
-}
-
-
-def _lists(rows: Sequence[Explained], width: int) -> Iterator[str]:
-    """Yield the list of each kind: names, and beside them symbol, meaning, unit and equation."""
-    for kind, heading in _HEADINGS.items():
-        lines = [f"{heading}:"]
-        for row in rows:
-            if row.kind == kind:
-                meaning = f"{row.meaning} [{row.unit}]" if row.unit else row.meaning
-                text = ", ".join(filter(None, (row.symbol, meaning, row.equation)))
-                lines.append(_beside(row.name, text, width, 28))
-        yield "\n".join([*lines, ""])
 
 
 def _block(row: Explained, width: int) -> str:
@@ -81,17 +60,15 @@ def _block(row: Explained, width: int) -> str:
     for name, text in texts.items():
         for i, part in enumerate(re.split(r" where |, (?=\w+ = )", text)):
             if part:
-                lines.append(_beside(name if not i else "", part, width, 9))
+                line = f"  {'' if i else name:9}{part}"
+                lines.append(fill(line, width, subsequent_indent=" " * 11, break_on_hyphens=False))
     return "\n".join([*lines, ""])
 
 
-def _beside(name: str, text: str, width: int, indent: int) -> str:
-    """Return a name and a text beside it, in lines that fit; the name has `indent` columns."""
-    line, space = f"  {name:{indent}}{text}", " " * (indent + 2)
-    return fill(line, width, subsequent_indent=space, break_on_hyphens=False)
-
-
-_LISTED = [Field(x) for x in ("name", "symbol", "meaning", "unit", "equation", "kind", "formula")]
+_LISTED = [
+    *(Field(x, x, is_text=True) for x in ("name", "symbol", "meaning", "unit")),
+    *(Field(x) for x in ("equation", "kind", "formula")),
+]
 _EXPLAINED = [
     *_LISTED[:4],
     *(Field(x) for x in ("value", "equation", "formula", "numbers", "missing", "kind")),

@@ -126,6 +126,7 @@ decimal = option(
     "--decimal",
     metavar="MARK",
     default="",
+    show_default=False,
     type=Parsed("MARK", _parse_mark),
     help="Decimal mark of the input: point or comma.  [default: detected]",
 )
@@ -140,14 +141,12 @@ quaternion_order = option(
     metavar="ORDER",
     type=click.Choice(["wxyz", "xyzw"]),
     default="wxyz",
-    show_default=True,
     help="Order of a quaternion whose names do not show it: wxyz or xyzw.",
 )
 euler_sequence = option(
     "--euler-sequence",
     metavar="SEQ",
     default="xyz",
-    show_default=True,
     help="Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
 )
 
@@ -169,7 +168,7 @@ def digits(most: int) -> Callable[[F], F]:
 def command(name: str, *examples: str, **attributes: Any) -> Callable[[F], click.Command]:
     """Declare a command whose help ends with examples."""
     lines = "".join(f"\n  lagtop {example}" for example in examples)
-    settings = {"help_option_names": ["-h", "--help"]}
+    settings = {"help_option_names": ["-h", "--help"], "show_default": True}
     return click.command(
         name, epilog=f"\b\nExamples:{lines}", context_settings=settings, **attributes
     )
@@ -360,15 +359,10 @@ def output(
 
 def check_plot(path: str | None, output: str) -> None:
     """Raise LagtopError for a picture of another type than SVG and PNG, or one over the report."""
-    if path is None:
-        return
-    if extension(path) not in {"svg", "png"}:
-        raise LagtopError(f"--plot must end in .svg or .png, got {quoted(path)}")
-    if os.path.realpath(path) == os.path.realpath(output):
-        raise LagtopError(f"--plot must not be the file of the report, got {quoted(path)}")
-    from ..plot.style import require_matplotlib
+    if path is not None:
+        from ..plot.style import check_picture
 
-    require_matplotlib()
+        check_picture(path, ("svg", "png"), output)
 
 
 def write_report(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -73,26 +72,14 @@ class _BudgetRow(NamedTuple):
     contribution: float | None = None
     elasticity: float | None = None
     share: float | None = None
-    sensitivity_unit: str | None = None
-
-    @property
-    def noise(self) -> float:
-        """The uncertainty, which decides how many digits are shown."""
-        return self.std
 
 
 def write_budget(found: Given, motion: Numbers, key: str, radians: bool, out: Output) -> None:
-    """Write the uncertainty budget of a key."""
-    check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
-    report = _budget(found, motion, key, radians)
-    write_report(out, lambda: report)
-
-
-def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
-    """Return the budget of a key: the contribution of each uncertain input, and the key itself.
+    """Write the budget of a key: the contribution of each uncertain input, and the key itself.
 
     Raises AbsentError if the motion has no such key, or it has no derivative.
     """
+    check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
     value = Motion(motion.exact).record(radians=radians, keys=[key])[key]
     if value is None:
         raise AbsentError(f"{key} is undefined {motion.absence(key)}")
@@ -102,24 +89,20 @@ def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
         raise AbsentError(f"{key} has no uncertainty of first order: {NO_DERIVATIVE}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     units = _units(found, [key, *given])
-    lines = uncertain.budget(key, given)
     shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
-    conclusions = [f"{shown}, to first order; inputs are taken as independent."]
     fields = [
-        _names("quantity", units),
-        _Measured("value", "value"),
+        Field("quantity", "quantity", lambda x: with_unit(x, units.get(x)), is_text=True),
+        Field("value", "value", lambda x: f"{x:.6g}"),
         Field("std", "uncertainty", _figures),
         Field("sensitivity", "sensitivity", _figures),
-        *([Field("sensitivity_unit", "sensitivity unit", is_text=True)] if units else []),
         Field("contribution", with_unit("contribution", units.get(key)), _figures),
         Field("elasticity", "elasticity", _figures),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
-    rows = [
-        _BudgetRow(*line, _over(units.get(key, "1"), units.get(line.input, "1"))) for line in lines
-    ]
+    rows = [_BudgetRow(*line) for line in uncertain.budget(key, given)]
     rows.append(_BudgetRow(key, value, whole))  # last of all, as in EA-4/02
-    return Report({"key": key}, fields, rows, conclusions, units)
+    conclusion = f"{shown}, to first order; inputs are taken as independent."
+    write_report(out, lambda: Report({"key": key}, fields, rows, [conclusion], units))
 
 
 def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
@@ -132,31 +115,5 @@ def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
     return {key: x.unit for key, x in solved.items() if x is not None and x.unit}
 
 
-def _over(above: str, below: str) -> str:
-    """Return the unit of a derivative."""
-    if above == below:
-        return "1"
-    return "/".join(f"({unit})" if set(unit) & set(" /") else unit for unit in (above, below))
-
-
 def _figures(x: float) -> str:
     return f"{x:.4g}"
-
-
-def _names(key: str, units: Mapping[str, str]) -> Field:
-    """Return the column of names of inputs or keys, which a table shows with their units."""
-    return Field(key, key, lambda x: with_unit(x, units.get(x)), is_text=True, names_the_row=True)
-
-
-class _Measured(Field):
-    """A number that is shown to one digit more than the first digit of the `noise` of its row."""
-
-    def cell(self, row: Any) -> str:
-        """Return the text in a table; all such numbers of a row end at the same decimal place."""
-        value = getattr(row, self.key)
-        if value is None:
-            return ""
-        if not (row.noise > 0 and value):
-            return _figures(value)
-        digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(row.noise)) + 2
-        return f"{value:#.{min(max(digits, 1), 17)}g}".removesuffix(".")

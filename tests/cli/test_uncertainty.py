@@ -135,7 +135,7 @@ UNITS = "--m 1587(2)g --A-cm 13640g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".
 def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
     arguments = [*UNITS, "--r0", "50rad/s", "--psidot0", "1.0(1)rad/s"]
     shown = lagtop("solve", *arguments, "--budget", "T_nutation").stdout
-    words = "m [kg]", "psidot0 [rad/s]", "contribution [s]", "s/kg", "s/(rad/s)", ") s, to"
+    words = "m [kg]", "psidot0 [rad/s]", "contribution [s]", ") s, to"
     assert all(x in shown for x in words)
     found = solved(*arguments, "--budget", "T_nutation")
     assert found["units"] == {"T_nutation": "s", "m": "kg", "psidot0": "rad/s"}
