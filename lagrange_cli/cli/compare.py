@@ -77,7 +77,7 @@ def compare_command(
     from ..compare.compare import LIMIT, compared
     from ..compare.differences import Alignment
     from ..compare.report import comparison_report, failures, read
-    from ..inputs.seen import Conventions
+    from ..inputs.observed import Conventions
 
     opt.check_plot(plot, out.path)
     if not words:

@@ -17,10 +17,10 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs import rotations
-from ..inputs.seen import Seen
+from ..inputs.observed import Observed
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
-from .differences import Alignment, Trajectory, rate_size
+from .differences import Alignment, Sizes, Trajectory
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
@@ -35,7 +35,7 @@ class Cause(NamedTuple):
     name: str
     top: Callable[[Top], Top] | None = None
     """The top that moved, from the intended one."""
-    change: Callable[[Seen, Top], Seen] = lambda seen, _: seen
+    change: Callable[[Observed, Top], Observed] = lambda run, _: run
     """The motion of that top, from the given motion and the intended top."""
     rows: Callable[[Trajectory], Trajectory] = lambda trajectory: trajectory
     """The trajectory as it was meant."""
@@ -45,7 +45,7 @@ class Cause(NamedTuple):
         try:
             moved = motion if self.top is None else solve(self.top(motion.top))
             few = self.rows(trajectory).few(most)
-            return few.greatest(moved, lambda seen: self.change(seen, motion.top))
+            return few.greatest(moved, lambda run: self.change(run, motion.top))
         except LagtopError:
             return math.inf
 
@@ -112,22 +112,22 @@ def _exchanged_moments(top: Top) -> Top:
     return top.replace(A=top.C, C=top.C, r0=Fraction(top.r0) * Fraction(top.A) / Fraction(top.C))
 
 
-def _spun_back(seen: Seen, top: Top) -> Seen:
+def _spun_back(run: Observed, top: Top) -> Observed:
     """Return the attitude of a body that spins as the top of `_exchanged_moments`."""
-    if seen.quaternion is None and seen.axis is None and not seen.angles:
+    if run.quaternion is None and run.axis is None and not run.angles:
         raise LagtopError("there is no attitude")
     rate = float(Fraction(top.r0) * (1 - Fraction(top.A) / Fraction(top.C)))
-    angles = {x: y - rate * seen.t if x == "phi" else y for x, y in seen.angles.items()}
-    alone = Seen(seen.t, seen.quaternion, seen.axis, angles)
-    return alone.turned(rotations.IDENTITY, rotations.about_z(rate * seen.t))
+    angles = {x: y - rate * run.t if x == "phi" else y for x, y in run.angles.items()}
+    alone = Observed(run.t, run.quaternion, run.axis, angles)
+    return alone.turned(rotations.IDENTITY, rotations.about_z(rate * run.t))
 
 
 def _quaternion(name: str, change: Callable[[Array], Array]) -> Cause:
     """Return the cause that a quaternion is written in another way."""
 
-    def changed(seen: Seen, _: Top) -> Seen:
-        q = seen.quaternion
-        return seen if q is None else replace(seen, quaternion=change(q))
+    def changed(run: Observed, _: Top) -> Observed:
+        q = run.quaternion
+        return run if q is None else replace(run, quaternion=change(q))
 
     return Cause(f"the quaternion is {name}", change=changed)
 
@@ -135,11 +135,11 @@ def _quaternion(name: str, change: Callable[[Array], Array]) -> Cause:
 def _rates_in(frame: str) -> Cause:
     """Return the cause that the rates are in this frame, not in the other one."""
 
-    def change(seen: Seen, _: Top) -> Seen:
-        own, fixed = seen.body_rates, seen.space_rates
+    def change(run: Observed, _: Top) -> Observed:
+        own, fixed = run.body_rates, run.space_rates
         if (own if frame == "space" else fixed) is None:
             raise LagtopError("there are no rates in the other frame")
-        return replace(seen, body_rates=fixed, space_rates=own)
+        return replace(run, body_rates=fixed, space_rates=own)
 
     return Cause(f"the rates are in the frame of {frame}: --rates-frame {frame}", change=change)
 
@@ -157,11 +157,11 @@ def _angles(name: str, *, phi: str = "phi", psi: str = "psi") -> Cause:
     def changed(angles: Mapping[str, Array]) -> dict[str, Array]:
         return {other[x].strip("-"): -y if "-" in other[x] else y for x, y in angles.items()}
 
-    def change(seen: Seen, _: Top) -> Seen:
-        if seen.quaternion is None:
-            return replace(seen, angles=changed(seen.angles))
-        angles = changed(rotations.angles_of(seen.quaternion))
-        return replace(seen, quaternion=rotations.of_angles(**angles))
+    def change(run: Observed, _: Top) -> Observed:
+        if run.quaternion is None:
+            return replace(run, angles=changed(run.angles))
+        angles = changed(rotations.angles_of(run.quaternion))
+        return replace(run, quaternion=rotations.of_angles(**angles))
 
     return Cause(name, change=change)
 
@@ -195,7 +195,7 @@ def _shifted_clock(motion: Motion, trajectory: Trajectory) -> Cause:
     from scipy.optimize import minimize_scalar  # start-up
 
     few, t = trajectory.few(20), trajectory.given["t"][:, 0]
-    step = 0.3 / rate_size(motion.top)
+    step = 0.3 / Sizes.of(motion.top).rates
     reach = max(motion.T_nutation or 0.0, 2 * abs(t[0]), 10 * abs(t[-1] - t[0]) / len(t))
     count = math.ceil(min(reach / step, _MOST_SHIFTS))
     shifts = step * np.arange(-count, count + 1.0)
@@ -205,7 +205,7 @@ def _shifted_clock(motion: Motion, trajectory: Trajectory) -> Cause:
     best = float(shifts[np.argmin(np.nan_to_num(np.fmax.reduce(errors, axis=1), nan=np.inf))])
 
     found = minimize_scalar(
-        lambda shift: few.greatest(motion, lambda seen: replace(seen, t=seen.t - shift)),
+        lambda shift: few.greatest(motion, lambda run: replace(run, t=run.t - shift)),
         bounds=(best - step, best + step),
         method="bounded",
         options={"xatol": 1e-9 * step},
@@ -214,7 +214,7 @@ def _shifted_clock(motion: Motion, trajectory: Trajectory) -> Cause:
     remedy = " (--align time)" if math.isclose(shift, t[0], rel_tol=1e-4) else ""
     return Cause(
         f"the clock is shifted by {shift:.5g}{remedy}",
-        change=lambda seen, _: replace(seen, t=seen.t - shift),
+        change=lambda run, _: replace(run, t=run.t - shift),
     )
 
 
@@ -263,7 +263,7 @@ CAUSES = [
         "rows are off by one: each holds the state of the previous time",
         rows=partial(_shifted_rows, -1),
     ),
-    Cause("time runs backwards", change=lambda seen, _: replace(seen, t=-seen.t)),
+    Cause("time runs backwards", change=lambda run, _: replace(run, t=-run.t)),
     *map(_framed, ("start", *_FRAMES, *(f"{words},start" for words in _FRAMES))),
 ]
 """Causes, the simplest first.  `_shifted_clock` comes last."""

@@ -12,7 +12,7 @@ from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.files import shown_path, utf8_path
 from ..inputs.names import ANGLES
-from ..inputs.seen import Conventions, quantities_of
+from ..inputs.observed import Conventions, quantities_of
 from ..inputs.top import Top
 from ..motion.notebook import HasRecord
 from ..motion.solve import Motion, solve
@@ -216,14 +216,14 @@ def compared(
 
 def _measured(motion: Motion, trajectory: Trajectory) -> Comparison:
     """Return a comparison without its verdict and its cause."""
-    seen = trajectory.align.aligned(trajectory.seen(), motion)
+    run = trajectory.align.aligned(trajectory.observed(), motion)
     try:
-        found = differences(motion, seen)
+        found = differences(motion, run)
     except LagtopError as wrong:
         if trajectory.file is None or wrong.key != "t":
             raise
         raise DataError(f"{shown_path(trajectory.file)}: {wrong}") from None
-    error, t, known = found["error"], seen.t, dict[str, Any]()
+    error, t, known = found["error"], run.t, dict[str, Any]()
     for name, values in found.items():
         finite = abs(values[np.isfinite(values)])
         if finite.size:

@@ -15,8 +15,8 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs import rotations
 from ..inputs.names import ANGLES
+from ..inputs.observed import Conventions, Named, Observed, Quantities, observe, rows_of
 from ..inputs.rotations import within_half_turn
-from ..inputs.seen import Conventions, Named, Quantities, Seen, rows_of, see
 from ..inputs.top import Top
 from ..motion.regime import Regime
 from ..motion.solve import Motion
@@ -59,51 +59,51 @@ class Alignment(NamedTuple):
             found[key] = axis or True
         return cls(**found)
 
-    def aligned(self, seen: Seen, motion: Motion) -> Seen:
+    def aligned(self, run: Observed, motion: Motion) -> Observed:
         """Return a trajectory in the frames of lagtop and with its clock.
 
         Raises LagtopError if the attitude is not complete enough.
         """
         axis = self.axis or (self.up if self.left else "z")
-        if seen.quaternion is None and (axis != "z" or self.left):
+        if run.quaternion is None and (axis != "z" or self.left):
             word = f"axis={axis}" if axis != "z" else "left"
             raise LagtopError(f"align {word} needs the whole attitude: leave it out", "align")
-        directed = (seen.quaternion, seen.axis, seen.space_rates)
+        directed = (run.quaternion, run.axis, run.space_rates)
         if self.up != "z" and all(x is None for x in directed):
             wanted = "the axis or the whole attitude"
             raise LagtopError(f"align up={self.up} needs {wanted}: leave it out", "align")
-        seen = seen.turned(rotations.to_z(self.up), rotations.to_z(axis))
+        run = run.turned(rotations.to_z(self.up), rotations.to_z(axis))
         if self.left:  # as is usual: Unreal turns y round, Unity exchanges y and z
-            seen = _mirrored(seen, np.diag([1.0, -1, 1]) if self.up[-1] == "z" else _EXCHANGE_XY)
+            run = _mirrored(run, np.diag([1.0, -1, 1]) if self.up[-1] == "z" else _EXCHANGE_XY)
         if self.time:
-            seen = replace(seen, t=seen.t - seen.t[0])
-        return _counted_from_start(seen, motion) if self.start else seen
+            run = replace(run, t=run.t - run.t[0])
+        return _counted_from_start(run, motion) if self.start else run
 
 
-def _mirrored(seen: Seen, mirror: Array) -> Seen:
+def _mirrored(run: Observed, mirror: Array) -> Observed:
     """Return the motion after a reflection of both frames, a matrix of shape (3, 3)."""
-    assert seen.quaternion is not None
-    q, own, fixed = seen.quaternion, seen.body_rates, seen.space_rates
+    assert run.quaternion is not None
+    q, own, fixed = run.quaternion, run.body_rates, run.space_rates
     return replace(
-        seen,
+        run,
         quaternion=np.concatenate([q[:, :1], -q[:, 1:] @ mirror], axis=1),
         body_rates=None if own is None else -own @ mirror,
         space_rates=None if fixed is None else -fixed @ mirror,
     )
 
 
-def _counted_from_start(seen: Seen, motion: Motion) -> Seen:
+def _counted_from_start(run: Observed, motion: Motion) -> Observed:
     """Return the motion turned about the vertical and the figure axis, to fit its first row."""
-    given = dict(seen.angles) if seen.axis is None else rotations.angles_of_axis(seen.axis)
-    given = given if seen.quaternion is None else rotations.angles_of(seen.quaternion)
+    given = dict(run.angles) if run.axis is None else rotations.angles_of_axis(run.axis)
+    given = given if run.quaternion is None else rotations.angles_of(run.quaternion)
     row = int(np.argmax(np.isfinite([*given.values()]).all(axis=0)))
-    exact = {x: float(y[0]) for x, y in motion.table(seen.t[[row]], ANGLES, wrap=True).items()}
+    exact = {x: float(y[0]) for x, y in motion.table(run.t[[row]], ANGLES, wrap=True).items()}
     phi, psi = (float(given[x][row]) - exact[x] if x in given else 0.0 for x in ("phi", "psi"))
-    if seen.quaternion is not None and math.sin(exact["theta"]) < _NEAR_POLE:  # one angle is free
+    if run.quaternion is not None and math.sin(exact["theta"]) < _NEAR_POLE:  # one angle is free
         phi, psi = (phi + psi if exact["theta"] < 1 else phi - psi), 0.0
     shifts = {"theta": 0.0, "phi": phi, "psi": psi}
-    angles = {key: x - shifts[key] for key, x in seen.angles.items()}
-    return replace(seen.turned(rotations.about_z(-psi), rotations.about_z(phi)), angles=angles)
+    angles = {key: x - shifts[key] for key, x in run.angles.items()}
+    return replace(run.turned(rotations.about_z(-psi), rotations.about_z(phi)), angles=angles)
 
 
 class Trajectory(NamedTuple):
@@ -120,22 +120,24 @@ class Trajectory(NamedTuple):
         every = -(-len(self.given["t"]) // most)
         return self._replace(given=rows_of(self.given, slice(None, None, every)))
 
-    def seen(self) -> Seen:
+    def observed(self) -> Observed:
         """Return the motion of the trajectory, in its own frames."""
-        return see(self.given, self.conventions, self.named)
+        return observe(self.given, self.conventions, self.named)
 
-    def errors(self, motion: Motion, change: Callable[[Seen], Seen] = lambda x: x) -> Array:
+    def errors(self, motion: Motion, change: Callable[[Observed], Observed] = lambda x: x) -> Array:
         """Return the error of each row, or that of its rates, after a change of the motion."""
-        found = differences(motion, self.align.aligned(change(self.seen()), motion))
+        found = differences(motion, self.align.aligned(change(self.observed()), motion))
         worst: Array = np.maximum(found["error"], found.get("rates", 0.0))
         return worst
 
-    def greatest(self, motion: Motion, change: Callable[[Seen], Seen] = lambda x: x) -> float:
+    def greatest(
+        self, motion: Motion, change: Callable[[Observed], Observed] = lambda x: x
+    ) -> float:
         """Return the greatest error that is known, infinite if none is."""
         return float(np.nan_to_num(np.fmax.reduce(self.errors(motion, change)), nan=np.inf))
 
 
-def differences(motion: Motion, seen: Seen) -> dict[str, Array]:
+def differences(motion: Motion, run: Observed) -> dict[str, Array]:
     """Return the differences from the exact motion in each row, by name; missing if not given.
 
     `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
@@ -143,14 +145,14 @@ def differences(motion: Motion, seen: Seen) -> dict[str, Array]:
     `norm` is the distance of a norm from 1.  `error` is the error of the attitude, or else of the
     axis, the angles, or the rates; it is NaN in a row with a value that is not finite.
     """
-    exact = motion.table(seen.t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
+    exact = motion.table(run.t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
     q = np.stack([exact[f"quaternion_{x}"] for x in "wxyz"], axis=1)
-    found = _attitude(motion, seen, q, {key: exact[key] for key in ANGLES})
-    found |= _rates(motion, seen, q, np.stack([exact[x] for x in "pqr"], axis=1))
-    if seen.norm is not None:
-        found["norm"] = abs(seen.norm)
-    if seen.distance is not None and motion.top.s:
-        found["norm"] = abs(seen.distance / float(motion.top.s) - 1.0)
+    found = _attitude(motion, run, q, {key: exact[key] for key in ANGLES})
+    found |= _rates(motion, run, q, np.stack([exact[x] for x in "pqr"], axis=1))
+    if run.norm is not None:
+        found["norm"] = abs(run.norm)
+    if run.distance is not None and motion.top.s:
+        found["norm"] = abs(run.distance / float(motion.top.s) - 1.0)
     angles = [abs(found[key]) for key in ANGLES if key in found]
     parts = [found["rates"]] if not angles else [np.max(angles, axis=0)]
     error = np.array(found.get("attitude", found.get("axis", parts[0])))
@@ -158,64 +160,70 @@ def differences(motion: Motion, seen: Seen) -> dict[str, Array]:
     return found | {"error": error}
 
 
-def _attitude(motion: Motion, seen: Seen, q: Array, exact: dict[str, Array]) -> dict[str, Array]:
+def _attitude(motion: Motion, run: Observed, q: Array, exact: dict[str, Array]) -> dict[str, Array]:
     """Return the differences of the attitude, or of the parts of it that are given."""
     found: dict[str, Array] = {}
-    angles, axis = dict(seen.angles), seen.axis
-    if seen.quaternion is not None:
-        found["attitude"] = rotations.angle_between(q, seen.quaternion)
-        angles, axis = rotations.angles_of(seen.quaternion), rotations.axis_of(seen.quaternion)
+    angles, axis = dict(run.angles), run.axis
+    if run.quaternion is not None:
+        found["attitude"] = rotations.angle_between(q, run.quaternion)
+        angles, axis = (
+            rotations.angles_of(run.quaternion),
+            rotations.axis_of(run.quaternion),
+        )
     if axis is not None:
         found["axis"] = rotations.angle_between_vectors(rotations.axis_of(q), axis)
-    if seen.quaternion is None and axis is not None:
+    if run.quaternion is None and axis is not None:
         angles = rotations.angles_of_axis(axis)
     if motion.regime in {Regime.SLEEPING, Regime.HANGING}:  # only the sum or difference is defined
         sign = 1 if motion.regime == Regime.SLEEPING else -1
-        if seen.quaternion is not None:
+        if run.quaternion is not None:
             for one in (angles, exact):
                 one["phi"] = one["phi"] + sign * one["psi"]
-        if seen.quaternion is not None or axis is not None:
+        if run.quaternion is not None or axis is not None:
             del angles["psi"]
     return found | {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
 
 
-def _rates(motion: Motion, seen: Seen, q: Array, exact: Array) -> dict[str, Array]:
+def _rates(motion: Motion, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
     """Return the differences of the angular velocity, and the changes of what it conserves."""
-    top, own = motion.top, seen.body_rates
-    if seen.space_rates is not None:
-        given, rates = seen.space_rates, rotations.rotated(q, exact)
+    top, own, size = motion.top, run.body_rates, Sizes.of(motion.top)
+    if run.space_rates is not None:
+        given, rates = run.space_rates, rotations.rotated(q, exact)
     elif own is not None:
         given, rates = own, exact
     else:
         return {}
-    found = {"rates": np.linalg.norm(given - rates, axis=1) / rate_size(top)}
-    if seen.quaternion is None:
+    found = {"rates": np.linalg.norm(given - rates, axis=1) / size.rates}
+    if run.quaternion is None:
         return found
-    to_body = rotations.conjugate(seen.quaternion)
+    to_body = rotations.conjugate(run.quaternion)
     own = rotations.rotated(to_body, given) if own is None else own
     up = rotations.rotated(to_body, np.broadcast_to([0.0, 0.0, 1.0], own.shape))
-    A, C, torque = float(top.A), float(top.C), _torque(top)
+    A, C, r0 = float(top.A), float(top.C), float(top.r0)
     moments = np.array([A, A, C])
-    energy = (moments * own**2).sum(axis=1) / 2 + torque * up[:, 2]
+    energy = (moments * own**2).sum(axis=1) / 2 + size.torque * up[:, 2]
     momentum = (moments * own * up).sum(axis=1)
-    swing, r0 = _swing(top), float(top.r0)
-    kinetic, spin = (A * swing**2 + C * r0**2) / 2, math.hypot(A * swing, C * r0)
-    found["energy"] = (energy - energy[0]) / (kinetic + torque or 1.0)
-    found["Lz"] = (momentum - momentum[0]) / (spin + math.sqrt(A * torque) or 1.0)
+    kinetic, spin = (A * size.swing**2 + C * r0**2) / 2, math.hypot(A * size.swing, C * r0)
+    found["energy"] = (energy - energy[0]) / (kinetic + size.torque or 1.0)
+    found["Lz"] = (momentum - momentum[0]) / (spin + math.sqrt(A * size.torque) or 1.0)
     return found
 
 
-def rate_size(top: Top) -> float:
-    """Return the size of the angular velocity of a top, in radians per unit of time."""
-    fall = math.sqrt(_torque(top) / float(top.A))
-    return _swing(top) + abs(float(top.r0)) + fall or 1.0
+class Sizes(NamedTuple):
+    """Sizes of the motion of a top, for relative errors."""
 
+    swing: float
+    """Initial angular velocity across the figure axis."""
+    torque: float
+    """Greatest torque of the weight, m g s."""
+    rates: float
+    """Size of the angular velocity."""
 
-def _swing(top: Top) -> float:
-    """Return the initial angular velocity across the figure axis."""
-    tilt = float(top.inputs(radians=True)["theta0_rad"])
-    return math.hypot(float(top.thetadot0), float(top.psidot0) * math.sin(tilt))
-
-
-def _torque(top: Top) -> float:
-    return float(top.m) * float(top.g) * float(top.s)
+    @classmethod
+    def of(cls, top: Top) -> Sizes:
+        """Return the sizes of the motion of a top."""
+        tilt = float(top.inputs(radians=True)["theta0_rad"])
+        swing = math.hypot(float(top.thetadot0), float(top.psidot0) * math.sin(tilt))
+        torque = float(top.m) * float(top.g) * float(top.s)
+        rates = swing + abs(float(top.r0)) + math.sqrt(torque / float(top.A)) or 1.0
+        return cls(swing, torque, rates)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ..errors import DataError, LagtopError
 from ..inputs.files import shown_path
-from ..inputs.seen import Conventions
+from ..inputs.observed import Conventions
 from ..inputs.trajectory import read_trajectory
 from ..motion.solve import Motion
 from ..output.report import Field, Report, fields_of, short
@@ -48,7 +48,7 @@ def read(
         named["rates"] = named["rates"]._replace(says="")
     trajectory = Trajectory(rows, conventions, align, named, path)
     try:
-        trajectory.seen()
+        trajectory.observed()
     except LagtopError as error:
         raise DataError(f"{file.name}: {error}") from None
     return trajectory

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from lagrange_cli.compare.compare import compared
 from lagrange_cli.compare.differences import Trajectory
-from lagrange_cli.inputs.seen import Conventions
+from lagrange_cli.inputs.observed import Conventions
 
 TOP = Top(thetadot0=1, psidot0=3)
 T = np.linspace(0, 2, 201)
