@@ -167,8 +167,6 @@ def _known(
             raise LagtopError(f"--fix {name} needs {name}: give it as an option or in a scene")
         names.append(matching[0])
     stds = found.stds.only(names)
-    if stds.correlations:
-        complain("Warning: the correlations of known inputs are not used")
     return known_inputs({name: present[name] for name in names}, stds), found.system
 
 

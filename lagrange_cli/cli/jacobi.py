@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..elliptic.function_table import ComplexPoints
     from ..elliptic.nome_series import SeriesTable
     from ..elliptic.tables import TableOfFunctions
-    from ..inputs.ranges import Multiple, Multiples
+    from ..inputs.values import Multiple, Multiples
     from ..output.destination import Output
 
 MOST_TERMS = 10_000
@@ -56,14 +56,14 @@ def constant_keys(group: str, table: str) -> dict[str, Key]:
 
 
 def _parse_range(text: str) -> Points:
-    from ..inputs.ranges import parse_values
+    from ..inputs.values import parse_values
 
     return parse_values(text)
 
 
 def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
     """Return a range, or the arguments of a comma-separated list."""
-    from ..inputs.ranges import parse_multiple, parse_multiples
+    from ..inputs.values import parse_multiple, parse_multiples
 
     if ":" in text:
         return parse_multiples(text)
@@ -214,7 +214,7 @@ def _arguments(
     """
     from ..arithmetic.points import ListedPoints
     from ..elliptic.function_table import ComplexPoints
-    from ..inputs.ranges import Multiple, listed_multiples
+    from ..inputs.values import Multiple, listed_multiples
 
     imag: list[Fraction] = []
     if isinstance(u, list):

@@ -174,9 +174,8 @@ def _map_options(
 def _axis(option: str, text: str, top: opt.TopOptions) -> Axis:
     """Return the axis of a map from a text such as `r0=log:5:120:40` or `r0=60:600:40 rpm`."""
     from ..inputs.input_keys import DECLARED
-    from ..inputs.ranges import parse_range
     from ..inputs.units import factor_of
-    from ..inputs.values import parse_value
+    from ..inputs.values import parse_range, parse_value
     from ..plot.map import checked_axis
 
     name, _, grid = text.partition("=")

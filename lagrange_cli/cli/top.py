@@ -16,13 +16,13 @@ from .options import FILE, Group, Parsed, choice, late, option, rad
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.input_keys import Input
-    from ..inputs.value import Value
+    from ..inputs.values import Value
     from ..motion.numbers import Numbers
     from ..motion.solve import Motion
 
 M = TypeVar("M", bound="Numbers")
 
-_scenes = late("inputs.scene_file", "scene_names")
+_scenes = late("inputs.scenes", "scene_names")
 SCENE = Parsed("SCENE", str, _scenes)
 
 
@@ -31,8 +31,8 @@ def value_type(number: str = "parse_number", **allowed: bool) -> Parsed:
 
     See `parse_value` for the values of `allowed`.
     """
-    read = late("inputs.ranges" if number != "parse_number" else "arithmetic.text", number)
-    return Parsed("X", late("inputs.value", "parse_value", parse=read, **allowed))
+    read = late("inputs.values" if number != "parse_number" else "arithmetic.text", number)
+    return Parsed("X", late("inputs.values", "parse_value", parse=read, **allowed))
 
 
 INPUT = TIME = value_type()
@@ -172,7 +172,7 @@ def _scene_among(words: Sequence[str], *, are_files: bool) -> tuple[str | None, 
     Words that are files are scenes only if they end in `.toml` or are shipped.  Raises LagtopError
     for more than one scene.
     """
-    from ..inputs.scene_file import is_scene_file
+    from ..inputs.scenes import is_scene_file
 
     scenes = [word for word in words if (is_scene_file if are_files else is_scene)(word)]
     if len(scenes) > 1:

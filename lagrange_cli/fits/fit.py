@@ -18,7 +18,7 @@ from ..arithmetic.text import parse_number
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.given import gather
-from ..inputs.value import value_of
+from ..inputs.values import value_of
 from .harmonics import frame_of, slowest_spin
 from .least_squares import Fit, fitted_from, reweighted
 from .nutation import NoNutationError, Shown, Turns, shown_by, turns_in

@@ -67,14 +67,6 @@ class Stds(dict[str, float]):
         """Return the uncertainties of some inputs."""
         return Stds({x: std for x, std in self.items() if x in names})
 
-    # For the old sensitivities, sweeps and fits.
-    correlations: Mapping[frozenset[str], Fraction] = {}
-
-    @property
-    def sources(self) -> Sequence[tuple[Fraction, Mapping[str, Fraction]]]:
-        """The independent sources of all uncertainties: their variances and shares by input."""
-        return [(Fraction(1), {name: Fraction(1)}) for name in self]
-
 
 def parse_value(
     text: str,
@@ -220,12 +212,6 @@ class Span(NamedTuple):
     logarithmic: bool = False
     """Whether the interval is divided into equal ratios instead of equal steps."""
 
-    def points(self, count: int) -> Points:
-        """Return `count` points of the interval, both ends included."""
-        if self.logarithmic:
-            return LogPoints(self.first, self.last, count)
-        return EvenPoints(self.first, (self.last - self.first) / max(count - 1, 1), count)
-
     def scaled(self, factor: Fraction) -> Span:
         """Return the interval multiplied by a factor > 0."""
         return self._replace(first=self.first * factor, last=self.last * factor)
@@ -234,7 +220,7 @@ class Span(NamedTuple):
         return f"{float(self.first):g} to {float(self.last):g}"
 
 
-def _parse_span(
+def _parse_ends(
     parts: Sequence[str], text: str, parse: Callable[[str], Fraction] = parse_number
 ) -> Span:
     """Return the span of two ends.  Raises LagtopError if a logarithmic one contains 0."""
@@ -254,7 +240,7 @@ def parse_span(text: str) -> Span:
     ends = text.removeprefix(LOG).split(":")
     if len(ends) != 2:
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
-    span = _parse_span(ends, text)
+    span = _parse_ends(ends, text)
     if not span.first < span.last:
         raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
     return span
@@ -274,13 +260,16 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
     parts = text.removeprefix(LOG).split(":")
     if len(parts) != 3:
         raise LagtopError(f"must be a range [log:]start:stop:count, got {quoted(text)}")
-    span, count = _parse_span(parts, text, parse), parse_number(parts[2])
+    (first, last, logarithmic), count = _parse_ends(parts, text, parse), parse_number(parts[2])
     if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {quoted(text)}")
-    if count == 1 and span.first != span.last:
+    if count == 1 and first != last:
         wanted = "must have a count of 2 or more between different ends"
         raise LagtopError(f"{wanted}, got {quoted(text)}")
-    return span.points(int(count))
+    size = int(count)
+    if logarithmic:
+        return LogPoints(first, last, size)
+    return EvenPoints(first, (last - first) / max(size - 1, 1), size)
 
 
 def parse_values(text: str) -> Points:
@@ -317,18 +306,15 @@ def parse_multiple(text: str) -> Multiple:
 
     Raises LagtopError for anything else.
     """
-    before, has_unit, after = text.strip().partition("K")
-    if not has_unit:
+    if "K" not in text:
         return Multiple(parse_number(text), False)
-    try:
-        factor = parse_number(f"{before}1" if before in {"", "+", "-"} else before)
-        divisor = parse_number(after.removeprefix("/")) if after else Fraction(1)
-        if after[:1] not in {"", "/"} or divisor <= 0:
-            raise LagtopError(text)
-    except LagtopError:
+    number = rf"{_DECIMAL}{_EXPONENT}?"
+    found = re.fullmatch(rf"([+-]|{number})?\s*K(?:/({number}))?", text.strip())
+    if found is None or parse_number(found[2] or "1") <= 0:
         wanted = "must be a multiple of K such as K, -2.5K, K/2 or 3K/4"
-        raise LagtopError(f"{wanted}, got {quoted(text)}") from None
-    return Multiple(factor / divisor, True)
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+    before = {None: "1", "+": "1", "-": "-1"}.get(found[1], found[1])
+    return Multiple(parse_number(before) / parse_number(found[2] or "1"), True)
 
 
 def parse_multiples(text: str) -> Multiples:
@@ -336,15 +322,10 @@ def parse_multiples(text: str) -> Multiples:
 
     Raises LagtopError as `parse_range` does, and if only one end is in units of K.
     """
-    ends: list[Multiple] = []
-
-    def parse(end: str) -> Fraction:
-        ends.append(parse_multiple(end))
-        return ends[-1].factor
-
-    points = parse_range(text, parse)
+    ends = [parse_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
     wanted = f"must have both ends in units of K or none, got {quoted(text)}"
-    return Multiples(points, _in_quarters(ends, LagtopError(wanted)))
+    in_quarters = _in_quarters(ends, LagtopError(wanted))
+    return Multiples(parse_range(text, lambda end: parse_multiple(end).factor), in_quarters)
 
 
 def listed_multiples(single: Sequence[Multiple]) -> Multiples:

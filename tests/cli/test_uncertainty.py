@@ -13,7 +13,7 @@ import pytest
 from conftest import Lagtop, Solved, assert_one_line
 from lagtop import Top, solve
 
-from lagrange_cli.inputs.value import parse_value
+from lagrange_cli.inputs.values import parse_value
 from lagrange_cli.motion.uncertainty import by_given
 from lagrange_cli.output.report import uncertain_text
 

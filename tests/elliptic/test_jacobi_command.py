@@ -14,7 +14,7 @@ from function_reference import Reference
 from lagtop import LagtopError
 
 from lagrange_cli.arithmetic.points import parse_complex
-from lagrange_cli.inputs.ranges import Multiple, parse_multiple
+from lagrange_cli.inputs.values import Multiple, parse_multiple
 
 DIGITS = pytest.mark.parametrize("digits", ["", " --digits 20"])
 

@@ -17,7 +17,7 @@ from lagtop import LagtopError, Top, solve
 
 from lagrange_cli.arithmetic.points import EvenPoints
 from lagrange_cli.arithmetic.rounding import text_of
-from lagrange_cli.inputs.ranges import parse_values
+from lagrange_cli.inputs.values import parse_values
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from lagtop import LagtopError, Top, sensitivities, solve
 from scenes import EPS, EVERY_KIND, UNIT
 from slopes import Slopes
 
-from lagrange_cli.inputs.value import Stds
+from lagrange_cli.inputs.values import Stds
 from lagrange_cli.motion.derivatives import AngleDerivatives, inputs_of
 from lagrange_cli.motion.uncertainty import AngleStds, FirstOrder
 

@@ -21,7 +21,7 @@ from lagtop import LagtopError, Motion, Top, solve, sweep
 from scenes import EPS, UNIT, random_scene
 
 from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.inputs.ranges import parse_values
+from lagrange_cli.inputs.values import parse_values
 from lagrange_cli.motion.gaps import state as state_of
 from lagrange_cli.motion.regime import Regime
 from lagrange_cli.motion.regime import exact as exact_of
