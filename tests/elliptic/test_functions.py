@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import random
+from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
@@ -15,6 +16,7 @@ from typing import Any
 
 import mpmath
 import pytest
+from flint import ctx
 from function_reference import NUMBER, Reference
 
 from lagrange_cli.arithmetic.points import ExactComplex, ListedPoints, parse_complex
@@ -318,3 +320,20 @@ def test_am_ends_at_its_branch_points(k: str, height: float) -> None:
         imag = Fraction(part * height) if height < math.inf else Fraction(500)
         cells = row(k, ExactComplex(Fraction(7), imag), families=("am",), is_real=False)
         assert bool(cells["am_rad_re"]) is (exists or k == "0")
+
+
+def test_threads_and_the_precision_of_the_host() -> None:
+    """Rows from eight threads, with other moduli and digits each, are those of one thread."""
+
+    def rows(i: int) -> list[Cells]:
+        u, v = parse_complex(f"0.{i}1+0.3i"), parse_complex("0.2+0.7i")
+        return [row(k, u, v, digits=20 * i or None, is_real=False) for k in MODULI[i : i + 2]]
+
+    before, ctx.prec = ctx.prec, 77
+    try:
+        serial = list(map(rows, range(8)))
+        with ThreadPoolExecutor(8) as pool:
+            assert list(pool.map(rows, range(8))) == serial
+        assert ctx.prec == 77
+    finally:
+        ctx.prec = before
