@@ -2,30 +2,31 @@
 
 Every number is rounded from a ball that contains it: to the nearest double, or to N digits.  If
 the ends of the ball round differently, it is computed again with more digits.  Two numbers that
-agree to `equality_digits` digits are taken as equal: a ball of that many digits stands for the
-simplest fraction in it: 0, 1, or a tie between two roundings.
+agree to `equal_digits` are taken as equal: a ball of that many digits stands for the simplest
+fraction in it, such as 0, 1, or a tie between two roundings.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any
 
 from flint import arb, fmpq
 
 from ..arithmetic.ball import OPEN, Ball, TooFewDigitsError, balls
-from ..arithmetic.rounding import text_of
+from ..arithmetic.rounding import precisions, text_of
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError, OutOfRangeError
 
-S = TypeVar("S")
 Value = arb | Fraction | str | None
 """A number in a ball or as a fraction, a word, or None for a number that does not exist."""
 
-FIRST_DIGITS, EQUALITY_DIGITS = 30, 1_200
+
+NARROW = 3_000
+"""Least number of bits to which a ball must be known to stand for a fraction."""
 
 
 def rational(x: Fraction) -> fmpq:
@@ -38,46 +39,16 @@ def exact(x: Fraction) -> arb:
     return arb(rational(x))
 
 
-def equality_digits(inputs: Iterable[Fraction], digits: int | None) -> int:
-    """Return the digits to which equal numbers agree, for inputs of any size.
-
-    They are 1,200, ten for each digit requested, and at least four for each decade between the
-    sizes of the inputs and 1.
-    """
-    sizes = sum(abs(x.numerator.bit_length() - x.denominator.bit_length()) for x in inputs)
-    return EQUALITY_DIGITS + 10 * (digits or 0) + 4 * sizes // 3
-
-
-def precisions(digits: int | None, most: int) -> Iterator[int]:
-    """Yield the digits of the balls to try for doubles or `digits` digits; `most` is the last."""
-    working = max(FIRST_DIGITS, (digits or 0) + 10)
-    while working < most:
-        yield working
-        working *= 2
-    yield most
-
-
-def decided(what: str, ask: Callable[[], S], most: int = EQUALITY_DIGITS) -> S:
-    """Return the first answer for which the digits of the balls suffice.
-
-    Raises LagtopError if `most` digits do not.
-    """
-    for working in precisions(None, most):
-        with balls(working), suppress(TooFewDigitsError):
-            return ask()
-    raise LagtopError(f"{most} digits do not decide {what}")
-
-
 def rounded(
     compute: Callable[[], Mapping[str, Value]], digits: int | None, most: int
 ) -> dict[str, Any]:
     """Return numbers by name as doubles, or with `digits` significant digits as texts.
 
     Words and None are left as they are.  A pole is None.  A number that no double can hold is an
-    infinity or 0.  Raises LagtopError if `most` digits decide no branch.
+    infinity or 0.  Raises LagtopError if `most` digits do not determine all numbers.
     """
     found: dict[str, Any] = {}
-    for working in precisions(digits, most):
+    for working in precisions(digits or 0, most=most):
         with balls(working), suppress(TooFewDigitsError):
             values = compute()
             for name, value in values.items():
@@ -87,7 +58,7 @@ def rounded(
                         found[name] = result
             if len(found) == len(values):
                 return {name: found[name] for name in values}
-    raise LagtopError(f"{most} digits do not decide these numbers")
+    raise LagtopError(f"{most} digits do not determine these numbers")
 
 
 def _rounded(value: Value, digits: int | None, *, is_last: bool) -> Any:
@@ -98,7 +69,7 @@ def _rounded(value: Value, digits: int | None, *, is_last: bool) -> Any:
         low, high = _ends(value, digits)
         if low == high:
             return low
-        if not is_last:
+        if not (is_last and value.rel_one_accuracy_bits() > NARROW):
             return OPEN
         value = Ball(value).simplest()
     if isinstance(value, Fraction):

@@ -20,8 +20,9 @@ from flint import arb
 
 from ..arithmetic.ball import balls
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
+from ..arithmetic.rounding import FIRST_DIGITS, equal_digits
 from ..errors import LagtopError
-from .enclosures import FIRST_DIGITS, Value, equality_digits, exact, record
+from .enclosures import Value, exact, record
 from .functions import Functions, Point
 from .modulus import Kind, Modulus
 from .tables import TableOfFunctions, nearest
@@ -190,7 +191,7 @@ class EtaTable(TableOfFunctions):
         """Raise LagtopError unless the motion is periodic; see the class for doubles."""
         self.quadrature.check()
         if doubles:
-            with balls(10 * FIRST_DIGITS):
+            with balls(FIRST_DIGITS):
                 period = float(eta_constants(self.quadrature).period.mid())
             check_reach("tau", self.points, min(MAX_PERIODS * period, MAX_TIME))
 
@@ -234,7 +235,7 @@ def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, A
     Raises LagtopError as `Quadrature.check` does, and for numbers beyond the doubles.
     """
     quadrature.check()
-    most = equality_digits(quadrature.inputs, digits)
+    most = equal_digits(quadrature.inputs, digits or 0)
     return record(lambda: _constants_by_key(quadrature), digits, most)
 
 

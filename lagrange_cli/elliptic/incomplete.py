@@ -8,10 +8,11 @@ from fractions import Fraction
 
 from flint import acb, arb
 
+from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.points import MAX_PERIODS, Points, check_reach
 from .enclosures import Value, exact
 from .functions import nearest as nearest_integer
-from .modulus import Modulus, ModulusInput, exceeds_quarter_turn, quarter_period, second_kind
+from .modulus import Modulus, ModulusInput, quarter_period, second_kind
 from .tables import TableOfFunctions, nearest
 
 
@@ -76,7 +77,10 @@ class AmplitudeTable(TableOfFunctions):
         if self.modulus.radians:
             half_turns = nearest_integer(angle / arb.pi())
             sine, cosine = (angle - half_turns * arb.pi()).sin_cos()
-            beyond = self.modulus.is_1 and exceeds_quarter_turn(abs(x))
+            rest = abs(angle) - arb.pi() / 2
+            beyond = self.modulus.is_1 and rest > 0
+            if self.modulus.is_1 and not (beyond or rest < 0):
+                raise TooFewDigitsError
         else:
             half_turns = round(x / 180)
             sine, cosine = exact((x - 180 * half_turns) / 180).sin_cos_pi()

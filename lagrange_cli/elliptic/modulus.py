@@ -17,10 +17,10 @@ from typing import Any, NamedTuple
 
 from flint import acb, arb
 
-from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.points import ExactComplex
+from ..arithmetic.rounding import equal_digits
 from ..errors import LagtopError
-from .enclosures import Value, decided, equality_digits, exact, record
+from .enclosures import Value, exact, record
 
 
 class Kind(Enum):
@@ -94,18 +94,6 @@ AnyModulus = ModulusInput | ExactComplex
 """A modulus in [0, 1] by one of its quantities, or a number that is imaginary or above 1."""
 
 
-def exceeds_quarter_turn(angle: Fraction) -> bool:
-    """Return whether an angle in radians is above pi/2."""
-
-    def ask() -> bool:
-        rest = exact(angle) - arb.pi() / 2
-        if rest > 0 or rest < 0:
-            return bool(rest > 0)
-        raise TooFewDigitsError
-
-    return decided("whether an angle is above pi/2", ask, equality_digits([angle], None) + 2_000)
-
-
 def check_modulus(given: AnyModulus) -> None:
     """Raise LagtopError unless the modulus is real and not negative, or i kbar with kbar > 0."""
     if isinstance(given, ModulusInput):
@@ -165,7 +153,7 @@ def constants_record(given: AnyModulus, digits: int | None) -> dict[str, Any]:
             return _unit_constants(given)
         return _other_constants(given)
 
-    return record(compute, digits, equality_digits(numbers_of(given), digits))
+    return record(compute, digits, equal_digits(numbers_of(given), digits or 0))
 
 
 def _unit_constants(given: ModulusInput) -> dict[str, Value]:

@@ -10,8 +10,9 @@ from typing import Any
 
 from flint import ctx
 
+from ..arithmetic.rounding import equal_digits
 from ..arithmetic.text import NumberText
-from .enclosures import Value, cell, equality_digits, rounded
+from .enclosures import Value, cell, rounded
 
 Texts = Sequence[Sequence[NumberText]]
 """Rows of numbers as text; an empty text is a missing number."""
@@ -45,7 +46,7 @@ class TableOfFunctions:
         def compute() -> dict[str, Value]:
             return self.columns(x, self._constants(ctx.prec))
 
-        return rounded(compute, digits, equality_digits(self.inputs(x), digits))
+        return rounded(compute, digits, equal_digits(self.inputs(x), digits or 0))
 
     def check(self, *, doubles: bool) -> None:
         """Raise LagtopError for inputs that are invalid, or too large for doubles."""
