@@ -20,7 +20,7 @@ from ..inputs import rotations
 from ..inputs.observed import Observed
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
-from .differences import Alignment, Sizes, Trajectory
+from .differences import Alignment, Trajectory, sizes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
@@ -195,7 +195,7 @@ def _shifted_clock(motion: Motion, trajectory: Trajectory) -> Cause:
     from scipy.optimize import minimize_scalar  # start-up
 
     few, t = trajectory.few(20), trajectory.given["t"][:, 0]
-    step = 0.3 / Sizes.of(motion.top).rates
+    step = 0.3 / sizes(motion.top)[2]
     reach = max(motion.T_nutation or 0.0, 2 * abs(t[0]), 10 * abs(t[-1] - t[0]) / len(t))
     count = math.ceil(min(reach / step, _MOST_SHIFTS))
     shifts = step * np.arange(-count, count + 1.0)

@@ -186,14 +186,15 @@ def _attitude(motion: Motion, run: Observed, q: Array, exact: dict[str, Array]) 
 
 def _rates(motion: Motion, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
     """Return the differences of the angular velocity, and the changes of what it conserves."""
-    top, own, size = motion.top, run.body_rates, Sizes.of(motion.top)
+    top, own = motion.top, run.body_rates
+    swing, torque, size = sizes(top)
     if run.space_rates is not None:
         given, rates = run.space_rates, rotations.rotated(q, exact)
     elif own is not None:
         given, rates = own, exact
     else:
         return {}
-    found = {"rates": np.linalg.norm(given - rates, axis=1) / size.rates}
+    found = {"rates": np.linalg.norm(given - rates, axis=1) / size}
     if run.quaternion is None:
         return found
     to_body = rotations.conjugate(run.quaternion)
@@ -201,29 +202,17 @@ def _rates(motion: Motion, run: Observed, q: Array, exact: Array) -> dict[str, A
     up = rotations.rotated(to_body, np.broadcast_to([0.0, 0.0, 1.0], own.shape))
     A, C, r0 = float(top.A), float(top.C), float(top.r0)
     moments = np.array([A, A, C])
-    energy = (moments * own**2).sum(axis=1) / 2 + size.torque * up[:, 2]
+    energy = (moments * own**2).sum(axis=1) / 2 + torque * up[:, 2]
     momentum = (moments * own * up).sum(axis=1)
-    kinetic, spin = (A * size.swing**2 + C * r0**2) / 2, math.hypot(A * size.swing, C * r0)
-    found["energy"] = (energy - energy[0]) / (kinetic + size.torque or 1.0)
-    found["Lz"] = (momentum - momentum[0]) / (spin + math.sqrt(A * size.torque) or 1.0)
+    kinetic, spin = (A * swing**2 + C * r0**2) / 2, math.hypot(A * swing, C * r0)
+    found["energy"] = (energy - energy[0]) / (kinetic + torque or 1.0)
+    found["Lz"] = (momentum - momentum[0]) / (spin + math.sqrt(A * torque) or 1.0)
     return found
 
 
-class Sizes(NamedTuple):
-    """Sizes of the motion of a top, for relative errors."""
-
-    swing: float
-    """Initial angular velocity across the figure axis."""
-    torque: float
-    """Greatest torque of the weight, m g s."""
-    rates: float
-    """Size of the angular velocity."""
-
-    @classmethod
-    def of(cls, top: Top) -> Sizes:
-        """Return the sizes of the motion of a top."""
-        tilt = float(top.inputs(radians=True)["theta0_rad"])
-        swing = math.hypot(float(top.thetadot0), float(top.psidot0) * math.sin(tilt))
-        torque = float(top.m) * float(top.g) * float(top.s)
-        rates = swing + abs(float(top.r0)) + math.sqrt(torque / float(top.A)) or 1.0
-        return cls(swing, torque, rates)
+def sizes(top: Top) -> tuple[float, float, float]:
+    """Return the initial rate across the figure axis, m g s, and the size of all rates."""
+    tilt = float(top.inputs(radians=True)["theta0_rad"])
+    swing = math.hypot(float(top.thetadot0), float(top.psidot0) * math.sin(tilt))
+    torque = float(top.m) * float(top.g) * float(top.s)
+    return swing, torque, swing + abs(float(top.r0)) + math.sqrt(torque / float(top.A)) or 1.0
