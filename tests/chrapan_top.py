@@ -13,7 +13,7 @@ from lagtop import Top
 from ours import ManyDigits
 
 from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
-from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.tables import ProvedTable
 from lagrange_cli.motion.solve import solve
 
 

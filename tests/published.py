@@ -18,7 +18,7 @@ from lagtop import Motion, read_scene, solve
 from ours import ManyDigits, Ours
 
 from lagrange_cli.inputs.names import ANGLES
-from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.tables import ProvedTable
 
 Many = Any
 """An mpf with many digits."""

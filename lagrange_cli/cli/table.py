@@ -63,7 +63,7 @@ def table_command(
     """
     from ..inputs.trajectory import read_times
     from ..motion.over_time.columns import DEFAULT_COLUMNS
-    from ..motion.over_time.table_request import grid
+    from ..motion.over_time.tables import grid
 
     opt.exclude(n=n, dt=dt)
     for name, value in {"t_max": t_max, "t_min": t_min, "n": n, "dt": dt}.items():
@@ -85,7 +85,7 @@ def table_command(
         if digits is None and not certify:
             header, parts = _rows(motion, at, names, found, top.radians, wrap)
         else:
-            from ..motion.over_time.proved_table import ProvedTable
+            from ..motion.over_time.tables import ProvedTable
 
             proved = ProvedTable(motion, names, digits, radians=top.radians, wrap=wrap)
             header, parts = proved.rows(at, radii=certify)
@@ -98,7 +98,7 @@ def _rows(
     motion: Motion, times: Points, names: Sequence[str], found: Given, radians: bool, wrap: bool
 ) -> tuple[Sequence[str], Iterable[Any]]:
     """Return the header and the rows of a table in doubles."""
-    from ..motion.over_time.table import rows
+    from ..motion.over_time.tables import rows
 
     stds = angle_stds(found, motion)
     return rows(motion, times, names, radians=radians, wrap=wrap, stds=stds.at if stds else None)

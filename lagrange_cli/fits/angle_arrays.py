@@ -18,20 +18,27 @@ from ..arithmetic.types import Array, Mask
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine
 from ..motion.gaps import Gaps, State, gaps_from_rest
-from ..motion.over_time.attitude import Attitude, Growth, Growths, Times
-from ..motion.over_time.samplers import tilt_of
-from ..motion.over_time.series_constants import theta_constants
-from ..motion.over_time.theta_sampler import arguments_of, moduli_of, unwound
-from ..motion.over_time.theta_series import (
-    Frame,
-    Series,
-    circular_series,
-    hyperbolic_series,
-)
 from ..motion.regime import Regime
 from ..motion.spin_precession import Nutating
 from ..sweep.moving_tops import FACTS, MovingTops
 from ..sweep.top_arrays import PAIR_EPS, TopArrays, facts_at_rest
+from .attitude import (
+    Attitude,
+    Growth,
+    Growths,
+    Times,
+    arguments_of,
+    moduli_of,
+    tilt_of,
+    unwound,
+)
+from .theta_series import (
+    Frame,
+    Series,
+    circular_series,
+    hyperbolic_series,
+    theta_constants,
+)
 
 _SMALL = 2.0**-56
 """Error of a phase, or of a constant, that is far below a unit of the angles."""

@@ -278,7 +278,7 @@ class AngleDerivatives:
         """Return the same as `at` from proved rows, which take some milliseconds per time."""
         import numpy as np
 
-        from .over_time.proved_table import ProvedTable
+        from .over_time.tables import ProvedTable
 
         found = np.zeros((len(self.inputs), 3, t.size))
         for i, name in enumerate(self.inputs):

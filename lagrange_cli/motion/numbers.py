@@ -19,7 +19,7 @@ from .spin_precession import Nutating
 
 if TYPE_CHECKING:
     from .kinds import Kind
-    from .over_time.samplers import Sampler
+    from .over_time.sampling import Sampler
 
 _S = TypeVar("_S")
 
@@ -182,7 +182,7 @@ class Numbers:
 
     def sampler(self) -> Sampler:
         """Return the series used by `angles`, computed once."""
-        from .over_time.theta_sampler import sampler_of  # start-up: loads NumPy
+        from .over_time.sampling import sampler_of  # start-up: loads NumPy
 
         if self._sampler is None:
             self._sampler = sampler_of(self.sharp())

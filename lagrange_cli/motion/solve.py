@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from ..arithmetic.types import Array
     from .notebook import Document
-    from .over_time.samplers import Angles
-    from .over_time.series_constants import Swing
+    from .over_time.sampling import Angles
+    from .over_time.series import Swing
 
 
 def solve(top: Top) -> Motion:
@@ -72,7 +72,7 @@ class Motion(Numbers):
         """
         if not issubclass(self.kind_class, Nutating):
             return None
-        from .over_time.series_constants import phase_at_start  # start-up: not for a record
+        from .over_time.series import phase_at_start  # start-up: not for a record
 
         kind: Callable[[int], Any] = self.kind
         return rounded("phase", lambda digits: phase_at_start(kind(digits)))
@@ -86,7 +86,7 @@ class Motion(Numbers):
         """
         if self.regime is not Regime.SEPARATRIX:
             return None
-        from .over_time.series_constants import Swing, swing_of  # start-up: not for a record
+        from .over_time.series import Swing, swing_of  # start-up: not for a record
 
         kind: Callable[[int], Any] = self.kind
 
@@ -225,6 +225,6 @@ class Motion(Numbers):
         Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
         may also be named singly.  Raises LagtopError for an unknown column or a time out of range.
         """
-        from .over_time.table import table  # start-up
+        from .over_time.tables import table  # start-up
 
         return table(self, t, columns, wrap=wrap)

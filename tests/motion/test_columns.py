@@ -22,7 +22,7 @@ from lagtop import LagtopError, Motion, Top, solve
 from scenes import EVERY_KIND, NAMED, UNIT, period, random_scene, random_times
 
 from lagrange_cli.motion.over_time.columns import COLUMNS
-from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.tables import ProvedTable
 
 TIMES = [0.375, -7.25, 2.0**-40, -(2.0**-40), 1e3, -1e6, 1e12]
 

@@ -14,7 +14,7 @@ from lagtop import Top, solve
 from scenes import UNIT
 
 from lagrange_cli.arithmetic.rounding import rounding_of
-from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.tables import ProvedTable
 
 
 @pytest.mark.parametrize("method", ["start", "steady"])

@@ -10,10 +10,13 @@ import pytest
 from lagtop import Motion, Top, solve
 from scenes import UNIT
 
-from lagrange_cli.arithmetic.arrays import ROWS, workspace
-from lagrange_cli.motion.over_time import theta_sampler
-from lagrange_cli.motion.over_time.columns import COLUMNS, SCALARS, chosen_columns
-from lagrange_cli.motion.over_time.table import samples
+from lagrange_cli.motion.over_time.columns import (
+    COLUMNS,
+    SCALARS,
+    ColumnConstants,
+    chosen_columns,
+)
+from lagrange_cli.motion.over_time.tables import Sample, columns_at
 
 STARTS: dict[str, dict[str, float]] = {
     "hyperbolic": {},
@@ -26,6 +29,7 @@ STARTS: dict[str, dict[str, float]] = {
     "separatrix": UNIT | {"r0": 1, "theta0_deg": 90, "psidot0": 1, "thetadot0": 1},
 }
 T = np.linspace(-3, 40, 40_000)
+CONSTANTS: Any = ColumnConstants(*np.ones(9))
 
 
 @pytest.mark.slow
@@ -38,59 +42,26 @@ def test_a_column_is_the_same_whatever_stands_beside_it(start: str) -> None:
         np.testing.assert_array_equal(alone, together[name])
 
 
-def _forbidden(*_: Any) -> Any:
-    pytest.fail("this was not asked for")
-
-
 @pytest.mark.parametrize(
-    ("columns", "forbidden"),
+    ("columns", "computed"),
     [
-        ("t r", "whole_periods _write_polynomial arguments_of moduli_of tilt_of"),
-        ("u theta psidot phidot axis_z moment Lz", "arguments_of"),
-        ("thetadot energy", "arguments_of tilt_of"),
-        ("u psidot", "tilt_of"),
-        ("phi psi dphi dpsi", "tilt_of moduli_of"),
+        ("t r", ""),
+        ("theta", "functions parts squares tilt"),
+        ("u theta psidot phidot axis_z moment Lz", "functions parts squares tilt moduli"),
+        ("thetadot energy", "functions parts squares moduli rate"),
+        ("phi psi dphi dpsi", "functions parts args"),
+        ("p", "functions parts args squares moduli rate"),
     ],
 )
 @pytest.mark.parametrize("start", ["hyperbolic", "circular"])
-def test_what_is_not_asked_for_is_not_computed(
-    start: str, columns: str, forbidden: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    motion = solve(Top(**STARTS[start]))
-    expected = motion.table(T, list(COLUMNS))
-    for name in forbidden.split():
-        monkeypatch.setattr(theta_sampler, name, _forbidden)
-    for name, values in motion.table(T, columns.split()).items():
-        np.testing.assert_array_equal(values, expected[name])
-
-
-@pytest.mark.parametrize("start", ["hyperbolic", "circular"])
-def test_the_rate_is_computed_only_if_asked_for(start: str) -> None:
-    motion = solve(Top(**STARTS[start]))
-    expected = motion.table(T, list(COLUMNS))
-    sampler = motion.sampler()
-    frames = [frame._replace(rate=_Forbidden()) for frame in vars(sampler)["frames"]]
-    vars(sampler)["frames"] = frames
-    names = "theta phi psi dphi dpsi u phidot psidot axis_z axis_x quaternion_w moment Lz".split()
-    for name, values in motion.table(T, names).items():
-        np.testing.assert_array_equal(values, expected[name])
-    with pytest.raises(pytest.fail.Exception):
-        motion.table(T, ["thetadot"])
-
-
-class _Forbidden:
-    """Coefficients that must not be looked at."""
-
-    def __getitem__(self, _: Any) -> Any:
-        return _forbidden()
-
-
-@pytest.mark.parametrize("name", ["arguments_of", "moduli_of", "whole_periods"])
-def test_what_is_asked_for_is_computed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else the test before would show nothing."""
-    monkeypatch.setattr(theta_sampler, name, _forbidden)
-    with pytest.raises(pytest.fail.Exception):
-        solve(Top()).table(T, ["p"])
+def test_what_is_not_asked_for_is_not_computed(start: str, columns: str, computed: str) -> None:
+    seen: set[str] = set()
+    for _, attitude in solve(Top(**STARTS[start])).sampler().attitudes(T):
+        sample = Sample(attitude, CONSTANTS, 1, False)
+        for column in chosen_columns(columns.split()).values():
+            column.value(sample)
+        seen |= vars(attitude).keys() & set("functions parts squares tilt moduli args rate".split())
+    assert seen == set(computed.split())
 
 
 def test_threads_share_no_arrays() -> None:
@@ -105,21 +76,13 @@ def test_threads_share_no_arrays() -> None:
 
 
 def test_motions_may_be_sampled_in_turns() -> None:
-    def blocks(motion: Motion) -> Any:
-        return samples(motion, T, chosen_columns(["phi"]), wrap=False)
-
-    one, other = solve(Top()), solve(Top(r0=200))
-    for (rows, mine), (_, theirs) in zip(blocks(one), blocks(other), strict=True):
-        np.testing.assert_array_equal(mine.spin, one.angles(T).phi[rows])
-        np.testing.assert_array_equal(theirs.spin, other.angles(T).phi[rows])
-
-
-def test_a_workspace_is_lent_once() -> None:
-    with workspace(10) as one, workspace(2, 3) as other:
-        assert (one.shape, other.shape) == ((ROWS, 10), (ROWS, 2, 3))
-        assert not np.shares_memory(one, other)
-    with workspace(10) as again:
-        assert np.shares_memory(again, one) or np.shares_memory(again, other)
+    """Blocks of several motions do not share arrays, nor leave NumPy's settings changed."""
+    one, other, before = solve(Top()), solve(Top(r0=200)), np.geterr()
+    both = (columns_at(x, ["phi"], radians=True, wrap=False)(T) for x in (one, other))
+    for (rows, mine), (_, theirs) in zip(*both, strict=True):
+        np.testing.assert_array_equal(mine[0], one.angles(T).phi[rows])
+        np.testing.assert_array_equal(theirs[0], other.angles(T).phi[rows])
+    assert np.geterr() == before
 
 
 @pytest.mark.parametrize("count", [0, 1, 16383, 16384, 16385, 40_000])
@@ -131,8 +94,7 @@ def test_blocks_fit_together(start: str, count: int) -> None:
 
 
 def _counts(motion: Motion) -> list[int]:
-    frames = vars(motion.sampler())["frames"]
-    return [len(part) for frame in frames for c in (frame.x, frame.y) for part in c[:2]]
+    return [len(part) for frame in vars(motion.sampler())["frames"] for part in frame.parts]
 
 
 def test_series_near_the_separatrix_are_short() -> None:

@@ -28,7 +28,7 @@ from lagtop import (
 from scenes import EPS, UNIT
 
 from lagrange_cli.motion.over_time.columns import COLUMNS
-from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.tables import ProvedTable
 from lagrange_cli.motion.paper.requested import TEXTBOOK
 from lagrange_cli.motion.record import all_keys
 

@@ -51,7 +51,7 @@ from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import DIGITS, Reference, rotation_angle
 from lagrange_cli.bench.reference import inputs_of as inputs_in_mpmath
 from lagrange_cli.errors import OutOfRangeError
-from lagrange_cli.motion.over_time.table import rows
+from lagrange_cli.motion.over_time.tables import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 UNITS, WRAPPED, HALF_ULP, SWEEP_EPS = 4.0, 5.0, 0.5 + 1e-9, 10.0

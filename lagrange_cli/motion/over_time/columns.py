@@ -1,51 +1,51 @@
 """The columns of `lagtop table`: each is declared once, with its formula.
 
-The formula of a column is a function of `ColumnParts`, a motion at one or several times.  Equation
-numbers are Chrapan's.
+A formula is a function of `Parts`, the motion at one time in balls or at many times in doubles.
+Each part is computed on first use, from the attitude
+
+    X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
+
+up to a common positive factor.  With N = |X|^2 + |Y|^2, both 1 + u = 2 |X|^2/N and 1 - u = 2
+|Y|^2/N keep their digits next to the poles.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from enum import Flag, auto
-from functools import partial
-from typing import Any, NamedTuple
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
+from ...arithmetic.numbers import R
 from ...arithmetic.values import Key
 from ...inputs.names import ANGLES, check_names
+from ..kinds import Kind, Vertical
+from ..quantity import quantity
 
-
-class Needs(Flag):
-    """The parts of X and Y (see `samplers`) that columns need; no others are computed."""
-
-    NOTHING = 0
-    TILT = auto()
-    MODULI = auto()
-    TURN = auto()
-    """The arguments of X and Y."""
-    RATE = auto()
-    """The nutation rate."""
-
-
-NOTHING, TILT, MODULI, TURN = Needs.NOTHING, Needs.TILT, Needs.MODULI, Needs.TURN
-ATTITUDE, SWING = MODULI | TURN, MODULI | Needs.RATE
+if TYPE_CHECKING:
+    from ...arithmetic.numbers import Arithmetic
+    from ..regime import Exact
 
 
 class Column(NamedTuple):
     """One column of numbers."""
 
     key: Key
-    """The presentation of the column; its group is the name of several columns, or empty."""
-    formula: str
-    """The formula in names of columns and keys; t1 is the time of a passage of u1."""
-    needs: Needs
+    """The presentation of the column; its group is the name of several columns, or empty.
+
+    The formula is in names of columns and keys; t1 is the time of a passage of u1.
+    """
     value: Callable[[Any], Any]
-    """The formula as a function of `ColumnParts`."""
+    """The formula as a function of `Parts`."""
 
     @property
     def is_angle(self) -> bool:
         """Whether the numbers are in degrees or radians."""
         return self.key.unit == "angle"
+
+
+def _of(value: Callable[[Any], Any], texts: str, group: str = "") -> Column:
+    """Return a column from its formula and the symbol, meaning, unit, equation and formula."""
+    return Column(Key(group, *(text.strip() for text in texts.split("|"))), value)
 
 
 GROUPS = {
@@ -54,134 +54,95 @@ GROUPS = {
 }
 """The meanings of names that stand for several columns."""
 
-_alone, _axis, _quaternion = (partial(Key, group) for group in ("", *GROUPS))
-_WAVE = "less its mean rate times t, a wave"
-_ABOUT = "angular velocity about the"
-_CONSTANT = "constant except for rounding"
+_RATE, _WAVE = "rad/time", "less its mean rate times t, a wave"
+_ABOUT, _CONSTANT = "angular velocity about the", "constant except for rounding"
 
 SCALARS: dict[str, Column] = {
-    "t": Column(_alone("t", "time", "time"), "", NOTHING, lambda at: at.t),
-    "theta": Column(_alone("ϑ", "tilt", "angle", "(4,9)"), "acos(u)", TILT, lambda at: at.tilt),
-    "phi": Column(
-        _alone("φ", "spin", "angle", "(6,1)"), "integral(phidot, 0, t)", TURN, lambda at: at.spin
+    "t": _of(lambda at: at.t, "t | time | time"),
+    "theta": _of(lambda at: at.tilt, "ϑ | tilt | angle | (4,9) | acos(u)"),
+    "phi": _of(lambda at: at.spin, "φ | spin | angle | (6,1) | integral(phidot, 0, t)"),
+    "psi": _of(lambda at: at.precession, "ψ | precession | angle | (7,1) | integral(psidot, 0, t)"),
+    "dphi": _of(
+        lambda at: at.spin_wave, f"Δφ | spin {_WAVE} | angle | (6,4) | phi - mean_spin_rate*t"
     ),
-    "psi": Column(
-        _alone("ψ", "precession", "angle", "(7,1)"),
-        "integral(psidot, 0, t)",
-        TURN,
-        lambda at: at.precession,
-    ),
-    "dphi": Column(
-        _alone("Δφ", f"spin {_WAVE}", "angle", "(6,4)"),
-        "phi - mean_spin_rate*t",
-        TURN,
-        lambda at: at.spin_wave,
-    ),
-    "dpsi": Column(
-        _alone("Δψ", f"precession {_WAVE}", "angle", "(7,4)"),
-        "psi - mean_precession_rate*t",
-        TURN,
+    "dpsi": _of(
         lambda at: at.precession_wave,
+        f"Δψ | precession {_WAVE} | angle | (7,4) | psi - mean_precession_rate*t",
     ),
-    "u": Column(
-        _alone("u", "cos ϑ", "", "(4,30)"),
-        "u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2",
-        MODULI,
+    "u": _of(
         lambda at: at.u,
+        "u | cos ϑ |  | (4,30) | u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2",
     ),
-    "thetadot": Column(
-        _alone("ϑ'", "nutation rate", "rad/time", "(4,2)"),
-        "thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)",
-        SWING,
+    "thetadot": _of(
         lambda at: at.thetadot,
+        f"ϑ' | nutation rate | {_RATE} | (4,2) | "
+        "thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)",
     ),
-    "phidot": Column(
-        _alone("φ'", "spin rate", "rad/time", "(4,8)"),
-        "r0 - psidot*u",
-        MODULI,
+    "phidot": _of(
         lambda at: at.top.drift + at.south - at.north,
+        f"φ' | spin rate | {_RATE} | (4,8) | r0 - psidot*u",
     ),
-    "psidot": Column(
-        _alone("ψ'", "precession rate", "rad/time", "(4,7)"),
-        "(momentum_constant - b*u)/(1 - u**2)",
-        MODULI,
+    "psidot": _of(
         lambda at: at.south + at.north,
+        f"ψ' | precession rate | {_RATE} | (4,7) | (momentum_constant - b*u)/(1 - u**2)",
     ),
-    "p": Column(
-        _alone("p", f"{_ABOUT} body's x axis", "rad/time", "(4,1)"),
-        "thetadot*cos(phi) + psidot*sin(theta)*sin(phi)",
-        SWING | TURN,
+    "p": _of(
         lambda at: at.across * at.sin_spin + at.thetadot * at.cos_spin,
+        f"p | {_ABOUT} body's x axis | {_RATE} | (4,1) | "
+        "thetadot*cos(phi) + psidot*sin(theta)*sin(phi)",
     ),
-    "q": Column(
-        _alone("q", f"{_ABOUT} body's y axis", "rad/time", "(4,1)"),
-        "psidot*sin(theta)*cos(phi) - thetadot*sin(phi)",
-        SWING | TURN,
+    "q": _of(
         lambda at: at.across * at.cos_spin - at.thetadot * at.sin_spin,
+        f"q | {_ABOUT} body's y axis | {_RATE} | (4,1) | "
+        "psidot*sin(theta)*cos(phi) - thetadot*sin(phi)",
     ),
-    "r": Column(
-        _alone("r", f"{_ABOUT} figure axis", "rad/time", "(4,1)"),
-        "r0",
-        NOTHING,
-        lambda at: at.top.r0,
-    ),
-    "moment": Column(  # the only component of s k' x (-mg k), section 4 a
-        _alone("M", "moment of the weight about the line of nodes", "mass len²/time²"),
-        "m*g*s*sin(theta)",
-        MODULI,
+    "r": _of(lambda at: at.top.r0, f"r | {_ABOUT} figure axis | {_RATE} | (4,1) | r0"),
+    "moment": _of(
         lambda at: at.top.torque * at.sine,
+        "M | moment of the weight about the line of nodes | mass len²/time² |  | m*g*s*sin(theta)",
     ),
-    "axis_x": Column(
-        _axis("", "x part in space"),
-        "sin(theta)*sin(psi)",
-        ATTITUDE,
+    "axis_x": _of(
         lambda at: at.sine * at.ar.sin(at.around),
+        " | x part in space |  |  | sin(theta)*sin(psi)",
+        "axis",
     ),
-    "axis_y": Column(
-        _axis("", "y part in space"),
-        "-sin(theta)*cos(psi)",
-        ATTITUDE,
+    "axis_y": _of(
         lambda at: -at.sine * at.ar.cos(at.around),
+        " | y part in space |  |  | -sin(theta)*cos(psi)",
+        "axis",
     ),
-    "axis_z": Column(_axis("", "z part in space"), "u", MODULI, lambda at: at.u),
-    "quaternion_w": Column(
-        _quaternion("", "real part of X = w + i z"),
-        "cos(theta/2)*cos((psi + phi)/2)",
-        ATTITUDE,
+    "axis_z": _of(lambda at: at.u, " | z part in space |  |  | u", "axis"),
+    "quaternion_w": _of(
         lambda at: at.unit[0] * at.ar.cos(at.args[0]),
+        " | real part of X = w + i z |  |  | cos(theta/2)*cos((psi + phi)/2)",
+        "quaternion",
     ),
-    "quaternion_x": Column(
-        _quaternion("", "real part of Y = x + i y"),
-        "sin(theta/2)*cos((psi - phi)/2)",
-        ATTITUDE,
+    "quaternion_x": _of(
         lambda at: at.unit[1] * at.ar.cos(at.args[1]),
+        " | real part of Y = x + i y |  |  | sin(theta/2)*cos((psi - phi)/2)",
+        "quaternion",
     ),
-    "quaternion_y": Column(
-        _quaternion("", "imaginary part of Y = x + i y"),
-        "sin(theta/2)*sin((psi - phi)/2)",
-        ATTITUDE,
+    "quaternion_y": _of(
         lambda at: at.unit[1] * at.ar.sin(at.args[1]),
+        " | imaginary part of Y = x + i y |  |  | sin(theta/2)*sin((psi - phi)/2)",
+        "quaternion",
     ),
-    "quaternion_z": Column(
-        _quaternion("", "imaginary part of X = w + i z"),
-        "cos(theta/2)*sin((psi + phi)/2)",
-        ATTITUDE,
+    "quaternion_z": _of(
         lambda at: at.unit[0] * at.ar.sin(at.args[0]),
+        " | imaginary part of X = w + i z |  |  | cos(theta/2)*sin((psi + phi)/2)",
+        "quaternion",
     ),
-    "energy": Column(
-        _alone("E", f"energy; {_CONSTANT}", "mass len²/time²", "(4,2)"),
-        "(A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u",
-        SWING,
+    "energy": _of(
         lambda at: at.rotation_energy + at.top.torque * at.u,
+        f"E | energy; {_CONSTANT} | mass len²/time² | (4,2) | "
+        "(A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u",
     ),
-    "Lz": Column(
-        _alone("c2", f"vertical angular momentum; {_CONSTANT}", "mass len²/time", "(4,3)"),
-        "A*psidot*sin(theta)**2 + C*r0*u",
-        MODULI,
+    "Lz": _of(
         lambda at: at.top.A * at.across * at.sine + at.top.C * at.top.r0 * at.u,
+        f"c2 | vertical angular momentum; {_CONSTANT} | mass len²/time | (4,3) | "
+        "A*psidot*sin(theta)**2 + C*r0*u",
     ),
 }
-
 COLUMNS: dict[str, dict[str, Column]] = {}
 """The columns that each name stands for, in the order of `SCALARS`."""
 for _name, _column in SCALARS.items():
@@ -195,7 +156,7 @@ def shown_columns(*, radians: bool = False, named: Callable[[str], str] = str) -
 
     The formula of a group has one equation per column.
     """
-    keys = {name: column.key.replace(formula=column.formula) for name, column in SCALARS.items()}
+    keys = {name: column.key for name, column in SCALARS.items()}
     for group, meaning in GROUPS.items():
         formula = ", ".join(f"{name} = {keys[name].formula}" for name in COLUMNS[group])
         keys[group] = Key(group, "", meaning, formula=formula)
@@ -225,3 +186,94 @@ def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
         f"{name}_{unit}" if column.is_angle else name
         for name, column in chosen_columns(columns).items()
     ]
+
+
+class ColumnConstants(NamedTuple, Generic[R]):
+    """The constants of a top used in its columns."""
+
+    A: R
+    C: R
+    torque: R
+    """mgs."""
+    r0: R
+    drift: R
+    """r0 - b, or r0 on the vertical, where `plus` and `minus` are 0."""
+    plus: R
+    """(beta + b)/2."""
+    minus: R
+    """(beta - b)/2."""
+    alpha: R
+    a: R
+
+
+def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
+    """Return the constants of a motion in its arithmetic."""
+    ar, state = kind.ar, kind.state
+    A, C = Fraction(exact.top.A), Fraction(exact.top.C)
+    with ar.working():
+        drift, plus, minus = state.pole_drift, kind.gaps.beta_plus_b / 2, kind.gaps.beta_minus_b / 2
+        if isinstance(kind, Vertical):  # all of the rotation counts as spin
+            drift, plus, minus = kind.r0, 0 * kind.r0, 0 * kind.r0
+        inertia = ar.convert(A), ar.convert(C), ar.convert(exact.a * A / 2)
+        alpha = state.energy + state.a * state.cos
+        return ColumnConstants(*inertia, state.r0, drift, plus, minus, alpha, state.a)
+
+
+class Parts(Generic[R]):
+    """A motion at one or several times.
+
+    Subclasses have the arithmetic `ar`, the times `t`, the constants `top`, the `tilt`, the angles
+    `spin` and `precession`, their periodic parts `spin_wave` and `precession_wave`, and attributes
+    that are annotated here.
+    """
+
+    ar: Arithmetic[R]
+    top: ColumnConstants[R]
+    sizes: Any
+    """|X| and |Y|."""
+    moduli: Any
+    """|X|^2 and |Y|^2."""
+    within: Any
+    """The spin, up to whole turns."""
+    around: Any
+    """The precession, up to whole turns."""
+    thetadot: Any
+    """The nutation rate (5,3)."""
+    over: Callable[[R, R], R]
+    """A quotient that is 0 for 0/0: on a pole the momentum about it is 0."""
+
+    @quantity
+    def args(self) -> tuple[R, R]:
+        """(psi + phi)/2 and (psi - phi)/2, up to whole turns of both or half a turn of both."""
+        return (self.around + self.within) / 2, (self.around - self.within) / 2
+
+    @quantity
+    def unit(self) -> Any:
+        """|X| and |Y|, each over sqrt(N)."""
+        size, (x, y) = self.ar.sqrt(self.norm), self.sizes
+        return x / size, y / size
+
+    norm = quantity[Any](lambda at: at.moduli[0] + at.moduli[1])
+    """N."""
+    u = quantity[Any](lambda at: (at.moduli[0] - at.moduli[1]) / at.norm)
+    """cos(theta) (4,6)."""
+    sine = quantity[Any](lambda at: 2 * at.sizes[0] * at.sizes[1] / at.norm)
+    """sin(theta)."""
+    south = quantity[Any](lambda at: at.over(at.top.plus * at.norm, 2 * at.moduli[0]))
+    """(beta + b)/2/(1 + u), the part of the precession rate from the lower pole."""
+    north = quantity[Any](lambda at: at.over(at.top.minus * at.norm, 2 * at.moduli[1]))
+    """(beta - b)/2/(1 - u), the part of the precession rate from the upper pole."""
+    sin_spin = quantity[Any](lambda at: at.ar.sin(at.within))
+    cos_spin = quantity[Any](lambda at: at.ar.cos(at.within))
+
+    @quantity
+    def across(self) -> R:
+        """psi' sin(theta), the angular velocity across the line of nodes (4,1)."""
+        x, y = self.sizes
+        return self.over(self.top.plus * y, x) + self.over(self.top.minus * x, y)
+
+    @property
+    def rotation_energy(self) -> Any:
+        """A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 (4,2)."""
+        swing = self.thetadot * self.thetadot + self.across * self.across
+        return self.top.A / 2 * swing + self.top.C / 2 * self.top.r0 * self.top.r0

@@ -229,7 +229,7 @@ class Sections(Generic[R]):
         turning = not (gaps.u1_u > 0 and gaps.u_u2 > 0)
         if turning and not self.facts.meets_a_pole:
             return Turned(kind.mean_spin_rate * half, kind.mean_precession_rate * half)
-        from ..over_time.series_constants import pose_of  # start-up: not for a record
+        from ..over_time.series import pose_of  # start-up: not for a record
 
         at = pose_of(kind)(half)
         return Turned(at.phi, at.psi)
@@ -240,7 +240,7 @@ class Sections(Generic[R]):
         kind = self.nutating
         if kind is None or self.facts.meets_a_pole:
             return None
-        from ..over_time import series_constants as series  # start-up: not for a record
+        from ..over_time import series  # start-up: not for a record
 
         pose, since_top = series.pose_of(kind), -series.periods_since_top(kind)
         first, last = (

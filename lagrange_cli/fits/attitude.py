@@ -6,14 +6,14 @@ and differences therefore lose little accuracy.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arithmetic.ball import Ball
-from ...arithmetic.double_double import (
+from ..arithmetic.ball import Ball
+from ..arithmetic.double_double import (
     MANY,
     PI,
     Period,
@@ -23,8 +23,8 @@ from ...arithmetic.double_double import (
     two_sum,
     whole_periods,
 )
-from ...arithmetic.rounding import Pair, Triple, pair, triple
-from ...arithmetic.types import Array
+from ..arithmetic.rounding import Pair, Triple, pair, triple
+from ..arithmetic.types import Array
 
 
 class Times(NamedTuple):
@@ -188,3 +188,33 @@ def needed(part: Array | None) -> Array:
     """Return a part of X and Y, which must have been requested."""
     assert part is not None, "a column needs more than its entry says"
     return part
+
+
+def arguments_of(parts: Array, out: Array) -> Array:
+    """Return the arguments of X and Y, whose real parts are not negative, from their parts."""
+    arguments: Array = np.divide(parts[1::2], parts[::2], out=out)
+    np.arctan(arguments, out=arguments)
+    return arguments
+
+
+def unwound(arguments: Array, slopes: Sequence[Any], argument: Array, spare: Array) -> Array:
+    """Add the slopes to arg X and arg Y in place, and return them: their periodic parts."""
+    for i, slope in enumerate(slopes):
+        arguments[i] += np.multiply(argument, slope, out=spare)
+    return arguments
+
+
+def moduli_of(parts: Array) -> Array:
+    """Return |X|^2 and |Y|^2 from the parts of X and Y, which are overwritten."""
+    parts *= parts
+    parts[::2] += parts[1::2]
+    return parts[::2]
+
+
+def tilt_of(x2: Array, y2: Array, out: Array | None = None) -> Array:
+    """Return 2 arctan(|Y|/|X|)."""
+    tilt: Array = np.divide(y2, x2, out=out)
+    np.sqrt(tilt, out=tilt)
+    np.arctan(tilt, out=tilt)
+    tilt *= 2.0
+    return tilt

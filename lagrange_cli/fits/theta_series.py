@@ -18,9 +18,10 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...arithmetic.ball import Balls
-from ...arithmetic.numbers import Arithmetic, polynomial
-from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
+from ..arithmetic.ball import Balls
+from ..arithmetic.numbers import Arithmetic, polynomial
+from ..elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
+from ..motion.spin_precession import Nutating
 
 Coefficients = list[Any]
 """Coefficients of a polynomial in s, the lowest power first."""
@@ -289,3 +290,29 @@ def multiples(
         cosines.append(c * step[0] - curvature * s * step[1])
         sines.append(s * step[0] + c * step[1])
     return cosines, sines
+
+
+def theta_constants(motion: Nutating[Any], *, rates: bool = False) -> ThetaConstants:
+    """Return the constants of the theta series of a nutating top.
+
+    The parameter of X, with modulus k', has `sn^2 = (1 + u2)/(1 + u1)` and `cn^2 = (u1 - u2)/(1 +
+    u1)`.  The parameter of Y has `sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2))` and `cn^2 = (u3 -
+    1)(u1 - u2)/((u3 - u1)(1 - u2))`.
+    """
+    ar, gaps, facts = motion.ar, motion.gaps, motion.facts
+    with ar.working():
+        squares = motion.K * motion.K * motion.k_prime * motion.k_prime
+        return ThetaConstants(
+            quarter=motion.K,
+            quarter_prime=motion.K_prime,
+            m=motion.m,
+            k=motion.k,
+            k_prime=motion.k_prime,
+            plus=SquaredRatio(gaps.below_u2, gaps.u1_u2),
+            minus=SquaredRatio(gaps.above_u1 * gaps.a_u3_u2, gaps.a_u3_above * gaps.u1_u2),
+            x_size=ar.sqrt(gaps.below_u1 / 2),
+            y_size=ar.sqrt(motion.k_prime * gaps.above_u2 / 2),
+            sign_plus=facts.sign_plus,
+            sign_minus=facts.sign_minus,
+            nutation=8 * squares * gaps.u1_u2 / (ar.pi * motion.T_nutation) if rates else None,
+        )
