@@ -8,7 +8,7 @@ from typing import Any, Generic, NamedTuple
 from flint import arb, fmpq
 
 from .ball import Ball, Balls, balls
-from .numbers import R, polynomial
+from .numbers import Number, R, polynomial
 from .rounding import sign_of
 
 
@@ -31,6 +31,11 @@ class Angle(NamedTuple):
 
     degrees: Fraction | None
     radians: Fraction | None
+
+    @classmethod
+    def of(cls, degrees: Number | None, radians: Number | None) -> Angle:
+        """Return the angle that one of two numbers gives, in degrees or in radians."""
+        return cls(*(None if x is None else Fraction(x) for x in (degrees, radians)))
 
     @property
     def rational_cosine(self) -> Fraction | None:

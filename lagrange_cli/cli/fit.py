@@ -148,9 +148,9 @@ def _known(
     Without a scene file, the scene is the one that the recording describes.  Raises LagtopError.
     """
     from ..fits.parameters import known_inputs
+    from ..inputs.derived_inputs import moment
     from ..inputs.input_keys import overridden
     from ..inputs.names import check_names
-    from ..inputs.stand_ins import moment
     from ..inputs.top import Top
 
     found, given = top.given(), top.by_key()

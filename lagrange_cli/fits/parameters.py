@@ -30,9 +30,9 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.derived_inputs import moment
 from ..inputs.input_keys import checked_double
 from ..inputs.names import check_names
-from ..inputs.stand_ins import moment
 from ..inputs.top import Top
 from .model import STATE
 from .recording import Recording

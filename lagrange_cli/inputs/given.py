@@ -61,7 +61,7 @@ class Given(NamedTuple):
         numbers = overridden(self.body, kept)
         try:
             if self.system is not None and numbers.get("psidot0") not in STEADY_WORDS:
-                from .stand_ins import as_solved  # start-up
+                from .derived_inputs import as_solved  # start-up
 
                 numbers = as_solved(overridden(EXAMPLE, numbers))  # from exact numbers, once
             return Top(

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from dataclasses import InitVar, dataclass
 from decimal import Decimal
 from fractions import Fraction
-from functools import partial, wraps
-from typing import TYPE_CHECKING, Any, ParamSpec, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ..arithmetic.angle import Angle, Tilt
 from ..arithmetic.ball import Balls, balls, pi_to
 from ..arithmetic.numbers import DOUBLES, Number, is_real, unrounded
 from ..arithmetic.text import own_context
-from ..arithmetic.values import Values
 from ..errors import LagtopError
 from .input_keys import (
+    BODY,
+    DECLARED,
     EXAMPLE,
     NINE,
     TILT,
@@ -29,37 +29,31 @@ from .input_keys import (
 if TYPE_CHECKING:
     from ..arithmetic.numbers import Arithmetic
 
-_P = ParamSpec("_P")
 _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
 _LARGEST = 1e100
 _UNITS = "choose other units"
+_REMEDY = {
+    "s": "for a low centre of mass use 180 - theta0 and -r0",
+    "g": "for upward gravity use 180 - theta0 and -r0",
+}
 _DIGITS_SHOWN = own_context(50, [])
 """Decimal context of this module, so that messages do not depend on the caller's context."""
 
 
-def _known_names(init: Callable[_P, None]) -> Callable[_P, None]:
-    """Let a constructor raise TypeError for an unknown input with the name that was meant."""
-
-    @wraps(init)
-    def checked(*top: _P.args, **inputs: _P.kwargs) -> None:
-        for name in inputs.keys() - set(INPUTS):
-            from .names import suggestion  # start-up: for a misspelt name only
-
-            raise TypeError(f"a top has no input {name!r}{suggestion(name, INPUTS)}")
-        init(*top, **inputs)
-
-    return checked
-
-
-class Parts(Values):
+class Parts(NamedTuple):
     """The inputs of a top by key: m, A, C, s and g of its body, and the others of its start."""
 
     body: dict[str, Number]
     start: dict[str, Number]
 
 
-class Top(Values):
+_EXAMPLE: Any = None
+"""The default of an input: that of the worked example."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Top:
     """A heavy symmetric top with a fixed point, and its state at t = 0, where phi = psi = 0.
 
     Use any consistent units.  Inputs you omit default to the worked example of Chrapan (1952),
@@ -91,64 +85,62 @@ class Top(Values):
     (True, None, 1587.0, 1587.0)
     """
 
-    m: Number
-    A: Number
-    C: Number
-    s: Number
-    g: Number
-    r0: Number
-    theta0_deg: Number | None
-    thetadot0: Number
-    psidot0: Number
-    theta0_rad: Number | None
-    __slots__ = tuple(__annotations__)
+    fields: ClassVar[tuple[str, ...]]
+    m: Number = _EXAMPLE
+    A: Number = _EXAMPLE
+    C: Number = _EXAMPLE
+    s: Number = _EXAMPLE
+    g: Number = _EXAMPLE
+    r0: Number = _EXAMPLE
+    theta0_deg: Number | None = None
+    thetadot0: Number = _EXAMPLE
+    psidot0: Any = None
+    theta0_rad: Number | None = None
+    A_cm: InitVar[Number | None] = None
+    phidot0: InitVar[Number | None] = None
 
-    @_known_names
-    def __init__(
-        self,
-        *,
-        m: Number | None = None,
-        A: Number | None = None,
-        C: Number | None = None,
-        s: Number | None = None,
-        g: Number | None = None,
-        r0: Number | None = None,
-        theta0_deg: Number | None = None,
-        thetadot0: Number | None = None,
-        psidot0: Number | str | None = None,
-        theta0_rad: Number | None = None,
-        A_cm: Number | None = None,
-        phidot0: Number | None = None,
-    ) -> None:
-        word = psidot0 if isinstance(psidot0, str) else getattr(psidot0, "word", None)
-        psidot0 = 0.0 if word else psidot0
-        values = m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad, A_cm, phidot0
-        given = {
-            name: _finite(name, value)
-            for name, value in zip(INPUTS, values, strict=True)
-            if value is not None
-        }
-        one_of_each(given)
-        missing = from_example(given)
-        inputs = overridden(EXAMPLE, given)
-        if A_cm is not None or phidot0 is not None:
-            from .stand_ins import as_solved  # for few tops only
+    def __new__(cls, **inputs: Any) -> Self:
+        """Return a new top.  Raises TypeError for an unknown input with the name that was meant."""
+        for name in inputs.keys() - set(INPUTS):
+            from .names import suggestion  # start-up: for a misspelt name only
 
-            inputs = as_solved(inputs)
-        super().__init__(*map(inputs.get, self.fields))
-        _check_ranges(self)
-        if word:
-            from .stand_ins import steady_rate_of  # for few tops only
+            raise TypeError(f"a top has no input {name!r}{suggestion(name, INPUTS)}")
+        return object.__new__(cls)
 
+    def __post_init__(self, A_cm: Number | None, phidot0: Number | None) -> None:
+        """Replace missing inputs by their defaults, derive others, and check all."""
+        given = self.as_dict() | {"A_cm": A_cm, "phidot0": phidot0}
+        given = {name: x for name, x in given.items() if x is not None}
+        psidot0 = given.get("psidot0")
+        if word := psidot0 if isinstance(psidot0, str) else getattr(psidot0, "word", None):
+            given["psidot0"] = 0.0
             if phidot0 is not None:
                 raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
-            super().__init__(**self.as_dict() | {"psidot0": steady_rate_of(self, word)})
-        if missing:
+        given = {name: _checked(name, x) for name, x in given.items()}
+        one_of_each(given)
+        inputs = overridden(EXAMPLE, given)
+        if A_cm is not None or phidot0 is not None:
+            from .derived_inputs import as_solved  # for few tops only
+
+            inputs = as_solved(inputs)
+            for name in ("A", "r0"):
+                _checked(name, inputs[name])
+        for name in self.fields:
+            object.__setattr__(self, name, inputs.get(name))
+        twice = 2 * Fraction(self.A)
+        _require(
+            twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, "no rigid body has more"
+        )
+        if word:
+            from .derived_inputs import steady_rate_of  # for few tops only
+
+            object.__setattr__(self, "psidot0", steady_rate_of(self, word))
+        if missing := from_example(given):
             warn_of(missing, stacklevel=4)
 
-    def __reduce__(self) -> tuple[Callable[[], Top], tuple[()]]:
-        """Return the constructor with the inputs, so that copies and pickles are checked again."""
-        return partial(Top, **self.as_dict()), ()
+    def as_dict(self) -> dict[str, Any]:
+        """Return the inputs by key; one of the two tilts is None."""
+        return {name: getattr(self, name) for name in self.fields}
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
@@ -162,7 +154,7 @@ class Top(Values):
     def parts(self) -> Parts:
         """The inputs by key in two parts, `body` and `start`, such as for a sweep of one body."""
         given = {name: x for name, x in self.as_dict().items() if x is not None}
-        return Parts({name: given.pop(name) for name in self.fields[:5]}, given)
+        return Parts({name: given.pop(name) for name in BODY}, given)
 
     def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
@@ -172,12 +164,6 @@ class Top(Values):
             other: Any = self.theta0_deg if radians else self.theta0_rad
             values[tilt] = ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
         return {key: values[key] for key in (tilt if name == TILT else name for name in NINE)}
-
-    def texts(self) -> dict[str, str]:
-        """Return the inputs by key, as words or as decimals with all digits of a double."""
-        given = {key: x for key, x in self.as_dict().items() if x is not None}
-        words = {"psidot0": self.steady_word} if self.steady_word else {}
-        return {key: _shown(x) for key, x in given.items()} | words
 
     def tilt(self, ar: Any) -> Tilt[Any]:
         """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
@@ -189,8 +175,7 @@ class Top(Values):
     @property
     def angle(self) -> Angle:
         """The angle theta0, exactly."""
-        tilts = self.theta0_deg, self.theta0_rad
-        return Angle(*(None if x is None else Fraction(x) for x in tilts))
+        return Angle.of(self.theta0_deg, self.theta0_rad)
 
     @property
     def steady_word(self) -> str | None:
@@ -200,7 +185,7 @@ class Top(Values):
     @property
     def is_released(self) -> bool:
         """Whether the top starts at rest in nutation and precession, the case of the paper."""
-        return self.thetadot0 == 0 and self.psidot0 == 0
+        return bool(self.thetadot0 == 0 and self.psidot0 == 0)
 
     @property
     def pole(self) -> int:
@@ -226,20 +211,39 @@ class Top(Values):
 
     def options(self) -> str:
         """Return the top as command-line options."""
-        words = [f"--{name} {getattr(self, name)!r}" for name in ("m", "A", "C", "s", "g", "r0")]
-        if self.theta0_rad is None:
-            words.append(f"--theta0 {self.theta0_deg!r}")
-        else:
-            words.append(f"--rad --theta0 {self.theta0_rad!r}")
-        for name in ("thetadot0", "psidot0"):
-            value = getattr(self, name)
-            if word := getattr(value, "word", None) or (repr(value) if value else ""):
-                words.append(f"--{name} {word}")
-        return " ".join(words)
+        radians = "--rad " if self.theta0_deg is None else ""
+        given = self.parts.body | self.parts.start
+        words = [
+            f"{radians if name.startswith(TILT) else ''}--{name.partition('_')[0]} {value!r}"
+            for name, value in given.items()
+            if value or name not in {"thetadot0", "psidot0"}
+        ]
+        return " ".join(words).replace("'", "")
 
 
+Top.fields = tuple(name for name in Top.__slots__)
 INPUTS = (*Top.fields, "A_cm", "phidot0")
 """The keys of all inputs of a top: its fields, and the alternatives to A and r0."""
+
+
+def _checked(name: str, value: Any) -> Number:
+    """Return an input as a double or as a fraction.  Raises LagtopError for an impossible one."""
+    number = _finite(name, value)
+    _require(abs(number) <= _LARGEST, name, "within 1e100 in size", number, _UNITS)
+    bound = DECLARED[name].bound if name in DECLARED else ""
+    if bound.startswith("positive"):
+        _require(number > 0, name, "> 0", number)
+        _require(number >= _SMALLEST, name, ">= 1e-100", number, _UNITS)
+    if bound == "0 or more":
+        _require(number >= 0, name, ">= 0", number, _REMEDY[name])
+    if name.startswith(f"{TILT}_"):
+        exact = Fraction(number)
+        in_degrees = name.endswith("deg")
+        most = Fraction(180) if in_degrees else pi_to(exact.denominator.bit_length() + 20)
+        wanted = "in [0, 180]" if in_degrees else "in [0, pi rad]"
+        _require(0 <= exact <= most, name, wanted, number)
+        _require(not number or number >= _LEAST_TILT, name, "0 or at least 1e-150", number)
+    return number
 
 
 def _finite(name: str, value: Any) -> Number:
@@ -256,30 +260,6 @@ def _finite(name: str, value: Any) -> Number:
     if value and not nearest:
         raise LagtopError(f"{name} must be 0 or at least 5e-324 in size, got {value!s}", name)
     return unrounded(value, nearest)
-
-
-def _check_ranges(top: Top) -> None:
-    for name in ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"):
-        size = abs(getattr(top, name))
-        _require(size <= _LARGEST, name, "within 1e100 in size", getattr(top, name), _UNITS)
-    for name in ("m", "A", "C"):
-        _require(getattr(top, name) > 0, name, "> 0", getattr(top, name))
-        _require(getattr(top, name) >= _SMALLEST, name, ">= 1e-100", getattr(top, name), _UNITS)
-    _require(top.s >= 0, "s", ">= 0", top.s, "for a low centre of mass use 180 - theta0 and -r0")
-    _require(top.g >= 0, "g", ">= 0", top.g, "for upward gravity use 180 - theta0 and -r0")
-    twice = 2 * Fraction(top.A)
-    _require(twice >= top.C, "C", f"<= 2 A = {_shown(twice)}", top.C, "no rigid body has more")
-    for name, most in (("theta0_deg", "180"), ("theta0_rad", "pi rad")):
-        tilt = getattr(top, name)
-        if tilt is not None:
-            _require(0 <= tilt and _is_at_most(tilt, most), name, f"in [0, {most}]", tilt)
-            _require(tilt == 0 or tilt >= _LEAST_TILT, name, "0 or at least 1e-150", tilt)
-
-
-def _is_at_most(tilt: Number, most: str) -> bool:
-    """Return whether a tilt is at most 180 degrees, or pi rad."""
-    exact = Fraction(tilt)
-    return exact <= 180 if most == "180" else exact < pi_to(exact.denominator.bit_length() + 20)
 
 
 def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:

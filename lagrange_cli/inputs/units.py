@@ -15,9 +15,9 @@ from ..arithmetic.numbers import Number
 from ..arithmetic.points import Points
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
+from .derived_inputs import EXACT_DIGITS
 from .input_keys import BODY, DECLARED, TILT
 from .names import suggestion
-from .stand_ins import EXACT_DIGITS
 from .values import Value
 
 Dimensions = tuple[int, int, int, int]

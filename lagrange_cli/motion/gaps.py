@@ -90,7 +90,7 @@ def state(ar: Balls, exact: Exact) -> State[Ball]:
     a, b, r0 = exact.a, exact.b, exact.r0
     tilt = exact.tilt.tilt(ar)
     if exact.psi_rate is None:
-        from ..inputs.stand_ins import rates_of  # start-up: for few tops
+        from ..inputs.derived_inputs import rates_of  # start-up: for few tops
 
         rates, word = rates_of(exact.top), str(exact.top.steady_word)
         psi_rate = rates.rate(ar, ar.convert(a), ar.convert(b), tilt.cos, word)

@@ -20,7 +20,7 @@ from ..arithmetic.arrays import PAIRS
 from ..arithmetic.double_double import DoubleDouble, two_sum
 from ..arithmetic.numbers import R, polynomial
 from ..arithmetic.types import Array, Mask
-from ..inputs.stand_ins import spin
+from ..inputs.derived_inputs import spin
 from ..motion.gaps import State
 from ..motion.regime import FAST, Facts, Regime, regimes
 

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Generic
 
 from ...arithmetic.numbers import R, absolute
-from ...inputs.stand_ins import FAST, SLOW, SteadyRates
+from ...inputs.derived_inputs import FAST, SLOW, SteadyRates
 from ..gaps import State
 from ..kinds import Kind
 from ..quantity import declared_keys, keys_of, unit_name

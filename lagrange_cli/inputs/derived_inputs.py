@@ -1,4 +1,4 @@
-"""Inputs that stand for others: A_cm, phidot0, and the words for a steady precession rate.
+"""Inputs that are derived from others: A from A_cm, r0 from phidot0, steady precession rates.
 
 The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0.  With a = 2mgs/A (4,4) and b
 = C r0/A (4,5) this is cos(theta) Omega^2 - b Omega + a/2 = 0.
@@ -9,16 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.angle import Angle
 from ..arithmetic.ball import Ball, balls
 from ..arithmetic.numbers import Number, R
 from ..arithmetic.rounding import equal_digits, nearest_double, rounding_of, settled
 from ..arithmetic.text import quoted
-from ..arithmetic.values import Values
 from ..errors import LagtopError
-from .input_keys import STANDS_FOR
 from .values import STEADY_WORDS
 
 if TYPE_CHECKING:
@@ -26,6 +24,7 @@ if TYPE_CHECKING:
 
 EXACT_DIGITS = 1100
 """Digits of a fraction that approximates an irrational number: more than any output shows."""
+SLOW, FAST = STEADY_WORDS
 
 
 def as_solved(inputs: Mapping[str, Number]) -> dict[str, Number]:
@@ -35,20 +34,21 @@ def as_solved(inputs: Mapping[str, Number]) -> dict[str, Number]:
     for a negative A_cm.
     """
     solved = dict(inputs)
-    for measured, formula in (("A_cm", moment), ("phidot0", spin)):
-        if measured in inputs:
-            solved[STANDS_FOR[measured]] = formula(inputs)
-            del solved[measured]
+    if solved.pop("A_cm", None) is not None:
+        solved["A"] = moment(inputs)
+    if solved.pop("phidot0", None) is not None:
+        solved["r0"] = spin(inputs)
     return solved
 
 
 def moment(inputs: Mapping[str, Number]) -> Number:
     """Return the moment about the pivot, A = A_cm + m s^2 (Steiner's theorem)."""
-    A_cm, m, s = (inputs[name] for name in ("A_cm", "m", "s"))
+    given = [inputs[name] for name in ("A_cm", "m", "s")]
+    A_cm, m, s = (Fraction(x) for x in given)
     if A_cm < 0:
         raise LagtopError(f"A_cm must be >= 0, got {float(A_cm)}", "A_cm")
-    exact = Fraction(A_cm) + Fraction(m) * Fraction(s) ** 2
-    return exact if is_exact(A_cm, m, s) else _nearest(exact)
+    exact = A_cm + m * s**2
+    return exact if any(isinstance(x, Fraction) for x in given) else float(exact)
 
 
 def spin(inputs: Mapping[str, Number]) -> Number:
@@ -56,44 +56,27 @@ def spin(inputs: Mapping[str, Number]) -> Number:
 
     If the cosine is irrational, the fraction has `EXACT_DIGITS` digits.
     """
+    names = ("phidot0", "psidot0", "theta0_deg", "theta0_rad")
+    given = [x for name in names if (x := inputs.get(name)) is not None]
+    keeps = any(isinstance(x, Fraction) and x for x in given)
     phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
-    degrees, radians = inputs.get("theta0_deg"), inputs.get("theta0_rad")
-    keeps = is_exact(*(x for x in (inputs["phidot0"], inputs["psidot0"], degrees, radians) if x))
-    tilt = Angle(*(None if x is None else Fraction(x) for x in (degrees, radians)))
-    if not 0 <= (degrees or 0) <= 180 or not 0 <= (radians or 0) <= 4:
-        return inputs["phidot0"]  # `Top` refuses such a tilt
+    tilt = Angle.of(inputs.get("theta0_deg"), inputs.get("theta0_rad"))
     rational = tilt.rational_cosine if psi_rate else Fraction(0)
     if rational is not None:
         exact = phi_rate + psi_rate * rational
-        return exact if keeps else _nearest(exact)
+        return exact if keeps else float(exact)
 
     def enclosure(digits: int) -> Ball:
         ar = balls(digits)
         return ar.convert(phi_rate) + ar.convert(psi_rate) * tilt.cosine(ar)
 
-    if not keeps:
-        found = settled("r0", enclosure, nearest_double("r0"))
-    else:
-        found = settled("r0", enclosure, rounding_of("r0", EXACT_DIGITS), digits=EXACT_DIGITS)
+    digits, rounding = 0, nearest_double("r0")
+    if keeps:
+        digits, rounding = EXACT_DIGITS, rounding_of("r0", EXACT_DIGITS)
+    found = settled("r0", enclosure, rounding, digits=digits)
     assert found is not None
-    value: Number = found.value if not keeps else Fraction(found.value)
+    value: Number = Fraction(found.value) if keeps else found.value
     return value
-
-
-def is_exact(*inputs: Number) -> bool:
-    """Return whether any input is kept as a fraction instead of a double."""
-    return any(isinstance(x, Fraction) for x in inputs)
-
-
-def _nearest(exact: Fraction) -> float:
-    """Return a fraction rounded to the nearest double; infinite beyond all doubles."""
-    try:
-        return float(exact)
-    except OverflowError:
-        return float("inf") if exact > 0 else float("-inf")
-
-
-SLOW, FAST = STEADY_WORDS
 
 
 class SteadyRate(float):
@@ -127,7 +110,7 @@ class SteadyRate(float):
         return SteadyRate, (self.word, float(self))
 
 
-class SteadyRates(Values):
+class SteadyRates(NamedTuple):
     """The rates of steady precession of a top at its tilt."""
 
     a: Fraction
@@ -163,11 +146,11 @@ class SteadyRates(Values):
         q = b - root if self.b < 0 else b + root
         return q / (2 * cos) if word == FAST else a / q
 
-    def in_balls(self, digits: int, word: str) -> Ball:
-        """Return a ball that contains an existing root, at the precision in use."""
-        ar = balls(digits)
-        a, b = ar.convert(self.a), ar.convert(self.b)
-        return self.rate(ar, a, b, self.tilt.cosine(ar), word)
+
+def rates_of(top: Any) -> SteadyRates:
+    """Return the rates of steady precession of a top."""
+    m, A, C, s, g, r0 = (Fraction(getattr(top, x)) for x in ("m", "A", "C", "s", "g", "r0"))
+    return SteadyRates(2 * m * g * s / A, C * r0 / A, top.angle)
 
 
 def steady_rate_of(top: Any, word: str) -> SteadyRate:
@@ -175,36 +158,28 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
 
     Raises LagtopError for an unknown word, and for a top that has no such rate.
     """
-    if word not in STEADY_WORDS:
-        raise LagtopError(
-            f"psidot0 must be a real number, steady or steady-fast, got {quoted(word)}", "psidot0"
-        )
-    if top.thetadot0:
-        raise LagtopError(
-            f"thetadot0 must be 0 for psidot0 = {word}, got {float(top.thetadot0)}", "thetadot0"
-        )
     rates = rates_of(top)
-    if top.pole:
-        raise LagtopError(
-            f"psidot0 must be 0 if the axis is vertical, got {word} "
-            "(a vertical axis cannot precess)",
-            "psidot0",
-        )
-    if not rates.exists(word):
-        raise LagtopError(f"psidot0 cannot be {word}: {_why(top, rates)}", "psidot0")
-    found = settled(
-        "psidot0",
-        lambda digits: rates.in_balls(digits, word),
-        nearest_double("psidot0"),
-    )
-    assert found is not None
-    return SteadyRate(word, found.value)
+    if word not in STEADY_WORDS:
+        wrong = f"must be a real number, steady or steady-fast, got {quoted(word)}"
+    elif top.thetadot0:
+        wrong = f"must be 0 for psidot0 = {word}, got {float(top.thetadot0)}"
+        raise LagtopError(f"thetadot0 {wrong}", "thetadot0")
+    elif top.pole:
+        vertical = "(a vertical axis cannot precess)"
+        wrong = f"must be 0 if the axis is vertical, got {word} {vertical}"
+    elif not rates.exists(word):
+        wrong = f"cannot be {word}: {_why(top, rates)}"
+    else:
 
+        def enclosure(digits: int) -> Ball:
+            ar = balls(digits)
+            a, b = ar.convert(rates.a), ar.convert(rates.b)
+            return rates.rate(ar, a, b, rates.tilt.cosine(ar), word)
 
-def rates_of(top: Any) -> SteadyRates:
-    """Return the rates of steady precession of a top."""
-    m, A, C, s, g, r0 = (Fraction(getattr(top, x)) for x in ("m", "A", "C", "s", "g", "r0"))
-    return SteadyRates(2 * m * g * s / A, C * r0 / A, top.angle)
+        found = settled("psidot0", enclosure, nearest_double("psidot0"))
+        assert found is not None
+        return SteadyRate(word, found.value)
+    raise LagtopError(f"psidot0 {wrong}", "psidot0")
 
 
 def _why(top: Any, rates: SteadyRates) -> str:
