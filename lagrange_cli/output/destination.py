@@ -53,16 +53,17 @@ class Output(Values):
             from .report import record_text
 
             text = record_text(record, keys(), width_of(self.path))
-            write_bytes(self.path, text.encode)
+            with opened(self.path) as stream:
+                stream.write(text.encode())
 
-    def table(self, names: Sequence[str], blocks: Iterable[Array | Texts], count: int = 0) -> None:
+    def table(self, names: Sequence[str], blocks: Iterable[Array | Texts]) -> None:
         """Write rows in blocks: arrays, or lists of numbers as text."""
         from .formats import block_text, text_columns
 
         columns = (text_columns(x) if isinstance(x, list) else [x] for x in blocks if len(x))
         self.blocks(names, (block_text(x, names, self.fmt) for x in columns))
 
-    def blocks(self, names: Sequence[str], blocks: Iterable[bytes], count: int = 0) -> None:
+    def blocks(self, names: Sequence[str], blocks: Iterable[bytes]) -> None:
         """Write blocks made by `formats.block_text`, with the header and footer of the format."""
         from .formats import write
 
@@ -108,15 +109,15 @@ def _json_value(value: Any) -> str:
 
 
 @contextmanager
-def opened(path: str, mark: str = "") -> Iterator[BinaryIO]:
+def opened(path: str) -> Iterator[BinaryIO]:
     """Yield a binary stream to a file, or to standard output for `-`.
 
-    The stream writes to a temporary file beside the file, whose name is `.lagtop-`, a mark, and
-    random characters.  It replaces the file if the block succeeds, and is removed otherwise.
-    Raises CannotWriteError, or BrokenPipeError if the reader has gone away.
+    The stream writes to a temporary file beside the file, whose name begins with `.lagtop-`.  It
+    replaces the file if the block succeeds, and is removed otherwise.  Raises CannotWriteError, or
+    BrokenPipeError if the reader has gone away.
     """
     try:
-        with _standard_output() if path == "-" else _file(path, mark) as stream:
+        with _standard_output() if path == "-" else _file(path) as stream:
             yield stream
     except BrokenPipeError:
         raise
@@ -141,7 +142,7 @@ def _standard_output() -> Iterator[BinaryIO]:
 
 
 @contextmanager
-def _file(path: str, mark: str) -> Iterator[BinaryIO]:
+def _file(path: str) -> Iterator[BinaryIO]:
     if path.endswith("/"):
         raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
     try:
@@ -155,7 +156,7 @@ def _file(path: str, mark: str) -> Iterator[BinaryIO]:
             yield stream
         return
     target = os.path.realpath(path)  # the file behind a link
-    temporary = os.path.join(os.path.dirname(target), f".lagtop-{mark}{os.urandom(6).hex()}")
+    temporary = os.path.join(os.path.dirname(target), f".lagtop-{os.urandom(6).hex()}")
     try:
         with open(temporary, "xb") as stream:
             yield stream

@@ -31,13 +31,6 @@ and JSON values.
 Names = Sequence[str]
 
 
-class Header(list[str]):
-    """The names of columns, with a description of their numbers."""
-
-    def __init__(self, names: Iterable[str], description: object) -> None:
-        super().__init__(names)
-
-
 def text_columns(rows: Texts) -> list[list[NumberText]]:
     """Return the columns of rows of numbers as text."""
     return [list(map(NumberText, column)) for column in zip(*rows, strict=True)]

@@ -68,7 +68,14 @@ def lines(draw: st.DrawFn) -> list[str]:
     line = [name]
     for _ in range(draw(st.integers(0, 4))):
         line += draw(st.sampled_from([[draw(st.sampled_from(flags))], []]))
-        line.append(draw(st.one_of(st.sampled_from(ODD), st.text(max_size=4))))
+        line.append(
+            draw(
+                st.one_of(
+                    st.sampled_from(ODD),
+                    st.text(st.characters(exclude_characters="\0"), max_size=4),
+                )
+            )
+        )
     if name in {"table", "jacobi", "eta", "sweep"} and "--help" not in line:
         line += ["--format", "csv"]
     return line
