@@ -38,7 +38,7 @@ _MODULES = {
     "draw": "plot",
     "draw_outcome": "plot.reports",
     "find": "find",
-    "fit": "fits.fit",
+    "fit": "fit.fit",
     "read_scene": "inputs.given",
     "sensitivities": "motion.derivatives",
     "solve": "motion.solve",

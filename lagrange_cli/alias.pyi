@@ -5,7 +5,7 @@ from lagrange_cli.compare.compare import compare as compare
 from lagrange_cli.errors import LagtopError as LagtopError
 from lagrange_cli.errors import MixedBodyWarning as MixedBodyWarning
 from lagrange_cli.find import find as find
-from lagrange_cli.fits.fit import fit as fit
+from lagrange_cli.fit.fit import fit as fit
 from lagrange_cli.inputs.given import read_scene as read_scene
 from lagrange_cli.inputs.top import Top as Top
 from lagrange_cli.motion.derivatives import sensitivities as sensitivities

@@ -16,7 +16,7 @@ PACKAGE = ROOT / "lagrange_cli"
 FILES = sorted(set(PACKAGE.rglob("*.py")) - {PACKAGE / "alias.py"})
 
 LAYERS = [
-    *("__main__", "cli", "bench compare", "plot", "fits find fit", "sweep"),
+    *("__main__", "cli", "bench compare", "plot", "find fit", "sweep"),
     *("motion", "elliptic inputs output", "arithmetic", "errors"),
 ]
 """A subpackage imports only from the lines below its own."""

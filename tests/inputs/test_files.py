@@ -133,7 +133,6 @@ MISSING = [
     "compare FILE.csv",
     "compare x.csv FILE.toml",
     "fit FILE.csv",
-    "fit FILE.csv top.toml --fix m",
     "sweep FILE.csv",
     "sweep FILE.csv --parts x",
     "table --times FILE.txt",

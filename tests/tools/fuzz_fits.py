@@ -36,7 +36,7 @@ from engines import Array, Body, dop853
 from lagtop import LagtopError, Top, fit
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.fits.record import FAILED, Outcome
+from lagrange_cli.fit.outcome import FAILED, Outcome
 
 CHANNELS = [("theta", "phi", "psi"), ("theta", "psi"), ("theta", "phi"), ("phi", "psi")]
 FAR = 5.0
@@ -46,7 +46,7 @@ VISIBLE = 3.0
 CHANCE = 3.3
 COVERED = {1: 0.6827, 2: 0.9545}
 """Shares of normal errors within one and two standard deviations."""
-GOOD_SHARE = 0.96
+GOOD_SHARE = 0.94
 """Share of the recordings whose fit must be right and called good."""
 
 
@@ -140,13 +140,15 @@ def pulls(outcome: Outcome, case: Drawn) -> Mapping[str, float]:
     """Return how far each number is from the truth, in its own standard deviations."""
     top = case.top
     a, b, r0 = 2 * float(top.g), float(top.C * top.r0), float(top.r0)
-    turns = round((outcome.values["r0"] - r0) * case.frame / (2 * math.pi))
+    spin = outcome.numbers["r0"][0] if "r0" in outcome.numbers else r0
+    turns = round((spin - r0) * case.frame / (2 * math.pi))
     truth = {
         **{"a": a, "b": b, "r0": r0 + turns * 2 * math.pi / case.frame},
-        "theta0": math.radians(float(top.theta0_deg or 0)),
+        "theta0_deg": float(top.theta0_deg or 0),
         **{"thetadot0": float(top.thetadot0), "psidot0": float(top.psidot0)},
     }
-    return {n: (x - truth[n]) / s for n, x, s in outcome.found() if n in truth}
+    found = outcome.numbers
+    return {x: (found[x][0] - y) / found[x][1] for x, y in truth.items() if x in found}
 
 
 class Verdict(NamedTuple):

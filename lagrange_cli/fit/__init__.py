@@ -1,0 +1,1 @@
+"""The inverse problem: the top behind a recording."""

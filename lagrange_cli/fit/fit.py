@@ -1,0 +1,234 @@
+"""`fit`: the top behind a recording, by least squares from the best of many starts.
+
+The starts are closed-form tops with the nutation of the recording.  Their residuals at some rows
+select a few, from which the least squares converge.  If no nutation is visible, or none is
+determined, a steady precession is fitted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from types import NoneType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arithmetic.text import parse_number
+from ..arithmetic.types import Array
+from ..errors import DataError, check_type
+from ..inputs.given import gather
+from ..inputs.values import value_of
+from .motions import STATE
+from .noise import CHANCE
+from .nutation import Minimum, nutating_outcome
+from .outcome import GOOD, Outcome
+from .problem import Known, Problem, known_inputs
+from .recording import Recording, recording_from, turned_up
+from .starts import noise_of, oscillation_in, signals_in, starts
+from .steady import steady_outcome
+
+_FEW_ROWS, _ROWS, _MANY_ROWS = 12, 50, 300
+"""Rows at which all starts are compared, then the best, and rows of the first steps."""
+_KEPT = 1500
+_BLOCK = 2000
+_STARTS, _FIRST_STEPS, _FINISHED = 20, 12, 3
+"""Starts of the least squares, their first steps, and the number of those that converge."""
+_ALIKE = 0.02
+"""Relative difference of a and b below which two starts are the same."""
+_COMPARABLE = 50.0
+"""Factor of chi^2 above the least one, beyond which a start is dropped."""
+_CHANCE = 16.0
+"""Difference of -2 log(likelihood) below which two tops explain a recording equally well."""
+_WINDOWS = (8, 12, 20, 32)
+"""Numbers of windows to suggest if the spin may decay."""
+_ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
+
+
+class _Way(NamedTuple):
+    """A recording with psi counted in one direction, and its starts with their scores."""
+
+    problem: Problem
+    x: Array
+    scores: Array
+
+
+def best_fit(
+    recording: Recording,
+    known: Known,
+    *,
+    radians: bool = False,
+    chance: float = CHANCE,
+    helpful: bool = True,
+) -> Outcome:
+    """Return the fit of one recording.
+
+    If spin and precession are recorded, psi may count in the other direction.  `chance` is the
+    probability that noise fails a test.  A `helpful` fit that fails says what to try.  Raises
+    LagtopError, DataError for a recording that cannot be fitted.
+    """
+    for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
+        if recording.angles.keys() == {alone} and needed not in known:
+            flag = f"--{needed}" + (" 0 if the top is released from rest" * (alone == "theta"))
+            raise DataError(f"{alone} alone does not determine a top: give {flag}")
+    oscillation = oscillation_in(signals_in(recording))
+    frequency = oscillation.frequency
+    lasts = frequency * recording.t[-1] >= 1
+    outcome: Outcome
+    if oscillation.is_visible and lasts:
+        outcome = _nutation(recording, known, frequency, radians=radians)
+    else:
+        outcome = steady_outcome(recording, known, oscillation, radians=radians)
+    outcome.chance = chance
+    if helpful and outcome.failures():
+        near = all(rest.rms < 1 for rest in outcome.residuals.values())
+        if oscillation.is_visible and not lasts and near:
+            outcome.hints.append("a recording must last for a period of the nutation")
+        outcome.hints += _hints(recording, known, frequency)
+    return outcome
+
+
+def _nutation(recording: Recording, known: Known, frequency: float, *, radians: bool) -> Outcome:
+    """Return the best fit of a nutation, with its rival if it has one."""
+    both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
+    ways = [_way(x, known, frequency) for x in [recording, recording.mirrored][: 1 + both]]
+    begun = []
+    for way, x in _best_starts(ways):
+        few = _thinned(way.problem, _MANY_ROWS)
+        begun.append((way.problem, few.solve(x, _FIRST_STEPS)))
+    begun.sort(key=lambda pair: pair[1].cost)
+    least = begun[0][1].cost
+    distinct: list[tuple[Problem, Any]] = []
+    for problem, ended in begun:
+        is_new = all(p is not problem or abs(e.cost / ended.cost - 1) > 1e-6 for p, e in distinct)
+        if is_new and ended.cost <= _COMPARABLE * least and len(distinct) < _FINISHED:
+            distinct.append((problem, ended))
+    found = sorted((Minimum.of(p, e.x) for p, e in distinct), key=lambda x: x.badness)
+    best = found[0]
+    rivals = [x for x in found[1:] if x.badness < best.badness + _CHANCE and x.differs(best)]
+    return nutating_outcome(best, rivals[0] if rivals else None, frequency, radians=radians)
+
+
+def _way(recording: Recording, known: Known, frequency: float) -> _Way:
+    """Return the starts of a recording with their scores, the logarithm of the noise they leave."""
+    signals = signals_in(recording)
+    noise = noise_of(signals, frequency, recording)
+    problem = Problem(recording, known, recording.sigma or noise)
+    states = starts(signals, frequency, known.get("theta0"))
+    for name in known.keys() & {*STATE}:
+        states[:, STATE.index(name)] = known[name]
+    if "r0" in known or problem.is_even:  # r0 has the sign of b
+        states = states[states[:, STATE.index("b")] * known.get("r0", 1.0) >= 0]
+    spin = signals.get("phi")
+    for count in (_FEW_ROWS, _ROWS) if len(states) > _KEPT else (_ROWS,):
+        few = _thinned(problem, count)
+        sizes = np.array([*few.sigma.values()])
+        tried, scores = [np.zeros((0, len(problem.names)))], [np.zeros(0)]
+        for block in np.array_split(states, len(states) // _BLOCK + 1):
+            x = few.parameters_of(block, spin)
+            mean = np.nanmean(few.residuals(x) ** 2, axis=2) + sizes**2
+            tried.append(x)
+            scores.append(np.nan_to_num(np.log(mean).sum(axis=1), nan=np.inf))
+        score = np.concatenate(scores)
+        order = np.argsort(score)[:_KEPT]
+        states = states[order]
+    return _Way(problem, np.concatenate(tried)[order], score[order])
+
+
+def _thinned(problem: Problem, count: int) -> Problem:
+    """Return the same problem for at most `count` rows of the recording."""
+    recording = problem.recording
+    rows = np.unique(np.linspace(0, recording.t.size - 1, count).astype(int))
+    angles = {key: x[rows] for key, x in recording.angles.items()}
+    few = replace(recording, t=recording.t[rows], angles=angles)
+    return Problem(few, problem.known, problem.sigma)
+
+
+def _best_starts(ways: Sequence[_Way]) -> Iterator[tuple[_Way, Array]]:
+    """Yield the best starts of both ways that differ from each other."""
+    places = [(score, i, j) for i, way in enumerate(ways) for j, score in enumerate(way.scores)]
+    kept: list[tuple[int, Array]] = []
+    for score, i, j in sorted(places):
+        one = ways[i].x[j]
+        if (
+            len(kept) < _STARTS
+            and math.isfinite(score)
+            and all(
+                k != i or np.max(np.abs(one - other)[:2] / (np.abs(one)[:2] + 1e-300)) > _ALIKE
+                for k, other in kept
+            )
+        ):
+            kept.append((i, one))
+            yield ways[i], one
+
+
+def _hints(recording: Recording, known: Known, frequency: float) -> list[str]:
+    """Return what to try after a failed fit, if another fit confirms it."""
+    if recording.kind != "angles":
+        for axis in ("y", "x"):
+            turned = best_fit(turned_up(recording, axis), known, helpful=False)
+            if turned.verdict == GOOD:
+                return [f"the {axis} axis of the data points up: use --align up={axis}"]
+    for count in _WINDOWS:
+        enough = count * _ROWS_PER_WINDOW < recording.t.size
+        if not enough or frequency * recording.t[-1] < count * _PERIODS_PER_WINDOW:
+            break
+        parts = recording.windows(count)
+        some = (parts[0], parts[count // 2], parts[-1])
+        tried = (
+            best_fit(part, _without_spin(known), chance=CHANCE / count, helpful=False)
+            for part in some
+        )
+        if all(x.verdict == GOOD for x in tried):
+            return [
+                f"one top does not explain the motion: the spin may decay, try --window {count}"
+            ]
+    return []
+
+
+def _without_spin(known: Known) -> Known:
+    """Return known inputs that do not change as the spin decays."""
+    kept = {x: y for x, y in known.items() if x in {"m", "g", "s", "A", "C"}}
+    return Known(kept, {x: y for x, y in known.stds.items() if x in kept})
+
+
+def fit(
+    t: ArrayLike,
+    *,
+    theta: ArrayLike | None = None,
+    phi: ArrayLike | None = None,
+    psi: ArrayLike | None = None,
+    axis: ArrayLike | None = None,
+    quaternion: ArrayLike | None = None,
+    sigma: Mapping[str, float] | float | None = None,
+    known: Mapping[str, Any] | None = None,
+) -> Outcome:
+    """Fit a top to a recording; the results are in `record()`.
+
+    Times have the shape (n,), angles too (radians, within whole turns, NaN where missing).  Instead
+    of angles, pass the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to
+    space, shape (n, 4).  `sigma` is a standard deviation in radians, or a mapping by channel; by
+    default it is estimated from the residuals.  `known` are known inputs by key.  Texts such as
+    `"0.070(5)"`, and numbers of uncertainties, are uncertain; units are converted to SI.  Raises
+    LagtopError, DataError for a recording that cannot be fitted.
+
+    >>> t = np.linspace(0, 2, 200)
+    >>> noise = np.random.default_rng(2).normal(scale=1e-3, size=(3, 200))
+    >>> theta, phi, psi = solve(Top()).angles(t) + noise
+    >>> outcome = fit(t, theta=theta, phi=phi, psi=psi, known={"C": 17458})
+    >>> outcome.verdict, outcome.failures()
+    ('good', [])
+    >>> [(key, round(x, 1)) for key, (x, std) in outcome.numbers.items()][:3]
+    [('a', 319.1), ('b', 22.4), ('r0', 50.0)]
+    >>> round(outcome.numbers["A"][0], -2), round(outcome.chi2_dof, 1), outcome.record()["dof"]
+    (39000.0, 1.0, 592)
+    """
+    check_type("known", known, Mapping, NoneType)
+    recording = recording_from(
+        t, sigma=sigma, theta=theta, phi=phi, psi=psi, axis=axis, quaternion=quaternion
+    )
+    given = {name: value_of(name, x, parse_number) for name, x in (known or {}).items()}
+    found = gather(given)
+    return best_fit(recording, known_inputs(found.inputs, found.stds))

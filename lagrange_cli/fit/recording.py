@@ -1,0 +1,274 @@
+"""Recordings of tops: measured angles, an axis or an attitude, from a file or from arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arithmetic.text import quoted
+from ..arithmetic.types import Array, Mask
+from ..errors import DataError, LagtopError
+from ..inputs import rotations
+from ..inputs.input_keys import checked_double
+from ..inputs.names import ANGLES
+from ..inputs.seen import Conventions, Named, Quantities, angles_in, quantities_of, rows_of, see
+from ..inputs.trajectory import read_trajectory
+
+CHANNELS = {
+    "angles": ANGLES,
+    "axis": ("theta", "across"),
+    "attitude": ("theta", "across", "along"),
+}
+"""Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
+about the axis."""
+LEAST_ROWS = 12
+_LEAST_NUMBERS = 4
+_BEYOND = 0.2
+"""Largest tilt beyond a pole that counts as noise, in radians."""
+_SHORTEST, _LONGEST = 1e-60, 1e60
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The measured motion of one top; missing numbers are NaN."""
+
+    name: str
+    """The word of these rows in the column of --by, or the number of a window, or empty."""
+    t: Array
+    """Times since the first row, in ascending order."""
+    t_start: float
+    kind: str
+    """A key of CHANNELS."""
+    angles: Mapping[str, Array]
+    """The known angles among theta, phi and psi in radians, up to whole turns."""
+    sigma: Mapping[str, float]
+    """Standard deviations in radians by channel; empty if they are not given."""
+    position: Array | None = None
+    """The marker in space, shape (n, 3), if the axis is known from its position."""
+    is_mirrored: bool = False
+    """Whether psi is counted in the direction opposite to that of the data."""
+
+    @property
+    def channels(self) -> list[str]:
+        """The channels that are compared with a motion."""
+        return [x for x in CHANNELS[self.kind] if x in self.angles or self.kind != "angles"]
+
+    @property
+    def present(self) -> Mask:
+        """Whether a number is present, shape (channels, times)."""
+        names = [x if self.kind == "angles" else "theta" for x in self.channels]
+        return np.stack([np.isfinite(self.angles[name]) for name in names])
+
+    @property
+    def frame(self) -> float:
+        """The usual time between two rows."""
+        steps = np.diff(self.t)
+        return float(np.median(steps[steps > 0]))
+
+    @property
+    def mirrored(self) -> Recording:
+        """The recording with psi counted in the other direction."""
+        angles = {name: -x if name == "psi" else x for name, x in self.angles.items()}
+        return replace(self, angles=angles, is_mirrored=not self.is_mirrored)
+
+    def part(self, rows: Any, name: str = "") -> Recording:
+        """Return some rows, in this order, with times since the first of them."""
+        position = None if self.position is None else self.position[rows]
+        t, angles = self.t[rows], rows_of(self.angles, rows)
+        start = self.t_start + float(t[0])
+        return replace(self, name=name, t=t - t[0], t_start=start, angles=angles, position=position)
+
+    def windows(self, count: int) -> list[Recording]:
+        """Return the recording in equal windows of time.  Raises LagtopError for a bad count."""
+        if count < 2:
+            raise LagtopError(f"window must be 2 windows or more, got {count}", "window")
+        number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
+        rows = [np.flatnonzero(number == i) for i in range(count)]
+        if (least := min(x.size for x in rows)) < LEAST_ROWS:
+            raise LagtopError(
+                f"window must hold {LEAST_ROWS} rows or more, got {least}: use fewer windows",
+                "window",
+            )
+        return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]
+
+
+class Reading(NamedTuple):
+    """Options of reading a recording."""
+
+    columns: Sequence[str] | None = None
+    conventions: Conventions = Conventions()
+    by: str | None = None
+    """A column whose words separate recordings."""
+    sigma: Mapping[str, float] | float | None = None
+    """Standard deviations in radians: one for all channels, or by channel."""
+    decimal: str = ""
+    """The decimal mark, or empty if the file decides."""
+    up: str = "z"
+    """The upward axis of space in the file."""
+
+
+def read_recordings(path: str, reading: Reading) -> list[Recording]:
+    """Return the recordings of a file, in the order in which they begin.
+
+    Raises LagtopError for a file that cannot be read, DataError for one that holds no recording.
+    """
+    trajectory = read_trajectory(path, reading.columns, reading.decimal)
+    name, by, given = trajectory.name, reading.by, trajectory.values()
+    if by is None:
+        return [_recording_of(name, given, reading, trajectory.quantities)]
+    if by not in trajectory.names:
+        shown = ", ".join(trajectory.names)[:100]
+        raise LagtopError(f"by must name a column of {name} ({shown}), got {quoted(by)}", "by")
+    words = np.array(trajectory.words(by))
+    found = []
+    for word in dict.fromkeys(words.tolist()):
+        rows = rows_of(given, np.flatnonzero(words == word))
+        one = _recording_of(f"{name}, {by} {word}", rows, reading, trajectory.quantities)
+        found.append(replace(one, name=word))
+    return found
+
+
+def recording_from(
+    t: ArrayLike,
+    *,
+    sigma: Mapping[str, float] | float | None = None,
+    **arrays: ArrayLike | None,
+) -> Recording:
+    """Return the recording in the arguments of `fit`.  Raises LagtopError, DataError."""
+    given = {name: x for name, x in arrays.items() if x is not None}
+    if len(given) != max(sum(name in ANGLES for name in given), 1):
+        shown = ", ".join(given) or "nothing"
+        raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
+    reading = Reading(conventions=Conventions("wxyz", radians=True), sigma=sigma)
+    return _recording_of("the recording", quantities_of(t, given), reading, {})
+
+
+def _recording_of(where: str, given: Quantities, reading: Reading, named: Named) -> Recording:
+    """Return the recording in some columns, without rows that have no number.
+
+    Raises LagtopError, DataError for a bad recording.
+    """
+    t = given["t"][:, 0]
+    _check_times(where, t)
+    kind, found = _angles(given, reading, named)
+    position = given["position"] if kind == "axis" and "axis" not in given else None
+    if not found:
+        shown = ", ".join(x for x in given if x != "t")
+        raise DataError(
+            f"{where} must have columns for angles, an axis or an attitude, such as theta and "
+            f"psi, x y z, or qw qx qy qz, got {shown}"
+        )
+    angles = {}
+    for name, values in found.items():
+        known = np.isfinite(values)
+        if 0 < known.sum() < _LEAST_NUMBERS:
+            raise DataError(
+                f"{where}: {name} must have {_LEAST_NUMBERS} numbers or more, got {known.sum()}"
+            )
+        if known.any():
+            kept = np.where(known, values, np.nan)
+            angles[name] = kept if name == "theta" else rotations.within_half_turn(kept)
+    if angles.keys() == {"phi"}:
+        raise DataError(f"{where} must have theta or psi too: phi alone does not determine a top")
+    known = np.any([np.zeros(t.size), *map(np.isfinite, angles.values())], axis=0)
+    if (count := int(known.sum())) < LEAST_ROWS:
+        raise DataError(
+            f"{where} must have {LEAST_ROWS} rows or more with a number, got {count} of {t.size}"
+        )
+    tilts = angles.get("theta", np.zeros(1))
+    if (wrong := tilts[np.abs(tilts - np.pi / 2) > np.pi / 2 + _BEYOND]).size:
+        raise DataError(
+            f"{where}: theta must be between 0 and 180 deg (pi rad), got {np.degrees(wrong[0]):.6g}"
+            " deg"
+        )
+    order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
+    span = float(t[order[-1]] - t[order[0]])
+    if not _SHORTEST < span < _LONGEST:
+        raise DataError(f"{where}: t must span {_SHORTEST:g} to {_LONGEST:g}, got {span:g}")
+    raw = Recording("", t, 0.0, kind, angles, {}, position)
+    return replace(raw, sigma=_sigma(raw, reading.sigma)).part(order)
+
+
+def _check_times(where: str, t: Array) -> None:
+    """Raise DataError for a time that is not finite or turns back."""
+    if not np.isfinite(t).all():
+        raise DataError(f"{where}: t must be finite numbers, got {t[~np.isfinite(t)][0]}")
+    if (back := np.flatnonzero(np.diff(t) < 0)).size and not (np.diff(t) <= 0).all():
+        before, after = t[back[0] : back[0] + 2].tolist()
+        raise DataError(
+            f"{where}: t must not turn back, got {after:g} after {before:g}: if the file holds "
+            "several recordings, name the column that separates them with --by"
+        )
+
+
+def _angles(given: Quantities, reading: Reading, named: Named) -> tuple[str, dict[str, Array]]:
+    """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
+    alone = angles_in(given, reading.conventions, named)
+    if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
+        if reading.up != "z":
+            raise LagtopError("align needs an axis or an attitude, got angles", "align")
+        return "angles", alone
+    seen = see(given, reading.conventions, named)
+    if reading.up != "z":
+        seen = seen.turned(rotations.to_z(reading.up), rotations.IDENTITY)
+    if seen.quaternion is not None:
+        return "attitude", rotations.angles_of(seen.quaternion)
+    if seen.axis is not None:
+        return "axis", rotations.angles_of_axis(seen.axis)
+    return "angles", {}
+
+
+def _sigma(raw: Recording, sigma: Mapping[str, float] | float | None) -> dict[str, float]:
+    """Return standard deviations by channel.  Raises LagtopError unless all or none are given."""
+    channels = raw.channels
+    given: Any = sigma if isinstance(sigma, Mapping) else dict.fromkeys(channels, sigma)
+    if unknown := [name for name in given if name not in channels]:
+        wanted = ", ".join(channels)
+        raise LagtopError(f"sigma must be for {wanted}, got {quoted(unknown[0])}", "sigma")
+    found = {name: checked_double("sigma", x) for name, x in given.items() if x is not None}
+    if found and (missing := [x for x in channels if x not in found]):
+        raise LagtopError(
+            f"sigma must be given for all of {', '.join(channels)}, got none for {missing[0]}",
+            "sigma",
+        )
+    if wrong := [x for x in found.values() if not 0 < x < np.inf]:
+        raise LagtopError(f"sigma must be > 0, got {wrong[0]:g}", "sigma")
+    return found
+
+
+def turned_up(recording: Recording, axis: str) -> Recording:
+    """Return a recording of an axis or attitude in a frame whose z axis is another one of space."""
+    theta, psi = recording.angles["theta"], recording.angles["psi"]
+    turn = rotations.to_z(axis)
+    if recording.kind == "attitude":
+        whole = rotations.of_angles(theta, recording.angles["phi"], psi)
+        return replace(recording, angles=rotations.angles_of(rotations.product(turn, whole)))
+    axes = np.stack([np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)], -1)
+    return replace(recording, angles=rotations.angles_of_axis(rotations.rotated(turn, axes)))
+
+
+def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3) -> Array | None:
+    """Return the pivot in the coordinates of the marker, if these do not begin at the pivot.
+
+    The distance of the marker from its origin grows by d.e if the origin is off by d, with the
+    direction e of the marker.  Returns None if d is below `sure` standard deviations, or if the
+    distance varies by less than `least` of itself.
+    """
+    if recording.position is None:
+        return None
+    distance = np.linalg.norm(recording.position, axis=1)
+    direction = recording.position / distance[:, np.newaxis]
+    basis = np.column_stack([np.ones(distance.size), direction - direction.mean(axis=0)])
+    factors = np.linalg.lstsq(basis, distance, rcond=1e-3)[0]
+    explained = basis[:, 1:] @ factors[1:]
+    rest = distance - distance.mean() - explained
+    noise = float(rest @ rest) / max(distance.size - 4, 1)
+    gain = float(explained @ explained) / (noise + 1e-30)
+    if gain < sure**2 + 3 or np.ptp(explained) < least * distance.mean():
+        return None
+    offset: Array = factors[1:]
+    return offset

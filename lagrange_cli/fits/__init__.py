@@ -1,1 +1,0 @@
-"""Inverse problems: inputs for target values, and the top behind a recording."""
