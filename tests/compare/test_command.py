@@ -28,15 +28,6 @@ def right(tmp_path: Path) -> Path:
     return write(tmp_path / "right.csv", rk4(Body.of(TOP), 2e-3, 0.5))
 
 
-@pytest.fixture
-def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Work in a folder with some files of one row."""
-    monkeypatch.chdir(tmp_path)
-    rows = {"a": "t,theta\n0,30", "b": "t,theta\n0,x", "c": "t,theta\n1e99,30", "e": "t,theta"}
-    for name, text in (rows | {"d": "t,thetadot,phidot,psidot\n0,0,50,0"}).items():
-        Path(name).write_text(text + "\n")
-
-
 def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
     run = rk4(Body.of(TOP.replace(r0=-50)), 2e-3, 0.5)
     run[1][:, :4] *= 1.00001
@@ -85,26 +76,27 @@ def test_conventions_by_options(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert "the rates are in the frame of body: --rates-frame body" in wrong.stdout
 
 
+ROW = "t,theta\n0,30\n"
+
+
 @pytest.mark.parametrize(
-    ("arguments", "code", "message"),
+    ("text", "arguments", "code", "message"),
     [
-        ([], 2, "missing argument '[SCENE] TRAJECTORY...': see lagtop compare --help"),
-        (["-", "-"], 2, "standard input can be read once, got - twice"),
-        (["a", "--step-sizes", "1,2"], 2, "--step-sizes must have one number per trajectory (1)"),
-        (["a", "--step-sizes", "-1"], 2, "--step-sizes must be > 0, got -1.0"),
-        (["a", "--align", "axis=w"], 2, "--align must be among axis=y, up=y, left, start"),
-        (["a", "--align", "axis=y"], 2, "--align axis=y needs the whole attitude: leave it out"),
-        (["b"], 65, "b, line 2, column 2: theta must be a number, got 'x'"),
-        (["c"], 65, "c: t must be finite and within 2^50 periods"),
-        (["d"], 65, "d: angle_rates must come with an attitude or a part of it"),
-        (["e"], 65, "e: t must have at least one row"),
+        (ROW, "-", 2, "standard input can be read once, got - twice"),
+        (ROW, "--step-sizes 1,2", 2, "--step-sizes must have one number per trajectory (1), got 2"),
+        (ROW, "--step-sizes -1", 2, "--step-sizes must be > 0, got -1.0"),
+        (ROW, "--align axis=w", 2, "--align must be among axis=y, up=y, left, start, time"),
+        (ROW, "--align axis=y", 2, "--align axis=y needs the whole attitude: leave it out"),
+        ("t,theta\n0,x\n", "", 65, "standard input, line 2, column 2: theta must be a number"),
+        ("t,theta\n1e99,30\n", "", 65, "standard input: t must be finite and within 2^50 periods"),
+        ("t,thetadot,phidot,psidot\n0,0,50,0\n", "", 65, "standard input: angle_rates must come"),
+        ("t,theta\n", "", 65, "standard input: t must have at least one row"),
     ],
 )
-@pytest.mark.usefixtures("small_files")
 def test_bad_requests_get_one_line(
-    lagtop: Lagtop, arguments: list[str], code: int, message: str
+    lagtop: Lagtop, text: str, arguments: str, code: int, message: str
 ) -> None:
-    assert_one_line(lagtop("compare", *arguments), code, message)
+    assert_one_line(lagtop("compare", "-", *arguments.split(), input=text), code, message)
 
 
 def test_mujoco(lagtop: Lagtop, tmp_path: Path) -> None:

@@ -94,8 +94,8 @@ def test_wrong_rates_of_a_right_attitude_are_not_fine() -> None:
     found = compare(TOP, T, quaternion=Q, rates=RATES * np.linspace(1, 1.01, 201)[:, np.newaxis])
     assert (found.verdict, found.cause) == ("drifts", None)
     assert (found.error_max or 0) < 1e-11
-    torque, A = float(TOP.m * TOP.g * TOP.s), float(TOP.A)
-    size = math.hypot(1, 3 * math.sin(math.pi / 6)) + 50 + math.sqrt(torque / A)
+    fall = math.sqrt(float(TOP.m * TOP.g * TOP.s / TOP.A))
+    size = math.hypot(1, 3 * math.sin(math.pi / 6)) + 50 + fall
     off = np.linalg.norm(RATES[-1]) * 0.01 / size
     assert found.rates_error_max == pytest.approx(off, rel=0.01)
     assert compare(TOP, T, quaternion=Q, rates=1.0001 * RATES).verdict == "fine"
