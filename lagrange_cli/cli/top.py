@@ -77,7 +77,7 @@ class TopOptions(Values):
         found = self.given()
         warn_unused(found.stds)
         system = found.system
-        units = {} if system is None else {"inputs": f"in {system.mass}, {system.length} and s"}
+        units = {} if system is None else {"inputs": "in kg, m and s"}
         return motion_of(found), units
 
     def in_seconds(self, **times: Value | None) -> tuple[TopOptions, dict[str, Any]]:

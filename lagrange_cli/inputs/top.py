@@ -229,7 +229,7 @@ INPUTS = (*Top.fields, "A_cm", "phidot0")
 def _checked(name: str, value: Any) -> Number:
     """Return an input as a double or as a fraction.  Raises LagtopError for an impossible one."""
     number = _finite(name, value)
-    _require(abs(number) <= _LARGEST, name, "within 1e100 in size", number, _UNITS)
+    _require(-_LARGEST <= number <= _LARGEST, name, "within 1e100 in size", number, _UNITS)
     bound = DECLARED[name].bound if name in DECLARED else ""
     if bound.startswith("positive"):
         _require(number > 0, name, "> 0", number)

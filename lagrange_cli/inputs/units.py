@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..arithmetic.ball import pi_to
 from ..arithmetic.numbers import Number
@@ -27,21 +27,18 @@ Dimensions = tuple[int, int, int, int]
 class Unit(NamedTuple):
     """A unit, or a product of units, in kg, m, s and rad."""
 
-    size: Fraction
+    size: Fraction = Fraction(1)
     """The size over that power of pi."""
-    power_of_pi: int
-    dimensions: Dimensions
+    power_of_pi: int = 0
+    dimensions: Dimensions = (0, 0, 0, 0)
 
     def times(self, other: Unit, power: int) -> Unit:
         """Return this unit times a power of the other."""
-        mass, length, time, angle = (
-            x + power * y for x, y in zip(self.dimensions, other.dimensions, strict=True)
-        )
+        sums: Any = (x + power * y for x, y in zip(self.dimensions, other.dimensions, strict=True))
         size = self.size * other.size**power
-        return Unit(size, self.power_of_pi + power * other.power_of_pi, (mass, length, time, angle))
+        return Unit(size, self.power_of_pi + power * other.power_of_pi, tuple(sums))
 
 
-_ONE = Unit(Fraction(1), 0, (0, 0, 0, 0))
 _TABLE = """
 1 0 0 0 | 0 | mg=1e-6 g=1e-3 kg=1 oz=0.028349523125 lb=0.45359237 slug=8896443230521/609600000000
 0 1 0 0 | 0 | um=1e-6 mm=1e-3 cm=1e-2 m=1 km=1000 in=0.0254 ft=0.3048
@@ -53,17 +50,20 @@ _TABLE = """
 0 0 -1 1 | 1 | rpm=1/30
 """
 """The dimensions, the power of pi, and the exact sizes of units."""
-UNITS = {
-    name: _ONE._replace(
-        size=Fraction(size),
-        power_of_pi=int(pi),
-        dimensions=tuple(map(int, powers.split())),  # type: ignore[arg-type]
-    )
-    for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().splitlines())
-    for name, size in (pair.split("=") for pair in pairs.split())
-}
-_WITHOUT_ANGLE = {(0, 0, -1, 1): (0, 0, -1, 0)}
-"""A rate may be given without radians, as 1/s."""
+_RATE = (0, 0, -1, 1)
+
+
+def _table() -> dict[str, Unit]:
+    found = {}
+    for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().split("\n")):
+        dimensions: Any = tuple(map(int, powers.split()))
+        for name, size in (pair.split("=") for pair in pairs.split()):
+            found[name] = Unit(Fraction(size), int(pi), dimensions)
+    return found
+
+
+UNITS = _table()
+"""The known units by name."""
 _UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
 _EXAMPLES = {
     "mass": "350g",
@@ -77,7 +77,6 @@ _EXAMPLES = {
 }
 """An example of each unit of an input."""
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-_FIGURES = {figure: raised for raised, figure in _RAISED.items()}
 _NAME = r"1|°|g_0|[^\W\d_]+"
 _FACTOR = re.compile(rf"\s*([*·/]?)\s*({_NAME})\s*(?:(?:\*\*|\^)?\s*(-?\d)(?!\d))?")
 """A factor of a product: a stroke, a name, and a power of one digit."""
@@ -92,11 +91,11 @@ def unit_of_text(text: str) -> Unit:
 
     Raises LagtopError for an unknown unit, with the nearest name and the known ones.
     """
-    found, place, text = _ONE, 0, text.strip().translate(_RAISED)
+    found, place, text = Unit(), 0, text.strip().translate(_RAISED)
     while place < len(text):
         match = _FACTOR.match(text, place)
         name = match[2] if match else text[place:]
-        unit = _ONE if name == "1" else UNITS.get(name)
+        unit = Unit() if name == "1" else UNITS.get(name)
         if match is None or unit is None:
             raise LagtopError(_ASKED.get(name) or f"no such unit{_meant(name)}; known: {_KNOWN}")
         found = found.times(unit, int(match[3] or 1) * (-1 if match[1] == "/" else 1))
@@ -123,7 +122,8 @@ def factor_of(key: str, unit: str, wanted: str | None = None) -> Fraction:
     into = unit_of_text(SI.named(wanted))
     try:
         given = unit_of_text(unit)
-        if given.dimensions not in {into.dimensions, _WITHOUT_ANGLE.get(into.dimensions)}:
+        per_time = into.dimensions == _RATE and given.dimensions == (0, 0, -1, 0)  # as 1/s
+        if given.dimensions != into.dimensions and not per_time:
             raise LagtopError("it measures something else")
     except LagtopError as error:
         example = _EXAMPLES.get(wanted) or repr(f"2 {SI.named(wanted)}")
@@ -137,25 +137,10 @@ def factor_of(key: str, unit: str, wanted: str | None = None) -> Fraction:
 class System:
     """The names of the units of results: SI."""
 
-    mass, length = "kg", "m"
-
     def named(self, unit: str) -> str:
         """Return a unit such as `mass len²` or `rad/time` with the names of its parts."""
-        names = {"mass": self.mass, "len": self.length, "time": "s"}
+        names = {"mass": "kg", "len": "m", "time": "s"}
         return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
-
-    def unit_of(self, powers: Mapping[str, Fraction]) -> str:
-        """Return the unit of a product of powers of inputs, such as `kg m²/s²`; radians are 1."""
-        sums = [
-            sum((n * unit_of_text(si_unit(x)).dimensions[i] for x, n in powers.items()), Fraction())
-            for i in range(3)
-        ]
-        parts = list(zip((self.mass, self.length, "s"), sums, strict=True))
-        above = " ".join(_raised(name, n) for name, n in parts if n > 0)
-        below = " ".join(_raised(name, -n) for name, n in parts if n < 0)
-        if not below:
-            return above
-        return f"{above or 1}/({below})" if " " in below else f"{above or 1}/{below}"
 
     def in_words(self, remark: str) -> str:
         """Return a remark with `time` replaced by the second."""
@@ -163,11 +148,6 @@ class System:
 
 
 SI = System()
-
-
-def _raised(name: str, power: Fraction) -> str:
-    """Return a power of a unit, such as `m²`."""
-    return name if power == 1 else name + str(power).translate(_FIGURES)
 
 
 def si_unit(key: str) -> str:
