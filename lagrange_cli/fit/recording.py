@@ -15,7 +15,15 @@ from ..errors import DataError, LagtopError
 from ..inputs import rotations
 from ..inputs.input_keys import checked_double
 from ..inputs.names import ANGLES
-from ..inputs.seen import Conventions, Named, Quantities, angles_in, quantities_of, rows_of, see
+from ..inputs.observed import (
+    Conventions,
+    Named,
+    Quantities,
+    angles_in,
+    observe,
+    quantities_of,
+    rows_of,
+)
 from ..inputs.trajectory import read_trajectory
 
 CHANNELS = {
@@ -212,7 +220,7 @@ def _angles(given: Quantities, reading: Reading, named: Named) -> tuple[str, dic
         if reading.up != "z":
             raise LagtopError("align needs an axis or an attitude, got angles", "align")
         return "angles", alone
-    seen = see(given, reading.conventions, named)
+    seen = observe(given, reading.conventions, named)
     if reading.up != "z":
         seen = seen.turned(rotations.to_z(reading.up), rotations.IDENTITY)
     if seen.quaternion is not None:

@@ -1,29 +1,8 @@
-"""The old name of `inputs.observed`, until all users import that."""
+"""The old name of `inputs.observed`, for the old layer of options."""
 
-from .observed import (
-    ORDERS,
-    Conventions,
-    Named,
-    Quantities,
-    angles_in,
-    quantities_of,
-    rows_of,
-)
-from .observed import Observed as Seen
-from .observed import observe as see
+from .observed import Conventions
 
-__all__ = [
-    "ORDERS",
-    "Conventions",
-    "Named",
-    "Quantities",
-    "Seen",
-    "angles_in",
-    "euler_sequence",
-    "quantities_of",
-    "rows_of",
-    "see",
-]
+__all__ = ["Conventions", "euler_sequence"]
 
 
 def euler_sequence(text: str) -> str:

@@ -5,8 +5,7 @@ The first bytes of a file determine its format, not its name: Parquet, npy, npz,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
@@ -15,8 +14,7 @@ from ..arithmetic.points import ListedPoints
 from ..arithmetic.text import quoted, shortened
 from ..errors import DataError, LagtopError, UnavailableError
 from .files import LARGEST_FILE, read_bytes, shown_path
-from .names import ANGLES, repeated
-from .text_lines import UNDECIDED, Dialect
+from .names import repeated
 from .text_tables import Table, parts, read_table
 from .trajectory_columns import (
     QUANTITIES,
@@ -116,62 +114,6 @@ class Trajectory:
                 i = int(found[0])
                 place = self.table.where(i if rows is None else rows[i])
                 raise DataError(f"{place}: {wanted.format(float(t[i - 1]), float(t[i]))}")
-
-    # The interface of the old fits and judge; it goes with them.
-
-    description: Mapping[str, str] = {}
-
-    def add_angle(self, key: str, column: str, unit: str | None) -> str | None:
-        """Read one more column of angles, as a quantity named `key`, and return their unit."""
-        try:
-            known, factor = in_known_unit(ANGLES[0], unit)
-        except LagtopError as error:
-            raise DataError(f"{self.name}, heading {column}: {error}") from None
-        self.quantities[key] = FoundQuantity([self.names.index(column)], "", None, factor)
-        return known
-
-    def add_words(self, key: str, column: str) -> Callable[[float], str]:
-        """Read one more column, of words, as numbers; return the word of a number."""
-        import numpy as np
-
-        words = self.words(column)
-        known = list(dict.fromkeys(words))
-        numbers = {word: float(i) for i, word in enumerate(known)}
-        self._added = {key: np.array([[numbers[x]] for x in words])}
-        return lambda number: known[int(number)]
-
-    _added: Mapping[str, Array] = {}
-
-    def blocks(self, *, repeats: bool = False) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
-        """Yield all quantities at once, with checked times, and the indices of rows."""
-        for values, rows in self.rows():
-            self.check_times(values["t"][:, 0], repeats=repeats)
-            yield values, rows
-
-    def rows(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
-        """Yield all quantities at once, and the indices of rows."""
-        values = self.values() | dict(self._added)
-        if len(values["t"]):
-            yield values, range(len(values["t"]))
-
-
-class Clock:
-    """The check of times of the old fits."""
-
-    def __init__(self, trajectory: Trajectory, *, repeats: bool) -> None:
-        self.trajectory, self.repeats = trajectory, repeats
-
-    def advance(self, t: Array, rows: Sequence[int]) -> None:
-        """Raise DataError for a time that is not finite, turns back, or repeats."""
-        self.trajectory.check_times(t, rows, repeats=self.repeats)
-
-
-@contextmanager
-def open_trajectory(
-    path: str, columns: Sequence[str] | None = None, dialect: Dialect = UNDECIDED
-) -> Iterator[Trajectory]:
-    """Return `read_trajectory` as a context manager, for the old fits and judge."""
-    yield read_trajectory(path, columns, dialect.decimal)
 
 
 def _column_names(table: Table, columns: Sequence[str] | None) -> Sequence[str]:

@@ -22,7 +22,7 @@ from pyarrow import parquet
 
 from lagrange_cli.errors import DataError
 from lagrange_cli.inputs import trajectory
-from lagrange_cli.inputs.seen import Conventions, angles_in
+from lagrange_cli.inputs.observed import Conventions, angles_in
 from lagrange_cli.inputs.trajectory import read_times, read_trajectory
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES, expanded, quantities_in
 
