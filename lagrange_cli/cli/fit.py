@@ -117,7 +117,7 @@ def fit_command(
     recordings = read_recordings(top.words[0], reading)
     given = top.given()
     known, source = known_inputs(given.inputs, given.stds), shown_path(top.words[0])
-    units = f" (in {given.system.mass}, {given.system.length} and s)" if given.system else ""
+    units = " (in kg, m and s)" if given.system else ""
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"a scene holds one top, got {len(recordings)}: fit one recording")
     if window is not None:
