@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
@@ -84,28 +85,12 @@ class EvenPoints(Points):
         return EvenPoints(self.start * factor, self.step * factor, self.count)
 
     def at(self, index: Index) -> Array:
-        """Return start + i step for every i of `index`, each rounded once.
-
-        Pairs of doubles give the points to 2^-100 of the largest one.  If that leaves two possible
-        doubles, exact fractions decide.
-        """
+        """Return start + i step for every i of `index`; Python rounds a ratio of integers once."""
         import numpy as np
 
-        from .double_double import two_product, two_sum  # start-up
-        from .rounding import pair  # start-up
-
-        start, step = pair(self.start), pair(self.step)
-        i = index.astype(np.float64)
-        with np.errstate(all="ignore"):
-            product, rest = two_product(i, step.high)
-            total, error = two_sum(product, start.high)
-            rest += error + i * step.low + start.low
-            margin = 2.0**-100 * max(map(abs, self.bounds())) + 1e-300
-            values: Array = total + (rest + margin)
-            split = np.isinf(rest)  # next to the largest double, parts of a product overflow
-            unsure = np.flatnonzero(split | (values != total + (rest - margin)))
-        values[unsure] = [float(self.start + int(i) * self.step) for i in index[unsure]]
-        return values
+        common = math.lcm(self.start.denominator, self.step.denominator)
+        first, step = int(self.start * common), int(self.step * common)
+        return np.array([(first + i * step) / common for i in index.tolist()])
 
     def decimals(self) -> Iterator[Fraction]:
         """Yield every point exactly."""

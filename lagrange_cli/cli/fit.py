@@ -126,7 +126,7 @@ def fit_command(
     found = [best_fit(x, known, radians=radians) for x in with_progress(recordings, "fits")]
     if plot:
         _draw(found, plot)
-    _write(found, source, units, out.replace(path="-") if scene_path else out)
+    _write(found, source, units, out._replace(path="-") if scene_path else out)
     failed = [x.failure() for x in found if x.failures()]
     if failed and len(found) == 1:
         raise SomeFailedError(f"the fit has failed: {failed[0]}")

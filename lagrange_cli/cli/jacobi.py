@@ -6,8 +6,8 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from ..arithmetic.key import Key
 from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
-from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..output.terminal import with_progress

@@ -14,7 +14,7 @@ from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
-    from ..arithmetic.values import Key
+    from ..arithmetic.key import Key
     from ..inputs.units import System
     from ..output.destination import Output
 
@@ -169,4 +169,4 @@ def _keys_by_step(keys: dict[str, Key], radians: bool) -> dict[str, Key]:
     from ..motion.paper.requested import CHAIN
 
     chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
-    return {name: keys[name].replace(group=step) for name, step in chain.items()}
+    return {name: keys[name]._replace(group=step) for name, step in chain.items()}

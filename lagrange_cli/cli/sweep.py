@@ -100,7 +100,7 @@ def sweep_command(
     opt.exclude(jobs=jobs, dask=dask)
     opt.exclude(parts=parts, output=out.path != "-")
     if parts is not None:
-        out = out.replace(fmt="csv") if not out.is_named else out
+        out = out._replace(fmt="csv") if not out.is_named else out
         if out.fmt in {"json", "table"}:
             raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
     if len(words) > 1:
@@ -120,7 +120,7 @@ def sweep_command(
     opt.warn_unused(todo.given)
     sweep = todo.sweep
     if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
-        sweep, out = sweep._replace(fmt="csv"), out.replace(fmt="csv")
+        sweep, out = sweep._replace(fmt="csv"), out._replace(fmt="csv")
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
     count, blocks = ErrorCount(hidden), shard_of(todo.blocks, shard)
     folder = None if parts is None else Parts(parts, sweep, todo.description)

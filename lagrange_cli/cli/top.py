@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
-from ..arithmetic.values import Values
 from ..errors import LagtopError
 from .app import complain
 from .options import FILE, Group, Parsed, choice, late, option, rad
@@ -39,7 +38,7 @@ INPUT = TIME = value_type()
 UNCERTAIN = value_type(uncertain=True)
 
 
-class TopOptions(Values):
+class TopOptions(NamedTuple):
     """The options of the top on the command line."""
 
     options: Mapping[str, Any]
@@ -90,7 +89,7 @@ class TopOptions(Values):
         if any(x.unit for x in given.values()):
             from ..inputs.units import converted
 
-            top, given = self.replace(units=self.units or "si"), converted(given)
+            top, given = self._replace(units=self.units or "si"), converted(given)
         return top, {name: given[name].number if name in given else None for name in times}
 
 

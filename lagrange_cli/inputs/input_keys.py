@@ -8,17 +8,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ..arithmetic.numbers import Number, is_real
 from ..arithmetic.text import quoted
-from ..arithmetic.values import Values
 from ..errors import LagtopError, MixedBodyWarning
 
 N = TypeVar("N")
 
 
-class Input(Values):
+class Input(NamedTuple):
     """An input of a top."""
 
     symbol: str

@@ -15,12 +15,11 @@ from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.ball import TooFewDigitsError, UndefinedError
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.rounding import decided
-from ..arithmetic.values import Values
 from ..errors import LagtopError
 from ..inputs.names import ANGLES, check_names
 from ..inputs.top import Top
@@ -53,7 +52,7 @@ Neighbours = list[tuple[Motion, float]]
 """Motions with one input moved, and their weights in a derivative times the step."""
 
 
-class Sensitivities(Values):
+class Sensitivities(NamedTuple):
     """Derivatives of the numbers of a record by the inputs; NaN if one does not exist."""
 
     top: Top

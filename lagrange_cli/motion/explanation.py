@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
-from ..arithmetic.values import Key
+from ..arithmetic.key import Key
 from ..inputs.names import check_names
 from .numbers import record_in_range
 from .over_time.columns import shown_columns

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
-from ..arithmetic.values import Key
+from ..arithmetic.key import Key
 
 V = TypeVar("V")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..arithmetic.values import Key
+from ..arithmetic.key import Key
 from ..inputs.input_keys import DECLARED, NINE, TILT
 from .quantity import keys_of, unit_name
 from .spin_precession import SpinPrecession

@@ -13,10 +13,9 @@ import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from ..arithmetic.text import csv_text, value_text
-from ..arithmetic.values import Values
 from ..errors import CannotWriteError
 from .terminal import is_screen, printable, width_of
 
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from .report import Keys, Report
 
 
-class Output(Values):
+class Output(NamedTuple):
     """A destination, a file or `-` for standard output, and the name of a format."""
 
     path: str

@@ -11,8 +11,8 @@ from io import StringIO
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..arithmetic.key import Key
 from ..arithmetic.text import csv_text, double_text, value_text
-from ..arithmetic.values import Key
 from .terminal import printable
 
 if TYPE_CHECKING:

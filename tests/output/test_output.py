@@ -18,8 +18,8 @@ import pytest
 from lagtop import LagtopError, Top, solve
 from pyarrow import parquet
 
+from lagrange_cli.arithmetic.key import Key
 from lagrange_cli.arithmetic.text import NumberText
-from lagrange_cli.arithmetic.values import Key
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.motion.record import shown_keys
 from lagrange_cli.output import terminal

@@ -16,7 +16,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
 from ...arithmetic.numbers import R
-from ...arithmetic.values import Key
+from ...arithmetic.key import Key
 from ...inputs.names import ANGLES, check_names
 from ..kinds import Kind, Vertical
 from ..quantity import quantity

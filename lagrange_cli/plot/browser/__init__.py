@@ -183,10 +183,10 @@ def _keys() -> dict[str, dict[str, str]]:
     They are the keys of a record and the stability factor.
     """
     formulas = {row.name: row.formula for row in listed()}
-    keys = KEYS | {FACTOR: requested_keys()[FACTOR].replace(group=KEYS["a"].group)}
+    keys = KEYS | {FACTOR: requested_keys()[FACTOR]._replace(group=KEYS["a"].group)}
     groups = [key.group for key in keys.values()]
     return {
-        name: key.replace(formula=formulas.get(name, "")).as_dict()
+        name: key._replace(formula=formulas.get(name, ""))._asdict()
         for name, key in sorted(keys.items(), key=lambda item: groups.index(item[1].group))
     }
 
