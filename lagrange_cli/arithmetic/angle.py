@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, Generic, NamedTuple
 
 from flint import arb, fmpq
@@ -54,14 +55,16 @@ class Angle(NamedTuple):
         whole, half = self._sine_and_cosine(ar, 1), self._sine_and_cosine(ar, 2)
         return Tilt(*whole, *half)
 
+    @lru_cache(maxsize=64)  # noqa: B019 - angles are small values
     def _sine_and_cosine(self, ar: Balls, parts: int) -> tuple[Ball, Ball]:
         """Return the sine and the cosine of the angle divided by a number of parts."""
-        if self.degrees is None:
-            sin_cos = ar.convert((self.radians or Fraction(0)) / parts).x.sin_cos()
-        else:
-            half_turns = self.degrees / 180 / parts
-            ratio = fmpq(half_turns.numerator, half_turns.denominator)
-            sin_cos = arb.sin_cos_pi_fmpq(ratio)
+        with ar.working():
+            if self.degrees is None:
+                sin_cos = ar.convert((self.radians or Fraction(0)) / parts).x.sin_cos()
+            else:
+                half_turns = self.degrees / 180 / parts
+                ratio = fmpq(half_turns.numerator, half_turns.denominator)
+                sin_cos = arb.sin_cos_pi_fmpq(ratio)
         return Ball(sin_cos[0]), Ball(sin_cos[1])
 
     def sign(self, *coefficients: Fraction | int, most: int) -> int:

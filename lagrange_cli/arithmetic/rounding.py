@@ -39,10 +39,10 @@ DecimalOrFraction = Decimal | Fraction
 
 
 class Settled(NamedTuple):
-    """A number as it is printed, with the ends of an interval that holds its exact value."""
+    """A number as it is printed, and the ball or the fraction that it is rounded from."""
 
     value: Any
-    ends: tuple[DecimalOrFraction, ...]
+    exact: Ball | Fraction
 
     @property
     def radius(self) -> NumberText:
@@ -50,7 +50,8 @@ class Settled(NamedTuple):
 
         It is rounded up so far that the double read from the text is not smaller.
         """
-        away = max(_distance(end, self.value) for end in self.ends)
+        ends = self.exact.ends() if isinstance(self.exact, Ball) else (self.exact,)
+        away = max(_distance(end, self.value) for end in ends)
         return text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec)
 
 
@@ -114,6 +115,8 @@ def settled(
 ) -> Settled | None:
     """Return the rounding of a number from balls with more and more digits; None for None.
 
+    `digits` is the number of digits of the output, 0 for doubles.
+
     A ball of `most` digits that still cannot be rounded holds a 0 or a tie: the number is then the
     simplest fraction in it.  Raises LagtopError for a ball that is wide even then.
     """
@@ -123,19 +126,22 @@ def settled(
         if ball is None:
             return None
         try:
-            return alike(ball, rounding)
+            nearest = 0.0 if digits else float(ball)
+            if nearest and math.isfinite(nearest):
+                return Settled(nearest, ball)
+            return Settled(_alike(ball, rounding), ball)
         except TooFewDigitsError:
             if working < most + more:
                 raise
             value = ball.simplest()
             if not ball.x.rel_one_accuracy_bits() > most:
                 raise
-            return Settled(rounding(value), (value,))
+            return Settled(rounding(value), value)
 
     return decided(what, attempt, digits, more, most)
 
 
-def alike(ball: Any, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
+def _alike(ball: Ball, rounding: Callable[[DecimalOrFraction], Any]) -> Any:
     """Return the number to which both ends of a ball are rounded.
 
     It is 0 only if the ball is exactly 0.  Raises TooFewDigitsError if the ends round differently,
@@ -148,7 +154,7 @@ def alike(ball: Any, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
     value = rounding(low)
     if value != rounding(high):
         raise TooFewDigitsError
-    return Settled(value, (low, high))
+    return value
 
 
 def rounded(what: str, enclosure: Callable[[int], Ball]) -> float:

@@ -233,7 +233,7 @@ def _inputs(exact: Exact, digits: int | None, *, radians: bool) -> dict[str, Set
     def shown(name: str, value: Any) -> Settled | None:
         rounding = rounding_of(name, digits)
         if not isinstance(value, Ball):
-            return Settled(rounding(Fraction(value)), (Fraction(value),))
+            return Settled(rounding(Fraction(value)), Fraction(value))
         return settled(
             name,
             lambda working: top.inputs(radians=radians, ar=balls(working))[name],

@@ -66,7 +66,7 @@ def test_what_most_digits_leave_open_is_the_simplest_fraction(
 ) -> None:
     found = settled("x", noisy(value), float, most=1400)
     assert found is not None
-    assert (found.value, found.ends) == (nearest, (value,))
+    assert (found.value, found.exact) == (nearest, value)
 
 
 def test_a_ball_that_stays_wide_holds_no_tie() -> None:
@@ -168,7 +168,7 @@ def test_the_exact_value_is_within_the_radius(value: str, digits: int | None) ->
         <= Fraction(float(found.radius))
         <= abs(Fraction(value)) * Fraction(10) ** -((digits or 16) - 1)
     )
-    exact = Settled(0.5, (Fraction(1, 2),))
+    exact = Settled(0.5, Fraction(1, 2))
     assert exact.radius == "0.0"
 
 
