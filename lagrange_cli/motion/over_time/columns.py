@@ -15,8 +15,8 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
-from ...arithmetic.numbers import R
 from ...arithmetic.key import Key
+from ...arithmetic.numbers import R
 from ...inputs.names import ANGLES, check_names
 from ..kinds import Kind, Vertical
 from ..quantity import quantity

@@ -330,7 +330,7 @@ class ProvedTable:
         what = f"{name} at t = {float(time)}"
         rounding = rounding_of(what, self.digits)
         if name == "t":
-            return Settled(rounding(time), (time,))
+            return Settled(rounding(time), time)
         turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
         number = settled(
             what,
