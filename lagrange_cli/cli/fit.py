@@ -2,45 +2,28 @@
 
 from __future__ import annotations
 
-from functools import partial
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import unit_in_radians
-from ..arithmetic.text import json_text, parse_number
+from ..arithmetic.text import json_text
 from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
-from ..output.destination import Output, write_bytes
+from ..output.destination import Output, opened
 from ..output.terminal import with_progress
-from . import options as opt
+from . import shared as opt
 from .app import complain
-from .tables import (
-    columns_option,
-    euler_option,
-    fail_for,
-    quaternion_option,
-    text_options,
-    write_report,
-)
-from .top import UNCERTAIN, TopOptions, top_options, words
 
 if TYPE_CHECKING:
     from ..fit.outcome import Outcome
     from ..fit.problem import Known
-    from ..inputs.text_lines import Dialect
-
-
-def _positive(text: str) -> float:
-    number = float(parse_number(text))
-    if not number > 0:
-        raise LagtopError(f"must be > 0, got {number:g}")
-    return number
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
     if "=" not in text:
-        return _positive(text)
+        return opt.parse_positive(text)
     parts = [part.partition("=") for part in split_names(text)]
-    return {name.strip(): _positive(value) for name, _, value in parts}
+    return {name.strip(): opt.parse_positive(value) for name, _, value in parts}
 
 
 def _parse_up(text: str) -> str:
@@ -53,37 +36,44 @@ def _parse_up(text: str) -> str:
 
 @opt.command(
     "fit",
-    """
-    lagtop table --t-max 2 --n 200 -o recording.csv
-    lagtop fit recording.csv --m 1587 --g 981 -o fitted.toml
-    lagtop fit recording.csv --sigma 0.3 --plot residuals.svg
-    """,
-    exclusive=["--window --by", "--window --plot"],
+    "table --t-max 2 --n 200 -o recording.csv",
+    "fit recording.csv --m 1587 --g 981 -o fitted.toml",
+    "fit recording.csv --sigma 0.3 --plot residuals.svg",
 )
+@opt.top("RECORDING", whole=False, required=True, is_scene=None)
+@opt.option(
+    "--sigma",
+    type=opt.Parsed("SIGMA", _parse_sigma),
+    help="Standard deviation of all angles, or theta=0.3,psi=0.5.  [default: estimated from the "
+    "residuals]",
+)
+@opt.option("--window", type=opt.count(), help="Fit N equal windows, and the decay of the spin.")
+@opt.option("--by", metavar="COLUMN", help="Column that names the recording of each row.")
+@opt.option(
+    "--align",
+    type=opt.Parsed("up=AXIS", _parse_up),
+    default="up=z",
+    help="Axis of space that points up in the file.",
+)
+@opt.columns
+@opt.quaternion_order
+@opt.euler_sequence
+@opt.decimal
+@opt.plot
+@opt.output(*opt.REPORT_FORMATS, extensions=["toml"])
 def fit_command(
-    top: TopOptions = top_options(
-        UNCERTAIN, words("RECORDING", opt.FILE, required=True), whole=False, units=False
-    ),
-    sigma: float | dict[str, float] | None = opt.option(
-        opt.Parsed("SIGMA", _parse_sigma),
-        "Standard deviation of all angles, or theta=0.3,psi=0.5.  [default: estimated from the "
-        "residuals]",
-    ),
-    window: int | None = opt.count("Fit N equal windows, and the decay of the spin."),
-    by: str | None = opt.option(
-        opt.Parsed("COLUMN", str), "Column that names the recording of each row."
-    ),
-    align: str = opt.option(
-        opt.Parsed("up=AXIS", _parse_up),
-        "Axis of space that points up in the file.",
-        default="up=z",
-    ),
-    names: list[str] | None = columns_option,
-    quaternion_order: str = quaternion_option("wxyz"),
-    euler_sequence: str = euler_option,
-    dialect: Dialect = text_options,
-    plot: str | None = opt.plot,
-    out: Output = opt.output(*opt.REPORT_FORMATS, extensions=["toml"]),
+    top: opt.TopOptions,
+    words: list[str],
+    sigma: float | dict[str, float] | None,
+    window: int | None,
+    by: str | None,
+    align: str,
+    columns: list[str] | None,
+    quaternion_order: str,
+    euler_sequence: str,
+    decimal: str,
+    plot: str | None,
+    out: Output,
 ) -> None:
     """Fit a top to a recording, with uncertainties.
 
@@ -99,24 +89,26 @@ def fit_command(
     from ..fit.problem import known_inputs
     from ..fit.recording import Reading, read_recordings
     from ..inputs.files import shown_path
-    from ..inputs.seen import Conventions
-    from ..plot.reports import check_plot
+    from ..inputs.observed import Conventions
 
-    check_plot(plot, out.path)
-    if len(top.words) != 1:
-        raise LagtopError(f"fit takes one recording, got {len(top.words)}: use --by COLUMN")
-    if top.scene is not None:
-        raise LagtopError(f"fit takes no scene, got {top.scene}: give known inputs as options")
+    opt.check_plot(plot, out.path)
+    if len(words) != 1:
+        raise LagtopError(f"fit takes one recording, got {len(words)}: use --by COLUMN")
     scene_path = out.path if opt.extension(out.path) == "toml" else None
-    opt.exclude({"--window": window, f"--output {out.path}": scene_path})
+    if window is not None and (by or plot or scene_path):
+        raise LagtopError("--window goes without --by, --plot and -o FILE.toml")
     radians = top.radians
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
-    reading = Reading(
-        names, conventions, by, _in_radians(sigma, radians), dialect.decimal, up=align
+    unit = unit_in_radians(radians=radians)
+    spread = (
+        {name: value * unit for name, value in sigma.items()}
+        if isinstance(sigma, dict)
+        else sigma and sigma * unit
     )
-    recordings = read_recordings(top.words[0], reading)
+    reading = Reading(columns, conventions, by, spread, decimal, up=align)
+    recordings = read_recordings(words[0], reading)
     given = top.given()
-    known, source = known_inputs(given.inputs, given.stds), shown_path(top.words[0])
+    known, source = known_inputs(given.inputs, given.stds), shown_path(words[0])
     units = " (in kg, m and s)" if given.system else ""
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"a scene holds one top, got {len(recordings)}: fit one recording")
@@ -124,25 +116,16 @@ def fit_command(
         _fit_windows(recordings[0], window, known, source, units, radians, out)
         return
     found = [best_fit(x, known, radians=radians) for x in with_progress(recordings, "fits")]
-    if plot:
-        _draw(found, plot)
-    _write(found, source, units, out._replace(path="-") if scene_path else out)
     failed = [x.failure() for x in found if x.failures()]
+    with ExitStack() as stack:  # a file is replaced only if the report is written
+        if scene_path and not failed:
+            stack.enter_context(opened(scene_path)).write(found[0].scene(source).encode())
+        if plot:
+            stack.enter_context(opened(plot)).write(_drawn(found, plot))
+        _write(found, source, units, out._replace(path="-") if scene_path else out)
     if failed and len(found) == 1:
         raise SomeFailedError(f"the fit has failed: {failed[0]}")
-    fail_for(failed, len(found), "fits")
-    if scene_path:
-        text = found[0].scene(source)
-        write_bytes(scene_path, text.encode)
-
-
-def _in_radians(
-    sigma: float | dict[str, float] | None, radians: bool
-) -> float | dict[str, float] | None:
-    unit = unit_in_radians(radians=radians)
-    if isinstance(sigma, dict):
-        return {name: value * unit for name, value in sigma.items()}
-    return None if sigma is None else sigma * unit
+    opt.fail_for(failed, len(found), "fits")
 
 
 def _write(found: list[Outcome], source: str, units: str, out: Output) -> None:
@@ -150,7 +133,7 @@ def _write(found: list[Outcome], source: str, units: str, out: Output) -> None:
     from ..fit.report import fit_report
 
     if out.fmt == "table":
-        write_report(out, lambda: fit_report(found, source, units))
+        opt.write_report(out, lambda: fit_report(found, source, units))
         return
     records: list[dict[str, Any]] = [x.record() for x in found]
     if len(records) == 1 and out.fmt == "json":
@@ -172,19 +155,20 @@ def _fit_windows(
 
     found = fit_windows(recording, count, known, radians=radians)
     if out.fmt == "table":
-        write_report(out, lambda: windows_report(found, source, units))
+        opt.write_report(out, lambda: windows_report(found, source, units))
     elif out.fmt == "json":
         out.text(f"{json_text(windows_record(found))}\n")
     else:
         rows = windows_record(found)["windows"]
         out.rows(rows, list(dict.fromkeys(key for row in rows for key in row)))
         complain(decay_text(found))
-    fail_for([x.failure() for x in found if x.failures()], len(found), "windows")
+    opt.fail_for([x.failure() for x in found if x.failures()], len(found), "windows")
 
 
-def _draw(found: list[Outcome], path: str) -> None:
+def _drawn(found: list[Outcome], path: str) -> bytes:
+    """Return the picture of the fits."""
     from ..plot.reports import draw_fit
 
     curves = [curve for outcome in found for curve in outcome.curves()]
     title = f"lagtop fit: {found[0].verdict}" if len(found) == 1 else ""
-    write_bytes(path, partial(draw_fit, curves, found[0].angle, path, title))
+    return draw_fit(curves, found[0].angle, path, title)

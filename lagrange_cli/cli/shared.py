@@ -81,7 +81,8 @@ def count(most: float = 1e9) -> Parsed:
     return Parsed("N", parse)
 
 
-def _parse_positive(text: str) -> float:
+def parse_positive(text: str) -> float:
+    """Return a number above 0."""
     exact = parse_number(text)
     if not exact > 0:
         raise LagtopError(f"must be > 0, got {float(exact)}")
@@ -107,7 +108,7 @@ def _parse_value(text: str, **allowed: Any) -> Value:
 
 
 NUMBER = Parsed("X", parse_number)
-POSITIVE = Parsed("X", _parse_positive)
+POSITIVE = Parsed("X", parse_positive)
 LIST = Parsed("NAME,...", split_names)
 NUMBERS = Parsed("X,...", parse_numbers)
 VALUE = Parsed("X", partial(_parse_value, uncertain=True))
