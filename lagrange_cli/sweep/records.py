@@ -26,7 +26,7 @@ from ..motion.quantity import degree_name
 from ..motion.regime import FAST, Regime
 from ..motion.solve import solve
 from ..motion.spin_precession import fast_remark
-from .elementary import ELEMENTARY, elementary
+from .elementary import ELEMENTARY, Elementary
 from .moving_tops import MovingTops
 from .results import ResultColumn, Results, SweepInputs
 from .top_arrays import TopArrays, facts_at_rest
@@ -233,8 +233,11 @@ class _Block:
     def fill_elementary(self, rows: Mask) -> Mask:
         """Fill rows of the keys that are formulas of the inputs; return which `solve` must fill."""
         left = np.zeros_like(rows)
+        if not self.elementary:
+            return left
+        numbers = Elementary(self.tops)
         for key in self.elementary:
-            values, unsure = elementary(self.tops, key)
+            values, unsure = numbers.number(key)
             self.columns[key][rows] = values[rows]
             left |= unsure & rows
         return left

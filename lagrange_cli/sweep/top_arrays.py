@@ -116,12 +116,12 @@ class TopArrays(NamedTuple):
 
     def fast(self) -> Mask:
         """Return which tops released from rest precess pseudo-regularly, b^2 >= 50 a."""
-        a, b, *_ = self.constants().values()
+        a, b, *_ = self._constants().values()
         threshold = DoubleDouble(np.full_like(self.m, float(FAST)))
         fast: Mask = (b * b - a * threshold).high >= 0
         return fast
 
-    def constants(self) -> dict[str, DoubleDouble]:
+    def _constants(self) -> dict[str, DoubleDouble]:
         """Return the constants of the motion by their names in `State`."""
         m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
         a, b = (m * g * s / A).scaled(2), C * r0 / A
@@ -137,13 +137,13 @@ class TopArrays(NamedTuple):
 
     def state(self) -> State[Array]:
         """Return constants and start of tops released from rest, each rounded once."""
-        constants = {name: x.high for name, x in self.constants().items()}
+        constants = {name: x.high for name, x in self._constants().items()}
         return _state(constants, self.tilt(), np.zeros_like(self.m), np.zeros_like(self.m))
 
     def pair_state(self) -> State[DoubleDouble]:
         """Return constants and start of tops in pairs of doubles."""
         rates = DoubleDouble(self.thetadot0), DoubleDouble(self.psidot0)
-        return _state(self.constants(), self._tilt_in_pairs(), *rates)
+        return _state(self._constants(), self._tilt_in_pairs(), *rates)
 
     def tilt(self) -> Tilt[Array]:
         """Return sines and cosines of theta0 and theta0/2, each with full relative accuracy."""
@@ -241,23 +241,15 @@ def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
 
     tops = TopArrays(*map(filled, TopArrays._fields))
     A_cm, phi_rate = filled("A_cm"), filled("phidot0")
-    if not np.isnan(A_cm).all():
-        tops = tops._replace(A=_moments(tops, A_cm))
+    if not np.isnan(A_cm).all():  # Steiner's theorem; `Top` refuses a negative A_cm
+        with np.errstate(all="ignore"):
+            s = DoubleDouble(tops.s)
+            moment = (DoubleDouble(A_cm) + DoubleDouble(tops.m) * (s * s)).high
+        cases = [np.isnan(A_cm), A_cm < 0]
+        tops = tops._replace(A=np.select(cases, [tops.A, A_cm], moment))
     if not np.isnan(phi_rate).all():
         tops = tops._replace(r0=_spins(tops, phi_rate))
     return tops
-
-
-def _moments(tops: TopArrays, A_cm: Array) -> Array:
-    """Return A_cm + m s^2 (Steiner's theorem), or A if A_cm is missing.
-
-    A negative A_cm is returned unchanged, and `Top` refuses it.
-    """
-    with np.errstate(all="ignore"):
-        s, total = DoubleDouble(tops.s), DoubleDouble(A_cm)
-        total = total + DoubleDouble(tops.m) * (s * s)
-        moment = np.where(A_cm < 0, A_cm, total.high)
-    return np.where(np.isnan(A_cm), tops.A, moment)
 
 
 def _spins(tops: TopArrays, phi_rate: Array) -> Array:

@@ -14,10 +14,10 @@ import signal
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, ProcessPoolExecutor
-from contextlib import AbstractContextManager, contextmanager, suppress
-from functools import partial
-from tempfile import TemporaryDirectory, mkstemp
+from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor
+from contextlib import contextmanager, suppress
+from secrets import token_hex
+from tempfile import TemporaryDirectory
 from threading import Thread
 from typing import Any, TypeVar
 
@@ -35,6 +35,8 @@ _SIGNALS_TAKE = 0.2
 
 _T = TypeVar("_T")
 P = TypeVar("P")
+Submit = Callable[[Callable[[Any], Any], Any], Callable[[], Any]]
+"""A function that hands out work and an item, and returns a function that waits for the result."""
 
 
 def parse_jobs(text: str) -> int:
@@ -62,57 +64,28 @@ def in_order(
     if jobs == 1 and address is None:
         yield from map(work, items)
         return
-    waiting: deque[tuple[str, Any]] = deque()
-    with (
-        _folder() as folder,
-        _cluster(address) if address is not None else _processes(jobs) as (executor, count),
-    ):
+    waiting: deque[Callable[[], P]] = deque()
+    with _cluster(address) if address is not None else _processes(jobs) as (submit, count):
         for item in items:
-            if address is not None:
-                call = partial(_on_cluster, __version__, pickle.dumps((work, item)))
-                waiting.append(("", executor.submit(call)))
-            else:
-                path = _dumped((work, item), folder)
-                with _starting():
-                    waiting.append((path, executor.submit(_through_file, path)))
+            waiting.append(submit(work, item))
             if len(waiting) >= _AHEAD * count:
-                yield _result(*waiting.popleft())
+                yield _result(waiting.popleft())
         while waiting:
-            yield _result(*waiting.popleft())
+            yield _result(waiting.popleft())
 
 
-def _result(path: str, future: Any) -> Any:
+def _result(wait: Callable[[], P]) -> P:
     """Wait for a result.  Raises UnavailableError if its process is lost."""
     try:
-        found = future.result()
-        return _loaded(path) if path else pickle.loads(found)
-    except (BrokenExecutor, CancelledError, OSError) as error:
+        return wait()
+    except Exception as error:
+        is_lost = isinstance(error, BrokenExecutor | CancelledError | OSError)
+        if not (is_lost or type(error).__module__.startswith("distributed")):
+            raise
         time.sleep(_SIGNALS_TAKE)  # a signal to all processes is raised here, as the cause
         raise UnavailableError(
             f"a process that shared the work was lost (killed, or out of memory): {error}"
         ) from None
-
-
-def _folder() -> AbstractContextManager[str]:
-    """Return a temporary folder for items and results.  Raises CannotWriteError."""
-    with temporary_files():
-        return TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
-
-
-def _dumped(value: object, folder: str) -> str:
-    """Return the name of a new file that holds a value.  Raises CannotWriteError."""
-    with temporary_files():
-        descriptor, path = mkstemp(dir=folder)
-        with open(descriptor, "wb") as file:
-            pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
-    return path
-
-
-def _loaded(path: str) -> Any:
-    """Return the value in a file, which is removed."""
-    with open(path, "rb") as file:
-        os.unlink(path)
-        return pickle.load(file)
 
 
 def _through_file(path: str) -> None:
@@ -121,17 +94,20 @@ def _through_file(path: str) -> None:
     A process that is killed while it writes a long result to a pipe would block the reader.
     """
     work, item = _loaded(path)
-    result = work(item)
+    _dump(work(item), path)
+
+
+def _dump(value: object, path: str) -> None:
+    """Write a value to a new file.  Raises CannotWriteError."""
     with temporary_files(), open(path, "xb") as file:
-        pickle.dump(result, file, pickle.HIGHEST_PROTOCOL)
+        pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
 
 
-def _on_cluster(version: str, content: bytes) -> bytes:
-    """Do pickled work on a cluster; workers that join later may have another version."""
-    if version != __version__:
-        raise UnavailableError(f"a worker of the cluster has lagtop {__version__}, not {version}")
-    work, item = pickle.loads(content)
-    return pickle.dumps(work(item))
+def _loaded(path: str) -> Any:
+    """Return the value in a file, which is removed."""
+    with open(path, "rb") as file:
+        os.unlink(path)
+        return pickle.load(file)
 
 
 @contextmanager
@@ -158,17 +134,31 @@ def _starting() -> Iterator[None]:
 
 
 @contextmanager
-def _processes(jobs: int) -> Iterator[tuple[Executor, int]]:
-    """Yield an executor of spawned processes, which are killed if the block fails."""
+def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
+    """Yield a function that hands work to spawned processes, which are killed if the block fails.
+
+    Items and results pass through files of a temporary folder.
+    """
+    with temporary_files():
+        temporary = TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
     executor = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _begin)
-    try:
-        yield executor, jobs
-    except BaseException:
-        for process in [*(executor._processes or {}).values()]:
-            process.kill()
-        raise
-    finally:
-        executor.shutdown(cancel_futures=True)
+
+    def submit(work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
+        path = os.path.join(temporary.name, token_hex(8))
+        _dump((work, item), path)
+        with _starting():
+            future = executor.submit(_through_file, path)
+        return lambda: future.result() or _loaded(path)
+
+    with temporary:
+        try:
+            yield submit, jobs
+        except BaseException:
+            for process in [*(executor._processes or {}).values()]:
+                process.kill()
+            raise
+        finally:
+            executor.shutdown(cancel_futures=True)
 
 
 def _begin() -> None:
@@ -185,8 +175,8 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
-    """Yield the executor of a Dask cluster and its number of threads.
+def _cluster(address: str) -> Iterator[tuple[Submit, int]]:
+    """Yield a function that hands work to a Dask cluster, and the number of its threads.
 
     The address may be `local`, for a cluster on this machine that ends with the block.  Raises
     UnavailableError, and LagtopError for an invalid address.
@@ -210,7 +200,8 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     except Exception as error:  # of any kind: the peer may be no scheduler
         raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
     try:
-        yield client.get_executor(pure=False), _threads(client)
+        executor, threads = client.get_executor(pure=False), _threads(client)
+        yield lambda work, item: executor.submit(work, item).result, threads
     finally:
         with suppress(Exception):  # report the error that ended the sweep, not one of closing
             client.close(timeout=_PATIENCE if address == "local" else 2)
