@@ -63,7 +63,7 @@ def _parse_jobs(text: str) -> int:
 @opt.option("--jobs", type=opt.Parsed("N|auto", _parse_jobs), help="Processes; auto: one per core.")
 @opt.option("--parts", metavar="DIR", help="Write one file per part into this folder.")
 @opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")
-@opt.option("--dask", metavar="ADDRESS", help="Use a Dask cluster, or `local` for this machine.")
+@opt.option("--dask", metavar="ADDRESS", help="Use the Dask cluster of this scheduler.")
 @opt.decimal
 @opt.output("csv", "ndjson", "json", "parquet", "table", on_terminal="table")
 def sweep_command(

@@ -65,19 +65,19 @@ def in_order(
         yield from map(work, items)
         return
     waiting: deque[Callable[[], P]] = deque()
-    with _cluster(address) if address is not None else _processes(jobs) as (submit, count):
+    with _processes(jobs) if address is None else _cluster(address) as (submit, count):
         for item in items:
-            waiting.append(submit(work, item))
+            waiting.append(_unless_lost(submit, work, item))
             if len(waiting) >= _AHEAD * count:
-                yield _result(waiting.popleft())
+                yield _unless_lost(waiting.popleft())
         while waiting:
-            yield _result(waiting.popleft())
+            yield _unless_lost(waiting.popleft())
 
 
-def _result(wait: Callable[[], P]) -> P:
-    """Wait for a result.  Raises UnavailableError if its process is lost."""
+def _unless_lost(call: Callable[..., P], *arguments: Any) -> P:
+    """Return the result of a call.  Raises UnavailableError if a process or the cluster is lost."""
     try:
-        return wait()
+        return call(*arguments)
     except Exception as error:
         is_lost = isinstance(error, BrokenExecutor | CancelledError | OSError)
         if not (is_lost or type(error).__module__.startswith("distributed")):
@@ -112,24 +112,26 @@ def _loaded(path: str) -> Any:
 
 @contextmanager
 def _starting() -> Iterator[None]:
-    """Start Python processes that import nothing from the current folder and ignore Ctrl-C.
+    """Start Python processes that import nothing from the current folder, and ignore Ctrl-C.
 
-    They inherit the blocked signal.  Raises UnavailableError.
+    They inherit the blocked signals.  Raises UnavailableError.
     """
     from multiprocessing.resource_tracker import ensure_running
 
-    safe, usual = os.environ.get("PYTHONSAFEPATH", ""), None
+    safe = os.environ.get("PYTHONSAFEPATH", "")
     os.environ["PYTHONSAFEPATH"] = "1"
     try:
         if hasattr(signal, "pthread_sigmask"):  # not on Windows
-            ensure_running()  # which unblocks the signal
-            usual = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+            blocked = signal.SIGINT, signal.SIGHUP  # of a terminal, to the whole process group
+            usual = signal.pthread_sigmask(signal.SIG_BLOCK, blocked)
+            ensure_running()  # which unblocks Ctrl-C
+            signal.pthread_sigmask(signal.SIG_BLOCK, blocked)
         yield
     except OSError as error:
         raise UnavailableError(f"cannot start a process: {error.strerror or error}") from None
     finally:
         os.environ["PYTHONSAFEPATH"] = safe
-        if usual is not None:
+        if hasattr(signal, "pthread_sigmask"):
             signal.pthread_sigmask(signal.SIG_SETMASK, usual)
 
 
@@ -141,7 +143,8 @@ def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
     """
     with temporary_files():
         temporary = TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
-    executor = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _begin)
+    with _starting():
+        executor = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _begin)
 
     def submit(work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
         path = os.path.join(temporary.name, token_hex(8))
@@ -178,8 +181,7 @@ def _end_with_parent() -> None:
 def _cluster(address: str) -> Iterator[tuple[Submit, int]]:
     """Yield a function that hands work to a Dask cluster, and the number of its threads.
 
-    The address may be `local`, for a cluster on this machine that ends with the block.  Raises
-    UnavailableError, and LagtopError for an invalid address.
+    Raises UnavailableError, and LagtopError for an invalid address.
     """
     try:
         import dask
@@ -187,24 +189,22 @@ def _cluster(address: str) -> Iterator[tuple[Submit, int]]:
     except ImportError:
         why = "dask needs distributed: pip install 'lagtop[cluster]'"
         raise UnavailableError(why, "dask") from None
-    for name in ("distributed", "distributed.client", "asyncio", "tornado"):
+    for name in ("distributed", "distributed.client", "asyncio", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # lagtop reports errors in one line
     dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE})
-    own = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
     try:
-        with _starting():
-            client = Client(**own) if address == "local" else Client(address, timeout=_PATIENCE)
+        client = Client(address, timeout=_PATIENCE)
     except (TypeError, ValueError) as error:
-        why = f"dask must be local or a scheduler, got {address}: {error}"
+        why = f"dask must be the address of a scheduler, got {address!r}: {error}"
         raise LagtopError(why, "dask") from None
     except Exception as error:  # of any kind: the peer may be no scheduler
         raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
     try:
-        executor, threads = client.get_executor(pure=False), _threads(client)
-        yield lambda work, item: executor.submit(work, item).result, threads
+        threads = _threads(client)
+        yield lambda work, item: client.submit(work, item, pure=False).result, threads
     finally:
         with suppress(Exception):  # report the error that ended the sweep, not one of closing
-            client.close(timeout=_PATIENCE if address == "local" else 2)
+            client.close(timeout=2)
 
 
 def _threads(client: Any) -> int:
