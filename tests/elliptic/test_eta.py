@@ -128,7 +128,7 @@ def test_eta(name: str) -> None:
 
 @pytest.mark.parametrize("name", ORBITS)
 def test_chain(name: str) -> None:
-    """h1, theta and xi' by mpmath, with the constants (3.2.5) and (3.2.8) from the roots."""
+    """Every column by mpmath and (3.2.2), with the constants (3.2.5) and (3.2.8) from the roots."""
     of = ORBITS[name]
     with mpmath.workdps(60):
         integral = Integral(of)
@@ -141,11 +141,21 @@ def test_chain(name: str) -> None:
         m, sigma1 = k2 / (1 + k2), mpmath.sqrt(integral.g * less * more * (1 + k2))
         K = mpmath.ellipk(m)
         times = [Fraction(float(4 * K / sigma1) * part) for part in PARTS]
-        rows = array_rows(EtaTable(ListedPoints(times), of, names=WITH_CHAIN, angle="rad"))
+
+        def eta_at(h1: Any) -> Any:
+            xi = mpmath.re(mpmath.ellipfun("sn", h1, m=m))
+            share = (less - more - (less + more) * xi) / ((less - more) * xi - less - more)
+            return (integral.upper + integral.lower + (integral.upper - integral.lower) * share) / 2
+
+        names = (*WITH_CHAIN, "etadot")
+        rows = array_rows(EtaTable(ListedPoints(times), of, names=names, angle="rad"))
         for time, row in zip(times, rows, strict=True):
             h1 = sigma1 * mpmath.mpf(time.numerator) / time.denominator - K
             turns = mpmath.nint(h1 / (2 * K))
             sn, cn = (mpmath.re(mpmath.ellipfun(f, h1 - 2 * turns * K, m=m)) for f in ("sn", "cn"))
+            assert is_nearest(row["eta"], eta_at(h1))
+            slope = (eta_at(h1 + 1e-20) - eta_at(h1 - 1e-20)) / 2e-20
+            assert row["etadot"] == pytest.approx(float(sigma1 * slope), rel=1e-9, abs=1e-17)
             assert is_nearest(row["h1"], h1)
             assert is_nearest(row["theta_rad"], mpmath.atan2(sn, cn) + turns * mpmath.pi)
             assert is_nearest(row["xi_prime"], sn * (-1) ** int(turns))

@@ -16,11 +16,16 @@ from typing import Any
 
 import mpmath
 import pytest
-from flint import ctx
+from flint import arb, ctx, fmpq
 from function_reference import NUMBER, Reference
+from lagtop import LagtopError
 
+from lagrange_cli.arithmetic.ball import balls
 from lagrange_cli.arithmetic.points import ExactComplex, ListedPoints, parse_complex
+from lagrange_cli.elliptic import functions
+from lagrange_cli.elliptic.enclosures import rounded
 from lagrange_cli.elliptic.function_table import ComplexPoints, FunctionRequest, FunctionTable
+from lagrange_cli.elliptic.functions import Functions, Point
 from lagrange_cli.elliptic.modulus import AnyModulus, ModulusInput
 
 EVERY = ("am", "theta", "zeta", "omega", "pi")
@@ -91,6 +96,35 @@ def check(cells: Cells, k: str, u: str, v: str, digits: int) -> int:
 def test_digits_of_every_column(k: str, u: str, v: str) -> None:
     cells = row(k, parse_complex(u), parse_complex(v), digits=20, is_real=False)
     assert check(cells, k, u, v, 20) >= 34
+
+
+@pytest.mark.parametrize("k", ["0.8", "0.8i", "2"])
+@pytest.mark.parametrize(("u", "v"), [("0.9i", "1.3"), ("0.7", "-0.4i"), ("1.1i", "0.6i")])
+def test_digits_on_the_axes(k: str, u: str, v: str) -> None:
+    """A printed 0 is a 0 by symmetry."""
+    cells = row(k, parse_complex(u), parse_complex(v), digits=20, is_real=False)
+    assert check(cells, k, u, v, 20) >= 34
+
+
+@pytest.mark.parametrize("k", ["0.7071067811865476", "0.3"])
+def test_a_series_cut_short_holds_the_truth(k: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only the error of what is left out makes the balls wide enough."""
+    u, v = Point(fmpq(5, 4), fmpq(4, 5)), Point(fmpq(-2, 5), fmpq(3, 5))
+    modulus = ModulusInput("k", Fraction(k))
+    with balls(40):
+        exact = Functions(modulus.ball()).third(u, v)
+        for terms in (0, 1):
+            monkeypatch.setattr(functions, "isqrt", lambda _, terms=terms: terms)
+            for ij, values in Functions(modulus.ball()).third(u, v).items():
+                for wide, sharp in zip(values, exact[ij], strict=True):
+                    assert wide.overlaps(sharp), (ij, terms)
+                    assert wide.rel_accuracy_bits() < 100, (ij, terms)
+
+
+def test_a_ball_that_stays_wide_is_no_fraction() -> None:
+    with pytest.raises(LagtopError, match="1200 digits do not determine these numbers"):
+        rounded(lambda: {"x": arb(0, 1e-5)}, 10, 1200)
+    assert rounded(lambda: {"x": arb(1, arb(10) ** -1100)}, 10, 1200) == {"x": "1.0"}
 
 
 @pytest.mark.slow
