@@ -1,6 +1,6 @@
 """Right trajectories of every form are fine; planted mistakes are found and named.
 
-`pytest tests/compare -m ""` tries all of them: 60 right trajectories and 105 mistakes.
+`pytest tests/compare -m ""` tries all of them: 60 right trajectories and 108 mistakes.
 """
 
 from __future__ import annotations
@@ -101,6 +101,9 @@ READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
     "--align axis=y,up=y": lambda turn, _: framed(turn, [[0, 1, 0], [0, 0, 1], [1, 0, 0]]),
     "--align up=y,left": lambda turn, _: framed(turn, [[1, 0, 0], [0, 0, 1], [0, 1, 0]]),
     "--align left": lambda turn, _: framed(turn, [[1, 0, 0], [0, -1, 0], [0, 0, 1]]),
+    "spin and precession do not start at 0 (--align start)": lambda turn, _: {
+        "quaternion": wxyz(turn * Rotation.from_euler("z", 1))
+    },
     "the clock is shifted by 0.0123": lambda turn, _: {"t": T + 0.0123, "quaternion": wxyz(turn)},
     "the state of the next time": lambda turn, _: {"t": T[:-1], "quaternion": wxyz(turn[1:])},
     "the state of the previous": lambda turn, _: {"t": T[1:], "quaternion": wxyz(turn[:-1])},
@@ -112,7 +115,10 @@ UNKNOWN = {"C is 2 % off", "m is 1 % off", "the clock is 1 % fast"}
 """Mistakes that are not among the known ones, so that none may be named."""
 PLANTED = [name for name in (*bodies(TOPS["toy"]), *READINGS) if name]
 QUICK = {"the gyroscopic term is left out", "A and C are exchanged", "theta0 has the wrong sign"}
-QUICK |= {"g points upwards", "C is 2 % off", *READINGS} - {"--align left", "--align axis=y,up=y"}
+QUICK |= {"g points upwards", "C is 2 % off", "r0 in radians was taken as rpm", *READINGS} - {
+    "--align left",
+    "--align axis=y,up=y",
+}
 
 FORMS: dict[str, Callable[[Rotation, Array], Given]] = {
     "quaternion": lambda turn, rates: {"quaternion": wxyz(turn), "rates": rates},
