@@ -16,7 +16,6 @@ from .app import complain
 
 if TYPE_CHECKING:
     from ..fit.outcome import Outcome
-    from ..fit.problem import Known
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
@@ -88,6 +87,7 @@ def fit_command(
     from ..fit.fit import best_fit
     from ..fit.problem import known_inputs
     from ..fit.recording import Reading, read_recordings
+    from ..fit.windows import fit_windows
     from ..inputs.files import shown_path
     from ..inputs.observed import Conventions
 
@@ -113,56 +113,49 @@ def fit_command(
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"a scene holds one top, got {len(recordings)}: fit one recording")
     if window is not None:
-        _fit_windows(recordings[0], window, known, source, units, radians, out)
-        return
-    found = [best_fit(x, known, radians=radians) for x in with_progress(recordings, "fits")]
+        found = fit_windows(recordings[0], window, known, radians=radians)
+    else:
+        found = [best_fit(x, known, radians=radians) for x in with_progress(recordings, "fits")]
     failed = [x.failure() for x in found if x.failures()]
     with ExitStack() as stack:  # a file is replaced only if the report is written
-        if scene_path and not failed:
+        if scene_path and not failed and found[0].inputs is not None:
             stack.enter_context(opened(scene_path)).write(found[0].scene(source).encode())
         if plot:
             stack.enter_context(opened(plot)).write(_drawn(found, plot))
-        _write(found, source, units, out._replace(path="-") if scene_path else out)
+        out = out._replace(path="-") if scene_path else out
+        _write(found, source, units, window is not None, out)
     if failed and len(found) == 1:
         raise SomeFailedError(f"the fit has failed: {failed[0]}")
-    opt.fail_for(failed, len(found), "fits")
+    opt.fail_for(failed, len(found), "fits" if window is None else "windows")
+    if scene_path:
+        found[0].scene(source)  # raises AbsentError for a steady precession
 
 
-def _write(found: list[Outcome], source: str, units: str, out: Output) -> None:
+def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out: Output) -> None:
     """Write a report, or one record for each recording."""
-    from ..fit.report import fit_report
+    from ..fit.report import decay_text, fit_report, windows_report
+    from ..fit.windows import decay_of
 
     if out.fmt == "table":
-        opt.write_report(out, lambda: fit_report(found, source, units))
+        make = windows_report if is_windows else fit_report
+        opt.write_report(out, lambda: make(found, source, units))
         return
     records: list[dict[str, Any]] = [x.record() for x in found]
-    if len(records) == 1 and out.fmt == "json":
+    if out.fmt == "json" and is_windows:
+        decay = decay_of(found)
+        whole = {"decay": decay and decay._asdict(), "windows": records}
+        out.text(f"{json_text(whole)}\n")
+    elif out.fmt == "json" and len(records) == 1:
         out.record(records[0], dict)
     else:
         out.rows(records, list(dict.fromkeys(key for record in records for key in record)))
+    if is_windows:
+        complain(decay_text(found))
+        return
     for x in found:
         name = f"{x.recording.name}: " if x.recording.name else ""
         for note in x.notes:
             complain(f"Note: {name}{note}")
-
-
-def _fit_windows(
-    recording: Any, count: int, known: Known, source: str, units: str, radians: bool, out: Output
-) -> None:
-    """Fit windows, and write a row for each with the decay, or the record."""
-    from ..fit.report import decay_text, windows_record, windows_report
-    from ..fit.windows import fit_windows
-
-    found = fit_windows(recording, count, known, radians=radians)
-    if out.fmt == "table":
-        opt.write_report(out, lambda: windows_report(found, source, units))
-    elif out.fmt == "json":
-        out.text(f"{json_text(windows_record(found))}\n")
-    else:
-        rows = windows_record(found)["windows"]
-        out.rows(rows, list(dict.fromkeys(key for row in rows for key in row)))
-        complain(decay_text(found))
-    opt.fail_for([x.failure() for x in found if x.failures()], len(found), "windows")
 
 
 def _drawn(found: list[Outcome], path: str) -> bytes:

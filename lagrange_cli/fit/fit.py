@@ -76,11 +76,10 @@ def best_fit(
     oscillation = oscillation_in(signals_in(recording))
     frequency = oscillation.frequency
     lasts = frequency * recording.t[-1] >= 1
-    outcome: Outcome
+    outcome = None
     if oscillation.is_visible and lasts:
         outcome = _nutation(recording, known, frequency, radians=radians)
-    else:
-        outcome = steady_outcome(recording, known, oscillation, radians=radians)
+    outcome = outcome or steady_outcome(recording, known, oscillation, radians=radians)
     outcome.chance = chance
     if helpful and outcome.failures():
         near = all(rest.rms < 1 for rest in outcome.residuals.values())
@@ -90,24 +89,26 @@ def best_fit(
     return outcome
 
 
-def _nutation(recording: Recording, known: Known, frequency: float, *, radians: bool) -> Outcome:
-    """Return the best fit of a nutation, with its rival if it has one."""
+def _nutation(
+    recording: Recording, known: Known, frequency: float, *, radians: bool
+) -> Outcome | None:
+    """Return the best fit of a nutation, with its rival if it has one; None without a start."""
     both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
     ways = [_way(x, known, frequency) for x in [recording, recording.mirrored][: 1 + both]]
-    begun = []
-    for way, x in _best_starts(ways):
-        few = _thinned(way.problem, _MANY_ROWS)
-        begun.append((way.problem, few.solve(x, _FIRST_STEPS)))
-    begun.sort(key=lambda pair: pair[1].cost)
-    least = begun[0][1].cost
+    begun = [
+        (way.problem, _thinned(way.problem, _MANY_ROWS).solve(x, _FIRST_STEPS))
+        for way, x in _best_starts(ways)
+    ]
     distinct: list[tuple[Problem, Any]] = []
-    for problem, ended in begun:
-        is_new = all(p is not problem or abs(e.cost / ended.cost - 1) > 1e-6 for p, e in distinct)
-        if is_new and ended.cost <= _COMPARABLE * least and len(distinct) < _FINISHED:
-            distinct.append((problem, ended))
-    found = sorted((Minimum.of(p, e.x) for p, e in distinct), key=lambda x: x.badness)
-    best = found[0]
-    rivals = [x for x in found[1:] if x.badness < best.badness + _CHANCE and x.differs(best)]
+    for problem, end in sorted(begun, key=lambda pair: pair[1].cost):
+        is_new = all(p is not problem or abs(e.cost / end.cost - 1) > 1e-6 for p, e in distinct)
+        near = not distinct or end.cost <= _COMPARABLE * distinct[0][1].cost
+        if is_new and near and len(distinct) < _FINISHED:
+            distinct.append((problem, end))
+    if not distinct:
+        return None
+    best, *found = sorted((Minimum.of(p, e.x) for p, e in distinct), key=lambda x: x.badness)
+    rivals = [x for x in found if x.badness < best.badness + _CHANCE and x.differs(best)]
     return nutating_outcome(best, rivals[0] if rivals else None, frequency, radians=radians)
 
 

@@ -121,6 +121,11 @@ class Outcome(HasRecord):
         """The unit of angles in use, `deg` or `rad`."""
         return angle_unit(radians=self.radians)[1]
 
+    @property
+    def middle(self) -> float:
+        """The time of the middle of the recording."""
+        return self.recording.t_start + float(self.recording.t[-1]) / 2
+
     def angles(self, t: Array) -> dict[str, Array]:
         """Return the angles of the motion at times since the first row, in radians."""
         return dict(zip(("theta", "phi", "psi"), self.motion(np.asarray(t, float)), strict=True))

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from types import SimpleNamespace
-from typing import Any
 
 from ..arithmetic.numbers import angle_unit
-from ..motion.quantity import unit_name
 from ..output.report import Field, Report, uncertain_text
 from .noise import chi2_bounds
 from .nutation import PERCENT
-from .outcome import FAILED, Outcome
+from .outcome import Outcome
 from .windows import decay_of
 
-_COLUMNS = ("r0", "b", "theta0_deg", "T_nutation", "mean_precession_rate")
+_COLUMNS = ("r0", "b", "theta0_deg", "theta0_rad", "T_nutation", "mean_precession_rate")
+"""Numbers in the rows of windows."""
 
 
-def fit_report(outcomes: Sequence[Outcome], source: str, units: str = "") -> Report:
+def fit_report(outcomes: Sequence[Outcome], source: str, units: str) -> Report:
     """Return the report on the recordings of a file; `units` are those of the known inputs."""
     rows = [
         SimpleNamespace(
@@ -34,71 +33,33 @@ def fit_report(outcomes: Sequence[Outcome], source: str, units: str = "") -> Rep
     return Report(_conditions(outcomes, source, units), fields, rows, conclusions)
 
 
-def windows_report(outcomes: Sequence[Outcome], source: str, units: str = "") -> Report:
+def windows_report(outcomes: Sequence[Outcome], source: str, units: str) -> Report:
     """Return the report on a fit in windows: a row for each, and the decay of the spin."""
-    keys = [unit_name(x, radians=outcomes[0].radians) for x in _COLUMNS]
-    keys = [x for x in keys if any(x in outcome.numbers for outcome in outcomes)]
-    fields = [
-        Field("t", "t", lambda t: f"{t:.6g}"),
-        *(Field(x, x, is_text=True) for x in keys),
-        Field("verdict", "verdict", is_text=True),
-    ]
+    keys = [x for x in _COLUMNS if any(x in outcome.numbers for outcome in outcomes)]
+    fields = [Field(x, x, is_text=True) for x in ("t", *keys, "verdict")]
     rows = []
     for x in outcomes:
-        cells: dict[str, Any] = dict.fromkeys(keys)
-        cells |= {y: uncertain_text(*x.numbers[y]) for y in keys if y in x.numbers}
-        rows.append(SimpleNamespace(t=middle_of(x), verdict=x.verdict, **cells))
+        cells = {y: uncertain_text(*x.numbers[y]) if y in x.numbers else "" for y in keys}
+        rows.append(SimpleNamespace(t=f"{x.middle:.6g}", verdict=x.verdict, **cells))
     return Report(_conditions(outcomes, source, units), fields, rows, [decay_text(outcomes)])
-
-
-def middle_of(outcome: Outcome) -> float:
-    """Return the time of the middle of a recording."""
-    return outcome.recording.t_start + float(outcome.recording.t[-1]) / 2
 
 
 def decay_text(outcomes: Sequence[Outcome]) -> str:
     """Return a sentence on the decay of the spin through windows."""
-    decay = decay_of(outcomes)
-    if decay is None:
-        return "Fewer than three windows are good, so the decay is not known."
-    quality = f"chi2/dof of the exponential: {decay.chi2_dof:.2f}"
-    if decay.time is None:
-        shown = uncertain_text(decay.rate, decay.rate_std)
-        return f"{decay.quantity} does not decay: its relative rate of decay is {shown}; {quality}."
-    return f"{decay.quantity} decays with a time of {uncertain_text(*decay.time)}; {quality}."
-
-
-def windows_record(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Return the decay and the records of all windows by key."""
-    decay = decay_of(outcomes)
-    time = (decay and decay.time) or (None, None)
-    return {
-        "decay_of": decay and decay.quantity,
-        "decay_time": time[0],
-        "decay_time_std": time[1],
-        "decay_rate": decay and decay.rate,
-        "decay_rate_std": decay and decay.rate_std,
-        "decay_chi2_dof": decay and decay.chi2_dof,
-        "verdict": FAILED if any(x.verdict == FAILED for x in outcomes) else "good",
-        "windows": [{"t": middle_of(x), **x.record()} for x in outcomes],
-    }
+    return str(decay_of(outcomes) or "Fewer than three windows are good: the decay is not known.")
 
 
 def _conditions(outcomes: Sequence[Outcome], source: str, units: str) -> dict[str, str]:
-    first = outcomes[0]
-    rows = sum(x.recording.t.size for x in outcomes)
-    channels = ", ".join(first.recording.channels)
-    start = f"{first.recording.t_start:g}"
-    known, (per_radian, unit) = [], angle_unit(radians=first.radians)
-    for name, value in first.known.items():
-        scale, key = (per_radian, f"{name}_{unit}") if name == "theta0" else (1, name)
-        std = first.known.stds.get(name, 0.0) * scale
-        shown = uncertain_text(value * scale, std) if std else f"{value * scale:g}"
-        known.append(f"{key} = {shown}")
+    recording, known = outcomes[0].recording, outcomes[0].known
+    rows, channels = sum(x.recording.t.size for x in outcomes), ", ".join(recording.channels)
+    shown = [
+        f"{name} = {uncertain_text(x, known.stds.get(name, 0.0))}{' rad' * (name == 'theta0')}"
+        for name, x in known.items()
+    ]
     return {
-        "data": f"{source}: {rows} rows of {channels}, from t = {start}",
-        "known": (", ".join(known) or "nothing") + units,
-        "sigma": "as given" if first.recording.sigma else "estimated from the residuals",
+        "data": f"{source}: {rows} rows of {channels}, from t = {recording.t_start:g}",
+        "known": (", ".join(shown) or "nothing") + units,
+        "sigma": "as given" if recording.sigma else "estimated from the residuals",
     }
 
 
@@ -115,7 +76,5 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     yield f"{name}RMS residual ({unit}): {rest}."
     if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
         yield f"{name}Correlation: {pairs}."
-    for text in outcome.notes:
-        yield f"{name}Note: {text}."
-    for text in [*outcome.failures(), *outcome.hints]:
-        yield f"{name}Failed: {text}."
+    yield from (f"{name}Note: {text}." for text in outcome.notes)
+    yield from (f"{name}Failed: {text}." for text in [*outcome.failures(), *outcome.hints])

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..output.report import uncertain_text
 from .fit import best_fit
 from .noise import CHANCE
 from .outcome import GOOD, Outcome
@@ -27,21 +27,24 @@ _SURE = 3.0
 
 
 class Decay(NamedTuple):
-    """The exponential decay of r0 or of b."""
+    """The exponential decay of r0 or of b, and its relative rate."""
 
     quantity: str
     rate: float
-    """The relative rate of decay."""
     rate_std: float
+    time: float | None
+    """The decay time 1/rate and its standard deviation; None if no decay is significant."""
+    time_std: float | None
     chi2_dof: float
     """Chi^2 per degree of freedom of the line through the logarithms."""
 
-    @property
-    def time(self) -> tuple[float, float] | None:
-        """The decay time 1/rate and its standard deviation; None if no decay is significant."""
-        if self.rate <= _SURE * self.rate_std:
-            return None
-        return 1 / self.rate, self.rate_std / self.rate**2
+    def __str__(self) -> str:
+        quality = f"chi2/dof of the exponential: {self.chi2_dof:.2f}"
+        if self.time is None or self.time_std is None:
+            shown = f"does not decay: its relative rate is {uncertain_text(*self[1:3])}"
+        else:
+            shown = f"decays with a time of {uncertain_text(self.time, self.time_std)}"
+        return f"{self.quantity} {shown}; {quality}."
 
 
 def fit_windows(
@@ -65,21 +68,16 @@ def decay_of(outcomes: Sequence[Outcome]) -> Decay | None:
     if len(good) < 3:
         return None
     name = "r0" if all("r0" in x.numbers for x in good) else "b"
-    rates, stds = _at_one_torque(good, name)
-    t = np.array([x.recording.t_start + x.recording.t[-1] / 2 for x in good])
-    weights = np.abs(rates / stds)
-    (slope, level), spread = np.polyfit(t, np.log(np.abs(rates)), 1, w=weights, cov="unscaled")
-    off = weights * (np.log(np.abs(rates)) - level - slope * t)
-    return Decay(name, -float(slope), math.sqrt(spread[0, 0]), float(off @ off) / (len(good) - 2))
-
-
-def _at_one_torque(outcomes: Sequence[Outcome], name: str) -> tuple[Array, Array]:
-    """Return r0 or b of windows, and their standard deviations, at the mean torque of all."""
-    values, stds = np.array([x.numbers[name] for x in outcomes]).T
-    if not all(("a", name) in x.covariance for x in outcomes):
-        return values, stds
-    torque, torque_std = np.array([x.numbers["a"] for x in outcomes]).T
-    both = np.array([x.covariance["a", name] for x in outcomes])
-    slopes = both / torque_std**2
-    mean = np.average(torque, weights=torque_std**-2)
-    return values + slopes * (mean - torque), np.sqrt(stds**2 - slopes * both)
+    values, stds = np.array([x.numbers[name] for x in good]).T
+    if all(("a", name) in x.covariance for x in good):
+        torque, torque_std = np.array([x.numbers["a"] for x in good]).T
+        both = np.array([x.covariance["a", name] for x in good])
+        mean = np.average(torque, weights=torque_std**-2)
+        values = values + both / torque_std**2 * (mean - torque)
+        stds = np.sqrt(stds**2 - (both / torque_std) ** 2)
+    t = np.array([x.middle for x in good])
+    logs, weights = np.log(np.abs(values)), np.abs(values / stds)
+    (slope, level), spread = np.polyfit(t, logs, 1, w=weights, cov="unscaled")
+    off, rate, std = weights * (logs - level - slope * t), -float(slope), math.sqrt(spread[0, 0])
+    time = (1 / rate, std / rate**2) if rate > _SURE * std else (None, None)
+    return Decay(name, rate, std, time[0], time[1], float(off @ off) / (len(good) - 2))
