@@ -7,10 +7,10 @@ refine with the numbers of `solve`, which are correctly rounded.
 
 from __future__ import annotations
 
-import operator
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Integral
+from operator import eq, ge, gt, le, lt
 from types import NoneType
 from typing import Any, NamedTuple
 
@@ -46,32 +46,21 @@ from .sweep.records import sweep
 COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
 _MOST_TOPS = 10_000_000
-_BLOCK = 65536
 _WORDS = {"regime": [x.value for x in Regime], "path": ["cusped", "looping", "wavy"]}
 """Keys that hold a word, and the words."""
-_RELATIONS: Mapping[str, Callable[[Any, Any], bool]] = {
-    "=": operator.eq,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-}
+_RELATIONS: Any = {"=": eq, "<": lt, "<=": le, ">": gt, ">=": ge}
 _SWEPT = 2.0**-48
 """Bound of the relative error of a number of a sweep."""
-_EXTREMA = 12
-"""Number of extrema nearest to the target around which the scan is refined."""
-_FINER = 100
+_EXTREMA, _FINER = 12, 100
+"""Number of extrema nearest to the target around which the scan is refined, and how much."""
 _LEAP = 1e-6
 """Residual at a root, over the residuals at the ends of its bracket, that only a leap exceeds."""
-_STARTS = 16
-_CLOSE = 1e-10
-"""Largest residual of a solution for several unknowns, over the spread of the scanned numbers."""
-_APART = 1e-7
-"""Difference, over the range, below which two solutions count as one."""
-_FLAT = 1e-7
-"""Ratio of singular values of the Jacobian below which a solution is not isolated."""
-_CURVE = 3
-"""Number of such solutions from which the conditions count as insufficient."""
+_STARTS, _CLOSE, _APART = 16, 1e-10, 1e-7
+"""Starts for several unknowns; the largest residual of a solution, over the spread of the scanned
+numbers; the difference, over the range, below which two solutions count as one."""
+_FLAT, _CURVE = 1e-7, 3
+"""Ratio of singular values of the slopes below which a solution is not isolated, and the number of
+such solutions from which the conditions count as insufficient."""
 
 
 class Condition(NamedTuple):
@@ -101,12 +90,6 @@ class Search(NamedTuple):
     radians: bool
 
     @property
-    def ends(self) -> tuple[Array, Array]:
-        """The first and the last value of each unknown."""
-        spans = self.spans.values()
-        return np.array([float(x.first) for x in spans]), np.array([float(x.last) for x in spans])
-
-    @property
     def target_text(self) -> str:
         """The conditions on numbers as text."""
         return ", ".join(str(Condition(key, "=", x)) for key, x in self.targets.items())
@@ -126,14 +109,10 @@ class Search(NamedTuple):
 
     def swept(self, values: Array) -> Array:
         """Return the same by `sweep`: a row for each row of values, shape (tops, unknowns)."""
-        rows = []
-        for block in np.array_split(values, len(values) // _BLOCK + 1):
-            inputs = overridden(dict(self.fixed), dict(zip(self.spans, block.T, strict=True)))
-            found = sweep(keys=list(self.targets), radians=self.radians, **inputs)
-            rows.append(
-                np.stack([np.asarray(found[k], float) - x for k, x in self.targets.items()])
-            )
-        return np.concatenate(rows, axis=1).T
+        inputs = overridden(dict(self.fixed), dict(zip(self.spans, values.T, strict=True)))
+        found = sweep(keys=list(self.targets), radians=self.radians, **inputs)
+        numbers = [np.asarray(found[key], float) - x for key, x in self.targets.items()]
+        return np.stack(numbers, axis=1)
 
 
 def search_of(
@@ -224,7 +203,10 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
             f"scan must be 3 or more values of each unknown, and at most 1e7 tops, got {each}",
             "scan",
         )
-    axes = [_points(span, each) for span in search.spans.values()]
+    axes = [
+        (np.geomspace if x.logarithmic else np.linspace)(float(x.first), float(x.last), each)
+        for x in search.spans.values()
+    ]
     values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
     off = search.swept(values)
     solutions = _roots if len(axes) == 1 else _minima
@@ -244,16 +226,9 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
     looked = f"scanned {ranges} at {each} values{' each' * (len(axes) > 1)}: {caution}"
     if not motions:
         why = f"of {len(points)} with {search.target_text} none has {broken}"
-        raise AbsentError(
-            f"no top found: {why if broken else _nearest(search, values, off)}; {looked}"
-        )
+        why = why if broken else _nearest(search, values, off)
+        raise AbsentError(f"no top found: {why}; {looked}")
     return motions, looked
-
-
-def _points(span: Span, count: int) -> Array:
-    spaced = np.geomspace if span.logarithmic else np.linspace
-    points: Array = spaced(float(span.first), float(span.last), count)
-    return points
 
 
 def _nearest(search: Search, values: Array, off: Array) -> str:
@@ -268,20 +243,10 @@ def _nearest(search: Search, values: Array, off: Array) -> str:
     size = np.maximum(np.abs([*search.targets.values()]), np.ptp(off[known], axis=0))
     distance = np.linalg.norm(off / np.where(size > 0, size, 1.0), axis=1)
     i = int(np.nanargmin(np.where(known, distance, np.nan)))
-    reached = ", ".join(
-        f"{key} = {_short(target + float(x), target)}"
-        for (key, target), x in zip(
-            search.targets.items(), search.residuals(values[i]), strict=True
-        )
-    )
+    numbers = zip(search.targets.items(), search.residuals(values[i]).tolist(), strict=True)
+    reached = ", ".join(f"{key} = {double_text(x + target)}" for (key, target), x in numbers)
     where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, values[i], strict=True))
     return f"nearest to {search.target_text} is {reached} at {where}"
-
-
-def _short(value: float, target: float) -> str:
-    """Return a number in six digits, or in full if six digits equal those of the target."""
-    text = f"{value:.6g}"
-    return double_text(value) if text == f"{target:.6g}" else text
 
 
 def _roots(search: Search, values: Array, residuals: Array) -> list[list[float]]:
@@ -340,17 +305,16 @@ def _minima(search: Search, values: Array, residuals: Array) -> list[list[float]
 
     Raises LagtopError if solutions are not single points.
     """
-    low, high = search.ends
+    low, high = values.min(axis=0), values.max(axis=0)
     known = np.isfinite(residuals).all(axis=1)
     if not known.any():
         return []
     scale = np.std(residuals[known], axis=0)
     scale = np.where(scale > 0, scale, np.maximum(np.abs([*search.targets.values()]), 1e-300))
     size = np.where(known, np.linalg.norm(residuals / scale, axis=1), np.inf)
-    each = round(len(size) ** (1 / len(low)))
-    cube = size.reshape((each,) * len(low))
-    least = (cube == minimum_filter(cube, 3, mode="constant", cval=np.inf)).ravel() & known
-    starts = np.flatnonzero(least)
+    cube = size.reshape((round(len(size) ** (1 / len(low))),) * len(low))
+    least = cube == minimum_filter(cube, 3, mode="constant", cval=np.inf)
+    starts = np.flatnonzero(least.ravel() & known)
     found: list[Array] = []
     flat = 0
 
