@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from fractions import Fraction
 
-from ..arithmetic.text import parse_number, quoted, shortened
+from ..arithmetic.text import NumberText, parse_number, quoted, shortened
 from ..errors import DataError, LagtopError, SceneError
 from .files import decoded, read_bytes, shown_path
 from .input_keys import TILT
@@ -60,27 +59,26 @@ class SceneFile:
 
         self.name, self._text = shown_path(path), ""
         try:
-            content = read_bytes(scene_path(path), _MOST_BYTES)
-            self._text = decoded(content, self.name)
-            table = tomllib.loads(self._text, parse_float=_parsed)
+            self._text = decoded(read_bytes(scene_path(path), _MOST_BYTES), self.name)
+            table = tomllib.loads(self._text, parse_float=NumberText)
         except DataError as error:
-            is_word = not os.path.dirname(path) and "." not in path and path != "-"
             hint = suggestion(path, scene_names())
-            if is_word and not hint:
+            if not hint and path.replace("-", "").isalnum():
                 hint = f" (the shipped scenes are {', '.join(scene_names())})"
             raise SceneError(f"{error}{hint}") from None
         except (ValueError, RecursionError) as error:  # broken TOML, or too many digits
-            why = f"{error}{_remedy(str(error), self._text)}"
-            raise SceneError(f"{self.name}: not a TOML file: {why}") from None
-        found = {}
+            at = re.search(r"at line (\d+)", str(error))
+            line = self._text.split("\n")[int(at[1]) - 1] if at else ""
+            hint = " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
+            raise SceneError(f"{self.name}: not a TOML file: {error}{hint}") from None
+        self.inputs: dict[str, Value] = {}
         for key, value in table.items():
             try:
-                found[key] = _value(key, value)
+                found = _value(key, value)
             except LagtopError as error:
                 raise self.error(LagtopError(str(error), key)) from None
-        # A tilt without a unit is in degrees, as on the command line.
-        degrees = {TILT: f"{TILT}_deg"}
-        self.inputs = {x if y.unit else degrees.get(x, x): y for x, y in found.items()}
+            # A tilt without a unit is in degrees, as on the command line.
+            self.inputs[f"{TILT}_deg" if key == TILT and not found.unit else key] = found
 
     def error(self, error: LagtopError) -> SceneError:
         """Return the error prefixed with the name of the file and the line of its key."""
@@ -92,65 +90,29 @@ class SceneFile:
 
 
 def _value(key: str, value: object) -> Value:
-    """Return the value of a key.  Raises LagtopError."""
+    """Return the value of a key: a number, or a text with a unit or an uncertainty.
+
+    Raises LagtopError.
+    """
     if key not in SCENE_KEYS:
         meant, known = suggestion(key, SCENE_KEYS), ", ".join(SCENE_KEYS)
         raise LagtopError(f"unknown key {quoted(key)}{meant} (known: {known})")
-    if isinstance(value, str) and not isinstance(value, _NoNumber):
-        return _value_of_text(key, value)
-    if isinstance(value, int) and not isinstance(value, bool):
-        value = Fraction(value)
-    if not isinstance(value, Fraction):
-        raise LagtopError(f"{key} must be a finite number, got {_shown(value)}")
-    if key == TILT:
+    is_text = isinstance(value, str) and not isinstance(value, NumberText)
+    if isinstance(value, bool) or not isinstance(value, int | str):
+        raise LagtopError(f"{key} must be a finite number, got {shortened(str(value))}")
+    if not is_text and key == TILT:
         wanted = f"have a unit, such as '30 deg', or be called {key}_deg or {key}_rad"
         raise LagtopError(f"{key} must {wanted}")
-    return Value(value)
-
-
-def _value_of_text(key: str, text: str) -> Value:
-    """Return a number with a unit or an uncertainty.  Raises LagtopError."""
     try:
-        value = parse_value(text, uncertain=True, steady=key == "psidot0")
+        if not is_text:
+            return Value(parse_number(str(value).replace("_", "")))
+        found = parse_value(str(value), uncertain=True, steady=key == "psidot0")
     except LagtopError as error:
         raise LagtopError(f"{key} {error}") from None
-    if not value.unit and value.number not in STEADY_WORDS and value.std is None:
+    if not found.unit and found.number not in STEADY_WORDS and found.std is None:
         wanted = "must have a unit between quotes"
-        raise LagtopError(f"{key} {wanted}, got {quoted(text)}: leave out the quotes")
-    if value.unit and key.startswith(f"{TILT}_"):
+        raise LagtopError(f"{key} {wanted}, got {quoted(value)}: leave out the quotes")
+    if found.unit and key.startswith(f"{TILT}_"):
         wanted = f"must be called {TILT} if its value has a unit"
-        raise LagtopError(f"{key} {wanted}, got {quoted(text)}")
-    return value
-
-
-def _shown(value: object) -> str:
-    """Return a value as TOML writes it, for a message; a long one is cut."""
-    import json  # for errors
-
-    if isinstance(value, str):
-        return quoted(value)
-    text = json.dumps(value, default=lambda x: float(x) if isinstance(x, Fraction) else str(x))
-    return shortened(text.strip('"'))
-
-
-def _remedy(wrong: str, text: str) -> str:
-    """Return a hint in parentheses about a decimal comma or a repeated key."""
-    if "overwrite" in wrong:
-        return " (a key is repeated: delete one line)"
-    place = re.search(r"at line (\d+)", wrong)
-    line = text.split("\n")[int(place[1]) - 1] if place else ""
-    return " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
-
-
-class _NoNumber(str):
-    """A number in TOML that lagtop does not accept, such as nan."""
-
-    __slots__ = ()
-
-
-def _parsed(text: str) -> Fraction | _NoNumber:
-    """Return a number as a fraction, or its text if it is not a decimal number."""
-    try:
-        return parse_number(text.replace("_", ""))
-    except LagtopError:
-        return _NoNumber(text)
+        raise LagtopError(f"{key} {wanted}, got {quoted(value)}")
+    return found
