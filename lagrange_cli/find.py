@@ -130,7 +130,7 @@ def search_of(
     units = {split_unit(re.split("[<>=]+", text)[-1])[1] for text in conditions}
     angles = {name for name, unit in UNITS.items() if not any(unit.dimensions[:3])}
     has_units = bool(units - angles - {"", "degree", "radian"})
-    given = gather(values_of(inputs), scene, system="si" if has_units else None)
+    given = gather(values_of(inputs), scene, units=has_units)
     found = _read_conditions(conditions, given, radians=radians)
     targets = {x.key: x.value for x in found if x.relation == "=" and not isinstance(x.value, str)}
     others = [x for x in found if x.relation != "=" or isinstance(x.value, str)]

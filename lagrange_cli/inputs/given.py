@@ -87,14 +87,14 @@ def gather(
     given: Mapping[str, Value],
     path: str | None = None,
     *,
-    system: object = None,
+    units: bool = False,
     varying: Collection[str] = (),
     others: Mapping[str, Value] = MappingProxyType({}),
 ) -> Given:
     """Return the `given` inputs and those of a scene file, if any; given inputs override the file.
 
     Inputs with units are converted to SI, and so are `others`, such as times or the units of
-    columns.  If `system` is true, inputs must have units.  `varying` names inputs that are given
+    columns.  If `units` is true, inputs must have units.  `varying` names inputs that are given
     later.  Raises SceneError for a bad file, LagtopError for a bad given input.
     """
     inputs = {TILT if x.unit and name.startswith(TILT) else name: x for name, x in given.items()}
@@ -104,23 +104,23 @@ def gather(
 
         file = SceneFile(path)
         inputs = overridden(file.inputs, inputs)
-    units: System | None = None
+    system: System | None = None
     body: Mapping[str, Number] = BODY
     try:
         one_of_each(inputs)
-        if system or any(x.unit for x in (*inputs.values(), *others.values())):
+        if units or any(x.unit for x in (*inputs.values(), *others.values())):
             from .units import converted, system_of, worked_example  # start-up
 
-            units = system_of(overridden(inputs, others), asked=bool(system))
+            system = system_of(overridden(inputs, others), asked=units)
             inputs, others = converted(inputs), converted(others)
-            body = worked_example() if units else BODY
+            body = worked_example() if system else BODY
     except LagtopError as error:
         raise _of_file(file, error, given) from None
     stds = Stds({name: float(x.std) for name, x in inputs.items() if x.std is not None})
     numbers, known = ({name: x.number for name, x in values.items()} for values in (inputs, others))
     fixed = {name: _if_one(x) for name, x in numbers.items()}
     missing = from_example(dict.fromkeys(varying) | fixed)
-    return Given(numbers, known, body, units, missing, stds, file, given)
+    return Given(numbers, known, body, system, missing, stds, file, given)
 
 
 def _if_one(value: Any) -> Any:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -22,10 +21,7 @@ from .input_keys import TILT, checked_double, one_of_each, overridden
 from .names import repeated
 from .text_tables import Table, read_table, split_row
 from .top import INPUTS
-from .values import STEADY_WORDS, InputArrays, Value, parse_value, steady_refused
-
-_TILTS = {"theta", "tilt", "elevation"}
-"""Names of the tilt in trajectories, or of 90 degrees less the tilt, which no top is given by."""
+from .values import STEADY_WORDS, InputArrays, Value, steady_refused
 
 
 class TopRow(NamedTuple):
@@ -35,13 +31,6 @@ class TopRow(NamedTuple):
     carried: Sequence[Any]
     inputs: Mapping[str, float]
     error: str | None = None
-
-    def completed(self, shared: Mapping[str, float]) -> Mapping[str, float]:
-        """Return the inputs; `shared` inputs are the defaults.
-
-        If the row has an error, only the inputs that could be read are returned.
-        """
-        return self.inputs if self.error else overridden(shared, self.inputs)
 
 
 class Lines(NamedTuple):
@@ -56,19 +45,19 @@ class Lines(NamedTuple):
         """The number of tops."""
         return len(self.texts)
 
-    def rows(self) -> Iterator[TopRow]:
-        """Yield the tops."""
-        return (self.file.row(*text) for text in self.texts)
+    def rows(self) -> list[TopRow]:
+        """Return the tops."""
+        return [self.file.row(*text) for text in self.texts]
 
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
-        """Return the inputs of the tops; `shared` inputs are the defaults."""
+        """Return the inputs of the tops; `shared` inputs are the defaults of rows without error."""
         import numpy as np
 
-        rows = list(self.rows())
-        completed = [row.completed(shared) for row in rows]
+        rows = self.rows()
+        inputs = [row.inputs if row.error else overridden(shared, row.inputs) for row in rows]
         return InputArrays(
             len(rows),
-            {name: np.array([x.get(name, math.nan) for x in completed]) for name in INPUTS},
+            {name: np.array([x.get(name, math.nan) for x in inputs]) for name in INPUTS},
             list(zip(*(row.carried for row in rows), strict=True)),
             [row.line for row in rows],
             {i: row.error for i, row in enumerate(rows) if row.error},
@@ -78,8 +67,6 @@ class Lines(NamedTuple):
 class TopsFile(NamedTuple):
     """The format of a file, the same for all of its blocks."""
 
-    name: str
-    """The name of the file in messages."""
     columns: Sequence[str]
     """The keys of inputs, and the other headings as they are written."""
     carried: Sequence[str]
@@ -91,28 +78,20 @@ class TopsFile(NamedTuple):
     factors: Mapping[str, Fraction] = {}
     """The conversion factor of each column whose heading has a unit."""
 
-    @property
-    def named(self) -> Collection[str]:
-        """The inputs in the headings."""
-        return self.units.keys()
-
-    def among(
-        self, inputs: Mapping[str, Any], scene: str | None, system: str | None = None
-    ) -> tuple[Given, TopsFile]:
+    def among(self, inputs: Mapping[str, Any], scene: str | None) -> tuple[Given, TopsFile]:
         """Return the inputs given in addition to the file, and its format in the same units.
 
         Raises DataError for a heading that lacks a unit, and the errors of `gather`.
         """
         try:
-            found = gather(inputs, scene, system=system, varying=self.named, others=self.units)
+            found = gather(inputs, scene, varying=self.units.keys(), others=self.units)
         except LagtopError as error:
             if error.key in self.units and error.key not in inputs:
-                raise DataError(f"{self.name}, heading {error.key}: {error}") from None
+                raise DataError(f"{self.form.name}, heading {error.key}: {error}") from None
             raise
         keys = dict(zip(self.units, found.others, strict=True))
         factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
-        columns = [keys.get(x, x) for x in self.columns]
-        return found, self._replace(columns=columns, factors=factors)
+        return found, self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
     def row(self, line: int, raw: Any) -> TopRow:
         """Return the top of a row, or its error message."""
@@ -137,14 +116,13 @@ class TopsFile(NamedTuple):
         if cell in STEADY_WORDS:
             raise LagtopError(f"{name} {steady_refused(cell)}")
         try:
-            return checked_double(name, self.form.number(cell) * self.factors.get(name, 1))
+            number = self.form.number(cell)
         except LagtopError as error:
-            why = str(error) if error.key else f"{name} {error}"
-            with suppress(LagtopError):
-                if isinstance(cell, str) and parse_value(cell, uncertain=True).std is not None:
-                    shown = quoted(cell.strip())
-                    why = f"{name} must have no uncertainty, got {shown}: loop over solve"
-            raise LagtopError(why) from None
+            if isinstance(cell, str) and re.search(r"\d\s*(\(\d|±|\+/?-)", cell):
+                wrong = f"must have no uncertainty, got {quoted(cell)}: loop over solve"
+                raise LagtopError(f"{name} {wrong}") from None
+            raise LagtopError(f"{name} {error}") from None
+        return checked_double(name, number * self.factors.get(name, 1))
 
 
 def read_tops(
@@ -167,33 +145,36 @@ def _format(table: Table, computed: Collection[str]) -> TopsFile:
     name, headings = table.name, table.headings or []
     found = [_column_of(x) for x in headings]
     columns = [column for column, _ in found]
-    units = {x: Value(Fraction(1), unit) for x, unit in found if _is_input(x, unit)}
+    # A tilt needs its unit in the name or in the heading.
+    units = {x: Value(Fraction(1), y) for x, y in found if x in INPUTS or (x == TILT and y)}
     carried = [x for x in columns if x not in units and x not in computed]
     _check_spelling(carried, units.keys(), name)
     if (twice := repeated(columns)) is not None:
         raise DataError(f"{name} must name each column once, got {twice!r} twice")
     if not units:
-        raise DataError(
-            f"{name} must begin with a header that names inputs ({' '.join(INPUTS)}), "
-            f"got {quoted(','.join(headings))}"
-        )
-    _check_units(units, name)
+        wanted = f"must begin with a header that names inputs ({' '.join(INPUTS)})"
+        raise DataError(f"{name} {wanted}, got {quoted(','.join(headings))}")
+    for column, one in units.items():
+        if one.unit and column.startswith(f"{TILT}_"):
+            raise DataError(f"{name}: the column {column} must be called {TILT} [{one.unit}]")
+        if one.unit:
+            from .units import factor_of  # for few files only
+
+            try:
+                factor_of(column, one.unit)
+            except LagtopError as error:
+                raise DataError(f"{name}, heading {column} [{one.unit}]: {error}") from None
     table.decide(i for i, x in enumerate(columns) if x in units)
     # Blocks of rows go to other processes, without the rest of the file.
     form = Table(name, headings, (), (), table.delimiter)
     form.decimal = table.decimal
-    return TopsFile(name, columns, carried, units, form)
+    return TopsFile(columns, carried, units, form)
 
 
 def _column_of(heading: str) -> tuple[str, str]:
     """Return the name of a column and, for an input, its unit."""
     name, unit = name_and_unit(heading)
     return (name, unit) if name in {*INPUTS, TILT} else (heading, "")
-
-
-def _is_input(name: str, unit: str) -> bool:
-    """Return whether a column is an input; a tilt needs its unit in the name or in the heading."""
-    return name in INPUTS or (name == TILT and bool(unit))
 
 
 def _known_inputs(headings: Sequence[str]) -> int:
@@ -205,7 +186,7 @@ def _check_spelling(carried: Sequence[str], named: Collection[str], name: str) -
     """Raise DataError for an unread column that looks like an input missing from `named`."""
     inputs = {_plain(known): known for known in reversed(INPUTS) if known not in named}
     if not any(x.startswith(TILT) for x in named):
-        inputs |= dict.fromkeys(_TILTS, "theta0_deg")
+        inputs |= dict.fromkeys(("theta", "tilt", "elevation"), "theta0_deg")
     for column in carried:
         if known := inputs.get(_plain(column)):
             raise DataError(f"{name}: the column {column} must be spelt {known}")
@@ -214,18 +195,3 @@ def _check_spelling(carried: Sequence[str], named: Collection[str], name: str) -
 def _plain(column: str) -> str:
     """Return a name without easily mistaken parts: case, underscores, the 0 of theta0, the unit."""
     return re.sub("_|0|deg$|rad$", "", name_and_unit(column)[0].lower()) or column
-
-
-def _check_units(units: Mapping[str, Value], name: str) -> None:
-    """Raise DataError for a unit that its input cannot have."""
-    for column, one in units.items():
-        if not one.unit:
-            continue
-        if column.startswith(f"{TILT}_"):
-            raise DataError(f"{name}: the column {column} must be called {TILT} [{one.unit}]")
-        from .units import converted  # for few files only
-
-        try:
-            converted({column: one})
-        except LagtopError as error:
-            raise DataError(f"{name}, heading {column} [{one.unit}]: {error}") from None
