@@ -15,7 +15,7 @@ from scenes import EPS, EVERY_KIND, UNIT
 
 from lagrange_cli.sweep import records
 from lagrange_cli.sweep.elementary import ELEMENTARY
-from lagrange_cli.sweep.records import OF_MODULI
+from lagrange_cli.sweep.records import OF_MODULI, column_keys
 
 KEYS = sorted({*ELEMENTARY, *OF_MODULI})
 
@@ -65,9 +65,9 @@ def test_exact_zeros_and_numbers_that_do_not_exist() -> None:
 def test_no_ordinary_top_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(records, "solve", None)
     rng = np.random.default_rng(2)
-    start: Any = {"r0": rng.uniform(10, 99, 2000), "theta0_deg": rng.uniform(1, 179, 2000)}
+    start: Any = {"r0": rng.uniform(-99, 99, 2000), "theta0_deg": rng.uniform(1, 179, 2000)}
     for rates in (0.0, rng.uniform(-5, 5, 2000)):
-        found = sweep(**start, psidot0=rates, keys=KEYS)
+        found = sweep(**start, psidot0=rates, keys=[*column_keys(), *KEYS])
         assert not np.isnan(found["stability_factor"]).any()
     turned = sweep(r0=[40.0, 60.0], theta0_rad=1.0, radians=True, keys=["comodular_angle_rad"])
     modular = sweep(r0=[40.0, 60.0], theta0_rad=1.0, radians=True, keys=["modular_angle_rad"])

@@ -7,28 +7,17 @@ import io
 import itertools
 import json
 import math
-import random
 import tracemalloc
-from collections.abc import Callable
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import Lagtop
-from lagtop import LagtopError, Motion, Top, solve, sweep
-from scenes import EPS, UNIT, random_scene
+from lagtop import LagtopError, Top, solve, sweep
+from scenes import UNIT
 
-from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.inputs.values import parse_values
-from lagrange_cli.motion.gaps import state as state_of
-from lagrange_cli.motion.regime import Regime
-from lagrange_cli.motion.regime import exact as exact_of
-from lagrange_cli.sweep import records
-from lagrange_cli.sweep.moving_tops import MovingTops
 from lagrange_cli.sweep.records import column_keys
-from lagrange_cli.sweep.top_arrays import TopArrays
 
 Record = dict[str, Any]
 
@@ -37,70 +26,7 @@ def table(text: str) -> list[Record]:
     return list(csv.DictReader(io.StringIO(text)))
 
 
-def arrays(scenes: list[dict[str, float]]) -> dict[str, Any]:
-    """Return inputs of many tops, NaN for a tilt in the unit that it is not given in."""
-    names = sorted({name for scene in scenes for name in scene})
-    return {name: [scene.get(name, math.nan) for scene in scenes] for name in names}
-
-
 # Accuracy
-
-
-def tops_of(inputs: dict[str, Any]) -> TopArrays:
-    """Return the inputs as arrays, those of the worked example where there are no others."""
-    given = {name: np.nan if x is None else x for name, x in Top().as_dict().items()} | inputs
-    return TopArrays(
-        *np.broadcast_arrays(*(np.asarray(given[x], float) for x in TopArrays._fields))
-    )
-
-
-def test_what_the_formulas_start_from_is_rounded_once() -> None:
-    """The invariants to the bit; sines and cosines: worst seen 0.9 eps."""
-    rng = random.Random(21)
-    scenes = [random_scene(rng) for _ in range(300)]
-    tops = tops_of(arrays(scenes))
-    regular = tops.regimes()[Regime.REGULAR]
-    ar, found, tilts = balls(40), tuple(tops.state()), tops.tilt()
-    for i in np.flatnonzero(regular).tolist():
-        top = Top(**scenes[i])
-        with ar.working():
-            state = tuple(state_of(ar, exact_of(top)))
-            exact = [float(x.middle) for x in top.tilt(ar)]
-        assert [x[i] for x in found[:6]] == [float(x.middle) for x in state[:6]]
-        assert [x[i] for x in tilts] == pytest.approx(exact, rel=1.0 * EPS, abs=0)
-
-
-def test_only_what_is_unusual_is_solved_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    alone = []
-
-    def watched(top: Top) -> Motion:
-        alone.append(top)
-        return solve(top)
-
-    monkeypatch.setattr(records, "solve", watched)
-    sweep(r0=[50, 0, 50, 50, 60], theta0_deg=[30, 30, 0, 180, 1e-40], psidot0=[0, 0, 0, 0, 0])
-    assert [top.theta0_deg for top in alone] == [1e-40]
-
-
-def test_no_top_of_a_usual_grid_is_solved_alone() -> None:
-    rng = np.random.default_rng(2)
-    tops = tops_of(
-        {
-            "r0": rng.uniform(-100, 100, 4000),
-            "theta0_deg": rng.uniform(1, 179, 4000),
-            "psidot0": rng.uniform(-5, 5, 4000),
-        }
-    )
-    assert tops.moving().all()
-    assert MovingTops(tops).trusted(column_keys()).all()
-
-
-def test_few_tops_of_a_grid_need_the_exact_way() -> None:
-    spins, tilts = np.linspace(-200, 200, 401), np.linspace(0, 180, 181)
-    r0, theta0 = (x.ravel() for x in np.meshgrid(spins, tilts))
-    regimes = tops_of({"r0": r0, "theta0_deg": theta0}).regimes()
-    assert sum(rows.sum() for rows in regimes.values()) == r0.size
-    assert set(regimes) == {Regime.SLEEPING, Regime.HANGING, Regime.NO_SPIN, Regime.REGULAR}
 
 
 SPECIAL: list[dict[str, Any]] = [
@@ -191,21 +117,6 @@ def test_wrong_questions(wrong: Any) -> None:
 # Grids
 
 
-@pytest.mark.parametrize(
-    ("text", "values"),
-    [
-        ("5", [5]),
-        ("1,-2.5,1e3", [1, -2.5, 1000]),
-        ("3:-3:3", [3, 0, -3]),
-        ("log:-1:-4:3", [-1, -2, -4]),
-        ("2:2:1", [2]),
-    ],
-)
-def test_values_of_an_axis(text: str, values: list[float]) -> None:
-    axis = parse_values(text)
-    assert axis.at(np.arange(axis.count)).tolist() == values
-
-
 @pytest.mark.parametrize("text", ["", "x", "1,,2"])
 def test_wrong_axis(text: str, lagtop: Lagtop) -> None:
     result = lagtop("sweep", "--r0", text)
@@ -245,25 +156,16 @@ def test_one_top_is_what_solve_says(lagtop: Lagtop) -> None:
         assert found[key] == same, key
 
 
-@pytest.mark.parametrize("style", ["csv", "ndjson", "json"])
-def test_formats_carry_the_same_doubles(style: str, lagtop: Lagtop) -> None:
-    text = lagtop("sweep", "--r0", "0:60:7", "--theta0", "0,30", "--format", style).stdout
+def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
+    grid, absent = ["sweep", "--r0", "0:60:7", "--theta0", "0,30", "--format"], {"nan", "None"}
     exact = sweep(r0=np.repeat(np.arange(0, 61, 10), 2), theta0_deg=np.tile([0, 30], 7))
-    readers: dict[str, Callable[[str], list[Record]]] = {
-        "csv": table,
-        "json": json.loads,
-        "ndjson": lambda text: [*map(json.loads, text.splitlines())],
-    }
-    rows = readers[style](text)
-    assert len(rows) == 14
-    for i, row in enumerate(rows):
-        assert list(row) == column_keys()
+    objects = json.loads(lagtop(*grid, "json").stdout)
+    assert objects == [json.loads(line) for line in lagtop(*grid, "ndjson").stdout.splitlines()]
+    for i, (row, cells) in enumerate(zip(objects, table(lagtop(*grid, "csv").stdout), strict=True)):
+        assert list(row) == list(cells) == column_keys()
         for key, value in row.items():
-            wanted = exact[key][i]
-            if isinstance(wanted, float) and not math.isnan(wanted):
-                assert float(value) == wanted
-            else:
-                assert value in (wanted, "", None)
+            assert cells[key] == ("" if value is None else str(value))
+            assert value == exact[key][i] or (value is None and str(exact[key][i]) in absent)
 
 
 def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
@@ -324,14 +226,6 @@ def test_rows_of_csv(tmp_path: Path, lagtop: Lagtop) -> None:
     )
 
 
-def test_blank_lines_without_end(lagtop: Lagtop) -> None:
-    text = "r0\n" + 9000 * "\n" + "50\n" + 9000 * "\n"
-    options = ["sweep", "-", "--keys", "r0", "--format"]
-    assert lagtop(*options, "csv", input=text).stdout == "r0,error\n50.0,\n"
-    assert json.loads(lagtop(*options, "json", input=text).stdout) == [{"r0": 50, "error": None}]
-    assert lagtop(*options, "json", input="r0\n\n").stdout == "[]\n"
-
-
 def test_a_tilt_in_radians_over_one_in_degrees(lagtop: Lagtop) -> None:
     keys = ["--rad", "--keys", "theta0_rad", "sample_inputs/simo-wong-1991.toml"]
     assert lagtop("sweep", "--theta0", "0.25", *keys).stdout == "theta0_rad\n0.25\n"
@@ -360,22 +254,6 @@ def test_what_a_sweep_wrote_can_be_swept_again(tmp_path: Path, lagtop: Lagtop) -
     assert once.read_bytes() == twice.read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "must begin with a header"),
-        ("x,y\n1,2\n", "must begin with a header that names inputs"),
-        ("r0,r0\n1,2\n", "must name each column once, got 'r0' twice"),
-        ("theta0\n1\n", "the column theta0 must be spelt theta0_deg"),
-        ('r0,"x\n1,2\n', "a quoted cell must end with its quote"),
-    ],
-)
-def test_invalid_files_of_tops_are_refused(text: str, message: str, lagtop: Lagtop) -> None:
-    result = lagtop("sweep", "-", input=text)
-    assert (result.exit_code, result.stdout) == (65, "")
-    assert message in result.stderr
-
-
 def test_a_range_and_a_file_exclude_each_other(lagtop: Lagtop) -> None:
     assert lagtop("sweep", "-", "--m", "1,2", input="r0\n1\n").exit_code == 2
 
@@ -394,18 +272,11 @@ def test_an_uncertain_cell_is_refused(text: str, lagtop: Lagtop) -> None:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        (1j, "r0 must be real numbers, got 1j"),
         (np.array([1, 2j]), "r0 must be real numbers, got array"),
-        ([1, 2j], "r0 must be real numbers"),
         (np.array(["2020-01-01"], "datetime64[D]"), "r0 must be real numbers"),
-        (np.array([1], "timedelta64[s]"), "r0 must be real numbers"),
-        (np.zeros(2, [("x", float)]), "r0 must be real numbers"),
         (10**400, "r0 must be real numbers, got 1000"),
-        ([10**400], "r0 must be real numbers, got [1000"),
-        ("50", "r0 must be real numbers, got '50'"),
         (["50"], "r0 must be real numbers"),
         ([True], "r0 must be real numbers, got [True]"),
-        ({"x": 1}, "r0 must be real numbers"),
         ([[1], [2, 3]], "r0 must be real numbers"),
         (np.ma.array([1.0, 2.0], mask=[False, True]), "r0 must not be masked"),
     ],
@@ -416,20 +287,6 @@ def test_arrays_that_are_no_real_numbers(values: Any, message: str) -> None:
     assert str(refused.value).startswith(message)
     assert len(str(refused.value)) < 120
     assert refused.value.key == "r0"
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        [1, 2],
-        (Fraction(1), Fraction(2)),
-        np.array([1, 2], np.int8),
-        np.array([1, 2], np.float16),
-        np.ma.array([1.0, 2.0]),
-    ],
-)
-def test_arrays_of_many_types(values: Any) -> None:
-    assert sweep(r0=values, keys=["r0"])["r0"].tolist() == [1.0, 2.0]
 
 
 @pytest.mark.parametrize("radians", [False, True])
@@ -460,25 +317,23 @@ def peak_over_result(**inputs: Any) -> float:
     return peak / sum(column.nbytes for column in records.values())
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("keys", [["r0", "T_nutation"], None])
-def test_memory_of_a_sweep_is_little_more_than_its_result(keys: list[str] | None) -> None:
-    """Measured 1.3 and 1.4 times the result: inputs that are one number for all take no room."""
-    r0, tilts = np.linspace(1, 100, 200)[:, None], np.linspace(1, 179, 1500 if keys else 100)
-    assert peak_over_result(r0=r0, theta0_deg=tilts, keys=keys) < 2.5
+GRID = {"r0": np.linspace(1, 100, 200)[:, None]}
+STARTS = {"theta0_deg": np.linspace(1, 179, 60_000), "psidot0": np.linspace(-5, 5, 60_000)}
+BODY = {"m": 1587.0, "C": 17458.0, "s": 4.0, "g": 981.0}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "start",
-    [{"r0": 50.0, "thetadot0": 2.0}, {"phidot0": 50.0}, {"r0": 50.0, "A_cm": 13640.0}],
+    "inputs",
+    [
+        GRID | {"theta0_deg": np.linspace(1, 179, 1500), "keys": ["r0", "T_nutation"]},
+        GRID | {"theta0_deg": np.linspace(1, 179, 100)},
+        STARTS | {"thetadot0": np.full(60_000, 2.0), "keys": ["T_nutation"]},
+        STARTS | {"phidot0": np.full(60_000, 50.0), "keys": ["T_nutation", "Lz"]},
+        STARTS | BODY | {"A_cm": np.full(60_000, 13640.0), "keys": ["T_nutation"]},
+    ],
     ids=",".join,
 )
-def test_memory_of_a_sweep_with_one_key_from_any_start(start: dict[str, float]) -> None:
-    """Measured 1.5 to 2.1 times the result: measured inputs are resolved block by block too."""
-    body = {"m": 1587.0, "A": 39032.0, "C": 17458.0, "s": 4.0, "g": 981.0}
-    if "A_cm" in start:
-        del body["A"]
-    inputs: dict[str, Any] = {x: np.full(60_000, value) for x, value in (body | start).items()}
-    inputs |= {"theta0_deg": np.linspace(1, 179, 60_000), "psidot0": np.linspace(-5, 5, 60_000)}
-    assert peak_over_result(keys=["T_nutation"], **inputs) < 2.5
+def test_memory_of_a_sweep_is_little_more_than_its_result(inputs: dict[str, Any]) -> None:
+    """Measured 1.3 to 2.1 times the result: inputs that are one number for all take no room."""
+    assert peak_over_result(**inputs) < 2.5

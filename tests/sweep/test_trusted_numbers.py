@@ -100,19 +100,6 @@ def test_numbers_whose_parts_cancel(name: str) -> None:
     assert_trusted(CANCELLING[name], len(CANCELLING[name]))
 
 
-@pytest.mark.parametrize("body", [(1.0, 1.0, 1.0, 1.0, 1.0), (2.0, 3.0, 0.5, 4.0, 9.81)])
-def test_tops_at_the_threshold_of_sleeping_go_one_by_one(body: tuple[float, ...]) -> None:
-    """Where (C r0)^2 = 4 A m g s nearly, lambda - 1 has lost its digits."""
-    m, A, C, s, g = body
-    threshold = 2 * math.sqrt(A * m * g * s) / C
-    r0 = threshold * np.array([0.9, 1 - 1e-15, 1.0, 1 + 1e-15, 1.1, -1.0])
-    inputs = {"m": m, "A": A, "C": C, "s": s, "g": g, "theta0_deg": 10.0, "thetadot0": 0.0}
-    given = inputs | {"psidot0": 0.0, "theta0_rad": np.nan, "r0": r0}
-    tops = TopArrays(*np.broadcast_arrays(*(np.asarray(given[x]) for x in TopArrays._fields)))
-    together = np.logical_or.reduce(list(tops.regimes().values()))
-    assert together.tolist() == [True, False, False, False, True, False]
-
-
 def starts_next_to_the_pole(count: int) -> dict[str, Any]:
     """Return tops of any size that start 1e-7 to 1 degree from the vertical, with any rates."""
     rng = np.random.default_rng(5)
