@@ -101,7 +101,9 @@ def _json_value(value: Any) -> str:
         members = [f'"{key}":{_json_value(x)}' for key, x in value.items()]
         return f"{{{','.join(members)}}}"
     if type(value) is str:
-        from json import dumps  # for one record it is faster than the import of orjson
+        if value.isprintable() and not set(value) & {'"', "\\"}:
+            return f'"{value}"'  # start-up: nearly all are plain words
+        from json import dumps
 
         return dumps(value, ensure_ascii=False)
     return value_text(value) or "null"
