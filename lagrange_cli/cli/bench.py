@@ -91,18 +91,8 @@ def bench_command(
     "stability --kinds slow-spin --plot stability.svg",
 )
 @opt.option("--kinds", type=opt.LIST, help="Use only these kinds of scenes.  [default: all]")
-@opt.option(
-    "--samples",
-    type=opt.count(MOST_SCENES),
-    default="1",
-    help="Random scenes of each kind.",
-)
-@opt.option(
-    "--seed",
-    type=opt.count(),
-    default="1952",
-    help="Seed of the random scenes.",
-)
+@opt.option("--samples", type=opt.count(MOST_SCENES), default="1", help="Random scenes per kind.")
+@opt.option("--seed", type=opt.count(), default="1952", help="Seed of the random scenes.")
 @opt.plot
 @opt.output(*opt.REPORT_FORMATS)
 def stability_command(

@@ -39,16 +39,8 @@ if TYPE_CHECKING:
     help="Other axes: axis=y, up=y, left (left-handed).  From the first row: start (zero of spin "
     "and precession), time (zero of t).",
 )
-@opt.option(
-    "--step-sizes",
-    type=opt.NUMBERS,
-    help="Step sizes of the trajectories, for the order of convergence.",
-)
-@opt.option(
-    "--max-error",
-    type=opt.POSITIVE,
-    help="Largest acceptable error in rad.  [default: 0.001]",
-)
+@opt.option("--step-sizes", type=opt.NUMBERS, help="Step sizes, for the order of convergence.")
+@opt.option("--max-error", type=opt.POSITIVE, help="Acceptable error in rad.  [default: 0.001]")
 @opt.decimal
 @opt.plot
 @opt.output(*opt.REPORT_FORMATS)

@@ -70,11 +70,7 @@ def _parse_distance(text: str) -> ExactComplex:
 @opt.option("--gap-below", type=opt.NUMBER, help="Distance from delta* down to an outer root.")
 @opt.option("--g", type=opt.NUMBER, default="1", help="Leading coefficient.")
 @opt.option("--tau", type=RANGE, help="Times: a list 0,1,2 or a range [log:]start:stop:count.")
-@opt.option(
-    "--columns",
-    type=opt.LIST,
-    help="Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
-)
+@opt.option("--columns", type=opt.LIST, help="eta, etadot, h1, theta, xi_prime.  [default: eta]")
 @opt.rad
 @opt.digits(opt.MOST_TABLE_DIGITS)
 @function_formats

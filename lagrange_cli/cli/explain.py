@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import re
-from textwrap import fill
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.text import value_text
 from ..inputs.scenes import scene_names, scene_remark
 from ..output.report import Field, Report
-from ..output.terminal import width_of
 from . import shared as opt
 
 if TYPE_CHECKING:
@@ -42,26 +40,23 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     else:
         rows = listed(radians=top.radians, named=named)
     if words and out.fmt == "table":
-        out.text("\n".join(_block(row, width_of(out.path) or 80) for row in rows))
+        out.text("\n".join(map(_block, rows)))
     else:
         out.report(lambda: Report({}, _EXPLAINED if words else _LISTED, rows, []))
 
 
-def _block(row: Explained, width: int) -> str:
+def _block(row: Explained) -> str:
     """Return the lines of one key or column; each equation of a formula has a line of its own."""
-    title = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))
     texts = {
         "formula": row.formula,
         "numbers": row.numbers,
-        "value": "" if row.value is None else f"{value_text(row.value)} {row.unit}".rstrip(),
+        "value": "" if row.value is None else f"{value_text(row.value)} {row.unit}",
         "missing": row.missing,
     }
-    lines = [f"{row.name}: {title}"]
+    lines = [f"{row.name}: {', '.join(filter(None, (row.symbol, row.meaning, row.equation)))}"]
     for name, text in texts.items():
-        for i, part in enumerate(re.split(r" where |, (?=\w+ = )", text)):
-            if part:
-                line = f"  {'' if i else name:9}{part}"
-                lines.append(fill(line, width, subsequent_indent=" " * 11, break_on_hyphens=False))
+        parts = filter(None, re.split(r" where |, (?=\w+ = )", text))
+        lines += [f"  {'' if i else name:9}{part}".rstrip() for i, part in enumerate(parts)]
     return "\n".join([*lines, ""])
 
 

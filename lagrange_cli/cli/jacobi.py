@@ -101,11 +101,7 @@ def write_constants(record: dict[str, Any], group: str, table: str, out: Output)
     "jacobi --k 0.8 --u 0:4K:101 -o sn.csv",
     "jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i",
 )
-@opt.option(
-    "--k",
-    type=opt.Parsed("X", parse_complex),
-    help="Modulus, 0 to 1, above 1, or imaginary as 0.8i.",
-)
+@opt.option("--k", type=opt.Parsed("X", parse_complex), help="Modulus: real, or imaginary as 0.8i.")
 @opt.option("--k-prime", type=opt.NUMBER, help="Complementary modulus k', for k close to 1.")
 @opt.option("--nome", type=opt.NUMBER, help="Nome q = exp(-pi K'/K), below 1.")
 @opt.option(
@@ -120,17 +116,9 @@ def write_constants(record: dict[str, Any], group: str, table: str, out: Output)
     help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
     "omega, pi (of u and --param, after Chrapan).  [default: am]",
 )
-@opt.option(
-    "--param",
-    type=opt.Parsed("V", _parse_parameter),
-    help="Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i.",
-)
+@opt.option("--param", type=opt.Parsed("V", _parse_parameter), help="Of omega and pi, as 0.2+0.7i.")
 @opt.option("--phi", type=RANGE, help="Amplitudes: print F(phi, k) and E(phi, k) instead.")
-@opt.option(
-    "--series",
-    type=opt.count(MOST_TERMS),
-    help="Print the first N partial sums of the nome series instead.",
-)
+@opt.option("--series", type=opt.count(MOST_TERMS), help="Print N partial sums of the nome series.")
 @opt.rad
 @opt.digits(opt.MOST_TABLE_DIGITS)
 @function_formats

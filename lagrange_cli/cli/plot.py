@@ -34,11 +34,7 @@ PAGE_DPI, FILM_DPI = 150.0, 100.0
 )
 @opt.top("[KIND]... [SCENE]...", is_scene=None)
 @opt.option("--t-max", type=opt.TIME, help="Last time.  [default: a few nutation periods]")
-@opt.option(
-    *("--key", "key"),
-    metavar="KEY",
-    help="Key of `map`, also regime and path.  [default: mean_precession_rate]",
-)
+@opt.option("--key", metavar="KEY", help="Key of `map`.  [default: mean_precession_rate]")
 @opt.option("--x", metavar="RANGE", help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
 @opt.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0]")
 @opt.option("--camera", metavar="AZ,EL", help="Azimuth and elevation.  [default: in front]")
@@ -46,9 +42,7 @@ PAGE_DPI, FILM_DPI = 150.0, 100.0
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
 @opt.option("--animate", metavar="FILE", help="Write a film of the top: FILE.gif or FILE.mp4.")
 @opt.option("--duration", type=opt.NUMBER, help="Length of the film in seconds.  [default: 6]")
-@opt.option(
-    *("-o", "--output"), metavar="FILE", help="FILE.png, .svg or .pdf (replaced only on success)."
-)
+@opt.option("-o", "--output", metavar="FILE", help="FILE.png, .svg or .pdf.")
 def plot_command(
     top: opt.TopOptions,
     words: list[str],

@@ -28,15 +28,11 @@ if TYPE_CHECKING:
 @opt.top()
 @opt.option("--get", type=opt.LIST, help="Print only the values of these keys, one per line.")
 @opt.option(
-    "--derivation",
-    is_flag=True,
-    help="Print the steps of section 8 of the paper, for a top released from rest.",
+    "--derivation", is_flag=True, help="Print the steps of section 8, after release from rest."
 )
 @opt.digits(opt.MOST_RECORD_DIGITS)
 @opt.certify
-@opt.option(
-    "--budget", metavar="KEY", help="Print the uncertainty budget of KEY: the share of each input."
-)
+@opt.option("--budget", metavar="KEY", help="Print the share of each input in the uncertainty.")
 @opt.output("table", "json", "csv", "ndjson")
 def solve_command(
     top: opt.TopOptions,
