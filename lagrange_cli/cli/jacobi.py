@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..elliptic.function_table import ComplexPoints
     from ..elliptic.nome_series import SeriesTable
     from ..elliptic.tables import TableOfFunctions
-    from ..inputs.values import Multiple, Multiples
+    from ..inputs.values import Multiple
     from ..output.destination import Output
 
 MOST_TERMS = 10_000
@@ -61,7 +61,7 @@ def _parse_range(text: str) -> Points:
     return parse_values(text)
 
 
-def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
+def _parse_arguments(text: str) -> Multiple | list[Multiple | ExactComplex]:
     """Return a range, or the arguments of a comma-separated list."""
     from ..inputs.values import parse_multiple, parse_multiples
 
@@ -126,7 +126,7 @@ def jacobi_command(
     k: ExactComplex | None,
     k_prime: Fraction | None,
     nome: Fraction | None,
-    u: Multiples | list[Multiple | ExactComplex] | None,
+    u: Multiple | list[Multiple | ExactComplex] | None,
     functions: list[str] | None,
     param: tuple[ExactComplex, bool] | None,
     phi: Points | None,
@@ -194,7 +194,7 @@ def jacobi_command(
 
 
 def _arguments(
-    u: Multiples | list[Multiple | ExactComplex], *, real: bool
+    u: Multiple | list[Multiple | ExactComplex], *, real: bool
 ) -> tuple[ComplexPoints, bool]:
     """Return the arguments, and whether they are factors of K.
 

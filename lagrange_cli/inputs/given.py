@@ -20,7 +20,7 @@ from .input_keys import (
     warn_of,
 )
 from .top import Top
-from .values import STEADY_WORDS, Stds, Value, values_of
+from .values import STEADY_WORDS, Value, values_of
 
 if TYPE_CHECKING:
     from .scenes import SceneFile
@@ -40,7 +40,7 @@ class Given(NamedTuple):
     """SI; None if the inputs have no units."""
     missing: Mapping[str, float]
     """The body inputs taken from the worked example, in CGS, if only some of the body was given."""
-    stds: Stds = Stds()
+    stds: Mapping[str, float] = {}
     """Standard uncertainties of the inputs that have one, in these units."""
     file: SceneFile | None = None
     options: Collection[str] = ()
@@ -116,16 +116,12 @@ def gather(
             body = worked_example() if system else BODY
     except LagtopError as error:
         raise _of_file(file, error, given) from None
-    stds = Stds({name: float(x.std) for name, x in inputs.items() if x.std is not None})
+    stds = {name: float(x.std) for name, x in inputs.items() if x.std is not None}
     numbers, known = ({name: x.number for name, x in values.items()} for values in (inputs, others))
-    fixed = {name: _if_one(x) for name, x in numbers.items()}
+    # The only value of an axis of a sweep counts as a number.
+    fixed = {x: y.bounds()[0] if getattr(y, "count", 0) == 1 else y for x, y in numbers.items()}
     missing = from_example(dict.fromkeys(varying) | fixed)
     return Given(numbers, known, body, system, missing, stds, file, given)
-
-
-def _if_one(value: Any) -> Any:
-    """Return a number as it is, and the only value of a sweep's axis with one value."""
-    return value.bounds()[0] if getattr(value, "count", 0) == 1 else value
 
 
 def read_scene(

@@ -78,6 +78,7 @@ EXAMPLE = {
 }
 """The inputs of the worked example of Chrapan (1952), section 8, in CGS: the defaults."""
 BODY = {name: EXAMPLE[name] for name in ("m", "A", "C", "s", "g")}
+BODY_UNITS = {"m": "g", "A": "g*cm^2", "C": "g*cm^2", "s": "cm", "g": "cm/s^2"}
 _SAME = STANDS_FOR | dict.fromkeys(("theta0_deg", "theta0_rad"), TILT)
 
 
@@ -120,18 +121,9 @@ def remark_on(missing: Iterable[str], words: Sequence[str]) -> str:
 
 def example_options(missing: Mapping[str, float], *, units: bool = False) -> list[str]:
     """Return the options that set the defaults of the worked example, with units or without."""
-    if not units:
-        return [f"--{name} {value:g}" for name, value in missing.items()]
-    return [
-        f"--{name} '{value:g} {_in_cgs(DECLARED[name].unit)}'" for name, value in missing.items()
-    ]
-
-
-def _in_cgs(unit: str) -> str:
-    """Return a unit such as `g*cm^2` in place of `mass len²`."""
-    for word, of_cgs in (("mass", "g"), ("len", "cm"), ("time", "s"), (" ", "*"), ("²", "^2")):
-        unit = unit.replace(word, of_cgs)
-    return unit
+    if units:
+        return [f"--{name} '{value:g} {BODY_UNITS[name]}'" for name, value in missing.items()]
+    return [f"--{name} {value:g}" for name, value in missing.items()]
 
 
 def warn_of(missing: Mapping[str, float], stacklevel: int) -> None:

@@ -47,15 +47,12 @@ class Trajectory:
         if "t" not in found or len(found) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
             shown = shortened(", ".join(map(repr, self.names)), 120)
-            raise DataError(
-                f"{self.name} must have columns among {wanted}, got {shown}: "
-                "name them with --columns"
-            )
+            wrong = f"must have columns among {wanted}, got {shown}: name them with --columns"
+            raise DataError(f"{self.name} {wrong}")
         if twice := named_twice(self.names, found):
-            raise DataError(
-                f"{self.name} must name each quantity once, got {twice[0]!r} and {twice[1]!r}: "
-                "name the columns with --columns, and one of them _"
-            )
+            wrong = f"must name each quantity once, got {twice[0]!r} and {twice[1]!r}"
+            remedy = "name the columns with --columns, and one of them _"
+            raise DataError(f"{self.name} {wrong}: {remedy}")
         try:
             self.quantities = {key: self._in_known_unit(key, x) for key, x in found.items()}
         except LagtopError as error:
@@ -64,8 +61,7 @@ class Trajectory:
     def _in_known_unit(self, key: str, quantity: FoundQuantity) -> FoundQuantity:
         """Return a quantity in radians, degrees or no unit, with the factor that converts it.
 
-        Times are then in seconds, and rates in radians per second.  Raises LagtopError for a unit
-        that the quantity cannot have, and for parts in different units.
+        Times are then in seconds, and rates in radians per second.  Raises LagtopError.
         """
         named = [self.names[i] for i in quantity.columns]
         if len({plain_name(part)[1] for part in named}) > 1:
@@ -186,16 +182,14 @@ def _read_arrays(content: bytes, name: str, kind: str) -> ArrayTable:
     Raises DataError for a broken file; pickles are never loaded.
     """
     try:
-        found = {"npy": _npy, "npz": _npz, "Parquet": _parquet}[kind](content)
+        found = (_parquet if kind == "Parquet" else _numpy)(content)
     except ImportError:
-        raise UnavailableError(
-            f"{name}: Parquet needs pyarrow: pip install 'lagtop[parquet]'"
-        ) from None
+        remedy = "pip install 'lagtop[parquet]'"
+        raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
-        raise DataError(
-            f"{name}: not {'a' if kind == 'Parquet' else 'an'} {kind} file: {why}"
-        ) from None
+        article = "a" if kind == "Parquet" else "an"
+        raise DataError(f"{name}: not {article} {kind} file: {why}") from None
     real = {x: y for x, y in found.items() if y.dtype.kind in "iuf" and y.ndim in {1, 2}}
     time = next((x for x in real if "t" in quantities_in([x])), next(iter(real), None))
     if time is None:
@@ -211,30 +205,27 @@ def _read_arrays(content: bytes, name: str, kind: str) -> ArrayTable:
     return ArrayTable(name, None if [*tables] == [""] else names, columns)
 
 
-def _npy(content: bytes) -> Mapping[str, Any]:
-    """Return the fields of a structured array, or the whole array under an empty name."""
+def _numpy(content: bytes) -> Mapping[str, Any]:
+    """Return the arrays of an npz file, the fields of an npy file, or its array without a name.
+
+    Raises ValueError if the arrays are too large.
+    """
     import numpy as np
 
+    if content.startswith(b"PK"):
+        from zipfile import ZipFile
+
+        _check_size(sum(x.file_size for x in ZipFile(BytesIO(content)).infolist()))
+        with np.load(BytesIO(content), allow_pickle=False) as archive:
+            return dict(archive)
     array = np.load(BytesIO(content), allow_pickle=False)
     return {x: array[x] for x in array.dtype.names} if array.dtype.names else {"": array}
-
-
-def _npz(content: bytes) -> Mapping[str, Any]:
-    """Return the arrays of an archive.  Raises ValueError if they are too large."""
-    from zipfile import ZipFile
-
-    import numpy as np
-
-    _check_size(sum(x.file_size for x in ZipFile(BytesIO(content)).infolist()))
-    with np.load(BytesIO(content), allow_pickle=False) as archive:
-        return dict(archive)
 
 
 def _parquet(content: bytes) -> Mapping[str, Any]:
     """Return the numeric columns, and lists of a fixed size as matrices; null becomes NaN."""
     import numpy as np
-    import pyarrow as pa
-    from pyarrow import parquet
+    from pyarrow import parquet, types
 
     file = parquet.ParquetFile(BytesIO(content))
     _check_size(8 * file.metadata.num_rows * file.metadata.num_columns)
@@ -243,12 +234,12 @@ def _parquet(content: bytes) -> Mapping[str, Any]:
         raise ValueError(f"the column {twice!r} comes twice")
     found: dict[str, Any] = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
-        kind, size = column.type, getattr(column.type, "list_size", 0)
-        if size and (pa.types.is_floating(kind.value_type) or pa.types.is_integer(kind.value_type)):
-            rows = [x or [None] * size for x in column.to_pylist()]
-            found[name] = np.array(rows, np.float64).reshape(-1, size)
-        elif pa.types.is_floating(kind) or pa.types.is_integer(kind):
-            found[name] = column.to_numpy().astype(np.float64)
+        size = getattr(column.type, "list_size", 0)
+        kind = column.type.value_type if size else column.type
+        if types.is_floating(kind) or types.is_integer(kind):
+            rows = column.to_pylist()
+            cells = [x or [None] * size for x in rows] if size else column.to_numpy()
+            found[name] = np.array(cells, np.float64)
     return found
 
 

@@ -26,14 +26,6 @@ SKIPPED = "_"
 """The name of an ignored column."""
 
 
-class Spelling(NamedTuple):
-    """Plain names of the parts of a quantity, in one spelling."""
-
-    names: Sequence[str]
-    says: str = ""
-    """A convention that the names imply, such as the order of a quaternion."""
-
-
 class Quantity(NamedTuple):
     """A quantity that columns of a trajectory may hold."""
 
@@ -42,12 +34,13 @@ class Quantity(NamedTuple):
     """Examples of names, for help texts."""
     unit: str
     """`angle`, `time` or `rad/time`, which are converted; or the only unit, empty for none."""
-    spellings: Sequence[Spelling]
+    spellings: Sequence[tuple[Sequence[str], str]]
+    """Plain names of its parts in each spelling, and a convention that they imply, if any."""
 
     @property
     def size(self) -> int:
         """The number of columns."""
-        return len(self.spellings[0].names)
+        return len(self.spellings[0][0])
 
 
 class FoundQuantity(NamedTuple):
@@ -140,10 +133,10 @@ w.  The names imply the convention, if the last cell has one.
 """
 
 
-def _spellings_of(key: str) -> list[Spelling]:
+def _spellings_of(key: str) -> list[tuple[Sequence[str], str]]:
     """Return the declared spellings of a quantity, one for each prefix."""
     return [
-        Spelling([prefix + ending for ending in endings.split() or [""]], says)
+        ([prefix + ending for ending in endings.split() or [""]], says)
         for quantity, prefixes, endings, says in declared(_SPELLINGS)
         for prefix in prefixes.split() or [""]
         if quantity == key
@@ -164,17 +157,14 @@ _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
 
 def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     """Return the quantities of some columns; a column belongs to the first quantity that fits."""
-    words: dict[str, int] = {}
-    for i, name in enumerate(names):
-        words.setdefault(plain_name(name)[0], i)
+    plain = [plain_name(name) for name in names]
+    words = {word: i for i, (word, _) in reversed([*enumerate(plain)])}
     found: dict[str, FoundQuantity] = {}
     for key, quantity in QUANTITIES.items():
-        for spelling in quantity.spellings:
-            if all(name in words for name in spelling.names):
-                columns = [words.pop(name) for name in spelling.names]
-                unit = plain_name(names[columns[0]])[1]
-                found[key] = FoundQuantity(columns, spelling.says, unit)
-                break
+        for spelling, says in quantity.spellings:
+            if key not in found and all(name in words for name in spelling):
+                columns = [words.pop(name) for name in spelling]
+                found[key] = FoundQuantity(columns, says, plain[columns[0]][1])
     return found
 
 
@@ -188,7 +178,7 @@ def named_twice(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> tup
     """Return two names of the same part of a quantity, or of the same angle, or None."""
     plain = [plain_name(name)[0] for name in names]
     for key, quantity in found.items():
-        angle = {x.names[0] for x in QUANTITIES[key].spellings} if key in ANGLES else set()
+        angle = {x[0] for x, _ in QUANTITIES[key].spellings} if key in ANGLES else set()
         for i in quantity.columns:
             for other, word in enumerate(plain):
                 if other != i and word in {plain[i], *angle}:
@@ -240,11 +230,8 @@ def expanded(names: Sequence[str]) -> list[str]:
     for name in names:
         word, unit = plain_name(name)
         quantity = _BY_PLAIN_NAME.get(word)
-        if quantity is None or quantity.size == 1:
-            single.append(name)
-        else:
-            ending = f"_{unit}" if unit else ""
-            single += [f"{word}{i}{ending}" for i in range(quantity.size)]
+        size, ending = quantity.size if quantity else 1, f"_{unit}" if unit else ""
+        single += [name] if size == 1 else [f"{word}{i}{ending}" for i in range(size)]
     found = quantities_in(single)
     if twice := named_twice(single, found):
         raise LagtopError(

@@ -10,7 +10,7 @@ unit         at the end of any of them: `480 rpm`, `477(2) rpm`, `60:80:3 rpm`
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from math import prod
@@ -58,14 +58,6 @@ class Value(NamedTuple):
         else:  # arrays have doubles
             number = self.number * (factor if isinstance(self.number, Fraction) else float(factor))
         return Value(number, "", None if self.std is None else self.std * abs(factor))
-
-
-class Stds(dict[str, float]):
-    """Standard uncertainties of inputs by key."""
-
-    def only(self, names: Collection[str]) -> Stds:
-        """Return the uncertainties of some inputs."""
-        return Stds({x: std for x, std in self.items() if x in names})
 
 
 def parse_value(
@@ -220,9 +212,7 @@ class Span(NamedTuple):
         return f"{float(self.first):g} to {float(self.last):g}"
 
 
-def _parse_ends(
-    parts: Sequence[str], text: str, parse: Callable[[str], Fraction] = parse_number
-) -> Span:
+def _ends(text: str, parts: Sequence[str], parse: Callable[[str], Fraction]) -> Span:
     """Return the span of two ends.  Raises LagtopError if a logarithmic one contains 0."""
     span = Span(parse(parts[0]), parse(parts[1]), text.startswith(LOG))
     if span.logarithmic and not span.first * span.last > 0:
@@ -236,11 +226,11 @@ def parse_span(text: str) -> Span:
 
     Raises LagtopError for anything else, and unless the second end is the larger one.
     """
-    refuse_units_inside(text, "60:80 rpm")
+    _refuse_units_inside(text)
     ends = text.removeprefix(LOG).split(":")
     if len(ends) != 2:
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
-    span = _parse_ends(ends, text)
+    span = _ends(text, ends, parse_number)
     if not span.first < span.last:
         raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
     return span
@@ -260,7 +250,7 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
     parts = text.removeprefix(LOG).split(":")
     if len(parts) != 3:
         raise LagtopError(f"must be a range [log:]start:stop:count, got {quoted(text)}")
-    (first, last, logarithmic), count = _parse_ends(parts, text, parse), parse_number(parts[2])
+    (first, last, logarithmic), count = _ends(text, parts, parse), parse_number(parts[2])
     if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {quoted(text)}")
     if count == 1 and first != last:
@@ -274,30 +264,23 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
 
 def parse_values(text: str) -> Points:
     """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
-    refuse_units_inside(text, "60:80:3 rpm")
+    _refuse_units_inside(text)
     if ":" in text:
         return parse_range(text)
     return ListedPoints([parse_number(part) for part in text.split(",")])
 
 
-def refuse_units_inside(text: str, example: str) -> None:
+def _refuse_units_inside(text: str) -> None:
     """Raise LagtopError for a range or a list with a unit in front of its last number."""
     if re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
-        wanted = f"must have its unit once, at the end, as in {example!r}"
+        wanted = "must have its unit once, at the end, as in '60:80:3 rpm'"
         raise LagtopError(f"{wanted}, got {quoted(text)}")
 
 
 class Multiple(NamedTuple):
-    """A number, or a factor of K."""
+    """A number or points, or factors of K."""
 
-    factor: Fraction
-    in_quarters: bool
-
-
-class Multiples(NamedTuple):
-    """Numbers, or factors of K."""
-
-    factors: Points
+    factor: Any
     in_quarters: bool
 
 
@@ -317,7 +300,7 @@ def parse_multiple(text: str) -> Multiple:
     return Multiple(parse_number(before) / parse_number(found[2] or "1"), True)
 
 
-def parse_multiples(text: str) -> Multiples:
+def parse_multiples(text: str) -> Multiple:
     """Parse a range whose ends are read by `parse_multiple`.
 
     Raises LagtopError as `parse_range` does, and if only one end is in units of K.
@@ -325,13 +308,13 @@ def parse_multiples(text: str) -> Multiples:
     ends = [parse_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
     wanted = f"must have both ends in units of K or none, got {quoted(text)}"
     in_quarters = _in_quarters(ends, LagtopError(wanted))
-    return Multiples(parse_range(text, lambda end: parse_multiple(end).factor), in_quarters)
+    return Multiple(parse_range(text, lambda end: parse_multiple(end).factor), in_quarters)
 
 
-def listed_multiples(single: Sequence[Multiple]) -> Multiples:
+def listed_multiples(single: Sequence[Multiple]) -> Multiple:
     """Return a list of multiples as one object.  Raises LagtopError for a mixture of both kinds."""
     mixed = LagtopError("u must be in units of K every time or never, got both", "u")
-    return Multiples(ListedPoints([x.factor for x in single]), _in_quarters(single, mixed))
+    return Multiple(ListedPoints([x.factor for x in single]), _in_quarters(single, mixed))
 
 
 def _in_quarters(multiples: Sequence[Multiple], mixed: LagtopError) -> bool:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.ball import balls
 from ..arithmetic.rounding import decided
 from ..inputs.top import Top
-from ..inputs.values import Stds
 from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, middle_and_radius
 from .quantity import degree_name
 from .record import TEXT_KEYS
@@ -47,7 +46,7 @@ class FirstOrder:
     A key in radians ends in `_rad`.
     """
 
-    def __init__(self, motion: Motion, stds: Stds, given: Collection[str]) -> None:
+    def __init__(self, motion: Motion, stds: Mapping[str, float], given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as given, and the names of all given inputs."""
         self.motion, self.stds, self.given = motion, stds, given
         self.derivatives = Derivatives(motion)
@@ -148,7 +147,7 @@ def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float
 class AngleStds:
     """Uncertainties of tilt, spin and precession of a top over time."""
 
-    def __init__(self, motion: Motion, stds: Stds, given: Collection[str]) -> None:
+    def __init__(self, motion: Motion, stds: Mapping[str, float], given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as given, and the names of all given inputs."""
         self.motion, chain = motion, by_given(motion.top, given)
         self.changes: list[dict[str, float]] = []
