@@ -1,21 +1,16 @@
-"""Arrays of doubles: their arithmetics, workspaces for blocks of elements, and order by parity.
+"""Arrays of doubles and of pairs of doubles: their arithmetics, blocks, and order by parity.
 
 The functions of `elliptic` take `ARRAYS` for NumPy arrays.  It is silent about overflow and 0/0,
 whatever the host's `numpy.errstate` is.
-
-The arrays of the steps of a computation stay in the cache and are reused.  New memory would cost
-more than most steps that write to it.  The system clears each page when it is first touched, and
-takes it back when an array is freed.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from fractions import Fraction
 from itertools import accumulate, pairwise
-from math import prod
 from typing import Any
 
 import numpy as np
@@ -31,7 +26,6 @@ from .types import Array
 class Arrays:
     """The part of the arithmetic of float64 arrays that both kinds of arrays share."""
 
-    is_array = True
     eps, magnitude = 2.0**-52, -15.65
     pi: Any = np.pi
     nan: Any = np.nan
@@ -52,9 +46,9 @@ class Arrays:
         return np.errstate(all="ignore")
 
     @staticmethod
-    def convert(value: float | Fraction) -> Any:
-        """Return the double nearest to an exact value."""
-        return float(value)
+    def convert(value: Any) -> Any:
+        """Return the double nearest to an exact value, or an array of doubles unchanged."""
+        return value if isinstance(value, np.ndarray) else float(value)
 
     @staticmethod
     def anywhere(condition: Any) -> bool:
@@ -65,36 +59,6 @@ class Arrays:
     def everywhere(condition: Any) -> bool:
         """Return whether a condition holds for every element."""
         return bool(np.all(condition))
-
-
-class ArrayFunctions(Arrays):
-    """The arithmetic of float64 and complex128 arrays, with NumPy's functions under our names."""
-
-    inf: Any = np.inf
-    exp = staticmethod(np.exp)
-    expm1 = staticmethod(np.expm1)
-    log = staticmethod(np.log)
-    log1p = staticmethod(np.log1p)
-    sinh = staticmethod(np.sinh)
-    cosh = staticmethod(np.cosh)
-    asinh = staticmethod(np.arcsinh)
-    tanh = staticmethod(np.tanh)
-    atanh = staticmethod(np.arctanh)
-    sign = staticmethod(np.sign)
-    nint = staticmethod(np.rint)
-    re = staticmethod(np.real)
-    im = staticmethod(np.imag)
-    conj = staticmethod(np.conj)
-
-    @staticmethod
-    def convert(value: Any) -> Any:
-        """Return the double nearest to an exact value, or an array of doubles unchanged."""
-        return value if isinstance(value, np.ndarray) else float(value)
-
-    @staticmethod
-    def mpc(real: Array, imag: Array) -> Any:
-        """Return complex numbers with the given parts."""
-        return np.asarray(real) + 1j * np.asarray(imag)
 
 
 class Pairs(Arrays):
@@ -122,7 +86,7 @@ class Pairs(Arrays):
     where = staticmethod(DoubleDouble.choose)
 
 
-ARRAYS, PAIRS = ArrayFunctions(), Pairs()
+ARRAYS, PAIRS = Arrays(), Pairs()
 
 
 def doubles_of(name: str, values: ArrayLike) -> Array:
@@ -145,31 +109,11 @@ def doubles_of(name: str, values: ArrayLike) -> Array:
 
 BLOCK = 16384
 """Elements of an array that are computed together."""
-ROWS = 16
-"""Number of arrays in a workspace."""
-_IDLE: list[Array] = []
-"""Workspaces that are not in use; `pop` and `append` are safe in threads."""
 
 
 def blocks(size: int) -> Iterator[slice]:
     """Yield slices that cover an array of `size` elements; one slice if it is empty."""
     return (slice(start, start + BLOCK) for start in range(0, max(size, 1), BLOCK))
-
-
-@contextmanager
-def workspace(*shape: int) -> Iterator[Array]:
-    """Yield `ROWS` arrays of one shape, of at most a block of elements, with arbitrary content.
-
-    The arrays must not be used after the `with` block.
-    """
-    try:
-        whole = _IDLE.pop()
-    except IndexError:
-        whole = np.empty((ROWS, BLOCK))
-    try:
-        yield whole[:, : prod(shape)].reshape(ROWS, *shape)
-    finally:
-        _IDLE.append(whole)
 
 
 Order = NDArray[np.intp] | list[slice]

@@ -1,4 +1,4 @@
-"""Balls of Arb (python-flint): real and complex numbers with proved error bounds.
+"""Balls of Arb (python-flint): real numbers with proved error bounds.
 
 A ball holds the exact value of a number.  A comparison that the balls do not settle is `OPEN`.  It
 raises TooFewDigitsError when a decision depends on it, and the caller repeats the computation with
@@ -79,18 +79,18 @@ def _comparison(
 _UNBOUNDED = arb(0, float("inf"))
 
 
-def _result(value: Any, *of: Any) -> Ball:
+def _result(value: arb, *of: Any) -> Ball:
     """Return a function of numbers; Arb returns NaN if they may be outside of its domain.
 
     If they exist it is unbounded instead, because more digits may show that they are inside.
     """
-    if value.is_finite() or isinstance(value, acb) or not value.is_nan():
+    if value.is_finite() or not value.is_nan():
         return Ball(value)
     return Ball(value if any(isinstance(x, arb) and x.is_nan() for x in of) else _UNBOUNDED)
 
 
 class Ball:
-    """A ball of Arb `x`, real or complex, whose comparisons are True, False or OPEN.
+    """A ball of Arb `x`, whose comparisons are True, False or OPEN.
 
     A number that does not exist, such as x/0, is NaN.  A ball without bounds says nothing of its
     number: more digits are needed.
@@ -99,7 +99,7 @@ class Ball:
     __slots__ = ("x",)
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, x: Any) -> None:
+    def __init__(self, x: arb) -> None:
         self.x = x
 
     def __repr__(self) -> str:
@@ -148,24 +148,10 @@ class Ball:
             raise TooFewDigitsError
         return low
 
-    def __complex__(self) -> complex:
-        """Return the nearest complex double; raise TooFewDigitsError if it is not determined."""
-        return complex(float(self.real), float(self.imag))
-
-    @property
-    def real(self) -> Ball:
-        """The real part."""
-        return Ball(self.x.real)
-
-    @property
-    def imag(self) -> Ball:
-        """The imaginary part."""
-        return Ball(self.x.imag)
-
     @property
     def is_nan(self) -> bool:
-        """Whether the number does not exist; False for a complex number."""
-        return isinstance(self.x, arb) and bool(self.x.is_nan())
+        """Whether the number does not exist."""
+        return self.x.is_nan()
 
     @property
     def middle(self) -> Ball:
@@ -225,7 +211,7 @@ _LOCK, _NOTHING = RLock(), nullcontext()
 
 
 def _function(name: str) -> staticmethod[[Ball], Ball]:
-    """Return the method for an elementary function of a real or complex ball."""
+    """Return the method for an elementary function."""
     function = operator.methodcaller(name)
     return staticmethod(lambda x: _result(function(x.x), x.x))
 
@@ -234,9 +220,8 @@ class Balls(Scalars):
     """The arithmetic of balls with `digits` digits, and the context that sets this precision."""
 
     nan, inf, unbounded = Ball(arb("nan")), Ball(arb("inf")), Ball(_UNBOUNDED)
-    sin, cos, sinh, cosh, tanh, sech = map(_function, "sin cos sinh cosh tanh sech".split())
-    exp, expm1, log, log1p = map(_function, "exp expm1 log log1p".split())
-    asinh, atanh = map(_function, ("asinh", "atanh"))
+    exp, sin, cos, sinh, cosh = map(_function, "exp sin cos sinh cosh".split())
+    tanh, sech, asinh = map(_function, "tanh sech asinh".split())
 
     def __init__(self, digits: int) -> None:
         self.digits, self.bits, self.magnitude = digits, int(digits * BITS) + 2, 1 - digits
@@ -266,25 +251,21 @@ class Balls(Scalars):
         """The distance from 1 to the next number, about 10^(1 - digits)."""
         return Ball(arb(2) ** -int((self.digits - 1) * BITS))
 
-    def convert(self, value: Ball | float | Fraction | arb | acb) -> Ball:
+    def convert(self, value: Ball | float | Fraction) -> Ball:
         """Return a ball that holds an exact value, or a ball unchanged."""
         if isinstance(value, Ball):
             return value
-        if isinstance(value, int | float | arb | acb):
-            return Ball(value if isinstance(value, acb) else arb(value))
+        if isinstance(value, int | float):
+            return Ball(arb(value))
         exact = Fraction(value)
         return Ball(arb(fmpq(exact.numerator, exact.denominator)))
 
-    def mpc(self, real: Ball | float | Fraction, imag: Ball | float | Fraction) -> Ball:
-        """Return the complex number with the given parts."""
-        return Ball(acb(self.convert(real).x, self.convert(imag).x))
-
     def sqrt(self, x: Ball | int) -> Ball:
-        """Return the square root; of a real ball, that of its part that is not negative."""
+        """Return the square root, that of the part of the ball that is not negative."""
         square = self.convert(x).x
         root = square.sqrt()
-        if not root.is_finite() and isinstance(square, arb) and square.is_finite():
-            root = arb("nan") if square < 0 else square.nonnegative_part().sqrt()
+        if not root.is_finite() and square.is_finite() and not square < 0:
+            root = square.nonnegative_part().sqrt()
         return _result(root, square)
 
     def atan2(self, y: Ball, x: Ball) -> Ball:
@@ -325,11 +306,6 @@ class Balls(Scalars):
         if whole is None:
             raise TooFewDigitsError
         return int(whole)
-
-    @staticmethod
-    def sign(x: Ball) -> int:
-        """Return 1, 0 or -1 with the sign of x; raise TooFewDigitsError if the sign is open."""
-        return 0 if not x else 1 if x > 0 else -1
 
     @staticmethod
     def agm(a: Ball | int, b: Ball) -> Ball:

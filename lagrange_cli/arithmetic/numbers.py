@@ -52,10 +52,6 @@ class Arithmetic(Protocol[R]):
     def __hash__(self) -> int: ...
 
     @property
-    def is_array(self) -> bool:
-        """Whether its numbers are arrays, so that a condition on them is a mask."""
-
-    @property
     def pi(self) -> R:
         """The number pi."""
 
@@ -185,7 +181,6 @@ def in_arithmetic(function: F) -> F:
 class Scalars:
     """An arithmetic of single numbers, in which a condition is true or false."""
 
-    is_array = False
     convert: Callable[[Any], Any]
 
     def working(self) -> AbstractContextManager[object]:

@@ -247,20 +247,17 @@ class Triple(NamedTuple):
     low: float | Array
 
 
-def pair(value: Any) -> Pair:
-    """Return a number of many digits, or a fraction, as two doubles.
-
-    Raises TooFewDigitsError for a ball that is too wide.
-    """
+def pair(value: Ball | Fraction) -> Pair:
+    """Return a number as two doubles; raise TooFewDigitsError for a ball that is too wide."""
     high = float(value)
     return Pair(high, float(_less(value, high)))
 
 
-def triple(value: Any) -> Triple:
-    """Return a number of many digits as three doubles."""
-    high, middle = pair(value)
-    return Triple(high, middle, float(_less(_less(value, float(high)), float(middle))))
+def triple(value: Ball | Fraction) -> Triple:
+    """Return a number as three doubles; raise TooFewDigitsError for a ball that is too wide."""
+    high = float(value)
+    return Triple(high, *pair(_less(value, high)))
 
 
 def _less(value: Any, part: float) -> Any:
-    return value - (type(value)(part) if isinstance(value, Decimal | Fraction) else part)
+    return value - (Fraction(part) if isinstance(value, Fraction) else part)

@@ -7,13 +7,9 @@ the mean gives the integral of the last arguments.  Balls take the function of A
 from __future__ import annotations
 
 from functools import reduce
-from typing import TYPE_CHECKING, Any, cast
 
 from ..arithmetic.ball import Balls
-from ..arithmetic.numbers import R, absolute, in_arithmetic, root_of_epsilon
-
-if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
+from ..arithmetic.numbers import Arithmetic, R, absolute, in_arithmetic, root_of_epsilon
 
 
 @in_arithmetic
@@ -41,12 +37,3 @@ def carlson_rf(ar: Arithmetic[R], x: R, y: R, z: R) -> R:
     series = -e2 / 10 + e3 / 14 + square / 24 - 3 * e2 * e3 / 44
     series += -5 * e2 * square / 208 + 3 * e3 * e3 / 104 + square * e3 / 16
     return (1 + series) / ar.sqrt(mean)
-
-
-def carlson_rd(ar: Any, x: R, y: R, z: R) -> R:
-    """Return Carlson's R_D(x, y, z) for x, y >= 0, at most one of them 0, and z > 0."""
-    if ar.is_array:
-        from scipy.special import elliprd  # for arrays only
-
-        return cast(R, elliprd(x, y, z))
-    return cast(R, ar.carlson_rd(x, y, z))

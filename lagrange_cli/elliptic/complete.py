@@ -12,14 +12,9 @@ Points are given by numbers s2 : c2 = sn^2 : cn^2, with any common factor.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ..arithmetic.ball import Balls
-from ..arithmetic.numbers import R, in_arithmetic, root_of_epsilon
+from ..arithmetic.numbers import Arithmetic, R, in_arithmetic, root_of_epsilon
 from .carlson import carlson_rf
-
-if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
 
 
 @in_arithmetic

@@ -6,15 +6,12 @@ Equation numbers are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..arithmetic.ball import Ball, Balls, TooFewDigitsError
-from ..arithmetic.numbers import R
+from ..arithmetic.numbers import Arithmetic, R
 from .gaps import Gaps, State, zero_gaps
 from .regime import Facts
-
-if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
 
 FindRoot = Callable[..., R]
 """A function of an arithmetic, c2, c1, c0 and an upper bound; see `gaps_from_start`."""

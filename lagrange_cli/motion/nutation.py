@@ -7,17 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic
+from typing import Any, Generic
 
-from ..arithmetic.numbers import R
+from ..arithmetic.numbers import Arithmetic, R
 from ..elliptic.complete import complete_e, complete_k, first_kind, nome, period_mean
 from .gaps import Gaps, State
 from .quantity import V, key, quantity
 from .regime import Facts
-
-if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
-
 
 _STARTED = "unless the top is released from rest"
 

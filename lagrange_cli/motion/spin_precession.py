@@ -14,17 +14,13 @@ from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..arithmetic.ball import TooFewDigitsError
-from ..arithmetic.numbers import R, absolute
+from ..arithmetic.numbers import Arithmetic, R, absolute
 from ..elliptic.complete import period_mean
 from .nutation import Nutation, period_key
 from .quantity import key, quantity
-
-if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
-
 
 _Known = float | Decimal
 

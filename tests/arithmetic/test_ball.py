@@ -55,13 +55,7 @@ OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "power": lambda x, y: x**3 - y**-2,
     "with an integer": lambda x, y: 3 - (7 * x + 2) / 5,
 }
-FUNCTIONS = "sqrt sin cos exp sinh cosh asinh log log1p expm1 tanh sech atanh".split()
-DOMAINS: dict[str, Callable[[Any], bool]] = {
-    "sqrt": lambda x: x >= 0,
-    "log": lambda x: x > 0,
-    "log1p": lambda x: x > -1,
-    "atanh": lambda x: abs(x) < 1,
-}
+FUNCTIONS = "sqrt sin cos exp sinh cosh asinh tanh sech".split()
 
 
 @pytest.mark.parametrize("name", OPERATIONS)
@@ -83,7 +77,7 @@ def test_functions_hold_the_exact_value_in_nearly_all_digits(name: str) -> None:
     with AR:
         for _ in range(200):
             x = random_number(rng)
-            if abs(x) > 100 or not DOMAINS.get(name, lambda x: True)(x):
+            if abs(x) > 100 or (name == "sqrt" and x < 0):
                 continue
             of = getattr(MP, name)
             found, exact = getattr(AR, name)(AR.convert(x)), of(MP.mpf(x.numerator) / x.denominator)
@@ -139,7 +133,7 @@ def test_a_quotient_by_0_does_not_exist_and_by_a_ball_about_0_is_open() -> None:
         assert value.is_nan
     with pytest.raises(UndefinedError):
         bool(none < 1)
-    for value in (open_, open_ * 0 + open_, open_ - open_, AR.sqrt(open_), AR.log(ball(-1, 1))):
+    for value in (open_, open_ * 0 + open_, open_ - open_, AR.sqrt(open_), AR.sqrt(-AR.convert(1))):
         assert not value.is_nan
         with pytest.raises(TooFewDigitsError):
             value.ends()
@@ -155,7 +149,6 @@ def test_the_root_of_a_ball_about_0_is_bounded_by_its_upper_end() -> None:
 def test_a_number_is_rounded_only_if_all_numbers_in_the_ball_round_alike() -> None:
     with AR:
         assert float(AR.convert(Fraction(1, 3))) == 1 / 3
-        assert complex(AR.mpc(Fraction(1, 3), -2)) == 1 / 3 - 2j
     tie = Fraction(1) + Fraction(2) ** -53
     assert float(AR.convert(Fraction(5e-324) / 2)) == 0
     assert float(AR.convert(3 * Fraction(5e-324) / 2)) == 1e-323
@@ -188,7 +181,6 @@ def test_an_integer_next_to_a_ball() -> None:
     assert AR.nint(ball(6.9, 7.3)) == 7
     assert AR.ceiling(AR.convert(7.4)) == 8
     assert AR.ceiling(AR.convert(7)) == 7
-    assert [AR.sign(AR.convert(x)) for x in (-2, 0, 3)] == [-1, 0, 1]
     for ask, open_ in ((AR.nint, ball(6, 7)), (AR.ceiling, ball(7, 7.1))):
         with pytest.raises(TooFewDigitsError):
             ask(open_)

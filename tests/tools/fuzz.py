@@ -48,7 +48,8 @@ from hard_scenes import HardTimes, Scene
 from lagtop import LagtopError, Motion, Top, solve, sweep
 
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.bench.reference import DIGITS, Reference, rotation_angle
+from lagrange_cli.bench import reference as reference_module
+from lagrange_cli.bench.reference import Reference, rotation_angle
 from lagrange_cli.bench.reference import inputs_of as inputs_in_mpmath
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.motion.over_time.tables import rows
@@ -184,52 +185,55 @@ def judge_digits(tally: Tally, judge: Judge, motion: Motion, digits: int) -> Non
             tally.violations.append(f"{key} is no zero: {show}")
 
 
+def by_mpmath(top: Top, digits: int) -> tuple[dict[str, Any], Reference]:
+    """Return numbers of a top in mpmath by the formulas of `Reference`, in a number of digits."""
+    reference_module.DIGITS = digits
+    of = Reference(inputs_in_mpmath(top))
+    with mpmath.workdps(digits):
+        plus, minus = (
+            momentum * whole / (at_u2 * of.speed) / of.T
+            for momentum, (_, at_u2), whole in zip(of.momenta, of.gaps, of.wholes, strict=True)
+        )
+        return {
+            **{name: getattr(of, name) for name in ("u1", "u2", "u3", "K")},
+            "T_nutation": of.T,
+            "k": mpmath.sqrt(of.k2),
+            "k_prime": mpmath.sqrt(of.k2_prime),
+            "mean_spin_rate": 2 * of.drift + plus - minus,
+            "mean_precession_rate": plus + minus,
+        }, of
+
+
 def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[float]) -> None:
-    """Judge numbers and attitudes by `Reference`, which shares no formula with lagtop."""
+    """Judge numbers and attitudes by `Reference`, which shares no formula with lagtop.
+
+    Numbers that differ in 50 and in 100 digits are left out.
+    """
     facts = motion.exact.facts
     if facts.free or facts.steady or facts.meets_a_pole or not motion.T_nutation:
         return
-    reference = Reference(inputs_in_mpmath(motion.top))
-    with mpmath.workdps(DIGITS):
-        parts = [
-            momentum * whole / (at_u2 * reference.speed) / reference.T
-            for momentum, (_, at_u2), whole in zip(
-                reference.momenta, reference.gaps, reference.wholes, strict=True
-            )
-        ]
-        rates = 2 * reference.drift + parts[0] - parts[1], parts[0] + parts[1]
-        noise = sum(map(abs, (*parts, reference.drift)))
-        exact = {name: (getattr(reference, name), 1) for name in ("u1", "u2", "u3")}
-        exact |= {"K": (reference.K, 0), "T_nutation": (reference.T, 0)}
-        exact |= {"k": (mpmath.sqrt(reference.k2), 0)}
-        exact |= {"k_prime": (mpmath.sqrt(reference.k2_prime), 0)}
-        exact |= {"mean_spin_rate": (rates[0], noise), "mean_precession_rate": (rates[1], noise)}
-        record = motion.record(digits=digits or None, keys=list(exact))
-        for key, (value, size) in exact.items():
+    (rough, _), (exact, reference) = (by_mpmath(motion.top, count) for count in (50, 100))
+    record = motion.record(digits=digits or None, keys=list(exact))
+    with mpmath.workdps(100):
+        for key, value in exact.items():
             text = record[key]
-            unit = mpmath.mpf(math.ulp(text)) if not digits else _last_digit(text, digits)
-            scale = (size + abs(value)) / min(
-                1, float(reference.k2_prime)
-            )  # K loses digits next to k = 1
-            if scale * mpmath.mpf(10) ** (5 - DIGITS) > unit / 10**9:
+            unit = _last_digit(text, digits) if digits else mpmath.mpf(math.ulp(text))
+            if abs(value - rough[key]) > unit / 10**9:
                 tally.counts["too few digits in mpmath"] += 1
                 continue
             tally.counts["numbers by mpmath"] += 1
             show = f"{typed(motion.top)} --digits {digits or 17} --get {key}  # {text}"
             tally.note("mpmath", float(abs(value - mpmath.mpf(text)) / unit), HALF_ULP, show)
-        if digits:
-            return
         columns = motion.table(times, ["quaternion"]).values()
+        rates = (exact[key] for key in ("mean_spin_rate", "mean_precession_rate"))
         speed = 2 * sum(abs(float(x)) for x in (*rates, 1 / reference.T))
         for time_, *computed in zip(times, *columns, strict=True):
             away = rotation_angle(computed, reference.attitude(time_))
             tau = float(mpmath.mpf(time_) - mpmath.nint(time_ / reference.T) * reference.T)
-            unit = 2.0**-52 * (1 + abs(tau) * speed)
+            size = 2.0**-52 * (1 + abs(tau) * speed)
             tally.counts["attitudes by mpmath"] += 1
-            show = (
-                f"lagtop table {motion.top.options()} --columns quaternion --t-min {time_!r} --n 1"
-            )
-            tally.note("attitude", away / unit, 2 * UNITS, show)
+            show = f"{motion.top.options()} --columns quaternion --t-min {time_!r} --n 1"
+            tally.note("attitude", away / size, 2 * UNITS, f"lagtop table {show}")
 
 
 def _last_digit(text: str, digits: int) -> Any:
@@ -342,7 +346,8 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
             judge.record, judge.requested  # noqa: B018 - made here, so that what is undecided is counted once
             judge_path(tally, judge, motion)
             if share and i % share == 0:
-                times = times_of(rng, period_of(judge)) if what != "numbers" else []
+                asks = not digits and what != "numbers"
+                times = times_of(rng, period_of(judge)) if asks else []
                 judge_by_mpmath(tally, motion, digits, times)
             if digits:
                 judge_digits(tally, judge, motion, digits)

@@ -8,18 +8,15 @@ their keys is requested.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Generic
+from typing import Generic
 
-from ...arithmetic.numbers import R, absolute
+from ...arithmetic.numbers import Arithmetic, R, absolute
 from ...inputs.derived_inputs import FAST, SLOW, SteadyRates
 from ..gaps import State
 from ..kinds import Kind
 from ..quantity import declared_keys, keys_of, unit_name
 from ..regime import Exact
 from .sections import Sections
-
-if TYPE_CHECKING:
-    from ...arithmetic.numbers import Arithmetic
 
 _GROUP = "Steady precession and elementary theory"
 _number = declared_keys(_GROUP)
