@@ -6,17 +6,12 @@ radians.  Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 HALF_TURN_X = np.array([0.0, 1.0, 0.0, 0.0])
-HALF_TURN_Z = np.array([0.0, 0.0, 0.0, 1.0])
 
 _TO_Z = {
     "x": np.array([0.5, -0.5, -0.5, -0.5]),
@@ -157,42 +152,13 @@ def of_vector(vectors: Array) -> Array:
     return np.concatenate([np.cos(angle / 2), np.sinc(angle / (2 * np.pi)) / 2 * vectors], axis=1)
 
 
-class EulerRates(NamedTuple):
-    """The rates of tilt, spin and precession."""
-
-    thetadot: Array
-    phidot: Array
-    psidot: Array
-
-
 def body_rates(
-    theta: ArrayLike, phi: ArrayLike, thetadot: ArrayLike, phidot: ArrayLike, psidot: ArrayLike
+    theta: Array, phi: Array, thetadot: Array, phidot: Array, psidot: Array
 ) -> tuple[Array, Array, Array]:
     """Return p, q, r of a top at a tilt and a spin angle, from the rates of its angles (4,1)."""
-    nutation, own, precession = (np.asarray(x, np.float64) for x in (thetadot, phidot, psidot))
-    sin, cos, around = np.sin(phi), np.cos(phi), precession * np.sin(theta)
+    sin, cos, around = np.sin(phi), np.cos(phi), psidot * np.sin(theta)
     return (
-        around * sin + nutation * cos,
-        around * cos - nutation * sin,
-        precession * np.cos(theta) + own,
+        around * sin + thetadot * cos,
+        around * cos - thetadot * sin,
+        psidot * np.cos(theta) + phidot,
     )
-
-
-def euler_rates(
-    theta: ArrayLike, phi: ArrayLike, p: ArrayLike, q: ArrayLike, r: ArrayLike
-) -> EulerRates:
-    """Return the rates of the angles from p, q, r at a tilt and a spin angle, by solving (4,1).
-
-    Raises LagtopError for a vertical axis, where the rates of spin and precession are undefined.
-    """
-    x, y, z = (np.asarray(value, np.float64) for value in (p, q, r))
-    tilt, sin, cos = np.asarray(theta, np.float64), np.sin(phi), np.cos(phi)
-    vertical = (np.sin(tilt) == 0) | (abs(tilt) == np.pi)
-    if vertical.any():
-        raise LagtopError(
-            f"theta must be off the vertical, got {tilt[vertical].flat[0]} "
-            "(the rates of spin and precession are undefined)",
-            "theta",
-        )
-    precession = (x * sin + y * cos) / np.sin(tilt)
-    return EulerRates(x * cos - y * sin, z - precession * np.cos(tilt), precession)
