@@ -15,9 +15,9 @@ from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.ball import TooFewDigitsError, UndefinedError
+from ..arithmetic.ball import TooFewDigitsError, UndefinedError, balls, exact_fraction
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.rounding import decided
 from ..errors import LagtopError
@@ -28,7 +28,6 @@ from .record import NUMBER_KEYS
 from .solve import Motion, solve
 
 if TYPE_CHECKING:
-    from ..arithmetic.ball import Ball
     from ..arithmetic.types import Array
 
 DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]
@@ -36,8 +35,8 @@ DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]
 NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist beside it"
 """The reason why a number of a motion has no derivative by some input."""
 
-_STEP, _DIGITS = Fraction(1, 2**200), 140
-_ALIKE, _SHARP, _NEGLIGIBLE = (Fraction(1, 10**n) for n in (20, 30, 55))
+_STEPS, _DIGITS, _SHARP = 2**200, 140, 30
+_ALIKE, _NEGLIGIBLE = 1e-20, 1e-55
 _ANGLE_STEP, _ANGLE_NOISE = 2.0**-11, 2.0**-40
 """Step for angles, and its rounding errors, over the range of inputs in which motions are alike."""
 
@@ -102,67 +101,48 @@ class Derivatives:
 
     def _neighbours(self, name: str) -> tuple[Fraction, Neighbours]:
         size = Fraction(abs(getattr(self.motion.top, name)) or usual_size(self.motion, name))
-        return _STEP * size, neighbours(self.motion, name, _STEP * size, _OF_RECORD)
+        return size / _STEPS, neighbours(self.motion, name, size / _STEPS, _OF_RECORD)
 
     def _of(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a number by an input to 30 digits; None if there is none."""
         step, beside = self.neighbours(name)
-        weights = [weight for _, weight in beside[:3]]
 
         def quotient(digits: int) -> Fraction | None:
-            values = _values(key, beside[:3], digits)
-            if values is None:
+            values = [_value(motion, key, digits) for motion, _ in beside[:3]]
+            if any(x is None for x in values):
                 return None
-            largest = max(abs(middle) - radius for middle, radius in values)
-            scale = (largest if largest > 0 else 1) * _STEP / step
-            steepest = max(abs(y - x) for (x, _), (y, _) in pairwise(values)) / step
+            h = balls(digits).convert(step)
+            first, last = ((y - x) / h for x, y in pairwise(values))
+            bent = last - first
+            largest, steepest = max(x.least for x in values), max(first.greatest, last.greatest)
+            scale = (largest or 1) / (h * _STEPS)
             limit = _ALIKE * (steepest + scale)
-            bent, doubt = _combined((1, -2, 1), values, step)
-            if abs(bent) - doubt > limit or 2 * step * steepest > largest:
+            if not abs(bent) < limit or 4 * h * steepest > largest:
                 # a kink or a jump, unless the number is 0 here and its curvature is constant
-                more = _values(key, beside, digits)
+                more = _value(beside[3][0], key, digits)
                 if more is None:
                     return None
-                bent, doubt = _combined((-1, 3, -3, 1), more, step)
-            if abs(bent) - doubt > limit:
+                bent = (more - values[2]) / h - last - bent
+            if abs(bent) > limit:
                 return None
-            slope, radius = _combined(weights, values, step)
-            if abs(slope) + radius <= _NEGLIGIBLE * scale * min(step / _STEP, Fraction(1)):
+            slope: Any = sum(x * weight for x, (_, weight) in zip(values, beside, strict=False)) / h
+            least = _NEGLIGIBLE * scale * min(float(step * _STEPS), 1.0)
+            if slope.greatest <= least:
                 return Fraction(0)
-            if abs(bent) + doubt > limit or radius > _SHARP * abs(slope):
+            if not slope.is_known_to(_SHARP):
                 raise TooFewDigitsError
-            return slope
+            return exact_fraction(slope.middle.x)
 
         return decided(f"a derivative of {key}", quotient, _DIGITS) if beside else Fraction(0)
 
 
-def _values(key: str, beside: Neighbours, digits: int) -> list[tuple[Fraction, Fraction]] | None:
-    """Return a number of each neighbour with a bound of its error; None if one lacks it."""
-    values = []
-    for motion, _ in beside:
-        try:
-            ball = motion.enclosure(key, digits)
-        except UndefinedError:
-            return None
-        if ball is None or ball.is_nan:
-            return None
-        values.append(middle_and_radius(ball))
-    return values
-
-
-def _combined(
-    weights: Sequence[float], values: Sequence[tuple[Fraction, Fraction]], step: Fraction
-) -> tuple[Fraction, Fraction]:
-    """Return the weighted sum of numbers over a step, and a bound of its error."""
-    exact = [Fraction(weight) / step for weight in weights]
-    middle = sum((x * y for x, (y, _) in zip(exact, values, strict=True)), Fraction(0))
-    return middle, sum((abs(x) * r for x, (_, r) in zip(exact, values, strict=True)), Fraction(0))
-
-
-def middle_and_radius(ball: Ball) -> tuple[Fraction, Fraction]:
-    """Return the middle and the radius of a ball as fractions."""
-    low, high = map(Fraction, ball.ends())
-    return (low + high) / 2, (high - low) / 2
+def _value(motion: Motion, key: str, digits: int) -> Any:
+    """Return a ball that holds a number; None if the number does not exist."""
+    try:
+        ball = motion.enclosure(key, digits)
+    except UndefinedError:
+        return None
+    return None if ball is None or ball.is_nan else ball
 
 
 def inputs_of(top: Top) -> tuple[str, ...]:
@@ -215,6 +195,8 @@ class AngleDerivatives:
         self.slopes = {x: [self.record.nearest(key, x) for key in keys] for x in self.inputs}
         """Derivatives of the period and of the mean rates of spin and precession, by input."""
         self.steepness = {x: self._steepness(x) for x in self.inputs}
+        self.noise = {x: _ANGLE_NOISE * steepness for x, steepness in self.steepness.items()}
+        """Sizes of the rounding errors of the derivatives, by input."""
         self.neighbours = {
             x: neighbours(motion, x, Fraction(_ANGLE_STEP / self.steepness[x]), _OF_ANGLES)
             for x in self.inputs
@@ -236,10 +218,6 @@ class AngleDerivatives:
         size = abs(float(getattr(self.motion.top, name))) or usual_size(self.motion, name)
         return float(max([1 / size, *(x for x in found if not math.isnan(x))]))
 
-    def noise(self, name: str) -> float:
-        """Return the size of the rounding errors of the derivatives by an input."""
-        return _ANGLE_NOISE * self.steepness[name]
-
     def at(self, t: Array) -> Array:
         """Return derivatives of theta, phi and psi at n times, of shape (inputs, 3, n).
 
@@ -250,20 +228,22 @@ class AngleDerivatives:
         from ..arithmetic.double_double import reduce_phase
         from ..arithmetic.rounding import pair
 
-        found, columns = np.zeros((len(self.inputs), 3, t.size)), ANGLES
+        found = np.zeros((len(self.inputs), 3, t.size))
         if self.period:
-            columns = ("theta", "dphi", "dpsi")
             now = self.motion.table(t, ["thetadot", "phidot", "psidot"])
             means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
             exact = self.motion.number("T_nutation", 40)
             assert exact is not None
             _, turns = reduce_phase(t, pair(1 / Fraction(exact.value)))
-            turns[t == 0] = 0.25  # any: the derivatives at t = 0 are known
         for i, name in enumerate(self.inputs):
             for motion, weight in self.neighbours[name]:
-                at = turns * motion.T_nutation if self.period else t
-                values = np.stack([*motion.table(at, columns).values()])
-                found[i] += weight * self.steepness[name] / _ANGLE_STEP * values
+                sampler = motion.sampler()
+                if self.period:
+                    values = sampler.waves(turns * motion.T_nutation)
+                else:
+                    values = np.array(sampler.angles(t))
+                values *= weight * self.steepness[name] / _ANGLE_STEP
+                found[i] += values
             if self.period:
                 by_period, *by_rates = self.slopes[name]
                 for j, (rate, mean) in enumerate(zip(now.values(), means, strict=True)):

@@ -8,10 +8,9 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.ball import balls
-from ..arithmetic.rounding import decided
+from ..arithmetic.ball import balls, exact_fraction, pi_to
 from ..inputs.top import Top
-from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, middle_and_radius
+from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives
 from .quantity import degree_name
 from .record import TEXT_KEYS
 from .solve import Motion
@@ -73,7 +72,8 @@ class FirstOrder:
             total = sum(((found[one] or 0) * factor for one, factor in row.items()), Fraction(0))
         if same == key:
             return total
-        return total * _degree() if key.endswith("_rad") else total / _degree()
+        degree = pi_to(60) / 180
+        return total * degree if key.endswith("_rad") else total / degree
 
     def std(self, key: str) -> float | None:
         """Return the standard uncertainty of a key or an input, or None."""
@@ -121,8 +121,10 @@ def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, Fraction]]
         chain["A_cm"] = {"A": one}
         chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
     if "phidot0" in given:
-        arc = one if top.theta0_deg is None else _degree()
-        cos, sin = decided("theta0", lambda digits: _cosine_and_sine(top, digits), 60)
+        arc = one if top.theta0_deg is None else pi_to(60) / 180
+        with balls(60) as ar:
+            tilt_now = top.tilt(ar)
+            cos, sin = (exact_fraction(x.middle.x) for x in (tilt_now.cos, tilt_now.sin))
         del chain["r0"]
         chain["phidot0"] = {"r0": one}
         chain["psidot0"]["r0"] = cos
@@ -168,7 +170,7 @@ class AngleStds:
         Where the rounding errors of differences would show, proved rows give the derivatives.
         """
         found, slopes = self._from(self.derivatives.at(t)), self.derivatives
-        noise = sum(abs(x) * slopes.noise(name) for row in self.changes for name, x in row.items())
+        noise = sum(abs(x) * slopes.noise[name] for row in self.changes for name, x in row.items())
         doubtful = ((found > 0) & (noise > _TWO_DIGITS * found)).any(axis=0)
         if doubtful.any():
             found[:, doubtful] = self._from(slopes.in_digits(t[doubtful]))
@@ -182,13 +184,3 @@ class AngleStds:
         for changes in self.changes:
             square += sum(change * by[name] for name, change in changes.items()) ** 2
         return np.asarray(np.sqrt(square))
-
-
-def _degree() -> Fraction:
-    """Return a degree in radians, to 60 digits."""
-    return decided("pi", lambda digits: middle_and_radius(balls(digits).pi)[0], 60) / 180
-
-
-def _cosine_and_sine(top: Top, digits: int) -> tuple[Fraction, Fraction]:
-    tilt = top.tilt(balls(digits))
-    return middle_and_radius(tilt.cos)[0], middle_and_radius(tilt.sin)[0]

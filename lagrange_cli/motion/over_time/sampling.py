@@ -221,6 +221,16 @@ class Sampler:
         angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
         return Angles(*(angle.reshape(times.shape) for angle in angles))
 
+    def waves(self, t: Array) -> Array:
+        """Return the tilt and the periodic parts of spin and precession, of shape (3, times)."""
+        found = np.empty((3, t.size))
+        with ARRAYS.working():
+            for part, at in self.attitudes(t):
+                found[0, part] = at.tilt
+                self.phi.since_start(np.subtract(at.args[0], at.args[1], out=found[1, part]))
+                self.psi.since_start(np.add(at.args[0], at.args[1], out=found[2, part]))
+        return found
+
     def attitudes(self, t: Array) -> Iterator[tuple[slice, Attitude]]:
         """Yield the attitude at blocks of times; each overwrites the one before.
 
