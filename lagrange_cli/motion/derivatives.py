@@ -37,18 +37,17 @@ NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist beside i
 
 _STEPS, _DIGITS, _SHARP = 2**200, 140, 30
 _ALIKE, _NEGLIGIBLE = 1e-20, 1e-55
-_ANGLE_STEP, _ANGLE_NOISE = 2.0**-11, 2.0**-40
-"""Step for angles, and its rounding errors, over the range of inputs in which motions are alike."""
-
-Stencils = tuple[Mapping[int, float], Mapping[int, float]]
-"""Weights of neighbours in a derivative, by place: central ones, and ones ahead of the top."""
-_OF_RECORD = {-1: -0.5, 0: 0.0, 1: 0.5, 2: 0.0}, {0: -1.5, 1: 2.0, 2: -0.5, 3: 0.0}
-_OF_ANGLES = (
+_STENCILS = {-1: -0.5, 0: 0.0, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}
+_FINE_STENCILS = (
     {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
     {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4},
 )
-Neighbours = list[tuple[Motion, float]]
-"""Motions with one input moved, and their weights in a derivative times the step."""
+"""Weights of neighbours in a derivative, by place in steps: central, and at an end of a range."""
+_ANGLE_STEP, _FINE_ANGLE_STEP, _STEEP = 2.0**-14, 2.0**-11, 16.0
+"""Steps for angles, over the range of an input in which motions are alike; the other step is for a
+range of less than 1/16 of the input."""
+_ANGLE_NOISE = 2.0**-38
+"""Rounding errors of derivatives of angles over that range."""
 
 
 class Sensitivities(NamedTuple):
@@ -99,16 +98,16 @@ class Derivatives:
         found = self.of(key, name)
         return math.nan if found is None else float(found)
 
-    def _neighbours(self, name: str) -> tuple[Fraction, Neighbours]:
-        size = Fraction(abs(getattr(self.motion.top, name)) or usual_size(self.motion, name))
-        return size / _STEPS, neighbours(self.motion, name, size / _STEPS, _OF_RECORD)
+    def _neighbours(self, name: str) -> tuple[Fraction, list[Neighbour]]:
+        size = Fraction(size_of(self.motion, name))
+        return size / _STEPS, neighbours(self.motion, name, size / _STEPS, _STENCILS)
 
     def _of(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a number by an input to 30 digits; None if there is none."""
         step, beside = self.neighbours(name)
 
         def quotient(digits: int) -> Fraction | None:
-            values = [_value(motion, key, digits) for motion, _ in beside[:3]]
+            values = [_value(x.motion, key, digits) for x in beside]
             if any(x is None for x in values):
                 return None
             h = balls(digits).convert(step)
@@ -119,13 +118,15 @@ class Derivatives:
             limit = _ALIKE * (steepest + scale)
             if not abs(bent) < limit or 4 * h * steepest > largest:
                 # a kink or a jump, unless the number is 0 here and its curvature is constant
-                more = _value(beside[3][0], key, digits)
+                place = 2 * beside[2].place - beside[1].place
+                beyond = moved(self.motion, name, place * step)
+                more = _value(beyond, key, digits) if beyond else None
                 if more is None:
                     return None
                 bent = (more - values[2]) / h - last - bent
             if abs(bent) > limit:
                 return None
-            slope: Any = sum(x * weight for x, (_, weight) in zip(values, beside, strict=False)) / h
+            slope: Any = sum(x * y.weight for x, y in zip(values, beside, strict=True)) / h
             least = _NEGLIGIBLE * scale * min(float(step * _STEPS), 1.0)
             if slope.greatest <= least:
                 return Fraction(0)
@@ -151,24 +152,44 @@ def inputs_of(top: Top) -> tuple[str, ...]:
     return tuple(name for name in names if not (name == "psidot0" and top.steady_word))
 
 
-def neighbours(motion: Motion, name: str, step: Fraction, stencils: Stencils) -> Neighbours:
+def moved(motion: Motion, name: str, change: Fraction) -> Motion | None:
+    """Return the motion with one input changed, or None if there is no such top."""
+    try:
+        return solve(motion.top.replace(**{name: Fraction(getattr(motion.top, name)) + change}))
+    except LagtopError:
+        return None
+
+
+class Neighbour(NamedTuple):
+    """A motion with one input moved by some steps; its weight in a derivative times the step."""
+
+    place: int
+    motion: Motion
+    weight: float
+
+
+def neighbours(
+    motion: Motion, name: str, step: Fraction, stencils: Sequence[Mapping[int, float]]
+) -> list[Neighbour]:
     """Return neighbours on both sides or, if the input is at the end of its range, on one.
 
     The list is empty if the input can have no other value.
     """
-    top, (central, ahead) = motion.top, stencils
-    value = Fraction(getattr(top, name))
+    central, ahead = stencils
     for weights, side in ((central, 1), (ahead, 1), (ahead, -1)):
-        try:
-            moved = [top.replace(**{name: value + side * i * step}) if i else top for i in weights]
-            return list(zip(map(solve, moved), (side * x for x in weights.values()), strict=True))
-        except LagtopError:
-            continue
+        places = [side * i for i in weights]
+        motions = [moved(motion, name, i * step) if i else motion for i in places]
+        pairs = zip(places, motions, weights.values(), strict=True)
+        found = [Neighbour(place, x, side * weight) for place, x, weight in pairs if x]
+        if len(found) == len(weights):
+            return found
     return []
 
 
-def usual_size(motion: Motion, name: str) -> float:
-    """Return a size of an input that changes the motion, for an input that is 0."""
+def size_of(motion: Motion, name: str) -> float:
+    """Return the size of an input or, for 0, a size that changes the motion."""
+    if value := float(getattr(motion.top, name)):
+        return abs(value)
     A, C, m, s, g = (float(getattr(motion.top, x)) for x in ("A", "C", "m", "s", "g"))
     rate = 2 * math.pi / (motion.T_nutation or 1.0)
     if name in {"g", "s"}:
@@ -197,14 +218,16 @@ class AngleDerivatives:
         self.steepness = {x: self._steepness(x) for x in self.inputs}
         self.noise = {x: _ANGLE_NOISE * steepness for x, steepness in self.steepness.items()}
         """Sizes of the rounding errors of the derivatives, by input."""
-        self.neighbours = {
-            x: neighbours(motion, x, Fraction(_ANGLE_STEP / self.steepness[x]), _OF_ANGLES)
-            for x in self.inputs
-        }
+        self.steps, self.neighbours = {}, {}
+        for x in self.inputs:
+            steep = self.steepness[x] * size_of(motion, x) > _STEEP
+            self.steps[x] = (_FINE_ANGLE_STEP if steep else _ANGLE_STEP) / self.steepness[x]
+            stencils = _FINE_STENCILS if steep else _STENCILS
+            self.neighbours[x] = neighbours(motion, x, Fraction(self.steps[x]), stencils)
         self.missing = {x for x, slopes in self.slopes.items() if any(map(math.isnan, slopes))}
         """The inputs by which the angles have no derivative."""
         if not self.period:  # a neighbour that nutates departs at once
-            nutates = {x: any(y.T_nutation for y, _ in self.neighbours[x]) for x in self.inputs}
+            nutates = {x: any(y.motion.T_nutation for y in self.neighbours[x]) for x in self.inputs}
             self.missing = {x for x in self.inputs if nutates[x]}
 
     def _steepness(self, name: str) -> float:
@@ -215,8 +238,8 @@ class AngleDerivatives:
         sizes = {"k_prime": self.motion.k_prime, "T_nutation": self.period}
         sizes |= {key: math.degrees(x) for key, x in sines(self.motion).items()}
         found = [abs(self.record.nearest(key, name) / x) for key, x in sizes.items() if x]
-        size = abs(float(getattr(self.motion.top, name))) or usual_size(self.motion, name)
-        return float(max([1 / size, *(x for x in found if not math.isnan(x))]))
+        known = [float(x) for x in found if not math.isnan(x)]
+        return max(1 / size_of(self.motion, name), *known, 0.0)
 
     def at(self, t: Array) -> Array:
         """Return derivatives of theta, phi and psi at n times, of shape (inputs, 3, n).
@@ -236,13 +259,13 @@ class AngleDerivatives:
             assert exact is not None
             _, turns = reduce_phase(t, pair(1 / Fraction(exact.value)))
         for i, name in enumerate(self.inputs):
-            for motion, weight in self.neighbours[name]:
-                sampler = motion.sampler()
+            for beside in filter(lambda x: x.weight, self.neighbours[name]):
+                sampler = beside.motion.sampler()
                 if self.period:
-                    values = sampler.waves(turns * motion.T_nutation)
+                    values = sampler.waves(turns * beside.motion.T_nutation)
                 else:
                     values = np.array(sampler.angles(t))
-                values *= weight * self.steepness[name] / _ANGLE_STEP
+                values *= beside.weight / self.steps[name]
                 found[i] += values
             if self.period:
                 by_period, *by_rates = self.slopes[name]
@@ -262,12 +285,12 @@ class AngleDerivatives:
         found = np.zeros((len(self.inputs), 3, t.size))
         for i, name in enumerate(self.inputs):
             step, beside = self.record.neighbours(name)
-            pairs = [(x, Fraction(weight) / step) for x, weight in beside if weight]
-            tables = [(ProvedTable(x, ANGLES, 90, radians=True), weight) for x, weight in pairs]
-            for j, time in enumerate(t.tolist()):
-                rows = [(table.row(Fraction(time)), weight) for table, weight in tables]
-                for k in range(3):
-                    found[i, k, j] = sum(Fraction(row[k].value) * weight for row, weight in rows)
+            exact = np.zeros((t.size, 3), dtype=object)
+            for x in beside:
+                table = ProvedTable(x.motion, ANGLES, 90, radians=True)
+                rows = [[Fraction(y.value) for y in table.row(Fraction(z))] for z in t.tolist()]
+                exact = exact + np.array(rows) * (Fraction(x.weight) / step)
+            found[i] = exact.T.astype(float)
         return self._completed(found, t)
 
     def _completed(self, found: Array, t: Array) -> Array:
