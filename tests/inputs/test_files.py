@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import LAGTOP, ROOT, Lagtop, assert_one_line
+from conftest import ROOT, Lagtop, assert_one_line
 from lagtop import LagtopError, Top
 
 import lagrange_cli
@@ -62,7 +61,6 @@ def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -
         (f"{'x' * 5000} = 1", "unknown key 'xxx"),
         ("r0 = true", "line 1: r0 must be a finite number, got True"),
         ("m = [1.5, 2]", "line 1: m must be a finite number, got ['1.5', 2]"),
-        ("m = 1979-05-27", "line 1: m must be a finite number, got 1979-05-27"),
         ('r0 = "3"', "r0 must have a unit between quotes, got '3': leave out the quotes"),
         (f"m = 1.{'0' * 5000}", "m must have at most 2000 characters"),
         (f"m = {'9' * 5000}", "not a TOML file"),
@@ -70,7 +68,6 @@ def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -
         ("[" * 9000, "not a TOML file"),
         ("r0 = 1\n" + "#" * 20_000, "must have at most 16384 bytes, has more"),
         ("r0 = 1\n\udcff\udcfe\x00", "line 2: the text must be UTF-8 or UTF-16"),
-        ("m = 1\nmass = 2\n", "line 2: unknown key 'mass'"),
         ("m = 1\n[top]\nr0 = 3\n", "line 2: unknown key 'top'"),
         ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
         ("m = nan\n", "line 1: m must be a finite decimal number, got 'nan'"),
@@ -85,27 +82,10 @@ def test_invalid_scene_files_are_refused(
     text: str, message: str, tmp_path: Path, lagtop: Lagtop
 ) -> None:
     path = scene(tmp_path, text)
-    for more in ([], ["--digits", "30"]):
-        result = lagtop("solve", path, *more)
-        assert_one_line(result, 65, path)
-        assert message in result.stderr
-        assert len(result.stderr) < 500 + len(path)
-
-
-def test_dots_in_comments_are_free(tmp_path: Path) -> None:
-    assert read_scene(scene(tmp_path, f"# {'.' * 500}\nr0 = 2.5  # spin...\n")) == Top(r0=2.5)
-
-
-def test_a_scene_on_standard_input(lagtop: Lagtop) -> None:
-    assert "or - for standard input" in " ".join(lagtop("--help").stdout.split())
-    assert "[SCENE]" in lagtop("solve", "--help").stdout
-    text = "r0 = 40\n"
-    assert lagtop("solve", "-", "--get", "r0", input=text).stdout == "40.0\n"
-    assert lagtop("table", "-", "--n", "1", "--columns", "r", input=text).stdout == "r\n40.0\n"
-    found = lagtop("find", "-", "--theta0", "20:60", "T_nutation=0.45", "--keys", "r0", input=text)
-    assert found.stdout.splitlines()[:2] == ["r0", "40.0"]
-    wrong = lagtop("solve", "-", input="r0 = 1\nspin = 2\n")
-    assert_one_line(wrong, 65, "standard input, line 2: unknown key 'spin'")
+    result = lagtop("solve", path)
+    assert_one_line(result, 65, path)
+    assert message in result.stderr
+    assert len(result.stderr) < 500 + len(path)
 
 
 def test_standard_input_is_read_once(lagtop: Lagtop) -> None:
@@ -122,43 +102,21 @@ def test_a_scene_without_inputs_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
         assert result.stderr == (f"Warning: {path} has no inputs: using the worked example\n")
 
 
-MISSING = [
-    "solve FILE.toml",
-    "table FILE.toml",
-    "sweep FILE.toml",
-    "plot FILE.toml cubic -o x.png",
-    "view FILE.toml -o x.html",
-    "find FILE.toml --r0 1:2 T_nutation=1",
-    "bench FILE.toml",
-    "compare FILE.csv",
-    "compare x.csv FILE.toml",
-    "fit FILE.csv",
-    "sweep FILE.csv",
-    "sweep FILE.csv --parts x",
-    "table --times FILE.txt",
-]
-
-
-@pytest.mark.parametrize("line", MISSING)
+@pytest.mark.parametrize(
+    "line",
+    ["solve FILE.toml", "sweep FILE.csv", "compare FILE.csv", "fit FILE.csv", "table --times FILE"],
+)
 def test_a_file_that_cannot_be_read_ends_with_65(
     line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lagtop: Lagtop
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    name = next(word for word in line.split() if word.startswith("FILE"))
+    name = line.rsplit(maxsplit=1)[-1]
     assert_one_line(lagtop(*line.split()), 65, f"{name}: No such file or directory")
     Path(name).mkdir()
     assert_one_line(lagtop(*line.split()), 65, f"{name}: Is a directory")
 
 
 # Times
-
-
-def test_a_bad_line_early_in_the_file_prints_nothing(tmp_path: Path, lagtop: Lagtop) -> None:
-    path = tmp_path / "times.txt"
-    path.write_text("1\n" * 1000 + "x\n")
-    for fmt in ("csv", "json", "table"):
-        result = lagtop("table", "--times", path, "--format", fmt)
-        assert (result.exit_code, result.stdout) == (65, "")
 
 
 def test_a_time_out_of_reach(tmp_path: Path, lagtop: Lagtop) -> None:
@@ -206,22 +164,6 @@ def test_a_file_without_tops_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
     assert (shard.exit_code, shard.stderr) == (0, "")
 
 
-@pytest.mark.parametrize(
-    ("header", "message"),
-    [
-        ("m [xyz],A [kg m^2]", "heading m [xyz]: m must have a unit as in 350g, got"),
-        ("m [m],r0 [rpm]", "heading m [m]: m must have a unit as in 350g, got the unit 'm'"),
-        ("m [g],r0", "heading r0: r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
-    ],
-)
-def test_a_bad_unit_in_a_heading_is_bad_data_of_the_file(
-    header: str, message: str, tmp_path: Path, lagtop: Lagtop
-) -> None:
-    path = tmp_path / "tops.csv"
-    path.write_text(f"{header}\n1,1\n")
-    assert_one_line(lagtop("sweep", path, "--m", "3g"), 65, f"{path}, {message}")
-
-
 def test_keys_of_json_rows_may_differ(tmp_path: Path) -> None:
     path = tmp_path / "tops.ndjson"
     rows = [{"id": 4, "r0": 4}, {"id": 5, "r0": 5, "T_nutation": 1}, {"theta0_deg": 6, "name": "x"}]
@@ -234,11 +176,3 @@ def test_keys_of_json_rows_may_differ(tmp_path: Path) -> None:
         (2, [5, None], {"r0": 5}),
         (3, [None, "x"], {"theta0_deg": 6}),
     ]
-
-
-def test_a_long_line_of_tops_is_one_error(tmp_path: Path) -> None:
-    path = tmp_path / "tops.csv"
-    path.write_text(f"r0\n{'9' * 100_000}\n7\n")
-    done = subprocess.run([*LAGTOP, "sweep", str(path)], capture_output=True, check=False)
-    assert done.returncode == 1
-    assert b"line 2: r0 must have at most 2000 characters, got 100000" in done.stderr

@@ -129,18 +129,6 @@ def test_options_take_the_place_of_the_other_in_a_scene(tmp_path: Path, lagtop: 
     assert lagtop("solve", whole, "--A-cm", "1", "--get", "A").stdout == "1.000315\n"
 
 
-def test_sweeps_of_grids_and_files(lagtop: Lagtop) -> None:
-    body = ["--m", "2", "--A-cm", "3", "--C", "1", "--g", "9.81"]
-    keys = ["--keys", "A,r0,error"]
-    grid = lagtop("sweep", *body, "--s", "0,1,4", "--phidot0", "7", *keys)
-    assert grid.stdout == "A,r0,error\n3.0,7.0,\n5.0,7.0,\n35.0,7.0,\n"
-    rows = "s,A_cm,phidot0\n1,3,-1\n2,-1,1\n"
-    files = ["sweep", "-", "--m", "2", "--C", "1", "--g", "9", "--psidot0", "2", "--theta0", "60"]
-    found = lagtop(*files, *keys, input=rows)
-    assert found.stdout.splitlines()[1] == "5.0,0.0,"
-    assert found.stdout.splitlines()[2].endswith('"line 3: A must be > 0, got -1.0"')
-
-
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [
@@ -156,9 +144,3 @@ def test_sweeps_of_grids_and_files(lagtop: Lagtop) -> None:
 def test_bad_input(inputs: dict[str, float], message: str) -> None:
     with pytest.raises(LagtopError, match=message):
         Top(**inputs)
-
-
-def test_a_thin_disc_can_be_built() -> None:
-    for s in (0.1, 0.3, 0.7, 1.1):
-        assert Top(m=1.7, A_cm=0.05, C=0.1, s=s, g=9.81).caveat() is None
-    assert Top(m=1.7, A_cm=0.05, C=0.1001, s=0.1, g=9.81).caveat() is not None

@@ -96,20 +96,6 @@ def test_the_warning_appears_once_per_grid_and_per_file(tmp_path: Path, lagtop: 
     assert lagtop("sweep", "-", input='{"r0": 3}\n').stderr == ""
 
 
-def test_a_scene_with_a_whole_body_may_be_changed(tmp_path: Path, lagtop: Lagtop) -> None:
-    whole = ["solve", "sample_inputs/fast-gyroscope.toml", "--get", "m"]
-    assert lagtop(*whole, "--m", "0.4").stderr == ""
-    assert lagtop(*whole, "--A-cm", "6e-4").stderr == ""
-    path = tmp_path / "scene.toml"
-    path.write_text("m = 0.35\nC = 4e-4\n")
-    assert lagtop("solve", path, "--g", "9.81").stderr == SAID
-
-
-@pytest.mark.slow
-def test_find_says_it_too(lagtop: Lagtop) -> None:
-    assert lagtop("find", *PARTS, "--r0", "1:9", "r0=5").stderr.startswith(SAID)
-
-
 def test_an_error_that_comes_of_mixing_says_so(lagtop: Lagtop) -> None:
     result = lagtop("solve", "--A", "8.5e-4", "--m", "0.35")
     assert result.exit_code == 2

@@ -26,20 +26,14 @@ from lagrange_cli.inputs.values import parse_values
         ({"m": True}, "m must be a real number, got True"),
         ({"r0": np.True_}, "r0 must be a real number, got "),
         ({"m": "1587"}, "m must be a real number, got '1587'"),
-        ({"m": b"7"}, "m must be a real number, got b'7'"),
         ({"m": 1j}, "m must be a real number, got 1j"),
-        ({"m": np.complex64(1)}, "m must be a real number"),
         ({"m": np.array([1.0])}, "m must be a real number, got array([1.])"),
         ({"m": np.ma.masked}, "m must be a real number"),
-        ({"m": np.datetime64("2020-01-01")}, "m must be a real number"),
-        ({"m": [1] * 1000}, "m must be a real number, got [1, 1"),
         ({"m": Decimal("sNaN")}, "m must be a real number"),
         ({"r0": Decimal("1e-999999999")}, "r0 must be 0 or at least 5e-324 in size, got 1E-99"),
         ({"r0": Decimal("-1e400")}, "r0 must be finite, got -inf"),
         ({"m": math.nan}, "m must be finite, got nan"),
         ({"m": 10**400}, "m must be within 1e100 in size, got 1e+400"),
-        ({"m": Fraction(10**400)}, "m must be within 1e100 in size, got 1e+400"),
-        ({"m": -(16**3000)}, "m must be within 1e100 in size, got -"),
         ({"m": Fraction(1, 10**400)}, "m must be >= 1e-100, got 1e-400"),
         ({"A": Fraction(1, 3)}, "C must be <= 2 A = 0.6666666666666666666666666666666666"),
         ({"theta0_deg": 180 + Fraction(1, 10**20)}, "got 180.00000000000000000001"),
@@ -67,17 +61,6 @@ def test_an_unknown_input_is_named(name: str, message: str) -> None:
         with pytest.raises(TypeError) as refused:
             make(**{name: 30.0})
         assert str(refused.value) == message
-
-
-@pytest.mark.parametrize("tilt", [{"theta0_deg": 45}, {"theta0_rad": Fraction(1, 3)}])
-def test_parts_are_body_and_start(tilt: dict[str, Any]) -> None:
-    body: dict[str, Any] = {"m": 1, "A": 2, "C": 3, "s": 4, "g": Fraction(1, 3)}
-    start = {"r0": 50, **tilt, "thetadot0": -1, "psidot0": 0}
-    parts = Top(**body, **start).parts
-    assert parts.body == body
-    assert parts.start == start
-    steady = Top(r0=60, psidot0="steady")
-    assert Top(**steady.parts.body, **steady.parts.start) == steady
 
 
 @pytest.mark.parametrize("value", [3, 3.0, Fraction(3), Decimal(3), np.float32(3), np.int8(3)])
@@ -120,34 +103,14 @@ def test_replace() -> None:
     assert top == Top(theta0_deg=40, r0=7)
 
 
-def test_dir_shows_what_a_top_has() -> None:
-    assert {"m", "replace", "theta0_deg"} <= set(dir(Top()))
-    assert not {"count", "index"} & set(dir(Top()))
-
-
-def strange_context(kind: str) -> decimal.Context:
-    """Return a decimal context that a host program may have set."""
-    context = decimal.Context()
-    if kind == "traps":
-        context.traps = dict.fromkeys(context.traps, True)
-    elif kind == "precision":
-        context.prec, context.Emax, context.Emin = 1, 1, -1
-    else:
-        context.rounding = decimal.ROUND_UP
-    return context
-
-
-@pytest.mark.parametrize("kind", ["traps", "precision", "rounding"])
-def test_nothing_depends_on_the_decimal_context_of_the_host(kind: str) -> None:
+def test_nothing_depends_on_the_decimal_context_of_the_host() -> None:
     inputs: dict[str, Any] = {"theta0_deg": Fraction(100, 3), "r0": Fraction(1, 7), "psidot0": 0.1}
     record = solve(Top(**inputs)).record()
     points = parse_values("log:1:1e4:7").at(np.arange(7))
-    with decimal.localcontext(strange_context(kind)):
+    with decimal.localcontext(decimal.Context(prec=1, Emax=1, Emin=-1)):
         with pytest.raises(LagtopError) as refused:
             Top(theta0_deg=180 + Fraction(1, 3))
         assert str(refused.value).endswith(f"got 180.{'3' * 47}")
-        with pytest.raises(LagtopError, match=r"got 1e\+400"):
-            Top(m=10**400)
         with pytest.raises(LagtopError, match=r"at most 1e9 rows, got 1.000e\+12"):
             EvenPoints(Fraction(0), Fraction(1), 10**12)
         assert solve(Top(**inputs)).record() == record
@@ -162,9 +125,3 @@ def test_the_limits_of_inputs_are_taken_as_decimals_and_as_doubles() -> None:
     for wrong in ({"theta0_deg": Fraction(9, 10**151)}, {"m": Fraction(9, 10**101)}):
         with pytest.raises(LagtopError, match=r"at least 1e-150|>= 1e-100"):
             Top(**wrong)
-
-
-def test_a_long_double_beyond_all_doubles_is_refused_without_a_warning() -> None:
-    large: Any = np.longdouble(1e300) ** 2 if np.finfo(np.longdouble).maxexp > 2000 else 1e300
-    with pytest.raises(LagtopError, match=r"^m must be within 1e100 in size, got"):
-        Top(m=large, **dict.fromkeys(("A", "C", "s", "g"), 1.0))
