@@ -43,7 +43,7 @@ _MODULES = {
     "sensitivities": "motion.derivatives",
     "solve": "motion.solve",
     "sweep": "sweep.records",
-    "view": "plot.browser",
+    "view": "plot.browser.view",
 }
 """The module of each public name; it is imported when the name is first used.
 

@@ -13,7 +13,7 @@ from lagrange_cli.motion.regime import Regime as Regime
 from lagrange_cli.motion.solve import Motion as Motion
 from lagrange_cli.motion.solve import solve as solve
 from lagrange_cli.plot import draw as draw
-from lagrange_cli.plot.browser import view as view
+from lagrange_cli.plot.browser.view import view as view
 from lagrange_cli.plot.reports import draw_outcome as draw_outcome
 from lagrange_cli.sweep.records import sweep as sweep
 

@@ -9,19 +9,16 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 from click.testing import CliRunner, Result
 from hypothesis import HealthCheck, settings
 
 from lagrange_cli.cli.app import main
-
-if TYPE_CHECKING:
-    from browsers import Browser
 
 ROOT = Path(__file__).parent.parent
 LAGTOP = [sys.executable, "-m", "lagrange_cli"]
@@ -44,32 +41,6 @@ settings.load_profile("untimed")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts jobs with `&` so; commands under test would inherit it and outlive a Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
-@pytest.fixture(scope="session")
-def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the page of the default top."""
-    from lagtop import Top, solve, view
-
-    path = tmp_path_factory.mktemp("view") / "top.html"
-    view(solve(Top())).save(path)
-    return path
-
-
-@pytest.fixture(scope="module")
-def session() -> Iterator[Browser]:
-    """Start a browser for the tests of a file."""
-    from browsers import chromium
-
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture
-def browser(session: Browser, page_file: Path) -> Browser:
-    """Open the page of the default top."""
-    session.open(page_file)
-    return session
 
 
 @pytest.fixture

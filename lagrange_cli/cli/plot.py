@@ -223,7 +223,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
         raise LagtopError(f"a page on standard output is not {why}: give -o FILE.html")
     if splitext(output or "")[1].lower() not in {"", ".html", ".htm"}:
         raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
-    from ..plot.browser import open_page, view
+    from ..plot.browser.view import open_page, view
 
     found = top.given()
     opt.warn_unused(found)

@@ -1,0 +1,242 @@
+// The motion of one top in plain doubles: one nutation by Runge-Kutta, all other times by its period.
+// Equation numbers are Chrapan's.
+
+const STEPS = 2500;  // steps of half a nutation, at least
+const DEGREE = 180 / Math.PI;
+
+/** Slope of p, q (rates in the frame that does not spin) and of its quaternion w, x, y, z. */
+function slope([p, q, w, x, y, z], a, b) {
+  return [
+    a * (y * z + w * x) - b * q,
+    b * p - a * (x * z - w * y),
+    (-x * p - y * q) / 2,
+    (w * p - z * q) / 2,
+    (w * q + z * p) / 2,
+    (x * q - y * p) / 2,
+  ];
+}
+
+/** The state after one step of the classical Runge-Kutta method. */
+function step(state, h, a, b) {
+  const along = (k, part) => state.map((value, i) => value + part * k[i]);
+  const k1 = slope(state, a, b);
+  const k2 = slope(along(k1, h / 2), a, b);
+  const k3 = slope(along(k2, h / 2), a, b);
+  const k4 = slope(along(k3, h), a, b);
+  return state.map((value, i) => value + (h / 6) * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]));
+}
+
+/** An angle plus the whole turns that bring it nearest to another angle. */
+const near = (angle, other) => angle + 2 * Math.PI * Math.round((other - angle) / (2 * Math.PI));
+
+/** Tilt, and plus, minus = (psi ± phi)/2 without the spin, next to those of the state before. */
+function halves([, , w, x, y, z], last) {
+  const [up, side] = [Math.hypot(w, z), Math.hypot(x, y)];
+  return {
+    theta: 2 * Math.atan2(side, up),
+    plus: up > 1e-9 ? near(Math.atan2(z, w), last.plus) : last.plus,
+    minus: side > 1e-9 ? near(Math.atan2(y, x), last.minus) : last.minus,
+  };
+}
+
+/** K from the complementary modulus, by the arithmetic-geometric mean. */
+function completeK(kPrime) {
+  let [x, y] = [1, kPrime];
+  while (Math.abs(x - y) > 1e-15 * x) [x, y] = [(x + y) / 2, Math.sqrt(x * y)];
+  return Math.PI / (x + y);
+}
+
+/** Carlson's integral R_F by duplication. */
+function carlsonF(x, y, z) {
+  const mean = (x + y + z) / 3;
+  const apart = Math.max(...[x, y, z].map((each) => Math.abs(1 - each / mean)));
+  if (!(apart >= 1e-3)) {
+    const [X, Y] = [1 - x / mean, 1 - y / mean];
+    const [E2, E3] = [-X * X - X * Y - Y * Y, -X * Y * (X + Y)];
+    return (1 - E2 / 10 + E3 / 14 + (E2 * E2) / 24) / Math.sqrt(mean);
+  }
+  const [p, q, r] = [x, y, z].map(Math.sqrt);
+  const shift = p * q + p * r + q * r;
+  return carlsonF((x + shift) / 4, (y + shift) / 4, (z + shift) / 4);
+}
+
+/** A root of the cubic after Newton's method, unless that would leave a part of the band. */
+function newton(u, band, { a, b, alpha, beta }) {
+  for (let n = 0; n < 3; n += 1) {
+    const f = (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2;
+    const slopeOfF = -a * (1 - u * u) - 2 * u * (alpha - a * u) + 2 * b * (beta - b * u);
+    if (Math.abs(f) < 0.1 * band * Math.abs(slopeOfF)) u -= f / slopeOfF;
+  }
+  return u;
+}
+
+/** The cubic (4,9): its roots u1 >= u2, and the distances 1 - u1, u1 - u0, u3 - u1, u3 - u0. */
+function cubicOf({ a, b, alpha, beta, u0, above, rise }) {
+  if (!a) {
+    const wide = alpha + b * b;
+    const middle = (b * beta) / wide || 0;
+    const spread = Math.sqrt(Math.max((b * beta) ** 2 - wide * (beta * beta - alpha), 0)) / wide || 0;
+    const [u1, u2] = wide ? [middle + spread, middle - spread] : [u0, u0];
+    return { u1, u2, gap: Math.max(1 - u1, 0), toTop: Math.max(u1 - u0, 0), wide };
+  }
+  const [c2, c1, c0] = [-(alpha + b * b) / a, (2 * b * beta) / a - 1, (alpha - beta * beta) / a];
+  const [shift, p] = [c2 / 3, Math.min(c1 - (c2 * c2) / 3, -1e-300)];
+  const size = 2 * Math.sqrt(-p / 3);
+  const ratio = (3 * (2 * shift ** 3 - shift * c1 + c0)) / (p * size);
+  const third = Math.acos(Math.max(-1, Math.min(1, ratio))) / 3;
+  const roots = [0, 1, 2].map((k) => size * Math.cos(third - (2 * Math.PI * k) / 3) - shift);
+  let [u2, u1, u3] = roots.sort((x, y) => x - y);
+  if (u3 > 50) {  // cosines beside a large root lose digits: (1 ± u1)(1 ± u2) keep them
+    const [high, low] = [(beta + b) ** 2 / (a * (u3 + 1)), (beta - b) ** 2 / (a * (u3 - 1))];
+    const [middle, width] = [(high - low) / 4, (high - low) ** 2 / 16 + 1 - (high + low) / 2];
+    const spread = Math.sqrt(Math.max(width, 0));
+    [u2, u1] = [middle - spread, middle + spread];
+  }
+  const band = u1 - u2;
+  [u2, u1] = [u2, u1].map((u) => newton(u, band, { a, b, alpha, beta }));
+  const isTop = !rise && Math.abs(u1 - u0) <= Math.abs(u2 - u0);
+  if (!rise && !isTop) u2 = u0;
+  // (1 - u1)(u3 - 1) and (u3 - 1) - (1 - u1) keep their digits next to the separatrix
+  const [product, excess] = [(beta - b) ** 2 / (a * (1 - u2)), -c2 - u2 - 2];
+  const root = Math.sqrt(excess * excess + 4 * product);
+  let gap = excess > 0 ? (2 * product) / (excess + root) || 0 : (root - excess) / 2;
+  if (isTop) gap = above;
+  u1 = 1 - gap;
+  const far = isTop ? Math.max(gap + excess, 0) + gap : root;
+  let [toTop, fromLow] = [Math.max(u1 - u0, 0), Math.max(u0 - u2, 0)];
+  if (rise) {  // the smaller distance follows from the rate of the tilt
+    if (toTop < fromLow) toTop = rise / (a * fromLow * (far + toTop)) || 0;
+    else fromLow = rise / (a * toTop * (far + toTop)) || 0;
+    u2 = u0 - fromLow;
+  } else [toTop, fromLow] = isTop ? [0, u0 - u2] : [u1 - u0, 0];
+  u3 = u1 + far;
+  return { u1, u2, u3, gap, toTop, fromLow, far, isTop, wide: a * (far + u1 - u2) };
+}
+
+/** The motion of a scene: its numbers, `angles(t)` in radians, and whether it is only a sketch. */
+export function motionOf(scene) {
+  const { m, A, C, s, g, r0, theta0_deg: tilt, thetadot0, psidot0 } = scene;
+  const [a, b, half] = [(2 * m * g * s) / A, (C * r0) / A, (tilt * Math.PI) / 360];
+  const sin = tilt === 180 ? 0 : Math.sin(2 * half);
+  const u0 = Math.cos(2 * half);
+  const swing = thetadot0 ** 2 + (psidot0 * sin) ** 2;
+  const [alpha, beta] = [swing + a * u0, psidot0 * sin * sin + b * u0];
+  const rise = (thetadot0 * sin) ** 2;
+  const isVertical = !sin && !thetadot0;
+  const cubic = cubicOf({ a, b, alpha, beta, u0, above: 2 * Math.sin(half) ** 2, rise });
+  const { u1, u2, u3, gap, toTop, fromLow, far, wide, isTop } = cubic;
+  const usual = (2 * Math.PI) / (Math.sqrt(a) + Math.abs(b) + Math.sqrt(swing) || Math.abs(r0) || 1);
+  const kPrime = a ? Math.sqrt((a * far) / wide) : 1;
+  const isPeriodic = !isVertical && wide > 0 && kPrime > 1e-8;
+  const period = isPeriodic ? (4 * completeK(kPrime)) / Math.sqrt(wide) : null;
+  const span = period ?? 20 * usual;
+  const count = Math.min(Math.max(STEPS, Math.ceil((100 * span) / usual)), 100000);
+  const h = span / 2 / count;
+
+  // From the highest point down, where errors do not grow; it rises as it falls.
+  const [across, sinTop] = [beta - b * u1, Math.sqrt(gap * (2 - gap))];
+  let first = Math.sqrt(Math.max(alpha - a * u1, 0)) * (Math.sign(across) || 1);
+  if (sinTop > 1e-6) first = isTop ? psidot0 * sin : across / sinTop;
+  const top = [0, first, Math.sqrt(1 - gap / 2), Math.sqrt(gap / 2), 0, 0];
+  const start = [thetadot0, psidot0 * sin, Math.cos(half), Math.sin(half), 0, 0];
+  const states = [period ? top : start];
+  const places = [halves(states[0], { plus: 0, minus: 0 })];
+  function grow() {
+    for (let i = 0; i <= count; i += 1) {
+      states.push(step(states.at(-1), h, a, b));
+      places.push(halves(states.at(-1), places.at(-1)));
+    }
+  }
+  grow();
+  function fromTop(time) {
+    while (time > h * (states.length - 1) && states.length < 1e6) grow();
+    const i = Math.min(Math.floor(time / h), states.length - 1);
+    return halves(step(states[i], time - i * h, a, b), places[i]);
+  }
+  const [before, after] = [0.4, 0.6].map((part) => fromTop(part * span));  // not at the vertical
+  const gain = { plus: before.plus + after.plus, minus: before.minus + after.minus };
+  let since = 0;
+  if (period && rise) {
+    const X = a ? carlsonF(fromLow * far, (far + toTop) * (u1 - u2), (u1 - u2) * far) / Math.sqrt(a) : 0;
+    since = a
+      ? 2 * Math.sqrt(toTop) * X
+      : (2 * Math.asin(Math.sqrt(Math.min(toTop / (u1 - u2), 1)))) / Math.sqrt(wide);
+    since = Math.min(since || 0, period / 2);
+  } else if (period && toTop > (u1 - u2) / 2) since = period / 2;
+  if (thetadot0 < 0) since = -since;
+  function place(t) {
+    if (!period) return fromTop(t);
+    const turns = Math.round((t + since) / period);
+    const rest = t + since - turns * period;
+    const { theta, plus, minus } = fromTop(Math.abs(rest));
+    const sign = rest < 0 ? -1 : 1;
+    return {
+      theta,
+      plus: sign * plus + turns * gain.plus,
+      minus: sign * minus + turns * gain.minus,
+    };
+  }
+  const zero = period ? place(0) : places[0];
+  if (period && tilt === 0) zero.minus = (Math.sign(first) * Math.PI) / 2;  // limits after the start
+  if (period && tilt === 180) {
+    const [, , w, , , z] = slope(states[count], a, b);
+    zero.plus = gain.plus - Math.atan2(-z, -w);
+  }
+  function angles(t) {
+    const { theta, plus, minus } = place(Math.max(t, 0));
+    const [p, q] = [plus - zero.plus, minus - zero.minus];
+    return { theta, phi: p - q + r0 * t, psi: p + q };
+  }
+  const degrees = (u) => (Math.acos(Math.max(-1, Math.min(1, u))) * 180) / Math.PI;
+  const spin = isVertical ? r0 : period && (gain.plus - gain.minus) / span + r0;
+  const turn = period && (gain.plus + gain.minus) / span;
+  const turnTime = (rate) => (rate ? (2 * Math.PI) / Math.abs(rate) : null);
+  const away = (degree) => Math.min(degree, 180 - degree);
+  const most = Math.max(away(degrees(u1)), away(degrees(u2)), away(tilt));
+  const isNear = !isVertical && ((tilt && away(tilt) < 0.01) || most < 0.05);
+  return {
+    scene,
+    angles,
+    span,
+    isSketch: Boolean(isNear || (!isVertical && a && 1 - Math.sqrt(1 - kPrime ** 2) < 2e-8)),
+    f: (u) => (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2,
+    precession: (u) => (beta - b * u) / (1 - u * u),
+    record: {
+      a,
+      b,
+      u1: isVertical ? u0 : u1,
+      u2: isVertical ? u0 : u2,
+      u3: a && !isVertical ? u3 : null,
+      k: a && !isVertical ? Math.sqrt(1 - kPrime ** 2) : null,
+      T_nutation: period,
+      T_spin: turnTime(spin),
+      T_precession: turnTime(turn),
+      theta_min_deg: isVertical ? tilt : 2 * DEGREE * Math.asin(Math.sqrt(gap / 2)),
+      theta_max_deg: isVertical ? tilt : degrees(u2),
+      mean_spin_rate: spin,
+      mean_precession_rate: turn,
+    },
+  };
+}
+
+/** The motion in one sentence; `unit` names the unit of time. */
+export function sentence(motion, unit) {
+  const { record, scene, precession } = motion;
+  const { u1, u2, T_nutation: T, mean_precession_rate: turn } = record;
+  const text = (x, digits = 4) => String(Number(x.toPrecision(digits))).replace("-", "−");
+  const tilts = [record.theta_min_deg, record.theta_max_deg].map((x) => `${x.toFixed(2)}°`);
+  if (scene.theta0_deg % 180 === 0 && !scene.thetadot0) {
+    if (scene.theta0_deg) return "The axis hangs straight down; this is stable.";
+    const isStable = record.b ** 2 >= 2 * record.a;
+    return `The axis stays upright; this is ${isStable ? "stable" : "unstable"}.`;
+  }
+  if (!T) return "The axis rises to the upright position and never quite reaches it.";
+  const mean = `precesses at ${text(turn)} rad per ${unit}`;
+  if (u1 - u2 < 1e-12) return `The axis keeps its tilt of ${tilts[0]} and ${mean}.`;
+  const swing = `The axis nutates between ${tilts[0]} and ${tilts[1]} every ${text(T)} ${unit}s`;
+  if (!scene.r0 && !scene.psidot0) return `The axis swings in a plane, to ${tilts[1]}, as a pendulum.`;
+  const [high, low] = [precession(u1), precession(u2)];
+  const isCusp = Math.abs(high) < 1e-9 * Math.abs(low);
+  const path = isCusp ? "has cusps" : high * low < 0 ? "has loops" : "is wavy";
+  return `${swing} and ${mean} on average; its path ${path}.`;
+}

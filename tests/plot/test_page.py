@@ -1,0 +1,304 @@
+"""The page: its motion against lagtop in Node, its file, and one session of a browser."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import shutil
+import subprocess
+from base64 import b64encode
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from hashlib import sha256
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT, Lagtop
+from hard_scenes import STRATA, in_doubles
+from lagtop import LagtopError, Motion, Top, read_scene, solve, view
+
+from lagrange_cli.inputs.scene_file import scene_names
+
+MOTION_JS = ROOT / "lagrange_cli" / "plot" / "browser" / "motion.js"
+KINDS = ("generic", "from rest", "slow", "near a pole", "near steady", "no spin")
+HARD = ("near separatrix", "tiny tilt", "tiny tilt with rates", "next to a cusp")
+PERIODS = 0.1, 0.5, 1.3, 4.6, 9.95, 19.7
+LIMIT = 1e-6
+"""Greatest error of the attitude (rad), unless the page calls itself a sketch."""
+
+
+def random_motions(kinds: Sequence[str], count: int, seed: int) -> list[Motion]:
+    """Return random motions of some kinds that a page can show."""
+    found: list[Motion] = []
+    for kind in kinds:
+        rng, many = Random(f"{seed} {kind}"), len(found) + count
+        while len(found) < many:
+            scene = in_doubles(STRATA[kind](rng))
+            usual = all(1e-6 <= abs(x) <= 1e6 for x in scene.values() if x)
+            tilt = scene.get("theta0_deg", 1.0)
+            if not usual and not (kind.startswith("tiny") and tilt):
+                continue
+            if scene["C"] < 0.01 * scene["A"]:
+                continue
+            with suppress(LagtopError):  # a tilt may round to the vertical, where nothing precesses
+                found.append(solve(Top(**scene)))
+    return found
+
+
+def computed(motions: Sequence[Motion]) -> list[dict[str, Any]]:
+    """Return angles, sentences and numbers of motions by the page, at times within 20 periods."""
+    node = shutil.which("node")
+    if not node:
+        pytest.skip("no node")
+    tasks = [{"scene": scene_of(x), "times": times_of(x)} for x in motions]
+    code = f"""
+        import {{ motionOf, sentence }} from "{MOTION_JS.as_uri()}";
+        const tasks = {json.dumps(tasks)};
+        console.log(JSON.stringify(tasks.map(({{ scene, times }}) => {{
+            const motion = motionOf(scene);
+            const {{ isSketch, record }} = motion;
+            const angles = times.map((t) => Object.values(motion.angles(t)));
+            return {{ isSketch, record, angles, words: sentence(motion, "s") }};
+        }})));"""
+    command = [node, "--input-type=module", "-"]
+    done = subprocess.run(command, input=code, capture_output=True, check=True, text=True)
+    found: list[dict[str, Any]] = json.loads(done.stdout)
+    return found
+
+
+def scene_of(motion: Motion) -> dict[str, float]:
+    return {name: float(x) for name, x in motion.top.inputs().items()}
+
+
+def times_of(motion: Motion) -> list[float]:
+    unit = motion.T_nutation or motion.T_precession or motion.T_spin or 1.0
+    return [x * unit for x in PERIODS]
+
+
+def attitude(theta: float, phi: float, psi: float) -> Any:
+    """Return the quaternion of the Euler angles."""
+    cos, sin = math.cos(theta / 2), math.sin(theta / 2)
+    plus, minus = (psi + phi) / 2, (psi - phi) / 2
+    up, side = [math.cos(plus), math.sin(plus)], [math.cos(minus), math.sin(minus)]
+    return np.array([cos * up[0], sin * side[0], sin * side[1], cos * up[1]])
+
+
+def errors(motions: Sequence[Motion]) -> list[tuple[float, bool]]:
+    """Return the greatest error of the attitude of each motion, and whether it is a sketch."""
+    found = []
+    for motion, page in zip(motions, computed(motions), strict=True):
+        exact = np.stack(motion.angles(times_of(motion)), axis=1)
+        shown = np.array(page["angles"], float)  # null is NaN
+        pairs = [(attitude(*x), attitude(*y)) for x, y in zip(exact, shown, strict=True)]
+        away = (2 * min(np.linalg.norm(x - y), np.linalg.norm(x + y)) for x, y in pairs)
+        found.append((float(max(away)), page["isSketch"]))
+    return found
+
+
+def test_named_scenes_move_as_lagtop_says() -> None:
+    names = [name for name in scene_names() if name != "stiff-top"]
+    found = dict(zip(names, errors([solve(read_scene(x)) for x in names]), strict=True))
+    sketches = {name for name, (_, is_sketch) in found.items() if is_sketch}
+    assert sketches == {"near-separatrix", "whittaker-71"}  # the second one is the separatrix
+    assert {name for name, (error, _) in found.items() if not error <= LIMIT} <= sketches
+
+
+@pytest.mark.parametrize(
+    ("kinds", "count"),
+    [(KINDS, 6), pytest.param(KINDS + HARD, 60, marks=pytest.mark.slow)],
+)
+def test_random_scenes_move_as_lagtop_says(kinds: Sequence[str], count: int) -> None:
+    found = errors(random_motions(kinds, count, 20261123))
+    assert max(error for error, is_sketch in found if not is_sketch) <= LIMIT
+    ordinary = found[: len(KINDS) * count]
+    assert sum(is_sketch for _, is_sketch in ordinary) <= 0.02 * len(ordinary)
+
+
+def test_a_wrong_motion_would_be_seen() -> None:
+    motion = solve(Top())
+    (page,) = computed([motion])
+    off = np.stack(motion.angles(np.array(times_of(motion)) * (1 + 1e-7)), axis=1)
+    assert np.abs(np.array(page["angles"]) - off).max() > LIMIT
+
+
+def test_numbers_and_words_follow_the_inputs() -> None:
+    motions = [solve(Top(psidot0=x)) for x in (0, -4, 4)]
+    motions += [solve(Top(theta0_deg=0, r0=r)) for r in (60, 50)]
+    for motion, page in zip(motions, computed(motions), strict=True):
+        for key, number in page["record"].items():
+            exact = getattr(motion, key)
+            if exact is not None and number is not None:
+                assert number == pytest.approx(exact, rel=1e-8, abs=1e-12), key
+    words = [page["words"] for page in computed(motions)]
+    assert words[0].startswith("The axis nutates between 30.00° and 73.92° every 0.4293 s")
+    assert [x.partition("its path ")[2] for x in words[:3]] == [
+        "has cusps.",
+        "has loops.",
+        "is wavy.",
+    ]
+    assert [x.partition("this is ")[2] for x in words[3:]] == ["stable.", "unstable."]
+
+
+def test_the_file_is_small_and_asks_for_nothing() -> None:
+    text = view(solve(Top()))
+    assert len(text.encode()) <= 65_000
+    assert re.findall(r"https?://|url\(|@import|src=|href=", text) == []
+    for name in ("script", "style"):
+        (part,) = re.findall(rf"<{name}[^>]*>(.*?)</{name}>", text, re.DOTALL)
+        digest = b64encode(sha256(part.encode()).digest()).decode()
+        assert f"{name}-src 'sha256-{digest}'" in text
+    assert "innerHTML" not in text
+    assert "insertAdjacentHTML" not in text
+
+
+def test_texts_from_outside_are_no_markup() -> None:
+    text = view(solve(Top()), lambda unit: f"</script><b>{unit}")
+    assert text.count("</script>") == 1
+    assert "<b>" not in text.partition("<script")[0]
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        ([], "nothing to do"),
+        (["-o", "top.pdf"], "must be a file that ends in .html"),
+        (["-o", "top.html", "--m", "1e40"], "m must be from 1e-30 to 1e30"),
+    ],
+)
+def test_bad_requests_end_in_one_line(
+    lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, args: list[str], said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = lagtop("view", *args)
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_inputs_out_of_range_are_refused() -> None:
+    with pytest.raises(LagtopError, match="from 1e-30 to 1e30"):
+        view(solve(Top(g=1e-40)))
+
+
+# --- one session of a browser
+
+
+class Browser:
+    """A headless Chromium."""
+
+    def __init__(self, driver: Any, path: Path) -> None:
+        self.driver, self.address = driver, path.as_uri()
+
+    def open(self, fragment: str = "", width: int = 1280, height: int = 800) -> None:
+        """Load the page, paused, on a screen of this size."""
+        screen = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+        calm = [{"name": "prefers-reduced-motion", "value": "reduce"}]
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": calm})
+        self.driver.get("about:blank")
+        self.driver.get(self.address + fragment)
+        self.ask("")
+
+    def ask(self, script: str) -> Any:
+        """Return what a script returns; `at(id)` is an element, and `set` changes it."""
+        names = """const at = (id) => document.getElementById(id);
+            const set = (id, value) => {
+                at(id).value = value;
+                at(id).dispatchEvent(new Event("change", { bubbles: true }));
+            };"""
+        found = self.driver.execute_script(names + script)
+        self.driver.execute_async_script(
+            "requestAnimationFrame(() => requestAnimationFrame(arguments[0]))"
+        )
+        return found
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """Start a browser, or skip the test with the reason why there is none."""
+    webdriver = pytest.importorskip("selenium.webdriver")
+    programs = [shutil.which(name) for name in ("chromium", "chromedriver")]
+    if not all(programs):
+        pytest.skip("no chromium and chromedriver (apt-get install chromium chromium-driver)")
+    path = tmp_path_factory.mktemp("view") / "top.html"
+    view(solve(Top())).save(path)
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs[0]
+    for word in ("headless=new", "no-sandbox", "disable-gpu", "disable-dev-shm-usage"):
+        options.add_argument(f"--{word}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(programs[1]))
+    try:
+        yield Browser(driver, path)
+    finally:
+        driver.quit()
+
+
+@pytest.mark.slow
+def test_a_session_in_the_browser(browser: Browser) -> None:
+    browser.open()
+    assert "every 0.4293" in browser.ask("return at('words').textContent")
+    wide, tall, whole = browser.ask(
+        "const x = at('stage').getBoundingClientRect();"
+        "return [x.width, x.height, innerWidth * innerHeight]"
+    )
+    assert wide * tall >= 0.5 * whole
+
+    browser.ask("set('field-r0', '60')")
+    exact = solve(Top(r0=60))
+    assert f"{exact.T_nutation:.7g}" in browser.ask("return at('record').textContent")
+    slider = "at('field-psidot0').nextElementSibling"
+    browser.ask(f"{slider}.value = -3; {slider}.dispatchEvent(new Event('input'))")
+    assert "has loops" in browser.ask("return at('words').textContent")
+
+    browser.ask("set('field-C', '-1')")
+    assert browser.ask("return at('error').textContent") == "C must be positive"
+    assert browser.ask("return document.body.className") == "bad"
+    browser.ask("set('field-C', '17458')")
+    assert browser.ask("return [at('error').textContent, document.body.className]") == ["", ""]
+
+    browser.ask("set('time', '1e3')")
+    exact = solve(Top(r0=60, psidot0=-3))
+    tilt = math.degrees(exact.angles(1e3).theta)
+    shown = browser.ask("return at('now').textContent")
+    assert float(re.findall(r"ϑ = ([\d.]+)°", shown)[0]) == pytest.approx(tilt, abs=1e-4)
+
+    address = browser.ask("return location.hash")
+    browser.open(address)
+    assert browser.ask("return [at('field-r0').value, at('time').value]") == ["60", "1000"]
+    assert browser.ask("return at('now').textContent") == shown
+
+    width = browser.ask("return at('play').offsetWidth")
+    browser.ask("at('play').click()")
+    assert browser.ask("return at('play').offsetWidth") == width
+    rate = browser.driver.execute_async_script(
+        """const done = arguments[0];
+        let [count, start] = [0, performance.now()];
+        requestAnimationFrame(function next() {
+            count += 1;
+            if (count < 60) requestAnimationFrame(next);
+            else done((1000 * count) / (performance.now() - start));
+        });"""
+    )
+    assert rate > 10  # 60 on an idle machine
+    browser.ask("set('scenes', 'sleeping-top')")
+    assert "stays upright; this is stable" in browser.ask("return at('words').textContent")
+    browser.ask("set('field-r0', '56'); set('field-theta0_deg', '1e-3'); set('field-psidot0', '1')")
+    assert browser.ask("return at('sketch').hidden") is False
+
+    browser.driver.find_element("id", "full").click()
+    assert browser.ask("return document.fullscreenElement?.id") == "stage"
+    browser.ask("document.exitFullscreen()")
+    browser.open(width=390, height=844)
+    assert browser.ask("return document.documentElement.scrollWidth") <= 390
+    browser.ask("at('field-psidot0').scrollIntoView()")
+    assert browser.ask("return at('stage').getBoundingClientRect().top") == 0
+
+    assert [x["message"] for x in browser.driver.get_log("browser")] == []
+    events = [json.loads(x["message"])["message"] for x in browser.driver.get_log("performance")]
+    sent = [x["params"] for x in events if x["method"] == "Network.requestWillBeSent"]
+    assert {x["request"]["url"].partition(":")[0] for x in sent} <= {"file", "about"}
