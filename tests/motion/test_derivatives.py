@@ -12,7 +12,6 @@ from lagtop import LagtopError, Top, sensitivities, solve
 from scenes import EPS, EVERY_KIND, UNIT
 from slopes import Slopes
 
-from lagrange_cli.inputs.values import Stds
 from lagrange_cli.motion.derivatives import AngleDerivatives, inputs_of
 from lagrange_cli.motion.uncertainty import AngleStds, FirstOrder
 
@@ -219,7 +218,7 @@ def test_uncertainties_of_angles_are_right_to_the_digits_that_are_printed(scene:
     top = Top(**SCENES[scene])
     motion, stds = solve(top), {"C": 0.01, "theta0_deg": 1e-7}
     times, judge = np.array([0.2, 1.3, 7.7]) * motion.T_nutation, Slopes(top)
-    found = AngleStds(motion, Stds(stds), list(stds)).at(times)
+    found = AngleStds(motion, stds, list(stds)).at(times)
     for i, angle in enumerate(("theta", "phi", "psi")):
         for j, t in enumerate(times.tolist()):
             by = [sum(judge.of_angle(x, angle, t) or (math.nan,)) / 2 * stds[x] for x in stds]
@@ -229,4 +228,4 @@ def test_uncertainties_of_angles_are_right_to_the_digits_that_are_printed(scene:
 def test_an_uncertainty_of_0_is_0() -> None:
     """At 90 degrees r0_steady_min is 0 for every r0."""
     motion = solve(Top(theta0_deg=90, r0=50))
-    assert FirstOrder(motion, Stds({"r0": 2.0}), ["r0"]).std("r0_steady_min") == 0.0
+    assert FirstOrder(motion, {"r0": 2.0}, ["r0"]).std("r0_steady_min") == 0.0
