@@ -99,7 +99,9 @@ def test_digits_of_every_column(k: str, u: str, v: str) -> None:
 
 
 @pytest.mark.parametrize("k", ["0.5", "0.95i", "2"])
-@pytest.mark.parametrize(("u", "v"), [("0.9i", "1.3"), ("1.1i", "0.6i"), ("-0.3+0.7i", "-0.3-0.7i")])
+@pytest.mark.parametrize(
+    ("u", "v"), [("0.9i", "1.3"), ("1.1i", "0.6i"), ("-0.3+0.7i", "-0.3-0.7i")]
+)
 def test_digits_on_the_axes(k: str, u: str, v: str) -> None:
     """Arguments, or their sum and difference, are real or imaginary; a printed 0 is a 0."""
     cells = row(k, parse_complex(u), parse_complex(v), digits=20, is_real=False)
