@@ -20,6 +20,7 @@ from .over_time.columns import shown_columns
 from .quantity import unit_name
 from .record import KEYS, all_keys, shown_keys
 from .solve import Motion
+from .spin_precession import with_limits
 
 _NAME = r"[A-Za-z_]\w*"
 _WORDS = {
@@ -88,7 +89,13 @@ def explanations(
     """
     rows = listed(radians=radians, named=named)
     check_names("KEY", names, list(dict.fromkeys(row.name for row in rows)))
-    chosen = [row for name in names for row in rows if row.name == name]
+    facts = motion.exact.facts
+    chosen = [
+        row._replace(text=with_limits(row.text, facts))
+        for name in names
+        for row in rows
+        if row.name == name
+    ]
     keys = {_bare(name): name for name in all_keys(radians=radians)}
     parts = [[keys[x] for x in re.findall(_NAME, row.text) if x in keys] for row in chosen]
     wanted = {*chain(names, *parts)} & {*keys.values()}

@@ -21,16 +21,16 @@ from ..arithmetic.numbers import Arithmetic, R, absolute
 from ..elliptic.complete import period_mean
 from .nutation import Nutation, period_key
 from .quantity import key, quantity
+from .regime import Facts
 
 _Known = float | Decimal
 
 mean_rate_key = partial(key, "Mean rates", unit="rad/time")
 rate_key = partial(key, "Rates", unit="rad/time")
 
-_POLES = (
-    "where P = (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2), "
-    "Q = (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2)"
-)
+_UPPER = "(momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2)"
+_LOWER = "(momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2)"
+_POLES = f"where P = {_UPPER}, Q = {_LOWER}"
 """The means of (beta - b)/(1 - u) and (beta + b)/(1 + u), times K."""
 _HALF = "where U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
 """Definition of the cosine of the tilt half a period after the start."""
@@ -180,6 +180,17 @@ class SpinPrecession(Nutation[R]):
         if facts.cusp:
             return "cusped"
         return "looping" if self.b * gaps.momentum_u1 < 0 < self.b * gaps.momentum_u2 else "wavy"
+
+
+def with_limits(formula: str, facts: Facts) -> str:
+    """Return a formula with the limits of 0/0 or 0 infinity on a pole that the axis passes over.
+
+    It turns by half a turn there, so that the mean over a period is half a turn per period.
+    """
+    limit = "2*pi*K/T_nutation (limit over the {} pole)"
+    if facts.upper_root == 1:
+        formula = formula.replace(_UPPER, limit.format("upper"))
+    return formula.replace(_LOWER, limit.format("lower")) if facts.over_bottom else formula
 
 
 class Nutating(SpinPrecession[R]):

@@ -142,6 +142,28 @@ def test_a_formula_is_shown_in_symbols_and_with_numbers() -> None:
     assert tilt.numbers == "50 - 0·cos(30°)"
 
 
+OVER_POLES: dict[str, tuple[dict[str, float], tuple[str, ...]]] = {
+    "lower": ({"theta0_deg": 180, "r0": 20, "thetadot0": 1}, ("lower",)),
+    "upper": ({"theta0_deg": 0, "r0": 20, "thetadot0": 1}, ("upper",)),
+    "both": ({"theta0_deg": 60, "r0": 0, "thetadot0": 50}, ("upper", "lower")),
+}
+
+
+@pytest.mark.parametrize("poles", OVER_POLES)
+def test_over_a_pole_the_formula_shows_its_limit_and_no_division_by_0(poles: str) -> None:
+    inputs, limits = OVER_POLES[poles]
+    motion = solve(Top(**inputs))
+    for row in explanations(motion, ["mean_precession_rate", "mean_spin_rate"]):
+        text = row.numbers
+        for pole in limits:
+            assert f"(limit over the {pole} pole)" in text
+            text = text.replace(f" (limit over the {pole} pole)", "")
+        for shown, word in SHOWN.items():
+            text = text.replace(shown, word)
+        _, value = evaluated(text, functions(motion))
+        assert float(value) == pytest.approx(row.value, rel=2e-5)
+
+
 def test_only_the_numbers_of_the_formula_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     computed = []
     number = Motion.number
