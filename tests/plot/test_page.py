@@ -19,8 +19,9 @@ import numpy as np
 import pytest
 from conftest import ROOT, Lagtop
 from hard_scenes import STRATA, in_doubles
-from lagrange_cli.inputs.scene_file import scene_names
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
+
+from lagrange_cli.inputs.scenes import scene_names
 
 MOTION_JS = ROOT / "lagrange_cli" / "plot" / "browser" / "motion.js"
 KINDS = ("generic", "from rest", "slow", "near a pole", "near steady", "no spin")

@@ -16,7 +16,7 @@ from typing import Any
 from ...errors import LagtopError, check_type
 from ...inputs.given import read_scene
 from ...inputs.input_keys import DECLARED, NINE
-from ...inputs.scene_file import scene_names, scene_remark
+from ...inputs.scenes import scene_names, scene_remark
 from ...motion.explanation import listed
 from ...motion.notebook import Document
 from ...motion.record import KEYS
