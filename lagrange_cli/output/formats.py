@@ -10,6 +10,7 @@ import csv
 from collections.abc import Iterable, Sequence
 from io import BytesIO
 from itertools import chain
+from types import NoneType
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import orjson
@@ -73,7 +74,10 @@ def _array_lines(rows: Array) -> bytes:
 def _csv_cells(column: Any) -> Sequence[bytes]:
     """Return the cells of columns, a text per row."""
     if _is_list(column):
-        return [csv_text(x).encode() for x in column]
+        if not {type(x) for x in column} <= {str, NoneType}:
+            return [csv_text(x).encode() for x in column]
+        cells = {x: csv_text(x).encode() for x in {*column}}  # a sweep repeats few texts
+        return [cells[x] for x in column]
     text = orjson.dumps(column.reshape(len(column), -1).copy(), option=orjson.OPT_SERIALIZE_NUMPY)
     return text[2:-2].replace(b"null", b"").split(b"],[")
 
