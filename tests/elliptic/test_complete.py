@@ -1,0 +1,106 @@
+"""Complete integrals, the nome, places within a period and R_F, against mpmath.
+
+Each is computed for arrays of doubles, of pairs of doubles, and as balls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from lagrange_cli.arithmetic.arrays import ARRAYS, PAIRS
+from lagrange_cli.arithmetic.ball import balls
+from lagrange_cli.arithmetic.double_double import DoubleDouble
+from lagrange_cli.elliptic import complete
+from lagrange_cli.elliptic.carlson import carlson_rf
+
+COMPLEMENTS = [1e-7, 0.01, 0.3, 0.70710678, 0.99, 1.0]
+RATIOS = [(0.0, 1.0), (1e-60, 1.0), (0.3, 0.7), (2.0, 1e-30), (1.0, 0.0)]
+"""Numbers s2 : c2, as sn^2 : cn^2."""
+
+
+def _place(m: Any, s2: Any, c2: Any) -> Any:
+    """Return pi F(phi, m)/2K(m) for the amplitude with tan^2 phi = s2/c2."""
+    return mpmath.pi * mpmath.ellipf(mpmath.atan2(mpmath.sqrt(s2), mpmath.sqrt(c2)), m)
+
+
+def _of_complement(name: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Return a function of ar and k', and the same by mpmath."""
+    ours: dict[str, Callable[..., Any]] = {
+        "agm": lambda ar, k: complete.agm(ar, 1, k),
+        "K": complete.complete_k,
+        "E": complete.complete_e,
+        "mean": lambda ar, k: complete.period_mean(ar, k, 0 * k + 0.375, 2, 3),
+        "nome": lambda ar, k: complete.nome(ar, m=(1 - k) * (1 + k), k_prime=k),
+        "R_F": lambda ar, k: carlson_rf(ar, 0 * k, k, 5 + k),
+        "place": lambda ar, k: complete.place(
+            ar, m=(1 - k) * (1 + k), k_prime=k, sn=0 * k + 0.5, cn2=0 * k + 0.75
+        ),
+    }
+    theirs: dict[str, Callable[..., Any]] = {
+        "agm": lambda k: mpmath.agm(1, k),
+        "K": lambda k: mpmath.ellipk(1 - k * k),
+        "E": lambda k: mpmath.ellipe(1 - k * k),
+        # (2 cn^2 + 3 sn^2)/(cn^2 + p sn^2) is (a + (b - a) sn^2)/(1 - n sn^2), n = 1 - p
+        "mean": lambda k: (
+            (mpmath.ellippi(0.625, 1 - k * k) / mpmath.ellipk(1 - k * k)) * (2 + mpmath.mpf(8) / 5)
+            - mpmath.mpf(8) / 5
+        ),
+        "nome": lambda k: mpmath.qfrom(m=1 - k * k),
+        "R_F": lambda k: mpmath.elliprf(0, k, 5 + k),
+        "place": lambda k: (
+            mpmath.pi * mpmath.ellipf(mpmath.asin(0.5), 1 - k * k) / (2 * mpmath.ellipk(1 - k * k))
+        ),
+    }
+    return ours[name], theirs[name]
+
+
+def check(ours: Callable[..., Any], exact: list[Any], inputs: list[tuple[float, ...]]) -> None:
+    """Compare a function of ar and numbers, for all inputs at once or one by one, with mpmath."""
+    columns = [np.array(column) for column in zip(*inputs, strict=True)]
+    double = ours(ARRAYS, *columns)
+    pair = ours(PAIRS, *map(DoubleDouble, columns))
+    for i, (numbers, true) in enumerate(zip(inputs, exact, strict=True)):
+        assert abs(mpmath.mpf(double[i]) - true) <= 2e-15 * abs(true), numbers
+        both = mpmath.mpf(pair.high[i]) + mpmath.mpf(pair.low[i])
+        assert abs(both - true) <= 1e-29 * abs(true), numbers
+        with balls(50) as ar:
+            ball = ours(ar, *(ar.convert(Fraction(x)) for x in numbers)).x
+            middle = mpmath.mpf(ball.mid().str(70, radius=False))
+            assert abs(middle - true) <= float(ball.rad()) + 1e-60, numbers
+            assert float(ball.rad()) <= 1e-38 * max(abs(true), 1e-40), numbers
+
+
+@pytest.mark.parametrize("name", ["agm", "K", "E", "mean", "nome", "R_F", "place"])
+def test_functions_of_a_complement(name: str) -> None:
+    ours, theirs = _of_complement(name)
+    usual = COMPLEMENTS[:-1] if name == "nome" else COMPLEMENTS  # q of k = 0 is 0
+    with mpmath.workdps(70):
+        check(ours, [theirs(mpmath.mpf(k)) for k in usual], [(k,) for k in usual])
+
+
+@pytest.mark.parametrize("part", [0, 1])
+@pytest.mark.parametrize("imaginary", [False, True])
+def test_places(imaginary: bool, part: int) -> None:
+    """Cosine and sine of x = pi u/2K and, hyperbolic, of y = pi v/2K."""
+    function = complete.cosine_and_sine
+    if imaginary:
+        function = complete.hyperbolic_cosine_and_sine
+    inputs = [(k, *ratio) for k in (0.25, 0.75) for ratio in RATIOS]
+
+    def ours(ar: Any, k: Any, s2: Any, c2: Any) -> Any:
+        return function(ar, m=(1 - k) * (1 + k), k_prime=k, s2=s2, c2=c2)[part]
+
+    def theirs(k: Any, s2: Any, c2: Any) -> Any:
+        m = 1 - k * k
+        x = _place(1 - m if imaginary else m, s2, c2) / (2 * mpmath.ellipk(m))
+        functions = (mpmath.cosh, mpmath.sinh) if imaginary else (mpmath.cos, mpmath.sin)
+        return mpmath.mpf(0) if not (imaginary or part or c2) else functions[part](x)
+
+    with mpmath.workdps(70):
+        check(ours, [theirs(*map(mpmath.mpf, numbers)) for numbers in inputs], inputs)
