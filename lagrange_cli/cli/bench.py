@@ -86,7 +86,7 @@ def bench_command(
 
 @opt.command(
     "stability",
-    "stability",
+    "stability --kinds extreme-sizes",
     "stability --kinds slow-spin --samples 5 --seed 7 -o slow.csv",
     "stability --kinds slow-spin --plot stability.svg",
 )

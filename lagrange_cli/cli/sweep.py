@@ -158,7 +158,7 @@ def _headings(
     "find",
     "find --r0 10:200 T_precession=2",
     "find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43",
-    "find --psidot0 0:20 theta_max=60 'path=looping' --keys psidot0",
+    "find --psidot0=-8:0 theta_max=80 path=looping --keys psidot0",
 )
 @opt.top(
     "[SCENE] CONDITION...",

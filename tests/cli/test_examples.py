@@ -39,5 +39,5 @@ def test_examples_run_in_an_empty_folder(name: str, lagtop: Lagtop, tmp_path: Pa
             command, capture_output=True, check=False, cwd=folder, env=environment
         )
         assert done.returncode == 0, (line, done.stderr.decode())
-        assert b"Error" not in done.stderr
+        assert b"Error" not in done.stderr or line.endswith("|| true")
         assert done.stdout or [path for path in folder.iterdir() if path not in before], line

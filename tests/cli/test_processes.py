@@ -44,7 +44,7 @@ LINES = {
     "bench": "bench --n 3 --methods lagtop --format csv",
     "explain": "explain",
     "scenes": "scenes",
-    "stability": "stability --samples 1 --format csv",
+    "stability": "stability --kinds slow-spin --samples 1 --format csv",
 }
 """A line of each command."""
 HOSTILE = "a\x1b[31m\x9b\x7f\u202e\u2066\u200b\udcff.csv"
