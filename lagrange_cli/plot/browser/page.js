@@ -8,7 +8,7 @@ const TITLES = { theta: "ϑ (°)", phi: "φ less its mean rate (°)", psi: "ψ (
 const text = (x, digits = 7) => String(Number(x.toPrecision(digits))).replace(/-/g, "−");
 const number = (word) => (word.trim() ? Number(word.replace("−", "-").replace(",", ".")) : NaN);
 const even = (from, to, count) =>
-  Array.from({ length: count + 1 }, (_, i) => from + ((to - from) * i) / count);
+  Array.from({ length: count + 1 }, (_, i) => from + ((to - from) * i) / (count || 1));
 const timeUnit = DATA.units.time === "time" ? "time unit" : DATA.units.time;
 const withUnit = (unit) => (/mass|len/.test(unit) || !unit ? "" : ` (${unit})`);
 
@@ -72,7 +72,7 @@ function word(pen, letters, [x, y], fillStyle, textAlign = "center") {
 /** Steps of 1, 2 or 5 times a power of ten between two numbers. */
 function ticks(low, high, most) {
   const power = 10 ** Math.floor(Math.log10((high - low) / most));
-  const size = [1, 2, 5, 10].map((n) => n * power).find((x) => (high - low) / x <= most);
+  const size = [1, 2, 5, 10].map((n) => n * power).find((x) => (high - low) / x <= most + 1);
   const [first, last] = [Math.ceil(low / size), Math.floor(high / size)];
   return last < first ? [] : even(first, last, last - first).map((n) => n * size);
 }
