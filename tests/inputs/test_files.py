@@ -104,7 +104,7 @@ def test_a_scene_without_inputs_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
 
 @pytest.mark.parametrize(
     "line",
-    ["solve FILE.toml", "sweep FILE.csv", "compare FILE.csv", "fit FILE.csv", "table --times FILE"],
+    ["solve FILE.toml", "sweep FILE.csv", "compare FILE.csv", "table --times FILE"],
 )
 def test_a_file_that_cannot_be_read_ends_with_65(
     line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lagtop: Lagtop

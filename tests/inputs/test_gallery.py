@@ -47,8 +47,6 @@ def test_compare_reads_it(name: str, lagtop: Lagtop) -> None:
     row = json.loads(result.stdout)["rows"][0]
     assert (row["verdict"], row["rows"]) == ("fine", 26)
     assert row["error_max"] < ROUNDED
-    wrong = lagtop("compare", *words(FILES / name), "--r0", "51")
-    assert wrong.exit_code == 1
 
 
 @pytest.mark.slow

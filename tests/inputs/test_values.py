@@ -14,7 +14,7 @@ import pint
 import pytest
 import xarray
 from conftest import Lagtop, assert_one_line
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lagtop import LagtopError
 from uncertainties import ufloat
@@ -160,6 +160,7 @@ numbers = st.one_of(
 )
 
 
+@settings(max_examples=30)
 @given(numbers, numbers, st.integers(2, 40))
 @example(Fraction(0), Fraction(1.797e308), 33)
 def test_every_point_is_rounded_once(first: Fraction, last: Fraction, count: int) -> None:
