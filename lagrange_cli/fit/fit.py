@@ -42,7 +42,7 @@ _COMPARABLE = 50.0
 """Factor of chi^2 above the least one, beyond which a start is dropped."""
 _CHANCE = 16.0
 """Difference of -2 log(likelihood) below which two tops explain a recording equally well."""
-_WINDOWS = (8, 12, 20, 32)
+_WINDOWS = (8, 12, 20, 32, 48)
 """Numbers of windows to suggest if the spin may decay."""
 _ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
 
@@ -186,7 +186,7 @@ def _hints(recording: Recording, known: Known, frequency: float) -> list[str]:
             return [
                 f"one top does not explain the motion: the spin may decay, try --window {count}"
             ]
-    return []
+    return ["check columns, units and axes, or try --window if the spin may decay"]
 
 
 def _without_spin(known: Known) -> Known:

@@ -59,9 +59,12 @@ class Residuals(NamedTuple):
         return float(fdtrc(count, free, explained / count / (rest / free)))
 
     def faults(self, name: str, frequency: float, chance: float) -> list[str]:
-        """Return why the residuals are not noise, as sentences."""
+        """Return why the residuals are not noise, as sentences.
+
+        A wrong motion leaves neighbours alike, unless it oscillates from row to row.
+        """
         bound = -float(ndtri(chance / 2)) / math.sqrt(self.y.size)
-        if abs(self.autocorrelation) > bound:
+        if not -2 * bound < self.autocorrelation < bound:
             return [
                 f"the residuals of {name} are not noise: neighbours correlate by "
                 f"{self.autocorrelation:.2f}, noise by at most {bound:.2f}"

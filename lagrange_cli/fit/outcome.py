@@ -77,7 +77,15 @@ class Outcome(HasRecord):
 
     def failures(self) -> list[str]:
         """Return the reasons why the fit has failed, if there are any."""
-        found, (scale, unit) = [*self.faults], angle_unit(radians=self.radians)
+        found: list[str] = []
+        if (offset := shifted_origin(self.recording)) is not None:
+            shown = ", ".join(f"{x:.2g}" for x in offset)
+            found.append(
+                "the distance of the marker from the origin varies with its direction: is the "
+                f"origin at the pivot, or is the pivot at about ({shown})?"
+            )
+        found += self.faults
+        scale, unit = angle_unit(radians=self.radians)
         for name, rest in self.residuals.items():
             if rest.rms > _MOST:
                 off = f"{rest.rms * scale:.3g} {unit}"
@@ -89,12 +97,6 @@ class Outcome(HasRecord):
             )
         for name, rest in self.residuals.items():
             found += rest.faults(name, self.frequency, self.chance)
-        if (offset := shifted_origin(self.recording)) is not None:
-            shown = ", ".join(f"{x:.2g}" for x in offset)
-            found.append(
-                "the distance of the marker from the origin varies with its direction: is the "
-                f"origin at the pivot, or is the pivot at about ({shown})?"
-            )
         return found
 
     def failure(self) -> str:
