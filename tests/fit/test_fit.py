@@ -43,7 +43,7 @@ def motion_of(top: Top, t: Array) -> dict[str, Array]:
 
 
 def recorded(
-    *names: str, top: Top = TOP, rows: int = 70, seconds: float = 1.2, noise: float = 0.3, seed: int
+    *names: str, top: Top = TOP, rows: int = 50, seconds: float = 0.9, noise: float = 0.3, seed: int
 ) -> tuple[Array, dict[str, Array]]:
     """Return times and noisy angles, within half a turn but for the tilt."""
     rng, t = np.random.default_rng(seed), np.linspace(0, seconds, rows)
@@ -113,7 +113,7 @@ def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[
 # Recordings of every kind
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "names",
     [
@@ -124,8 +124,9 @@ def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[
     ],
 )
 def test_recorded_angles_give_the_top(names: tuple[str, ...], seed: int) -> None:
-    t, seen = recorded(*names, seed=seed)
-    sigma = 0.3 * DEGREE if seed else None
+    rows = 50 if "theta" in names and "psi" in names else 120
+    t, seen = recorded(*names, rows=rows, seconds=0.018 * rows, noise=0.2, seed=seed)
+    sigma = 0.2 * DEGREE if seed else None
     assert_true(fitted(t, seen, sigma=sigma), TRUTH | {"theta0_deg": 75, "psidot0": 0})
 
 
@@ -221,11 +222,12 @@ def test_known_inputs_determine_others(known: dict[str, float], truth: dict[str,
 def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
     t, seen = recorded("theta", "psi", seed=9)
     sure, unsure = (fitted(t, seen, known=LAB | {"C": c}).numbers for c in (2.5e-3, "0.0025(1)"))
-    assert unsure["r0"][1] == pytest.approx(52.36 * 0.04, rel=1e-3)
+    assert unsure["r0"][1] == pytest.approx(52.36 * 0.04, rel=0.01)
     for key in ("T_nutation", "mean_precession_rate", "b", "A"):
         assert unsure[key] == pytest.approx(sure[key], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_prior_lies_between_a_known_input_and_none() -> None:
     """The estimate of A is the mean of prior and data, weighted by their variances."""
     t, seen = recorded("theta", "psi", seed=10)
@@ -284,7 +286,7 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     decay = decay_of(windows)
     assert decay is not None
     assert decay.time is not None
-    assert abs(decay.time[0] - 60) < 4 * decay.time[1] < 4
+    assert abs(decay.time - 60) < 4 * (decay.time_std or 0) < 4
     assert decay.quantity == "b"
 
 
@@ -292,7 +294,10 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     ("make", "reason"),
     [
         (lambda rng, t: slowed(20, t), "not noise"),
-        (lambda rng, t: {x: rng.uniform(0.2, 3, t.size) for x in ("theta", "psi")}, "matches"),
+        (
+            lambda rng, t: {x: rng.uniform(0.2, 3, t.size) for x in ("theta", "psi")},
+            "the tilt varies",
+        ),
         (
             lambda rng, t: {
                 "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, ::-1]
@@ -320,6 +325,7 @@ def test_an_attitude_whose_spin_is_wrong_fails() -> None:
     assert any("residuals of along" in x for x in outcome.failures())
 
 
+@pytest.mark.slow
 def test_sigma_is_tested_on_both_sides() -> None:
     t, seen = recorded("theta", "psi", seed=14)
     small, large = (fitted(t, seen, sigma=x * 0.3 * DEGREE) for x in (0.5, 2))
@@ -468,18 +474,25 @@ def written(path: Path, *parts: tuple[Array, dict[str, Array]]) -> Path:
 
 def test_the_command(lagtop: Lagtop, tmp_path: Path) -> None:
     path = written(tmp_path / "data.csv", recorded("theta", "psi", seed=20))
-    scene, picture = tmp_path / "top.toml", tmp_path / "fit.svg"
+    scene = tmp_path / "top.toml"
     known = "--m 0.5 --g 9.81 --s 0.08 --C 0.0025".split()
-    result = lagtop("fit", path, *known, "-o", scene, "--plot", picture)
+    result = lagtop("fit", path, *known, "-o", scene)
     assert result.exit_code == 0, result.stderr
     for text in ("Verdict: good.", "RMS residual (deg): theta 0.", "Correlation: a and b "):
         assert text in result.stdout
     top = read_scene(scene)
-    assert (float(top.A), float(top.r0)) == pytest.approx((4.45e-3, 52.36), rel=1e-3)
+    assert (float(top.A), float(top.r0)) == pytest.approx((4.45e-3, 52.36), rel=0.01)
     assert "# r0 = 52." in scene.read_text()
-    assert picture.read_text().startswith("<?xml")
-    record = json.loads(lagtop("fit", path, *known, "--format", "json").stdout)
+
+
+@pytest.mark.slow
+def test_the_record_and_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = written(tmp_path / "data.csv", recorded("theta", "psi", seed=20))
+    picture = tmp_path / "fit.svg"
+    words = "--m 0.5 --g 9.81 --s 0.08 --C 0.0025 --format json --plot".split()
+    record = json.loads(lagtop("fit", path, *words, picture).stdout)
     assert record["verdict"] == "good"
+    assert picture.read_text().startswith("<?xml")
     assert abs(record["r0"] - 52.36) < 4 * record["r0_std"]
     assert record["theta_rms_deg"] == pytest.approx(0.3, rel=0.3)
 
@@ -488,7 +501,7 @@ def test_the_command(lagtop: Lagtop, tmp_path: Path) -> None:
 def test_several_recordings_and_windows(lagtop: Lagtop, tmp_path: Path) -> None:
     good, (t, seen) = recorded("theta", "psi", seed=21), recorded("theta", "psi", seed=22)
     path = written(tmp_path / "data.csv", good, (t, seen | {"theta": seen["theta"][::-1] ** 2}))
-    assert_one_line(lagtop("fit", path), 65, f"{path}: t must not turn back, got 0 after 1.2")
+    assert_one_line(lagtop("fit", path), 65, f"{path}: t must not turn back, got 0 after 0.9")
     result = lagtop("fit", path, "--by", "trial", "--format", "csv")
     assert result.exit_code == 1
     assert [line.split(",")[0] for line in result.stdout.splitlines()] == ["name", "run 0", "run 1"]
@@ -497,7 +510,7 @@ def test_several_recordings_and_windows(lagtop: Lagtop, tmp_path: Path) -> None:
     path = written(tmp_path / "one.csv", recorded("theta", "psi", rows=150, seconds=3, seed=23))
     result = lagtop("fit", path, "--window", 3)
     assert result.exit_code == 0, result.stderr
-    assert result.stdout.splitlines()[-1].startswith("b does not decay: its relative rate of decay")
+    assert result.stdout.splitlines()[-1].startswith("b does not decay: its relative rate is")
     failed = lagtop("fit", path, "--window", 3, "--sigma", 0.1, "--format", "json")
     assert (failed.exit_code, json.loads(failed.stdout)["verdict"]) == (1, "failed")
     unwritten = lagtop("fit", path, "--sigma", 0.1, "-o", tmp_path / "no.toml")
