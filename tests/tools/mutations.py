@@ -35,12 +35,12 @@ from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = (
-    *("arithmetic", "elliptic", "inputs", "output", "motion", "sweep", "fits", "plot", "judge"),
-    *("bench", "cli", "sweep", "fit", "compare"),
+    *("arithmetic", "elliptic", "inputs", "output", "motion", "sweep", "fit", "plot", "compare"),
+    *("bench", "cli"),
 )
 MODULES = {"fit": ["fit", "find.py"]}
 """Modules of a folder, if not those of the same name."""
-TESTS = {"output": ["output", "cli"], "fit": ["fit", "find"]}
+TESTS = {"output": ["output", "cli"]}
 """Folders of tests of a folder, if not the one of the same name."""
 OTHER_PROCESSES = ("subprocess", "process(", "forked(")
 """Words of test files that run the package in other processes, whose lines are not recorded."""
