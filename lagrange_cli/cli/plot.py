@@ -20,7 +20,7 @@ from . import shared as opt
 
 if TYPE_CHECKING:
     from ..inputs.values import Value
-    from ..plot.map import Axis, MapOptions
+    from ..plot.options import Axis, MapOptions
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
 
@@ -87,7 +87,7 @@ def plot_command(
     chart = _map_options(key, {"x": x, "y": y}, top) if "map" in kinds else None
     from ..plot.curves import checked_span
     from ..plot.film import check_film, film_bytes
-    from ..plot.pictures import Options
+    from ..plot.options import Options
     from .table import angle_stds
 
     seconds = check_film(animate, float(duration) if duration else None) if animate else 0.0
@@ -159,7 +159,7 @@ def _map_options(
     key: str | None, axes: Mapping[str, str | None], top: opt.TopOptions
 ) -> MapOptions:
     """Return the key and the axes of a map."""
-    from ..plot.map import MapOptions
+    from ..plot.options import MapOptions
 
     ends = {name: _axis(f"--{name}", text, top) for name, text in axes.items() if text}
     return MapOptions(key or MapOptions().key, ends.get("x"), ends.get("y"), with_progress)

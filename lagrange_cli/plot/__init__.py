@@ -58,8 +58,9 @@ def draw(
     from matplotlib.axes import Axes
 
     from .curves import checked_span
-    from .map import MapOptions, checked_axis
-    from .pictures import PICTURES, Options
+    from .map import checked_axis
+    from .options import MapOptions, Options
+    from .pictures import PICTURES
 
     picture, axes = PICTURES[kind], [ax] if isinstance(ax, Axes) else list(ax or [])
     if ax is None:

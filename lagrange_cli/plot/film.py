@@ -20,7 +20,8 @@ from ..inputs.rotations import rotated
 from ..motion.solve import Motion
 from ..output.terminal import Progress, silent
 from .curves import sampled, span, turn_span
-from .pictures import Camera, Options, camera_of, draw_globe
+from .options import Options
+from .pictures import Camera, camera_of, draw_globe
 from .style import Look, scale, styled
 
 FILMS = "gif", "mp4"

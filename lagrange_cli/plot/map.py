@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,9 +18,9 @@ from ..inputs.top import Top
 from ..motion.quantity import degree_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
-from ..output.terminal import Progress, silent
+from ..output.terminal import silent
 from ..sweep.records import sweep
-from .pictures import Options, mark_start
+from .options import Axis, MapOptions, Options, mark_start
 from .style import scale
 
 WORDS = {"regime": "Regime of the motion", "path": "Path of the axis"}
@@ -28,26 +28,6 @@ WORDS = {"regime": "Regime of the motion", "path": "Path of the axis"}
 REGIONS = "#9cc9ec #f3c69a #a9dcc3 #d9c3ea #f0e08c #e8a9a4 #c9ced4".split()
 """Colours of words, in the order in which they appear."""
 MOST_CELLS, MOST_VALUES = 1_000_000, 2000
-
-
-class Axis(NamedTuple):
-    """An input of the top and its values along one axis of a map."""
-
-    name: str
-    values: Array
-    """Increasing values; a tilt in the unit of angles."""
-    logarithmic: bool = False
-
-
-class MapOptions(NamedTuple):
-    """The key and the axes of a map."""
-
-    key: str = "mean_precession_rate"
-    x: Axis | None = None
-    """Horizontal axis; by default the spin."""
-    y: Axis | None = None
-    """Vertical axis; by default the tilt."""
-    progress: Progress = silent
 
 
 def checked_axis(option: str, name: str, values: Array, *, logarithmic: bool = False) -> Axis:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,16 +16,14 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array, Mask
 from ..errors import NothingToDrawError
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 from .curves import sampled, span, tilt_period, turn_span
-from .style import LIGHT, Look, number_text, plain, scale
-
-if TYPE_CHECKING:
-    from .map import MapOptions
+from .map import draw_map
+from .options import Options, mark_start
+from .style import Look, number_text, plain, scale
 
 FAR: dict[str, Any] = {"alpha": 0.45, "ls": (0, (3, 3)), "zorder": 1}
 """Style of lines on the far side of the globe."""
@@ -35,40 +33,6 @@ ARROWS = 0.1, 0.28, 0.46, 0.64, 0.82
 """Places of the arrowheads that show the direction of a path, as shares of its length."""
 USUAL_PERIODS = 6
 """Nutation periods up to which a path has its full width; longer paths have finer lines."""
-
-
-class Options(NamedTuple):
-    """What a picture shows, and how."""
-
-    t_max: float | None = None
-    """Last time of the pictures over time; by default each picture chooses its own."""
-    radians: bool = False
-    """Whether angles are in radians instead of degrees."""
-    camera: tuple[float, float] | None = None
-    """Azimuth and elevation (radians) of the camera; by default it faces the path."""
-    look: Look = LIGHT
-    stds: Callable[[Array], Any] | None = None
-    """Standard deviations (radians) of tilt, spin and precession at given times: bands."""
-    map: MapOptions | None = None
-    """The key and the axes of a map."""
-    unit: Callable[[str], str] = str
-    """Returns the name of a unit such as `rad/time` in the units of the inputs."""
-
-    @property
-    def factor(self) -> float:
-        """The size of one radian in the unit of angles."""
-        return angle_unit(radians=self.radians)[0]
-
-    @property
-    def angle(self) -> str:
-        """The name of the unit of angles."""
-        return angle_unit(radians=self.radians)[1]
-
-    @property
-    def time_label(self) -> str:
-        """The label of an axis of time."""
-        unit = self.unit("time")
-        return f"t ({'input units' if unit == 'time' else unit})"
 
 
 class Camera(NamedTuple):
@@ -218,12 +182,6 @@ def draw_direction(ax: Axes, camera: Camera, path: Array, look: Look) -> None:
         if first < last and near[first : last + 1].all():
             how = arrow | {"color": look.ink, "linewidth": 0, "shrinkA": 0, "shrinkB": 0}
             ax.annotate("", (x[last], y[last]), (x[first], y[first]), arrowprops=how, zorder=5)
-
-
-def mark_start(ax: Axes, x: Any, y: Any, look: Look, label: str = "start") -> None:
-    """Draw a ring with a label at one point."""
-    ring: dict[str, Any] = {"mfc": look.paper, "mec": look.ink, "mew": 1.6, "ms": 7, "zorder": 6}
-    ax.plot(x, y, "o", ls="none", label=label, **ring)
 
 
 # --- angles
@@ -398,8 +356,6 @@ def separatrix(a: float, b: float) -> tuple[Array, Array]:
 
 def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """a key of the record over two inputs"""
-    from .map import draw_map
-
     return draw_map(motion, axes[0], options)
 
 

@@ -18,8 +18,9 @@ from PIL import Image
 
 from lagrange_cli.plot.curves import sampled, span, turn_span
 from lagrange_cli.plot.film import cone
-from lagrange_cli.plot.map import MapOptions, checked_axis
-from lagrange_cli.plot.pictures import PICTURES, SHEET, Options, camera_at, camera_of, figure_of
+from lagrange_cli.plot.map import checked_axis
+from lagrange_cli.plot.options import MapOptions, Options
+from lagrange_cli.plot.pictures import PICTURES, SHEET, camera_at, camera_of, figure_of
 from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels, draw_fit_panels
 from lagrange_cli.plot.style import DARK, LIGHT, figure_bytes, number_text, plain, styled
 
