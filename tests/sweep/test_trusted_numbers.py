@@ -18,7 +18,7 @@ from scenes import UNIT
 
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.sweep.moving_tops import MovingTops
-from lagrange_cli.sweep.top_arrays import TopArrays
+from lagrange_cli.sweep.top_arrays import TopArrays, top_arrays
 
 COSINES = {"u1", "u2", "u_quarter"}
 
@@ -98,6 +98,25 @@ CANCELLING: dict[str, list[dict[str, float]]] = {
 @pytest.mark.parametrize("name", CANCELLING)
 def test_numbers_whose_parts_cancel(name: str) -> None:
     assert_trusted(CANCELLING[name], len(CANCELLING[name]))
+
+
+@pytest.mark.parametrize("body", [(1.0, 1.0, 1.0, 1.0, 1.0), (2.0, 3.0, 0.5, 4.0, 9.81)])
+def test_tops_at_the_threshold_of_sleeping_go_one_by_one(body: tuple[float, ...]) -> None:
+    """Where (C r0)^2 = 4 A m g s nearly, lambda - 1 has lost its digits."""
+    m, A, C, s, g = body
+    r0 = 2 * math.sqrt(A * m * g * s) / C * np.array([0.9, 1 - 1e-15, 1.0, 1 + 1e-15, 1.1, -1.0])
+    fixed = {
+        "m": m,
+        "A": A,
+        "C": C,
+        "s": s,
+        "g": g,
+        "theta0_deg": 10.0,
+        "thetadot0": 0,
+        "psidot0": 0,
+    }
+    regimes = top_arrays(fixed | {"r0": r0}, r0.size).regimes().values()
+    assert np.any(list(regimes), axis=0).tolist() == [True, False, False, False, True, False]
 
 
 def starts_next_to_the_pole(count: int) -> dict[str, Any]:
