@@ -21,8 +21,9 @@ from .problem import Known
 from .recording import Recording
 from .starts import Oscillation, signals_in
 
-_MOST_TILT = 0.1
-"""Largest scatter of the tilt in radians that counts as noise if sigma is not given."""
+_MOST_TILT, _LEAST_ROWS = 0.04, 30
+"""Largest scatter of the tilt in radians that counts as noise, and the least number of rows that
+shows a nutation, if sigma is not given."""
 _RATIO = 0.5
 """C/A in the estimate of the bias, if A and C are not known."""
 _SURE = 4.0
@@ -159,6 +160,8 @@ def _faults(
     if "theta" in residuals and residuals["theta"].rms > _MOST_TILT and not recording.sigma:
         off = math.degrees(residuals["theta"].rms)
         yield f"the tilt varies by {off:.2g} degrees: give --sigma if this is noise"
+    elif recording.t.size < _LEAST_ROWS and not recording.sigma:
+        yield f"{recording.t.size} rows are too few to tell nutation from noise: give --sigma"
 
 
 def _of_body(rate: float, spread: float, r0: tuple[float, float], known: Known) -> _Numbers:

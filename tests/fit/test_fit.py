@@ -368,9 +368,11 @@ def test_the_bias_of_the_elementary_theory_is_in_the_uncertainty() -> None:
 def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
     rng, t = np.random.default_rng(17), np.linspace(0, 1, 100)
     psi = 2 * t + rng.normal(scale=0.01, size=100)
-    for theta in (1 + 0.1 * t, 1 + 0.05 * np.sin(3 * t), 1 + rng.normal(scale=0.2, size=100)):
+    for theta in (1 + 0.1 * t, 1 + 0.05 * np.sin(3 * t), 1 + rng.normal(scale=0.06, size=100)):
         outcome = fit(t, theta=theta + rng.normal(scale=0.01, size=100), psi=psi)
         assert outcome.verdict == "failed", outcome.record()
+    few = fit(t[:20], theta=1 + rng.normal(scale=0.01, size=20), psi=psi[:20])
+    assert few.failures()[-1].startswith("20 rows are too few to tell nutation from noise")
 
 
 def test_noise_hardly_ever_fails_a_test() -> None:
