@@ -8,7 +8,6 @@ from fractions import Fraction
 
 from flint import acb, arb
 
-from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.points import MAX_PERIODS, Points, check_reach
 from .enclosures import Value, exact
 from .functions import nearest as nearest_integer
@@ -72,22 +71,16 @@ class AmplitudeTable(TableOfFunctions):
         return self.modulus.ball()
 
     def columns(self, x: Fraction, constants: Modulus) -> dict[str, Value]:
-        """Return the amplitude, F and E; F is None if it is infinite."""
+        """Return the amplitude, F and E; an infinite F is not finite in balls of any precision."""
         angle = exact(x)
         if self.modulus.radians:
             half_turns = nearest_integer(angle / arb.pi())
             sine, cosine = (angle - half_turns * arb.pi()).sin_cos()
-            rest = abs(angle) - arb.pi() / 2
-            beyond = self.modulus.is_1 and rest > 0
-            if self.modulus.is_1 and not (beyond or rest < 0):
-                raise TooFewDigitsError
         else:
             half_turns = round(x / 180)
             sine, cosine = exact((x - 180 * half_turns) / 180).sin_cos_pi()
-            beyond = self.modulus.is_1 and abs(x) >= 90
-        F: Value = None
-        E = incomplete_e(sine, cosine, constants) + 2 * half_turns * second_kind(constants.k_prime)
-        if not beyond:
-            whole = 2 * half_turns * quarter_period(constants.k_prime) if half_turns else 0
-            F = incomplete_f(sine, cosine, constants) + whole
+        F, E = (within(sine, cosine, constants) for within in (incomplete_f, incomplete_e))
+        if half_turns:
+            F += 2 * half_turns * quarter_period(constants.k_prime)
+            E += 2 * half_turns * second_kind(constants.k_prime)
         return {"phi_rad" if self.modulus.radians else "phi_deg": x, "F": F, "E": E}
