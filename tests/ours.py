@@ -27,7 +27,8 @@ class ManyDigits(MPContext):  # type: ignore[misc]
 def fraction(x: Any) -> Fraction:
     """Return the exact value of a real number of mpmath."""
     sign, mantissa, exponent, _ = x._mpf_
-    return (-1) ** sign * Fraction(int(mantissa)) * Fraction(2) ** exponent
+    found: Fraction = (-1) ** sign * Fraction(int(mantissa)) * Fraction(2) ** exponent
+    return found
 
 
 class Ours:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection, Mapping
+from fractions import Fraction
 from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.numbers import Number
+from ..arithmetic.points import Points
 from ..errors import LagtopError, check_type
 from .input_keys import (
     BODY,
@@ -109,7 +112,7 @@ def gather(
     try:
         one_of_each(inputs)
         if units or any(x.unit for x in (*inputs.values(), *others.values())):
-            from .units import converted, system_of, worked_example  # start-up
+            from .units import worked_example  # start-up
 
             system = system_of(overridden(inputs, others), asked=units)
             inputs, others = converted(inputs), converted(others)
@@ -142,3 +145,53 @@ def read_scene(
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     return top
+
+
+def converted(inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """Return inputs in SI; a tilt with a unit becomes degrees or radians.
+
+    Raises LagtopError for a unit of other dimensions.
+    """
+    from . import units  # start-up
+
+    found: dict[str, Value] = {}
+    for key, value in inputs.items():
+        if not value.unit:
+            found[key] = value
+        elif key == TILT:
+            units.factor_of(key, value.unit)  # refuses other dimensions
+            wanted = "deg" if units.unit_of_text(value.unit).power_of_pi else "rad"
+            found[f"{TILT}_{wanted}"] = value.scaled(units.factor_of(key, value.unit, wanted))
+        else:
+            found[key] = value.scaled(units.factor_of(key, value.unit))
+    return found
+
+
+def system_of(inputs: Mapping[str, Value], *, asked: bool = False) -> System | None:
+    """Return SI if inputs have units, or None if none has one, or only a tilt.
+
+    A tilt, a time and a zero need no unit.  Raises LagtopError for another input without a unit if
+    some have one, or if units are `asked` for.
+    """
+    from . import units  # start-up
+
+    united = [key for key, x in inputs.items() if x.unit and key != TILT]
+    bare = [key for key, x in inputs.items() if _needs_unit(key, x)]
+    if bare and (united or asked):
+        why = f"as {united[0]} has" if united else "as a time or a condition has"
+        number, example = inputs[bare[0]].number, units.EXAMPLES[units.UNIT_OF[bare[0]]]
+        if isinstance(number, Fraction) and number != 1:  # a heading of a file counts as 1
+            example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
+        raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
+    return units.SI if united or asked else None
+
+
+def _needs_unit(key: str, value: Value) -> bool:
+    """Return whether an input needs a unit but has none."""
+    from .units import UNIT_OF  # start-up
+
+    number = value.number
+    if value.unit or isinstance(number, str) or key not in UNIT_OF or key == TILT:
+        return False
+    is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
+    return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array

@@ -6,22 +6,22 @@ Results are in kg, m, s and rad if inputs have units.  A tilt stays in degrees o
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..arithmetic.ball import pi_to
 from ..arithmetic.numbers import Number
-from ..arithmetic.points import Points
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from .derived_inputs import EXACT_DIGITS
 from .input_keys import BODY, BODY_UNITS, DECLARED, TILT
 from .names import suggestion
-from .values import Value
 
 Dimensions = tuple[int, int, int, int]
 """The powers of mass, length, time and angle."""
+
+
+PI_DIGITS = 1100
+"""Digits of pi in units of angle: more than any result has."""
 
 
 class Unit(NamedTuple):
@@ -64,10 +64,10 @@ def _table() -> dict[str, Unit]:
 
 UNITS = _table()
 """The known units by name."""
-_UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
-_EXAMPLES = {"mass": "350g", "mass len²": "'3.9e-3 kg*m^2'", "len": "4cm", "m": "4cm", "time": "2s"}
-_EXAMPLES |= {"len/time²": "'9.81 m/s^2'", "rad/time": "'50 rad/s' or 480rpm"}
-_EXAMPLES |= dict.fromkeys(("deg", "rad"), "30deg or 0.5rad")
+UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
+EXAMPLES = {"mass": "350g", "mass len²": "'3.9e-3 kg*m^2'", "len": "4cm", "m": "4cm", "time": "2s"}
+EXAMPLES |= {"len/time²": "'9.81 m/s^2'", "rad/time": "'50 rad/s' or 480rpm"}
+EXAMPLES |= dict.fromkeys(("deg", "rad"), "30deg or 0.5rad")
 """An example of each unit of an input."""
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _NAME = r"1|°|g_0|[^\W\d_]+"
@@ -111,7 +111,7 @@ def factor_of(key: str, unit: str, wanted: str | None = None) -> Fraction:
     `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`, by default that of the input
     `key`, or else of a time.  Raises LagtopError for a unit of other dimensions.
     """
-    wanted = _UNIT_OF.get(key, "time") if wanted is None else wanted
+    wanted = UNIT_OF.get(key, "time") if wanted is None else wanted
     into = unit_of_text(SI.named(wanted))
     try:
         given = unit_of_text(unit)
@@ -119,12 +119,12 @@ def factor_of(key: str, unit: str, wanted: str | None = None) -> Fraction:
         if given.dimensions != into.dimensions and not per_time:
             raise LagtopError("it measures something else")
     except LagtopError as error:
-        example = _EXAMPLES.get(wanted) or repr(f"2 {SI.named(wanted)}")
+        example = EXAMPLES.get(wanted) or repr(f"2 {SI.named(wanted)}")
         must = f"have a unit as in {example}" if wanted else "have no unit"
         wrong = f"{key} must {must}, got the unit {quoted(unit)} ({error})"
         raise LagtopError(wrong, key) from None
     powers_of_pi = given.power_of_pi - into.power_of_pi
-    return given.size / into.size * pi_to(EXACT_DIGITS) ** powers_of_pi
+    return given.size / into.size * pi_to(PI_DIGITS) ** powers_of_pi
 
 
 class System:
@@ -145,52 +145,8 @@ SI = System()
 
 def si_unit(key: str) -> str:
     """Return the SI unit of an input, such as `kg m²`; of a tilt, that in its key."""
-    unit = {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}.get(key) or _UNIT_OF.get(key, "time")
+    unit = {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}.get(key) or UNIT_OF.get(key, "time")
     return SI.named(unit)
-
-
-def converted(inputs: Mapping[str, Value]) -> dict[str, Value]:
-    """Return inputs in SI; a tilt with a unit becomes degrees or radians.
-
-    Raises LagtopError for a unit of other dimensions.
-    """
-    found: dict[str, Value] = {}
-    for key, value in inputs.items():
-        if not value.unit:
-            found[key] = value
-        elif key == TILT:
-            factor_of(key, value.unit)  # refuses other dimensions
-            wanted = "deg" if unit_of_text(value.unit).power_of_pi else "rad"
-            found[f"{TILT}_{wanted}"] = value.scaled(factor_of(key, value.unit, wanted))
-        else:
-            found[key] = value.scaled(factor_of(key, value.unit))
-    return found
-
-
-def system_of(inputs: Mapping[str, Value], *, asked: bool = False) -> System | None:
-    """Return SI if inputs have units, or None if none has one, or only a tilt.
-
-    A tilt, a time and a zero need no unit.  Raises LagtopError for another input without a unit if
-    some have one, or if units are `asked` for.
-    """
-    united = [key for key, x in inputs.items() if x.unit and key != TILT]
-    bare = [key for key, x in inputs.items() if _needs_unit(key, x)]
-    if bare and (united or asked):
-        why = f"as {united[0]} has" if united else "as a time or a condition has"
-        number, example = inputs[bare[0]].number, _EXAMPLES[_UNIT_OF[bare[0]]]
-        if isinstance(number, Fraction) and number != 1:  # a heading of a file counts as 1
-            example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
-        raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
-    return SI if united or asked else None
-
-
-def _needs_unit(key: str, value: Value) -> bool:
-    """Return whether an input needs a unit but has none."""
-    number = value.number
-    if value.unit or isinstance(number, str) or key not in _UNIT_OF or key == TILT:
-        return False
-    is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
-    return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array
 
 
 def worked_example() -> dict[str, Number]:

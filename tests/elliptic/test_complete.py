@@ -5,7 +5,7 @@ Each is computed for arrays of doubles, of pairs of doubles, and as balls.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -60,7 +60,7 @@ def _of_complement(name: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     return ours[name], theirs[name]
 
 
-def check(ours: Callable[..., Any], exact: list[Any], inputs: list[tuple[float, ...]]) -> None:
+def check(ours: Callable[..., Any], exact: list[Any], inputs: Sequence[tuple[float, ...]]) -> None:
     """Compare a function of ar and numbers, for all inputs at once or one by one, with mpmath."""
     columns = [np.array(column) for column in zip(*inputs, strict=True)]
     double = ours(ARRAYS, *columns)

@@ -76,8 +76,8 @@ def check(cells: Cells, k: str, u: str, v: str, digits: int) -> int:
     reference = Reference(k, digits + 25)
     ar, checked = reference.ar, 0
     numbers = (parse_complex(text) for text in (u, v))
-    points = [ar.mpc(*(ar.mpf(x.numerator) / x.denominator for x in z)) for z in numbers]
-    for name, exact in columns(reference, *points, EVERY).items():
+    first, second = (ar.mpc(*(ar.mpf(x.numerator) / x.denominator for x in z)) for z in numbers)
+    for name, exact in columns(reference, first, second, EVERY).items():
         if exact is None:
             assert cells[f"{name}_re"] == cells[f"{name}_im"] == ""
             continue
@@ -119,6 +119,8 @@ def test_a_series_cut_short_holds_the_truth(k: str, monkeypatch: pytest.MonkeyPa
             monkeypatch.setattr(functions, "isqrt", lambda _, terms=terms: terms)
             for ij, values in Functions(modulus.ball()).third(u, v).items():
                 for wide, sharp in zip(values, exact[ij], strict=True):
+                    assert wide is not None
+                    assert sharp is not None
                     assert wide.overlaps(sharp), (ij, terms)
                     assert wide.rel_accuracy_bits() < 100, (ij, terms)
 
@@ -156,9 +158,9 @@ def half_periods(k: str) -> list[tuple[str, str]]:
 def assert_doubles(k: str, u: str, v: str) -> None:
     """Check that Omega and Pi are the doubles next to those of the reference."""
     reference, z = Reference(k, 60), [parse_complex(x).nearest() for x in (u, v)]
-    points = [reference.ar.mpc(*(reference.ar.mpf(float(x)) for x in y)) for y in z]
-    cells = row(k, *z, ("omega", "pi"), is_real=False)
-    for name, exact in columns(reference, *points, ("omega", "pi")).items():
+    first, second = (reference.ar.mpc(*(reference.ar.mpf(float(x)) for x in y)) for y in z)
+    cells = row(k, z[0], z[1], ("omega", "pi"), is_real=False)
+    for name, exact in columns(reference, first, second, ("omega", "pi")).items():
         found = complex(float(cells[f"{name}_re"]), float(cells[f"{name}_im"]))
         assert found == complex(exact), (name, k, u, v)
 
@@ -268,7 +270,7 @@ def number(text: str) -> Any:
     return mpmath.mpf(mantissa) * mpmath.mpf(10) ** int(exponent or 0)
 
 
-EXTREME = {
+EXTREME: dict[str, tuple[Any, Any]] = {
     "k 1e-200": (_circular, lambda: (mpmath.mpf("1e-200") / 4) ** 2),
     "k-prime 1e-300": (_hyperbolic, lambda: (mpmath.mpf("1e-300") / 4) ** 2),
     "nome 0.999999": (
