@@ -160,15 +160,20 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
     """
     rates = rates_of(top)
     if word not in STEADY_WORDS:
-        wrong = f"must be a real number, steady or steady-fast, got {quoted(word)}"
+        wrong = f"psidot0 must be a real number, steady or steady-fast, got {quoted(word)}"
     elif top.thetadot0:
-        wrong = f"must be 0 for psidot0 = {word}, got {float(top.thetadot0)}"
-        raise LagtopError(f"thetadot0 {wrong}", "thetadot0")
+        wrong = f"thetadot0 must be 0 for psidot0 = {word}, got {float(top.thetadot0)}"
     elif top.pole:
-        vertical = "(a vertical axis cannot precess)"
-        wrong = f"must be 0 if the axis is vertical, got {word} {vertical}"
+        wrong = f"psidot0 must be 0 if the axis is vertical, got {word} "
+        wrong += "(a vertical axis cannot precess)"
+    elif not rates.exists(word) and not rates.sign(0, 1):
+        why = "the fast rate is infinite" if rates.b else "r0 must not be 0"
+        wrong = f"psidot0 cannot be {word}: at 90 degrees {why}"
     elif not rates.exists(word):
-        wrong = f"cannot be {word}: {_why(top, rates)}"
+        cosine = float(rates.tilt.cosine(balls(40)).middle)
+        least = float(top.A / top.C) * math.sqrt(2 * float(rates.a) * cosine)
+        why = f"|r0| must be at least {least:.6g} at this tilt, got r0 = {float(top.r0)}"
+        wrong = f"psidot0 cannot be {word}: {why}"
     else:
 
         def enclosure(digits: int) -> Ball:
@@ -179,13 +184,4 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
         found = settled("psidot0", enclosure, nearest_double("psidot0"))
         assert found is not None
         return SteadyRate(word, found.value)
-    raise LagtopError(f"psidot0 {wrong}", "psidot0")
-
-
-def _why(top: Any, rates: SteadyRates) -> str:
-    """Return the reason why a top has no rate of steady precession."""
-    if not rates.sign(0, 1):
-        return f"at 90 degrees {'the fast rate is infinite' if rates.b else 'r0 must not be 0'}"
-    ratio = float(Fraction(top.A) / Fraction(top.C))
-    least = ratio * math.sqrt(2 * float(rates.a) * float(rates.tilt.cosine(balls(40)).middle))
-    return f"|r0| must be at least {least:.6g} at this tilt, got r0 = {float(top.r0)}"
+    raise LagtopError(wrong, wrong.partition(" ")[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from ..arithmetic.text import quoted
@@ -28,16 +29,15 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise LagtopError(f"{key} must be a list of names, got {quoted(names)}", key)
     known, names = list(known), list(names)
-    for name in names or [""]:
-        if name not in known:
-            got = f"{quoted(name)}{suggestion(name, known)}" if names else "an empty list"
-            wrong = f"got {got}"
-            if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
-                raise LagtopError(f"{key} must be among {listed}, {wrong}", key)
-            first = known.index("regime") if "regime" in known else 0  # the results of a record
-            some = f"{', '.join(known[first:][:_FIRST])} and {len(known) - _FIRST} more"
-            some += ", see lagtop explain" if "T_nutation" in known else ""  # a list of keys
-            raise LagtopError(f"{key} must be among {len(known)} names, {wrong}: {some}", key)
+    wrong = next((name for name in names or [""] if name not in known), None)
+    if wrong is not None:
+        got = f"got {quoted(wrong)}{suggestion(wrong, known)}" if names else "got an empty list"
+        if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
+            raise LagtopError(f"{key} must be among {listed}, {got}", key)
+        first = known.index("regime") if "regime" in known else 0  # the results of a record
+        some = f"{', '.join(known[first:][:_FIRST])} and {len(known) - _FIRST} more"
+        more = ", see lagtop explain" if "T_nutation" in known else ""  # a list of keys
+        raise LagtopError(f"{key} must be among {len(known)} names, {got}: {some}{more}", key)
     if (twice := repeated(names)) is not None:
         raise LagtopError(f"{key} must not repeat a name, got {twice!r} twice", key)
     return names
@@ -45,12 +45,7 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
 
 def repeated(names: Iterable[str]) -> str | None:
     """Return the first repeated name, or None."""
-    seen: set[str] = set()
-    for name in names:
-        if name in seen:
-            return name
-        seen.add(name)
-    return None
+    return next((name for name, count in Counter(names).items() if count > 1), None)
 
 
 def suggestion(name: object, known: Iterable[str]) -> str:

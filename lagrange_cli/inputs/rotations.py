@@ -13,12 +13,8 @@ from ..arithmetic.types import Array
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 HALF_TURN_X = np.array([0.0, 1.0, 0.0, 0.0])
 
-_TO_Z = {
-    "x": np.array([0.5, -0.5, -0.5, -0.5]),
-    "y": np.array([0.5, 0.5, 0.5, 0.5]),
-    "z": IDENTITY,
-}
-"""Cyclic exchanges of the axes that turn one of them to z."""
+_TURN = np.array([0.5, 0.5, 0.5, 0.5])
+"""A cyclic exchange of the axes, which turns y to z."""
 
 
 def product(first: Array, second: Array) -> Array:
@@ -31,47 +27,42 @@ def product(first: Array, second: Array) -> Array:
         a * y - b * z + c * w + d * x,
         a * z + b * y - c * x + d * w,
     )
-    return np.asarray(np.stack(np.broadcast_arrays(*parts), axis=-1), dtype=np.float64)
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
 
 def directed(values: Array) -> Array:
     """Return quaternions or vectors, with NaN for those of length 0, which have no direction."""
-    length = np.linalg.norm(values, axis=-1, keepdims=True)
-    known: Array = np.where(length > 0, values, np.nan)
-    return known
+    return np.where(np.linalg.norm(values, axis=-1, keepdims=True) > 0, values, np.nan)
 
 
 def conjugate(rotation: Array) -> Array:
     """Return the inverse of a rotation, up to its norm."""
-    inverse: Array = rotation * np.array([1.0, -1.0, -1.0, -1.0])
-    return inverse
+    return np.asarray(rotation * np.array([1.0, -1.0, -1.0, -1.0]))
 
 
 def angle_between(first: Array, second: Array) -> Array:
     """Return the angle of the rotation between two, in [0, pi], accurate for tiny angles too."""
     between = product(conjugate(first), second)
-    angle: Array = 2.0 * np.arctan2(np.linalg.norm(between[..., 1:], axis=-1), abs(between[..., 0]))
-    return angle
+    half = np.arctan2(np.linalg.norm(between[..., 1:], axis=-1), abs(between[..., 0]))
+    return np.asarray(2.0 * half)
 
 
 def rotated(rotation: Array, vectors: Array) -> Array:
     """Return the vectors turned by the rotations."""
     unit = rotation / np.linalg.norm(rotation, axis=-1, keepdims=True)
     pure = np.concatenate([np.zeros_like(vectors[..., :1]), vectors], axis=-1)
-    turned: Array = product(product(unit, pure), conjugate(unit))[..., 1:]
-    return turned
+    return product(product(unit, pure), conjugate(unit))[..., 1:]
 
 
 def about_z(angle: float | Array) -> Array:
     """Return the rotation about z by an angle, or by each angle of an array."""
     half = np.asarray(angle) / 2
-    none = np.zeros_like(half)
-    return np.stack([np.cos(half), none, none, np.sin(half)], axis=-1)
+    return np.stack([np.cos(half), 0 * half, 0 * half, np.sin(half)], axis=-1)
 
 
 def to_z(axis: str) -> Array:
     """Return a rotation that turns an axis (x, -x, y, -y, z or -z) to z."""
-    turn: Array = _TO_Z[axis[-1]]
+    turn = {"x": _TURN * [1, -1, -1, -1], "y": _TURN, "z": IDENTITY}[axis[-1]]
     return product(HALF_TURN_X, turn) if axis.startswith("-") else turn
 
 
@@ -79,13 +70,8 @@ def of_angles(theta: Array, phi: Array, psi: Array) -> Array:
     """Return the rotation from body to space for tilt, spin and precession."""
     sum_, difference = (psi + phi) / 2, (psi - phi) / 2
     upper, lower = np.cos(theta / 2), np.sin(theta / 2)
-    parts = [
-        upper * np.cos(sum_),
-        lower * np.cos(difference),
-        lower * np.sin(difference),
-        upper * np.sin(sum_),
-    ]
-    return np.stack(parts, axis=-1)
+    first = upper * np.cos(sum_), lower * np.cos(difference)
+    return np.stack([*first, lower * np.sin(difference), upper * np.sin(sum_)], axis=-1)
 
 
 def angles_of(rotation: Array) -> dict[str, Array]:
@@ -110,14 +96,12 @@ def angles_of_axis(axis: Array) -> dict[str, Array]:
 def angle_between_vectors(first: Array, second: Array) -> Array:
     """Return the angle between vectors, in [0, pi], accurate for tiny angles too."""
     across = np.linalg.norm(np.cross(first, second), axis=-1)
-    angle: Array = np.arctan2(across, np.sum(first * second, axis=-1))
-    return angle
+    return np.asarray(np.arctan2(across, np.sum(first * second, axis=-1)))
 
 
 def within_half_turn(angle: Array) -> Array:
     """Return the angle reduced to (-pi, pi] by whole turns."""
-    brought: Array = angle - np.ceil(angle / (2 * np.pi) - 0.5) * (2 * np.pi)
-    return brought
+    return np.asarray(angle - np.ceil(angle / (2 * np.pi) - 0.5) * (2 * np.pi))
 
 
 def of_matrix(rows: Array) -> tuple[Array, Array]:
