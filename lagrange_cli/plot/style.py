@@ -7,9 +7,12 @@ follow Okabe and Ito; on white they are darker, so that letters have a contrast 
 from __future__ import annotations
 
 import io
+import logging
+import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -90,11 +93,14 @@ def number_text(value: float, digits: int = 6) -> str:
 
 def require_matplotlib() -> None:
     """Raise UnavailableError, with the remedy, if matplotlib is missing or cannot be used."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as about its folder of settings
     try:
         import matplotlib  # noqa: F401
+
+        datetime.fromtimestamp(int(os.environ.get("SOURCE_DATE_EPOCH", "0")), UTC)
     except ImportError:
         raise UnavailableError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
-    except ValueError as error:  # MPLBACKEND names no backend
+    except (ValueError, OverflowError) as error:  # MPLBACKEND or SOURCE_DATE_EPOCH is wrong
         raise UnavailableError(f"matplotlib cannot start: {error}") from None
 
 

@@ -221,10 +221,15 @@ def test_ctrl_c_while_modules_are_imported(module: str) -> None:
 @pytest.mark.parametrize(
     ("settings", "line", "code", "said"),
     [
-        ("MPLBACKEND=nonsense", "plot -o {}/a.png", 2, "'nonsense' is not a valid value"),
-        ("SOURCE_DATE_EPOCH=abc", "plot -o {}/a.pdf", 2, "SOURCE_DATE_EPOCH"),
+        ("MPLBACKEND=nonsense", "plot -o {}/a.png", 69, "'nonsense' is not a valid value"),
+        (
+            "SOURCE_DATE_EPOCH=abc",
+            "plot -o {}/a.pdf",
+            69,
+            "invalid literal for int() with base 10: 'abc'",
+        ),
         ("_LAGTOP_COMPLETE=bash_complete", "", 2, "_LAGTOP_COMPLETE needs"),
-        ("ulimit -v 600000;", "sweep --r0 1:9:20000000 -o {}/a.csv", 69, "out of memory"),
+        ("ulimit -v 250000;", "table --n 100000 --format json -o {}/a.json", 69, "out of memory"),
     ],
 )
 def test_bad_surroundings_end_in_one_line(
