@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.ball import balls, exact_fraction, pi_to
 from ..inputs.top import Top
-from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives
+from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, size_of
 from .quantity import degree_name
 from .record import TEXT_KEYS
 from .solve import Motion
@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
 _CONTEXT = Context(prec=40)
-_TWO_DIGITS = 1e-4
-"""Largest error of the uncertainty of an angle, of which two digits are printed."""
+_TWO_DIGITS, _NEGLIGIBLE = 1e-4, 1e-11
+"""Largest errors of the uncertainty of an angle: relative, and over the largest relative one of an
+input."""
 
 
 class Contribution(NamedTuple):
@@ -170,8 +171,12 @@ class AngleStds:
         Where the rounding errors of differences would show, proved rows give the derivatives.
         """
         found, slopes = self._from(self.derivatives.at(t)), self.derivatives
-        noise = sum(abs(x) * slopes.noise[name] for row in self.changes for name, x in row.items())
-        doubtful = ((found > 0) & (noise > _TWO_DIGITS * found)).any(axis=0)
+        changes = [(name, abs(x)) for row in self.changes for name, x in row.items()]
+        noise = sum(x * slopes.noise[name] for name, x in changes)
+        least = _NEGLIGIBLE * max(
+            (x / size_of(self.motion, name) for name, x in changes), default=0
+        )
+        doubtful = ((found > 0) & (noise > _TWO_DIGITS * found + least)).any(axis=0)
         if doubtful.any():
             found[:, doubtful] = self._from(slopes.in_digits(t[doubtful]))
         return found
