@@ -185,7 +185,9 @@ class Numbers:
         from .over_time.sampling import sampler_of  # start-up: loads NumPy
 
         if self._sampler is None:
-            self._sampler = sampler_of(self.sharp())
+            self._sampler = decided(  # a start of many digits may need more of them
+                "the angles", lambda digits: sampler_of(self.sharp(digits - 10)), SAMPLER_DIGITS
+            )
         return self._sampler
 
 

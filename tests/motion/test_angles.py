@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import random
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,8 @@ from lagtop import LagtopError, Motion, Regime, Top, solve
 from scenes import UNIT, period
 
 from lagrange_cli.arithmetic.arrays import BLOCK
+from lagrange_cli.inputs.names import ANGLES
+from lagrange_cli.motion.over_time.tables import ProvedTable
 
 
 @pytest.mark.parametrize("r0", [50, -50, 60, -1])
@@ -263,3 +266,12 @@ def test_wrapped_angles_stay_in_their_interval() -> None:
     assert (phi > -math.pi).all()
     assert (phi <= math.pi).all()
     assert motion.angles([3.0], wrap=True).phi[0] == 3.0
+
+
+def test_the_angles_of_a_start_with_many_digits() -> None:
+    """Roots that are 1e-51 apart: 40 digits decide no mean rate."""
+    start = {"r0": 1, "theta0_deg": 90, "thetadot0": 1, "psidot0": 1 + Fraction(1, 10**51)}
+    motion = solve(Top(**UNIT | start))
+    for t in (0.3, 77.7):
+        proved = [x.value for x in ProvedTable(motion, ANGLES, radians=True).row(Fraction(t))]
+        np.testing.assert_allclose(np.array(motion.angles(t)), proved, rtol=1e-15)
