@@ -187,8 +187,7 @@ def _read_arrays(content: bytes, name: str, kind: str) -> ArrayTable:
         remedy = "pip install 'lagtop[parquet]'"
         raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
     except Exception as error:  # no library lists its exceptions
-        printable = "".join(x if x.isprintable() else " " for x in str(error))
-        why = shortened(" ".join(printable.split()), 100) or type(error).__name__
+        why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
         article = "a" if kind == "Parquet" else "an"
         raise DataError(f"{name}: not {article} {kind} file: {why}") from None
     real = {x: y for x, y in found.items() if y.dtype.kind in "iuf" and y.ndim in {1, 2}}

@@ -85,12 +85,12 @@ def read_by_all(path: str) -> None:
         except LagtopError as error:
             found = error
         assert found is None or isinstance(found, DataError) or found.key == "columns", found
-        assert str(found).isprintable()
+        assert "\n" not in str(found)  # the command line escapes other characters
 
 
 @pytest.mark.filterwarnings("ignore::lagrange_cli.errors.MixedBodyWarning")
 @given(CONTENTS)
-@settings(max_examples=60)
+@settings(max_examples=60, derandomize=True)
 def test_any_bytes_end_in_rows_or_in_one_line(
     tmp_path_factory: pytest.TempPathFactory, content: bytes
 ) -> None:
