@@ -270,8 +270,9 @@ def test_wrapped_angles_stay_in_their_interval() -> None:
 
 def test_the_angles_of_a_start_with_many_digits() -> None:
     """Roots that are 1e-51 apart: 40 digits decide no mean rate."""
-    start = {"r0": 1, "theta0_deg": 90, "thetadot0": 1, "psidot0": 1 + Fraction(1, 10**51)}
+    start: dict[str, Any] = {"r0": 1, "theta0_deg": 90, "thetadot0": 1}
+    start["psidot0"] = 1 + Fraction(1, 10**51)
     motion = solve(Top(**UNIT | start))
     for t in (0.3, 77.7):
         proved = [x.value for x in ProvedTable(motion, ANGLES, radians=True).row(Fraction(t))]
-        np.testing.assert_allclose(np.array(motion.angles(t)), proved, rtol=1e-15)
+        np.testing.assert_allclose(np.array(motion.angles(t)), proved, rtol=2e-15)
