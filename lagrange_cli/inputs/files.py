@@ -32,8 +32,6 @@ def read_bytes(path: str, most: int = LARGEST_FILE) -> bytes:
             content = _decompressed(content, most)
     except OSError as error:
         raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
-    if len(content) > most:
-        raise DataError(f"{shown_path(path)} must have at most {most} bytes, has more")
     return content
 
 
@@ -52,11 +50,13 @@ def _opened(path: str) -> Iterator[BinaryIO]:
 
 
 def _read_whole(file: BinaryIO, most: int) -> bytes:
-    """Return the bytes of a file, or a little more than `most` of them."""
+    """Return the bytes of a file.  Raises OSError for more than `most` of them."""
     chunks, size = list[bytes](), 0
-    while size <= most and (chunk := file.read(_AT_ONCE)):
+    while chunk := file.read(_AT_ONCE):
         chunks.append(chunk)
         size += len(chunk)
+        if size > most:
+            raise OSError(f"it must have at most {most} bytes, has more")
     return b"".join(chunks)
 
 
