@@ -16,7 +16,7 @@ from scenes import UNIT
 
 from lagrange_cli.arithmetic.ball import balls
 from lagrange_cli.motion.over_time import series
-from lagrange_cli.motion.over_time.series import Polar, evaluate, theta_series
+from lagrange_cli.motion.over_time.series import evaluate, theta_series
 
 DIGITS = 120
 TOPS: dict[str, dict[str, Any]] = {
@@ -29,7 +29,7 @@ TOPS: dict[str, dict[str, Any]] = {
 PHASES = [(0, "-0.5"), (0, "0.31"), (0, "0.75"), (1, "-0.75"), (1, "0.2")]
 
 
-def evaluations(inputs: dict[str, Any], terms: int) -> Iterator[tuple[Polar, Polar, arb]]:
+def evaluations(inputs: dict[str, Any], terms: int) -> Iterator[tuple[Any, Any, arb]]:
     """Yield X and Y by a short and by a long series, and (|Y|/|X|)^2 by theta functions."""
     motion: Any = solve(Top(**UNIT | inputs)).kind(DIGITS)
     short, long = (theta_series(motion, count) for count in (terms, 14))
@@ -51,9 +51,9 @@ def test_a_series_cut_short_holds_the_truth(name: str, terms: int) -> None:
     with balls(DIGITS):
         for short, long, square in evaluations(TOPS[name], terms):
             for found in (short, long):
-                ratio = found.y.x / found.x.x
+                ratio = found[2].x / found[0].x
                 assert (ratio * ratio).overlaps(square)
-            for one, whole in ((short.arg_x, long.arg_x), (short.arg_y, long.arg_y)):
+            for one, whole in ((short[1], long[1]), (short[3], long[3])):
                 assert one.x.overlaps(whole.x)
                 assert whole.x.rad() < 1e-60
 
@@ -69,5 +69,5 @@ def test_the_bound_of_the_series_is_needed(monkeypatch: pytest.MonkeyPatch) -> N
     with balls(DIGITS):
         for name in ("k^2 = 0.46", "k^2 = 0.73"):
             for short, long, _ in evaluations(TOPS[name], 3):
-                missed += not short.arg_x.x.overlaps(long.arg_x.x)
+                missed += not short[1].x.overlaps(long[1].x)
     assert missed >= 5

@@ -157,15 +157,11 @@ def near(x: Any) -> float:
 
 
 class Attitude:
-    """X and Y at a block of times, up to a common factor, as parts of them that columns need."""
+    """X and Y at a block of times, up to a common factor; parts are computed on first use.
 
-    tilt: Any
-    moduli: Any
-    """|X|^2 and |Y|^2."""
-    args: Any
-    """The periodic parts of arg X and arg Y, that is, without their mean rates times t."""
-    rate: Any
-    """2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
+    By the series of a nutating top, about the nearer turning point.  Times are ordered by that
+    point while the series are evaluated.
+    """
 
     def __init__(self, sampler: Any, t: Array, farthest: float, space: Array, **parts: Any) -> None:
         """Take a sampler, times with a bound of |t|, work arrays, and the parts that are known."""
@@ -182,133 +178,6 @@ class Attitude:
 
     def _grown(self, growth: Growth, periodic: Array, wrap: bool) -> Array:
         return (growth.wrapped if wrap else growth.unwrapped)(periodic, self)
-
-
-class Sampler:
-    """The angles of one motion as functions of time, with constants that are computed once."""
-
-    max_time: float
-
-    def __init__(
-        self, motion: Kind[Any], rates: tuple[Any, Any], starts: tuple[Any, Any] = (0, 0)
-    ) -> None:
-        """Take a motion, the mean rates of spin and precession, and arg X and arg Y at t = 0.
-
-        The rates are separate, because sums and differences lose a much smaller rate.
-        """
-        self.ar, self._rates, self._starts = motion.ar, rates, starts
-        (phi, psi), (x, y) = rates, starts
-        self.phi, self.psi = growth_of(self.ar, phi, x - y), growth_of(self.ar, psi, x + y)
-        self.tilt = near(2 * self.ar.atan2(motion.state.sin_half, motion.state.cos_half))
-
-    @cached_property
-    def halves(self) -> tuple[Growth, Growth]:
-        """The growths of arg X and arg Y, which few columns need."""
-        (phi, psi), (x, y) = self._rates, self._starts
-        with self.ar.working():
-            return growth_of(self.ar, (psi + phi) / 2, x), growth_of(self.ar, (psi - phi) / 2, y)
-
-    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
-        """Return tilt, spin and precession at the times t; see `Motion.angles`."""
-        times = doubles_of("t", t)
-        flat = np.ascontiguousarray(times).reshape(-1)
-        angles = np.empty((3, flat.size))
-        with ARRAYS.working():
-            for part, at in self.attitudes(flat):
-                angles[0, part] = at.tilt
-                at.phi(wrap=wrap, out=angles[1, part])
-                at.psi(wrap=wrap, out=angles[2, part])
-        angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
-        return Angles(*(angle.reshape(times.shape) for angle in angles))
-
-    def waves(self, t: Array) -> Array:
-        """Return the tilt and the periodic parts of spin and precession, of shape (3, times)."""
-        found = np.empty((3, t.size))
-        with ARRAYS.working():
-            for part, at in self.attitudes(t):
-                found[0, part] = at.tilt
-                self.phi.since_start(np.subtract(at.args[0], at.args[1], out=found[1, part]))
-                self.psi.since_start(np.add(at.args[0], at.args[1], out=found[2, part]))
-        return found
-
-    def attitudes(self, t: Array) -> Iterator[tuple[slice, Attitude]]:
-        """Yield the attitude at blocks of times; each overwrites the one before.
-
-        Raises LagtopError for a time that is out of range.
-        """
-        farthest, space = self.check(t), np.empty((_ROWS, min(t.size, BLOCK)))
-        for part in blocks(t.size):
-            block = t[part]
-            with ARRAYS.working():
-                attitude = self.attitude(block, farthest, space[:, : block.size])
-            yield part, attitude
-
-    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude at a block of times, none beyond `farthest`."""
-        raise NotImplementedError
-
-    def check(self, t: ArrayLike, name: str = "t") -> float:
-        """Return the greatest |t|.
-
-        Raises LagtopError, with the `name` of the argument, if a time is not finite or too large.
-        """
-        times, limit = doubles_of("t", t), min(self.max_time, MAX_TIME)
-        if not times.size:
-            return 0.0
-        low, high = float(times.min()), float(times.max())
-        if low >= -limit and high <= limit:
-            return max(-low, high)
-        bad = times[~(abs(times) <= limit)]
-        raise LagtopError(
-            f"{name} must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", name
-        )
-
-
-class ConstantSampler(Sampler):
-    """A constant tilt and constant rates of spin and precession."""
-
-    def __init__(self, motion: Constant[Any]) -> None:
-        rates = motion.mean_spin_rate, motion.state.psi_rate
-        super().__init__(motion, rates)
-        self.x, self.y = near(motion.state.cos_half), near(motion.state.sin_half)
-        self.max_time = _reach(rates)
-
-    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude, which has no phase."""
-        tilt, *moduli = (np.full_like(t, x) for x in (self.tilt, self.x**2, self.y**2))
-        zero = np.zeros_like(t)
-        parts = {"tilt": tilt, "moduli": moduli, "args": (zero, zero), "rate": zero}
-        return Attitude(self, t, farthest, space, **parts)
-
-
-class SeparatrixSampler(Sampler):
-    """The single swing from the upright position down and up again: k = 1, T infinite."""
-
-    def __init__(self, motion: Separatrix[Any]) -> None:
-        offset, x, y, start = separatrix_constants(motion)
-        speed = motion.argument_rate
-        rates = motion.r0 - motion.b / 2, motion.b / 2
-        super().__init__(motion, rates, (start, 0))
-        self.speed, self.offset, self.x, self.y = map(near, (speed, offset, x, y))
-        self.max_time = _reach((*rates, speed))
-
-    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude: 1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
-        h = t * self.speed + self.offset
-        shrink = np.exp(-np.abs(h))
-        sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
-        real, imag, y = np.full_like(h, self.x), self.y * tanh, self.y * sech
-        x2, y2 = real * real + imag * imag, y * y
-        args, rate = (np.arctan2(imag, real), np.zeros_like(h)), -4.0 * self.speed * y2 * tanh
-        parts = {"tilt": tilt_of(x2, y2, h), "moduli": (x2, y2), "args": args, "rate": rate}
-        return Attitude(self, t, farthest, space, **parts)
-
-
-class ThetaAttitude(Attitude):
-    """The attitude of a nutating top, by the series about the nearer turning point.
-
-    Times are ordered by that point while the series are evaluated.
-    """
 
     @cached_property
     def functions(self) -> tuple[Array, Array, Array, Array]:
@@ -375,10 +244,12 @@ class ThetaAttitude(Attitude):
         argument = self.functions[0]
         args = np.divide(self.parts[1::2], self.parts[::2], out=self.space[14:16])
         np.arctan(args, out=args)
-        if self.sampler.over_a_pole:
+        if self.sampler.over_a_pole and np.isnan(args).any():
+            # 0/0 next to a pole: the real part is proportional to s, the imaginary part to S
             for _, rows, frame in self._pieces:
-                for side, part in zip(args[:, rows], frame.parts[1::2], strict=True):
-                    _settle_on_the_pole(side, part[0], argument[rows])
+                for side, (slope, *_) in zip(args[:, rows], frame.parts[1::2], strict=True):
+                    quarter = np.sign(slope) * np.sign(argument[rows]) * (np.pi / 2)
+                    np.copyto(side, quarter, where=np.isnan(side))
         for i, slope in enumerate(self.sampler.slopes):
             args[i] += np.multiply(argument, slope, out=self.space[3])
         return self._placed(args[0], 20), self._placed(args[1], 21)
@@ -413,18 +284,135 @@ class ThetaAttitude(Attitude):
         return self._placed(rate, 25)
 
 
+class Sampler:
+    """The angles of one motion as functions of time, with constants that are computed once."""
+
+    max_time: float
+
+    def __init__(
+        self, motion: Kind[Any], rates: tuple[Any, Any], starts: tuple[Any, Any] = (0, 0)
+    ) -> None:
+        """Take a motion, the mean rates of spin and precession, and arg X and arg Y at t = 0.
+
+        The rates are separate, because sums and differences lose a much smaller rate.
+        """
+        self.ar, self._rates, self._starts = motion.ar, rates, starts
+        (phi, psi), (x, y) = rates, starts
+        self.phi, self.psi = growth_of(self.ar, phi, x - y), growth_of(self.ar, psi, x + y)
+        self.tilt = near(2 * self.ar.atan2(motion.state.sin_half, motion.state.cos_half))
+
+    @cached_property
+    def halves(self) -> tuple[Growth, Growth]:
+        """The growths of arg X and arg Y, which few columns need."""
+        (phi, psi), (x, y) = self._rates, self._starts
+        with self.ar.working():
+            return growth_of(self.ar, (psi + phi) / 2, x), growth_of(self.ar, (psi - phi) / 2, y)
+
+    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
+        """Return tilt, spin and precession at the times t; see `Motion.angles`."""
+        times = doubles_of("t", t)
+        flat = np.ascontiguousarray(times).reshape(-1)
+        angles = np.empty((3, flat.size))
+        with ARRAYS.working():
+            for part, at in self.attitudes(flat):
+                angles[0, part] = at.tilt
+                at.phi(wrap=wrap, out=angles[1, part])
+                at.psi(wrap=wrap, out=angles[2, part])
+        angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
+        return Angles(*(angle.reshape(times.shape) for angle in angles))
+
+    def waves(self, t: Array) -> Array:
+        """Return the tilt and the periodic parts of spin and precession, of shape (3, times)."""
+        found = np.empty((3, t.size))
+        with ARRAYS.working():
+            for part, at in self.attitudes(t):
+                found[0, part] = at.tilt
+                self.phi.since_start(np.subtract(at.args[0], at.args[1], out=found[1, part]))
+                self.psi.since_start(np.add(at.args[0], at.args[1], out=found[2, part]))
+        return found
+
+    def attitudes(self, t: Array) -> Iterator[tuple[slice, Attitude]]:
+        """Yield the attitude at blocks of times; each overwrites the one before.
+
+        Raises LagtopError for a time that is out of range.
+        """
+        farthest, space = self.check(t), np.empty((_ROWS, min(t.size, BLOCK)))
+        for part in blocks(t.size):
+            block = t[part]
+            with ARRAYS.working():
+                attitude = self.attitude(block, farthest, space[:, : block.size])
+            yield part, attitude
+
+    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
+        """Return the attitude at a block of times, none beyond `farthest`."""
+        return Attitude(self, t, farthest, space)
+
+    def check(self, t: ArrayLike, name: str = "t") -> float:
+        """Return the greatest |t|.
+
+        Raises LagtopError, with the `name` of the argument, if a time is not finite or too large.
+        """
+        times, limit = doubles_of("t", t), min(self.max_time, MAX_TIME)
+        if not times.size:
+            return 0.0
+        low, high = float(times.min()), float(times.max())
+        if low >= -limit and high <= limit:
+            return max(-low, high)
+        bad = times[~(abs(times) <= limit)]
+        raise LagtopError(
+            f"{name} must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", name
+        )
+
+
+class ConstantSampler(Sampler):
+    """A constant tilt and constant rates of spin and precession."""
+
+    def __init__(self, motion: Constant[Any]) -> None:
+        rates = motion.mean_spin_rate, motion.state.psi_rate
+        super().__init__(motion, rates)
+        self.x, self.y = near(motion.state.cos_half), near(motion.state.sin_half)
+        self.max_time = _reach(rates)
+
+    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
+        """Return the attitude, which has no phase."""
+        tilt, *moduli = (np.full_like(t, x) for x in (self.tilt, self.x**2, self.y**2))
+        zero = np.zeros_like(t)
+        parts = {"tilt": tilt, "moduli": moduli, "args": (zero, zero), "rate": zero}
+        return Attitude(self, t, farthest, space, **parts)
+
+
+class SeparatrixSampler(Sampler):
+    """The single swing from the upright position down and up again: k = 1, T infinite."""
+
+    def __init__(self, motion: Separatrix[Any]) -> None:
+        offset, x, y, start = separatrix_constants(motion)
+        speed = motion.argument_rate
+        rates = motion.r0 - motion.b / 2, motion.b / 2
+        super().__init__(motion, rates, (start, 0))
+        self.speed, self.offset, self.x, self.y = map(near, (speed, offset, x, y))
+        self.max_time = _reach((*rates, speed))
+
+    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
+        """Return the attitude: 1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
+        h = t * self.speed + self.offset
+        shrink = np.exp(-np.abs(h))
+        sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
+        real, imag, y = np.full_like(h, self.x), self.y * tanh, self.y * sech
+        x2, y2 = real * real + imag * imag, y * y
+        args, rate = (np.arctan2(imag, real), np.zeros_like(h)), -4.0 * self.speed * y2 * tanh
+        parts = {"tilt": tilt_of(x2, y2, h), "moduli": (x2, y2), "args": args, "rate": rate}
+        return Attitude(self, t, farthest, space, **parts)
+
+
 class ThetaSampler(Sampler):
     """Sampler of a nutating top, by its theta series."""
 
     def __init__(self, motion: Nutating[Any]) -> None:
         ar: Any = motion.ar
         series, period = theta_series(motion), motion.T_nutation
-        at = evaluate(ar, series, 0, series.offset, direction(motion))
-        x, y = (
-            start + slope * series.offset
-            for start, slope in zip((at.arg_x, at.arg_y), series.slopes, strict=True)
-        )
-        super().__init__(motion, (motion.mean_spin_rate, motion.mean_precession_rate), (x, y))
+        _, x, _, y = evaluate(ar, series, 0, series.offset, direction(motion))
+        starts = x + series.slopes[0] * series.offset, y + series.slopes[1] * series.offset
+        super().__init__(motion, (motion.mean_spin_rate, motion.mean_precession_rate), starts)
         self.max_time = near(int(MAX_PERIODS) * period)
         self.step = period_of(pair((period / 2).middle), near(2 / period))
         """Half the period of the nutation."""
@@ -442,10 +430,6 @@ class ThetaSampler(Sampler):
         """The series about the turning points of the even and of the odd steps."""
         self.over_a_pole = not all(part[0] for frame in self.frames for part in frame.parts[::2])
         """Whether the axis passes over a pole: a first real coefficient of X or Y is then 0."""
-
-    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude, whose parts are computed on first use."""
-        return ThetaAttitude(self, t, farthest, space)
 
 
 def sampler_of(motion: Kind[Any]) -> Sampler:
@@ -476,16 +460,6 @@ def _kept(ar: Any, frame: Frame, greatest: Any) -> Frame:
 
     parts = tuple(kept(part, factor) for part in frame.parts)
     return Frame(parts, kept(frame.rate, power(factor, 4)))
-
-
-def _settle_on_the_pole(arguments: Array, slope: float, x: Array) -> None:
-    """Write the argument of X or Y if both parts are 0, or too small for doubles.
-
-    The argument is 0 on the pole.  Next to the pole it is a quarter turn with the sign of x.  The
-    real part is there proportional to s, the imaginary part to S.
-    """
-    vanish = np.isnan(arguments)
-    arguments[vanish] = np.sign(slope) * np.sign(x[vanish]) * (np.pi / 2)
 
 
 def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> None:

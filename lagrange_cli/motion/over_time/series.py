@@ -203,20 +203,12 @@ def _polynomials(family: Family, count: int) -> list[list[int]]:
     return found[:count]
 
 
-class Polar(NamedTuple):
-    """|X| and |Y|, up to a common factor, and arg X and arg Y, both less their growth."""
+def evaluate(ar: Any, series: Series, step: int, phase: Any, rises: int) -> tuple[Any, ...]:
+    """Return |X|, arg X, |Y| and arg Y at a phase counted from a step, in many digits.
 
-    x: Any
-    arg_x: Any
-    y: Any
-    arg_y: Any
-
-
-def evaluate(ar: Any, series: Series, step: int, phase: Any, rises: int) -> Polar:
-    """Return X and Y at a phase counted from a step, in many digits.
-
-    On the upper pole Y = 0.  Its argument is then the limit from later times if the tilt `rises`,
-    else from earlier times.  On the lower pole, where X = 0, the limits are exchanged.
+    The moduli have a common factor, and the arguments lack their growth.  On the upper pole Y = 0.
+    Its argument is then the limit from later times if the tilt `rises`, else from earlier times.
+    On the lower pole, where X = 0, the limits are exchanged.
     """
     z, even = phase * series.scale, (step + series.first) % 2
     frame = series.frames[step % 2]
@@ -235,7 +227,7 @@ def evaluate(ar: Any, series: Series, step: int, phase: Any, rises: int) -> Pola
         if not (real or S):  # on the pole: the limit
             along = side * frame.parts[2 * which + 1][0]
         found += [ar.sqrt(real * real + along * along), ar.atan2(along, real)]
-    return Polar(*found)
+    return tuple(found)
 
 
 def periods_since_top(motion: Nutating[R]) -> R:
@@ -268,21 +260,12 @@ def direction(motion: Kind[R]) -> int:
     return -1 if motion.state.theta_rate < 0 else 1
 
 
-class SeparatrixConstants(NamedTuple, Generic[R]):
-    """The constants of a motion on the separatrix, about its lowest point."""
+def separatrix_constants(motion: Separatrix[Any]) -> tuple[Any, Any, Any, Any]:
+    """Return the constants of a motion on the separatrix, about its lowest point.
 
-    offset: R
-    """The argument h at t = 0."""
-    x: R
-    """cos(theta_max/2)."""
-    y: R
-    """sin(theta_max/2), with the sign of b."""
-    start: R
-    """arg X at t = 0."""
-
-
-def separatrix_constants(motion: Separatrix[Any]) -> SeparatrixConstants[Any]:
-    """Return the constants of a motion on the separatrix, about its lowest point."""
+    They are the argument h at t = 0, cos(theta_max/2), sin(theta_max/2) with the sign of b, and
+    arg X at t = 0.
+    """
     ar: Any = motion.ar
     gaps, falls = motion.gaps, direction(motion)
     offset = 0 * gaps.u_u2  # exactly 0 at the lowest point
@@ -291,7 +274,7 @@ def separatrix_constants(motion: Separatrix[Any]) -> SeparatrixConstants[Any]:
     x, y = ar.sqrt(gaps.below_u2 / 2), ar.sqrt(gaps.above_u2 / 2)
     y = -y if motion.b < 0 else y
     side = ar.sinh(offset) / ar.cosh(offset) if offset or x else -falls  # on the lower pole
-    return SeparatrixConstants(offset, x, y, ar.atan2(y * side, x))
+    return offset, x, y, ar.atan2(y * side, x)
 
 
 class Swing(NamedTuple, Generic[R]):
@@ -307,7 +290,7 @@ def swing_of(motion: Separatrix[Any]) -> Swing[Any]:
     """Return the swing of a motion on the separatrix."""
     with motion.ar.working():
         rate = motion.argument_rate
-        return Swing(rate, -separatrix_constants(motion).offset / rate)
+        return Swing(rate, -separatrix_constants(motion)[0] / rate)
 
 
 class Pose(NamedTuple, Generic[R]):
@@ -360,19 +343,19 @@ def _nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
         hundredths = max(ar.nint(100 * (x / y)) for x, y in ((K, K_prime), (K_prime, K)))
         terms += math.isqrt(int(ar.digits * math.log(10) / math.pi * 100 / hundredths))
     series, rises = theta_series(motion, terms), direction(motion)
-    start = evaluate(ar, series, 0, series.offset, rises)
+    _, first_x, _, first_y = evaluate(ar, series, 0, series.offset, rises)
 
     def pose(t: R) -> Pose[R]:
         passed = t / motion.T_nutation * 2 + series.offset
         step = ar.nint(passed)
         phase = passed - step
-        at = evaluate(ar, series, step, phase, rises)
+        x, arg_x, y, arg_y = evaluate(ar, series, step, phase, rises)
         x_slope, y_slope = ((phase - series.offset) * slope for slope in series.slopes)
-        plus, minus = x_slope + (at.arg_x - start.arg_x), y_slope + (at.arg_y - start.arg_y)
+        plus, minus = x_slope + (arg_x - first_x), y_slope + (arg_y - first_y)
         phi = t * motion.mean_spin_rate + (plus - minus)
         psi = t * motion.mean_precession_rate + (plus + minus)
         about_u2 = (step + series.first) % 2
-        return Pose(at.x, at.y, phi, psi, -phase if about_u2 else phase)
+        return Pose(x, y, phi, psi, -phase if about_u2 else phase)
 
     return pose
 
@@ -391,15 +374,15 @@ def _constant_pose(motion: Constant[R]) -> Callable[[R], Pose[R]]:
 def _separatrix_pose(motion: Separatrix[R]) -> Callable[[R], Pose[R]]:
     """Return the attitude on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset."""
     ar: Any = motion.ar
-    swing = separatrix_constants(motion)
+    offset, real, y, start = separatrix_constants(motion)
 
     def pose(t: R) -> Pose[R]:
-        h = motion.argument_rate * t + swing.offset
-        real, imag = swing.x, swing.y * ar.tanh(h)
-        turned = ar.atan2(imag, real) - swing.start if t else 0 * t
+        h = motion.argument_rate * t + offset
+        imag = y * ar.tanh(h)
+        turned = ar.atan2(imag, real) - start if t else 0 * t
         half_b = motion.b * t / 2
         phi, psi = motion.r0 * t - half_b + turned, half_b + turned
         x = ar.sqrt(real * real + imag * imag)
-        return Pose(x, abs(swing.y) * ar.sech(h), phi, psi, -h)
+        return Pose(x, abs(y) * ar.sech(h), phi, psi, -h)
 
     return pose
