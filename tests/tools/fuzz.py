@@ -207,18 +207,22 @@ def by_mpmath(top: Top, digits: int) -> tuple[dict[str, Any], Reference]:
 def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[float]) -> None:
     """Judge numbers and attitudes by `Reference`, which shares no formula with lagtop.
 
-    Numbers that differ in 50 and in 100 digits are left out.
+    Numbers that differ in 80 and in 240 digits, and zeros, are left out.
     """
     facts = motion.exact.facts
     if facts.free or facts.steady or facts.meets_a_pole or not motion.T_nutation:
         return
-    (rough, _), (exact, reference) = (by_mpmath(motion.top, count) for count in (50, 100))
+    try:
+        (exact, _), (rough, reference) = (by_mpmath(motion.top, count) for count in (240, 80))
+    except ZeroDivisionError:  # next to a pole
+        tally.counts["too few digits in mpmath"] += 1
+        return
     record = motion.record(digits=digits or None, keys=list(exact))
-    with mpmath.workdps(100):
+    with mpmath.workdps(240):
         for key, value in exact.items():
             text = record[key]
             unit = _last_digit(text, digits) if digits else mpmath.mpf(math.ulp(text))
-            if abs(value - rough[key]) > unit / 10**9:
+            if not value or abs(value - rough[key]) > unit / 10**9:
                 tally.counts["too few digits in mpmath"] += 1
                 continue
             tally.counts["numbers by mpmath"] += 1
