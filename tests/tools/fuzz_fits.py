@@ -18,6 +18,7 @@ errors: its binomial standard deviation times CHANCE is the bound, for each numb
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 import time
@@ -31,7 +32,6 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
 
-from campaign import options
 from engines import Array, Body, dop853
 from lagtop import LagtopError, Top, fit
 from scipy.spatial.transform import Rotation
@@ -179,7 +179,9 @@ def judged(seed: int) -> Verdict:
 
 def main() -> int:
     """Judge some recordings, write the counts, and return the exit code."""
-    parser = options(__doc__, recordings=500, jobs=2)
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    for name, default in {"recordings": 500, "jobs": 2, "seed": 1}.items():
+        parser.add_argument(f"--{name}", type=int, default=default, help=f"[default: {default}]")
     parser.add_argument("--show", action="store_true", help="show every fit")
     given = parser.parse_args()
     seeds = range(given.seed, given.seed + given.recordings)
