@@ -176,6 +176,11 @@ class Attitude:
         """Return the precession, arg X + arg Y; if `wrap`, in (-pi, pi]."""
         return self._grown(self.sampler.psi, np.add(self.args[0], self.args[1], out=out), wrap)
 
+    def waves(self) -> tuple[Array, Array]:
+        """Return the periodic parts of spin and precession, (6,4) and (7,4)."""
+        x, y = self.args
+        return self.sampler.phi.since_start(x - y), self.sampler.psi.since_start(x + y)
+
     def _grown(self, growth: Growth, periodic: Array, wrap: bool) -> Array:
         return (growth.wrapped if wrap else growth.unwrapped)(periodic, self)
 
@@ -326,9 +331,7 @@ class Sampler:
         found = np.empty((3, t.size))
         with ARRAYS.working():
             for part, at in self.attitudes(t):
-                found[0, part] = at.tilt
-                self.phi.since_start(np.subtract(at.args[0], at.args[1], out=found[1, part]))
-                self.psi.since_start(np.add(at.args[0], at.args[1], out=found[2, part]))
+                found[:, part] = at.tilt, *at.waves()
         return found
 
     def attitudes(self, t: Array) -> Iterator[tuple[slice, Attitude]]:

@@ -64,15 +64,8 @@ class Sample(Parts[Array]):
     within = quantity[Any](lambda at: at.attitude.phi(wrap=True))
     around = quantity[Any](lambda at: at.attitude.psi(wrap=True))
 
-    @property
-    def spin_wave(self) -> Any:
-        """The periodic part of the spin (6,4)."""
-        return self.attitude.sampler.phi.since_start(np.subtract(*self.attitude.args))
-
-    @property
-    def precession_wave(self) -> Any:
-        """The periodic part of the precession (7,4)."""
-        return self.attitude.sampler.psi.since_start(np.add(*self.attitude.args))
+    spin_wave = property(lambda at: at.attitude.waves()[0])
+    precession_wave = property(lambda at: at.attitude.waves()[1])
 
     @quantity
     def thetadot(self) -> Any:
@@ -232,11 +225,7 @@ class BallSample(Parts[Ball]):
         self.sizes, self.moduli = (at.x, at.y), (at.x * at.x, at.y * at.y)
         self.within, self.around = self.spin, self.precession = at.phi, at.psi
 
-    @property
-    def tilt(self) -> Any:
-        """The angle theta."""
-        x, y = self.sizes
-        return 2 * self.ar.atan2(y, x)
+    tilt = property(lambda at: 2 * at.ar.atan2(at.sizes[1], at.sizes[0]))
 
     def over(self, value: Ball, divisor: Ball) -> Ball:
         """Return a quotient, and 0 if the value is exactly 0."""
@@ -249,24 +238,18 @@ class BallSample(Parts[Ball]):
             return ar.pi * int(ar.nint(angle / ar.pi) % 2)
         return angle - 2 * ar.pi * int(ar.ceiling(angle / (2 * ar.pi) - ar.convert(0.5)))
 
-    @property
-    def spin_wave(self) -> Ball:
-        """The periodic part of the spin (6,4)."""
-        return self._periodic(self.within, "mean_spin_rate", self.kind.state.spin_drift)
+    spin_wave = property(lambda at: at.periodic(at.within, "mean_spin_rate"))
+    precession_wave = property(lambda at: at.periodic(at.around, "mean_precession_rate"))
 
-    @property
-    def precession_wave(self) -> Ball:
-        """The periodic part of the precession (7,4)."""
-        return self._periodic(self.around, "mean_precession_rate", self.kind.b / 2)
-
-    def _periodic(self, angle: Ball, name: str, limit: Ball) -> Ball:
+    def periodic(self, angle: Ball, name: str) -> Ball:
         """Return an angle less its mean rate times t; on the separatrix the rate is its limit."""
         if isinstance(self.kind, Constant):
             return 0 * self.t
-        if not isinstance(self.kind, Separatrix) and self.motion.is_zero(name):
-            return angle
-        rate = limit if isinstance(self.kind, Separatrix) else getattr(self.kind, name)
-        return angle - rate * self.t
+        if isinstance(self.kind, Separatrix):
+            half_b = self.kind.b / 2
+            rate = half_b if name == "mean_precession_rate" else self.kind.state.spin_drift
+            return angle - rate * self.t
+        return angle if self.motion.is_zero(name) else angle - getattr(self.kind, name) * self.t
 
     @quantity
     def thetadot(self) -> Any:
