@@ -169,9 +169,9 @@ class FunctionTable(TableOfFunctions):
         am, sn, cn, dn = functions.jacobi(u)
         if am is not None and not self.request.radians:
             am = am * 180 / arb.pi()
-        odd = {self.request.am: am, "sn": sn}
-        found = {name: _on_axes(z, u, odd=True) for name, z in odd.items()}
-        return found | {"cn": _on_axes(cn, u), "dn": _on_axes(dn, u)}
+        axes, odd = u.axes, {self.request.am: am, "sn": sn}
+        found = {name: _on_axes(z, axes, odd=True) for name, z in odd.items()}
+        return found | {"cn": _on_axes(cn, axes), "dn": _on_axes(dn, axes)}
 
     def _third(self, functions: Functions, u: Point) -> dict[str, acb | None]:
         """Return Omega and Pi in the order of the families, or their imaginary parts."""
@@ -200,7 +200,7 @@ def _real_parts(numbers: dict[str, acb | None]) -> dict[str, Value]:
 
 def _of_argument(functions: Functions, u: Point, family: str) -> dict[str, acb | None]:
     """Return the theta or the Zeta functions of u."""
-    kind = functions.kind
+    kind, axes = functions.kind, u.axes
     values: Mapping[str, acb | None]
     if family == "zeta":
         values = functions.zetas(u)
@@ -211,19 +211,19 @@ def _of_argument(functions: Functions, u: Point, family: str) -> dict[str, acb |
             ij: kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0") for ij in INDICES
         }
     return {
-        f"{family}{ij}": _on_axes(z, u, odd=family == "zeta" or ij == "11")
+        f"{family}{ij}": _on_axes(z, axes, odd=family == "zeta" or ij == "11")
         if has_symmetry[ij]
         else z
         for ij, z in values.items()
     }
 
 
-def _on_axes(z: acb | None, u: Point, *, odd: bool = False) -> acb | None:
+def _on_axes(z: acb | None, axes: set[str], *, odd: bool = False) -> acb | None:
     """Return an even or odd function that is real on the real axis, without parts that are 0."""
     if z is None:
         return z
-    if u.imag == 0:
+    if "real" in axes:
         z = acb(z.real)
-    if u.real == 0:
+    if "imag" in axes:
         z = acb(0, z.imag) if odd else acb(z.real)
     return z

@@ -89,6 +89,7 @@ class Functions:
         self.across = arb(0) if self.is_0 else half_turn * arb(1).agm(k)
         """Periods 2K' in a unit of the argument."""
         self._slopes: dict[str, tuple[Point, int, acb]] = {}
+        self._thetas: tuple[Point | None, dict[str, acb]] = None, {}
         self.rate, self.tau = acb(self.scale), None
         """1/2K and iK'/K of the modulus itself."""
         if self.is_0 or self.is_1:
@@ -157,8 +158,10 @@ class Functions:
         """Return Theta_ij(v)."""
         if self.tau is None:
             return {ij: acb(int(ij[0] == "0")) for ij in INDICES}
-        values = acb.modular_theta(v.ball() * self.rate, self.tau)
-        return {ij: values[_NUMBERS[ij]] for ij in INDICES}
+        if self._thetas[0] is not v:  # the Zeta functions of the same row need them again
+            values = acb.modular_theta(v.ball() * self.rate, self.tau)
+            self._thetas = v, {ij: values[_NUMBERS[ij]] for ij in INDICES}
+        return self._thetas[1]
 
     def zetas(self, v: Point) -> dict[str, acb | None]:
         """Return Z_ij(v), the derivative of log Theta_ij(v); Z_11 has a pole at 0."""
@@ -166,9 +169,8 @@ class Functions:
         if self.tau is None:
             found = {"01": acb(0), "00": acb(0), "11": x.cot(), "10": -x.tan()}
         else:
-            z = x * self.rate
-            values, slopes = (acb.modular_theta(z, self.tau, i) for i in (0, 1))
-            found = {ij: self.rate * slopes[n] / values[n] for ij, n in _NUMBERS.items()}
+            values, slopes = self.thetas(v), acb.modular_theta(x * self.rate, self.tau, 1)
+            found = {ij: self.rate * slopes[n] / values[ij] for ij, n in _NUMBERS.items()}
         return {ij: None if ij == "11" and v.is_0 else found[ij] for ij in INDICES}
 
     def third(self, u: Point, v: Point) -> dict[str, tuple[acb | None, acb | None]]:
