@@ -41,7 +41,7 @@ READERS = {"t": (times, of_a_trajectory), "r0": (of_tops,)}
 SECOND = {"t": "theta", "r0": "theta0_deg"}
 
 TABLES = {
-    "FIRST,SECOND\n0.5,30\n1.5,40\n": [0.5, 1.5],
+    "FIRST,SECOND\n-0.5,30\n1.5,40\n": [-0.5, 1.5],
     "FIRST;SECOND\n0.5;30\n1.5;40\n": [0.5, 1.5],
     "FIRST;SECOND\n0,5;30\n1,5;40\n": [0.5, 1.5],
     "FIRST\tSECOND\n0,5\t30,25\n1,5e0\t40\n": [0.5, 1.5],
