@@ -38,7 +38,7 @@ def _drawn(figure: Figure, path: str) -> bytes:
 @opt.command(
     "bench",
     "bench --methods lagtop,DOP853 --n 1000",
-    "bench chrapan-1952 stiff-top slow-top --plot methods.svg",
+    "bench chrapan-1952 slow-top --methods lagtop,DOP853,Taylor --plot methods.svg",
     "bench --spans 1,100 --methods lagtop,scipy.special --n 100",
 )
 @opt.scenes
@@ -87,7 +87,7 @@ def bench_command(
 @opt.command(
     "stability",
     "stability --kinds extreme-sizes",
-    "stability --kinds slow-spin --samples 5 --seed 7 -o slow.csv",
+    "stability --kinds slow-spin --samples 2 --seed 7 -o slow.csv",
     "stability --kinds slow-spin --plot stability.svg",
 )
 @opt.option("--kinds", type=opt.LIST, help="Use only these kinds of scenes.  [default: all]")
