@@ -23,7 +23,7 @@ from lagrange_cli.fit.motions import angles, nutating
 from lagrange_cli.fit.noise import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.fit.nutation import body_numbers
 from lagrange_cli.fit.outcome import Outcome
-from lagrange_cli.fit.problem import known_inputs, slowest
+from lagrange_cli.fit.problem import Problem, known_inputs, slowest
 from lagrange_cli.fit.recording import recording_from, shifted_origin
 from lagrange_cli.fit.windows import decay_of, fit_windows
 
@@ -150,6 +150,21 @@ def test_an_axis_and_an_attitude(kind: str) -> None:
     assert [*outcome.residuals] == ["theta", "across", *["along"] * (kind == "quaternion")]
 
 
+def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
+    """Along the meridian, across it, and about the axis: the rotation in the frame of the body."""
+    t, exact = np.linspace(0, 1, 20), motion_of(TOP, np.linspace(0, 1, 20))
+    turns = Rotation.from_euler("ZXZ", np.stack([exact[x] for x in ("psi", "theta", "phi")], 1))
+    small = np.random.default_rng(24).normal(scale=1e-4, size=(20, 3))
+    moved = (turns * Rotation.from_rotvec(small)).as_quat(scalar_first=True)
+    recording = recording_from(t, quaternion=moved)
+    problem = Problem(recording, known_inputs({}, {}), dict.fromkeys(recording.channels, 1.0))
+    start = TRUTH | {"theta0": 75 * DEGREE}
+    x = np.array([[start.get(name, 0.0) for name in problem.names]])
+    theta, across, along = problem.residuals(x)[0]
+    assert along == pytest.approx(small[:, 2], abs=1e-7)
+    assert np.hypot(theta, across) == pytest.approx(np.hypot(small[:, 0], small[:, 1]), abs=1e-7)
+
+
 @pytest.mark.parametrize(
     ("name", "known"), [("theta", {"psidot0": 0}), ("psi", {"theta0_deg": 75})]
 )
@@ -185,6 +200,7 @@ def test_the_sample_gives_the_body() -> None:
     exact = solve(recordings.TOP)
     keys = ["T_nutation", "mean_precession_rate", "mean_spin_rate", "theta_max_deg"]
     assert_true(outcome, {key: getattr(exact, key) for key in keys}, least=4)
+    assert outcome.chi2_dof == pytest.approx(1, rel=1e-3)  # the noise is that of the residuals
     off = outcome.numbers["precession_rate_elementary_percent"]
     elementary = 1.587 * 9.81 * 0.04 / (1.7458e-3 * 50)  # mgs/(C r0)
     true = 100 * (elementary / exact.mean_precession_rate - 1)
@@ -371,6 +387,8 @@ def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
     for theta in (1 + 0.1 * t, 1 + 0.05 * np.sin(3 * t), 1 + rng.normal(scale=0.06, size=100)):
         outcome = fit(t, theta=theta + rng.normal(scale=0.01, size=100), psi=psi)
         assert outcome.verdict == "failed", outcome.record()
+    hopeless = fit(t, theta=1 + rng.normal(scale=0.01, size=100), psi=rng.uniform(-3, 3, 100))
+    assert any(x.startswith("no motion of a top matches: psi is ") for x in hopeless.failures())
     few = fit(t[:20], theta=1 + rng.normal(scale=0.01, size=20), psi=psi[:20])
     assert few.failures()[-1].startswith("20 rows are too few to tell nutation from noise")
 
@@ -379,7 +397,10 @@ def test_noise_hardly_ever_fails_a_test() -> None:
     rng, t = np.random.default_rng(18), np.linspace(0, 1, 90)
     faults = [bool(Residuals(t, rng.normal(size=90)).faults("x", 4.0, CHANCE)) for _ in range(500)]
     assert sum(faults) <= 8  # 2.7 expected
-    drift = Residuals(t, rng.normal(size=90) + 1.5 * t * np.sin(8 * math.pi * t))
+    wave = Residuals(t, rng.normal(size=90) + 1.5 * np.sin(2 * math.pi * 22.25 * t))
+    assert abs(wave.autocorrelation) < 0.2  # four rows per period
+    assert wave.faults("x", 22.25, CHANCE)[0].endswith("they drift or oscillate")
+    drift = Residuals(t, rng.normal(size=90) + 3 * t * np.sin(8 * math.pi * t))
     assert drift.faults("x", 4.0, CHANCE)
     low, high = chi2_bounds(100)
     chi2 = rng.chisquare(100, size=20_000) / 100
