@@ -163,7 +163,6 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
     ("conditions", "unknowns", "message"),
     [
         (["T_nutation=0.4"], {}, "no input is unknown: give a range, such as --r0 10:200"),
-        (["T_nutation=0.4"], {"r0": 5, "m": 2}, "no input is unknown"),
         (["g=1"], dict.fromkeys(("m", "g", "s", "r0"), "1:2"), "takes 1 to 3 unknown inputs, got"),
         (["T_nutation=0.4"], {"r0": "1:2", "scan": 2}, "scan must be 3 or more values"),
         (["T_nutation=0.4"], {"r0": "1:2", "scan": 20_000_000}, "at most 1e7 tops"),
@@ -242,7 +241,6 @@ def test_quantities_of_pint() -> None:
     ("words", "code", "message"),
     [
         ("T_nutation=1", 2, "no input is unknown: give a range, such as --r0 10:200"),
-        ("--r0 200:10 T_nutation=1", 2, "--r0 must be a range whose first end"),
         ("--r0 1:2 T_nutation=1 --scan 2", 2, "--scan must be 3 or more values"),
         ("none.toml --r0 1:2 T_nutation=1", 65, "none.toml: No such file"),
     ],

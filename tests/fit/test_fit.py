@@ -477,8 +477,6 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (f"{SAMPLE} --A-cm 1", 2, "--A-cm must be given with m and s, as A = A_cm + m s^2"),
         (f"{SAMPLE} --align up=w", 2, "--align must be up=x, up=y, up=z, up=-x"),
         (f"{SAMPLE} --align up=y", 2, "--align needs an axis or an attitude, got angles"),
-        (f"{SAMPLE} --plot x.pdf", 2, "the name of a picture must end in .svg or .png"),
-        ("none.csv", 65, "none.csv: No such file"),
     ],
 )
 def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:
