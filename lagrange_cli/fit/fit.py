@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import NoneType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,12 +47,8 @@ _WINDOWS = (8, 12, 20, 32, 48)
 _ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
 
 
-class _Way(NamedTuple):
-    """A recording with psi counted in one direction, and its starts with their scores."""
-
-    problem: Problem
-    x: Array
-    scores: Array
+_Way = tuple[Problem, Array, Array]
+"""A problem, its starts and their scores; psi is counted in one direction."""
 
 
 def best_fit(
@@ -96,8 +92,8 @@ def _nutation(
     both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
     ways = [_way(x, known, frequency) for x in [recording, recording.mirrored][: 1 + both]]
     begun = [
-        (way.problem, _thinned(way.problem, _MANY_ROWS).solve(x, _FIRST_STEPS))
-        for way, x in _best_starts(ways)
+        (problem, _thinned(problem, _MANY_ROWS).solve(x, _FIRST_STEPS))
+        for problem, x in _best_starts(ways)
     ]
     distinct: list[tuple[Problem, Any]] = []
     for problem, end in sorted(begun, key=lambda pair: pair[1].cost):
@@ -135,7 +131,7 @@ def _way(recording: Recording, known: Known, frequency: float) -> _Way:
         score = np.concatenate(scores)
         order = np.argsort(score)[:_KEPT]
         states = states[order]
-    return _Way(problem, np.concatenate(tried)[order], score[order])
+    return problem, np.concatenate(tried)[order], score[order]
 
 
 def _thinned(problem: Problem, count: int) -> Problem:
@@ -147,12 +143,12 @@ def _thinned(problem: Problem, count: int) -> Problem:
     return Problem(few, problem.known, problem.sigma)
 
 
-def _best_starts(ways: Sequence[_Way]) -> Iterator[tuple[_Way, Array]]:
+def _best_starts(ways: Sequence[_Way]) -> Iterator[tuple[Problem, Array]]:
     """Yield the best starts of both ways that differ from each other."""
-    places = [(score, i, j) for i, way in enumerate(ways) for j, score in enumerate(way.scores)]
+    places = [(score, i, j) for i, way in enumerate(ways) for j, score in enumerate(way[2])]
     kept: list[tuple[int, Array]] = []
     for score, i, j in sorted(places):
-        one = ways[i].x[j]
+        one = ways[i][1][j]
         if (
             len(kept) < _STARTS
             and math.isfinite(score)
@@ -162,7 +158,7 @@ def _best_starts(ways: Sequence[_Way]) -> Iterator[tuple[_Way, Array]]:
             )
         ):
             kept.append((i, one))
-            yield ways[i], one
+            yield ways[i][0], one
 
 
 def _hints(recording: Recording, known: Known, frequency: float) -> list[str]:

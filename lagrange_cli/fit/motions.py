@@ -7,8 +7,6 @@ are exact to about 1e-11 rad away from the separatrix, far below the noise of an
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from scipy.special import ellipj, ellipk, ellipkinc, elliprf, elliprj
 
@@ -18,23 +16,13 @@ STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
 _TINY = 1e-30
 
 
-class Gaps(NamedTuple):
-    """Distances of the roots u2 < u1 < u3 of the cubic (4,9) from the start u = cos(theta0)."""
-
-    above: Array
-    """u1 - u, the way to the least tilt."""
-    below: Array
-    """u - u2, the way to the greatest tilt."""
-    third: Array
-    """u3 - u."""
-
-
 @np.errstate(all="ignore")
-def gaps_of(states: Array) -> Gaps:
-    """Return the gaps of states, shape (tops, 5), each of shape (tops, 1).
+def gaps_of(states: Array) -> tuple[Array, Array, Array]:
+    """Return u1 - u, u - u2 and u3 - u for states of shape (tops, 5), each of shape (tops, 1).
 
-    The cubic in x = u' - u, divided by a, is x^3 + c2 x^2 + c1 x + c0 with c0 >= 0.  Its largest
-    root is Viete's; the other two have the product -c0/x3 and a sum that follows from c1.
+    The roots of the cubic (4,9) are u2 < u1 < u3, and u = cos(theta0) is the start.  The cubic in
+    x = u' - u, divided by a, is x^3 + c2 x^2 + c1 x + c0 with c0 >= 0.  Its largest root is
+    Viete's; the other two have the product -c0/x3 and a sum that follows from c1.
     """
     a, b, theta, theta_rate, psi_rate = states.T[..., np.newaxis]
     u, sine = np.cos(theta), np.sin(theta)
@@ -54,7 +42,7 @@ def gaps_of(states: Array) -> Gaps:
     larger = np.abs(half) + np.sqrt(half * half + product) + _TINY
     smaller = product / larger
     rising = half > 0
-    return Gaps(np.where(rising, larger, smaller), np.where(rising, smaller, larger), third)
+    return np.where(rising, larger, smaller), np.where(rising, smaller, larger), third
 
 
 @np.errstate(all="ignore")
@@ -66,11 +54,11 @@ def angles(states: Array, t: Array) -> Array:
     """
     a, b, theta, theta_rate, psi_rate = states.T[..., np.newaxis]
     u, sine = np.cos(theta), np.sin(theta)
-    gaps = gaps_of(states)
-    swing, width = gaps.above + gaps.below, gaps.below + gaps.third
+    above, below, third = gaps_of(states)
+    swing, width = above + below, below + third
     m, speed = swing / width, np.sqrt(a * width) / 2
     quarter = ellipk(m)
-    first = np.arctan2(np.sqrt(gaps.below), np.sqrt(gaps.above))
+    first = np.arctan2(np.sqrt(below), np.sqrt(above))
     first = np.where(theta_rate > 0, -first, first)
     argument = ellipkinc(first, m) + speed * t
     periods = np.round(argument / (2 * quarter))
@@ -79,18 +67,18 @@ def angles(states: Array, t: Array) -> Array:
     down, up = 2 * np.sin(theta / 2) ** 2, 2 * np.cos(theta / 2) ** 2  # 1 - u and 1 + u
     north, south = psi_rate * sine**2 - b * down, psi_rate * sine**2 + b * up
     # 1 - u1 and 1 + u2 may be tiny: the cubic at u = 1 and -1 gives them without a difference
-    near_north = north**2 / (a * (down + gaps.below) * (gaps.third - down)) + _TINY
-    near_south = south**2 / (a * (up + gaps.above) * (gaps.third + up)) + _TINY
+    near_north = north**2 / (a * (down + below) * (third - down)) + _TINY
+    near_south = south**2 / (a * (up + above) * (third + up)) + _TINY
     turned = []
     for momentum, at_u2, at_u1, n in (
-        (north, down + gaps.below, near_north, swing / (down + gaps.below)),
-        (south, near_south, up + gaps.above, -swing / near_south),
+        (north, down + below, near_north, swing / (down + below)),
+        (south, near_south, up + above, -swing / near_south),
     ):
         at_end, at_start, at_quarter = (x.third_kind(n, at_u1 / at_u2) for x in legs)
         grown = at_end - at_start + 2 * periods * at_quarter
         turned.append(momentum / at_u2 * grown / (2 * speed))
     turned_north, turned_south = turned
-    tilt = np.arccos(np.clip(u - gaps.below + swing * sn * sn, -1, 1))
+    tilt = np.arccos(np.clip(u - below + swing * sn * sn, -1, 1))
     return np.stack([tilt, turned_south - turned_north, turned_south + turned_north])
 
 
@@ -109,23 +97,13 @@ class _Legendre:
         return integral
 
 
-class Nutating(NamedTuple):
-    """Tops that nutate between two tilts with a given period."""
-
-    a: Array
-    b: Array
-    beta: Array
-    """The momentum psi' sin^2(theta) + b cos(theta)."""
-    precession: Array
-    """The mean precession rate."""
-
-
 @np.errstate(all="ignore")
 def nutating(
     least: Array, greatest: Array, period: float, height: Array, signs: tuple[int, int]
-) -> Nutating:
+) -> tuple[Array, Array, Array, Array]:
     """Return the tops with turning points at two tilts, in radians, and u3 = 1 + height (1 - u2).
 
+    They are a, b, the momentum beta = psi' sin^2(theta) + b cos(theta), and the mean precession.
     `signs` are those of S = beta + b and N = beta - b.  The cubic (4,9) at u = 1 and -1 gives their
     squares, and (4,19) with (5,1) gives a.  Arguments broadcast.
     """
@@ -139,4 +117,4 @@ def nutating(
     north = signs[1] * np.sqrt(a * north1 * north2 * north2 * height)
     grown = south / (1 + u2) * whole.third_kind((u2 - u1) / (1 + u2), (1 + u1) / (1 + u2))
     grown = grown + north / north2 * whole.third_kind((u1 - u2) / north2, north1 / north2)
-    return Nutating(a, (south - north) / 2, (south + north) / 2, grown / (2 * whole.first_kind))
+    return a, (south - north) / 2, (south + north) / 2, grown / (2 * whole.first_kind)

@@ -77,7 +77,7 @@ class Minimum(NamedTuple):
             sizes = np.sqrt(np.nanmean(rest**2, axis=1) * share) + _ZERO
             problem.sigma = dict(zip(recording.channels, sizes.tolist(), strict=True))
             found = problem.solve(found.x, _FEW_STEPS)
-        slopes = problem.exact_slopes(found.x)
+        slopes = problem.slopes(found.x, central=True)
         size = np.linalg.norm(slopes, axis=0) + 1e-300
         _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
         sure = values > _DEPENDENT * values[0]

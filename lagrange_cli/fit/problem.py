@@ -148,20 +148,16 @@ class Problem:
         rows: Array = np.nan_to_num(np.column_stack([found, *priors]), nan=_FAR, posinf=_FAR)
         return rows
 
-    def slopes(self, x: Array) -> Array:
-        """Return the derivatives of the weighted residuals, by forward differences."""
-        steps = _SHORT_STEP * np.maximum(np.abs(x), _LEAST_STEP)
-        found = self.weighted(np.concatenate([[x], x + np.diag(steps)]))
-        slopes: Array = (found[1:] - found[0]).T / steps
-        return slopes
-
-    def exact_slopes(self, x: Array) -> Array:
-        """Return the same by central differences."""
+    def slopes(self, x: Array, *, central: bool = False) -> Array:
+        """Return the derivatives of the weighted residuals, by forward or central differences."""
+        if not central:
+            steps = _SHORT_STEP * np.maximum(np.abs(x), _LEAST_STEP)
+            found = self.weighted(np.concatenate([[x], x + np.diag(steps)]))
+            return np.asarray((found[1:] - found[0]).T / steps)
         steps = _STEP * np.maximum(np.abs(x), _LEAST_STEP)
         steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
         found = self.weighted(np.concatenate([x + np.diag(steps), x - np.diag(steps)]))
-        slopes: Array = (found[: x.size] - found[x.size :]).T / (2 * steps)
-        return slopes
+        return np.asarray((found[: x.size] - found[x.size :]).T / (2 * steps))
 
     def solve(self, x: Array, steps: int) -> OptimizeResult:
         """Return the least squares from one start."""

@@ -187,7 +187,7 @@ def starts(signals: dict[str, Signal], frequency: float, tilt: float | None) -> 
     for signs in _SIGNS:
         tops = nutating(*pair, period, _HEIGHTS, signs)
         for rate in rates:
-            off = tops.precession - rate
+            off = tops[3] - rate
             row, i = np.nonzero(off[:, :-1] * off[:, 1:] <= 0)
             share = off[row, i] / (off[row, i] - off[row, i + 1])
             height = _HEIGHTS[i] ** (1 - share) * _HEIGHTS[i + 1] ** share
