@@ -73,7 +73,10 @@ class Table:
         try:
             cells = split_row(text, self.delimiter) if isinstance(text, str) else text
             if whole and len(cells) != self.width:
-                raise LagtopError(f"a row must have {self.width} cells, got {len(cells)}")
+                wrong = f"a row must have {self.width} cells, got {len(cells)}"
+                if self.delimiter == "," and len(cells) == 2 * self.width:
+                    wrong += ": a comma cannot both separate cells and be the decimal mark"
+                raise LagtopError(wrong)
         except LagtopError as error:
             raise DataError(f"{self.where(row)}: {error}") from None
         return cells

@@ -47,7 +47,9 @@ class Trajectory:
         if "t" not in found or len(found) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
             shown = shortened(", ".join(map(repr, self.names)), 120)
-            wrong = f"must have columns among {wanted}, got {shown}: name them with --columns"
+            lacks_z = {"x", "y"} <= {*self.names} and "z" not in self.names
+            remedy = "z is missing" if lacks_z else "name them with --columns"
+            wrong = f"must have columns among {wanted}, got {shown}: {remedy}"
             raise DataError(f"{self.name} {wrong}")
         if twice := named_twice(self.names, found):
             wrong = f"must name each quantity once, got {twice[0]!r} and {twice[1]!r}"
