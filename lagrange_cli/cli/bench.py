@@ -38,7 +38,7 @@ def _drawn(figure: Figure, path: str) -> bytes:
 @opt.command(
     "bench",
     "bench --methods lagtop,DOP853 --n 1000",
-    "bench chrapan-1952 slow-top --methods lagtop,DOP853,Taylor --plot methods.svg",
+    "bench slow-top --methods lagtop,DOP853,Taylor --plot methods.svg",
     "bench --spans 1,100 --methods lagtop,scipy.special --n 100",
 )
 @opt.scenes
