@@ -59,6 +59,9 @@ def test_columns_are_those_of_the_judge(name: str) -> None:
     assert max(errors(motion, judge, times)) <= 1.5
     theta, phi, psi = motion.angles([0.0])
     assert (theta[0], phi[0], psi[0]) == (motion.sampler().tilt, 0, 0)
+    waves = ProvedTable(motion, ["dphi", "dpsi"], radians=True).row(Fraction(times[1]))
+    for found, wave in zip(waves, motion.table(times[1], ["dphi", "dpsi"]).values(), strict=True):
+        assert float(wave) == pytest.approx(found.value, abs=5e-15)
     columns = [x for x in COLUMNS if x not in {"t", "dphi", "dpsi"}]
     proved = ProvedTable(motion, columns, radians=True)
     doubles = motion.table(times, columns)

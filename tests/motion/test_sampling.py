@@ -57,7 +57,7 @@ def test_a_column_is_the_same_whatever_stands_beside_it(start: str) -> None:
 def test_what_is_not_asked_for_is_not_computed(start: str, columns: str, computed: str) -> None:
     seen: set[str] = set()
     for _, attitude in solve(Top(**STARTS[start])).sampler().attitudes(T):
-        sample = Sample(attitude, CONSTANTS, 1, False)
+        sample = Sample(attitude, CONSTANTS, False)
         for column in chosen_columns(columns.split()).values():
             column.value(sample)
         seen |= vars(attitude).keys() & set("functions parts squares tilt moduli args rate".split())

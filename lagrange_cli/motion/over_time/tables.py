@@ -36,7 +36,7 @@ from .columns import (
     headings,
 )
 from .sampling import Attitude, near
-from .series import Pose, direction, pose_of
+from .series import Pose, pose_of
 
 DEFAULT_ROWS = 101
 _ROWS_AT_ONCE = 64
@@ -50,11 +50,8 @@ class Sample(Parts[Array]):
 
     ar: Any = ARRAYS
 
-    def __init__(
-        self, attitude: Attitude, top: ColumnConstants[Array], rises: int, wrap: bool
-    ) -> None:
-        self.attitude, self.top, self.rises, self.wrap = attitude, top, rises, wrap
-        self.t = attitude.t
+    def __init__(self, attitude: Attitude, top: ColumnConstants[Array], wrap: bool) -> None:
+        self.attitude, self.top, self.wrap, self.t = attitude, top, wrap, attitude.t
 
     tilt = property(lambda at: at.attitude.tilt)
     moduli = property(lambda at: at.attitude.moduli)
@@ -69,10 +66,9 @@ class Sample(Parts[Array]):
 
     @quantity
     def thetadot(self) -> Any:
-        """The nutation rate (5,3); on a pole by the energy (4,2), with the sign of the start."""
+        """The nutation rate (5,3); on a pole, where its sign changes, its size by (4,2)."""
         product = 2.0 * self.norm * self.sizes[0] * self.sizes[1]
         speed = np.sqrt(np.maximum(self.top.alpha - self.top.a * self.u, 0.0))
-        speed *= self.rises
         return np.divide(self.attitude.rate, product, out=speed, where=product != 0.0)
 
     @quantity
@@ -102,7 +98,6 @@ def columns_at(
     """
     chosen, kind = chosen_columns(columns), motion.sharp()
     constants = ColumnConstants(*(np.array(near(x)) for x in column_constants(kind, motion.exact)))
-    rises = direction(kind)
 
     @cache
     def start() -> list[float]:
@@ -112,7 +107,7 @@ def columns_at(
     def at(t: Array) -> Iterator[tuple[slice, list[Array]]]:
         for part, attitude in motion.sampler().attitudes(t):
             with ARRAYS.working():
-                sample = Sample(attitude, constants, rises, wrap)
+                sample = Sample(attitude, constants, wrap)
                 found = [np.broadcast_to(x.value(sample), sample.t.shape) for x in chosen.values()]
             for i, column in enumerate(chosen.values()):
                 if column.is_angle and not radians:
