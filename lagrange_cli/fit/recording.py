@@ -232,17 +232,11 @@ def _angles(given: Quantities, reading: Reading, named: Named) -> tuple[str, dic
 
 def _sigma(raw: Recording, sigma: Mapping[str, float] | float | None) -> dict[str, float]:
     """Return standard deviations by channel.  Raises LagtopError unless all or none are given."""
-    channels = raw.channels
-    given: Any = sigma if isinstance(sigma, Mapping) else dict.fromkeys(channels, sigma)
-    if unknown := [name for name in given if name not in channels]:
-        wanted = ", ".join(channels)
-        raise LagtopError(f"sigma must be for {wanted}, got {quoted(unknown[0])}", "sigma")
+    given: Any = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, sigma)
     found = {name: checked_double("sigma", x) for name, x in given.items() if x is not None}
-    if found and (missing := [x for x in channels if x not in found]):
-        raise LagtopError(
-            f"sigma must be given for all of {', '.join(channels)}, got none for {missing[0]}",
-            "sigma",
-        )
+    if found and found.keys() != {*raw.channels}:
+        wanted = f"sigma must be given for all of {', '.join(raw.channels)}"
+        raise LagtopError(f"{wanted}, got {', '.join(map(str, found))}", "sigma")
     if wrong := [x for x in found.values() if not 0 < x < np.inf]:
         raise LagtopError(f"sigma must be > 0, got {wrong[0]:g}", "sigma")
     return found

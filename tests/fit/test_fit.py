@@ -469,8 +469,16 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
     [
         (f"{SAMPLE} {SAMPLE}", 2, "fit takes one recording, got 2: use --by COLUMN"),
         (f"{SAMPLE} --sigma -1", 2, "--sigma must be > 0, got -1"),
-        (f"{SAMPLE} --sigma theta=1", 2, "--sigma must be given for all of theta, phi, psi, got"),
-        (f"{SAMPLE} --sigma across=1", 2, "--sigma must be for theta, phi, psi, got 'across'"),
+        (
+            f"{SAMPLE} --sigma theta=1",
+            2,
+            "--sigma must be given for all of theta, phi, psi",
+        ),
+        (
+            f"{SAMPLE} --sigma across=1",
+            2,
+            "--sigma must be given for all of theta, phi, psi",
+        ),
         (f"{SAMPLE} --by x", 2, "--by must name a column of"),
         (f"{SAMPLE} --window 1", 2, "--window must be 2 windows or more, got 1"),
         (f"{SAMPLE} --window 100", 2, "--window must hold 12 rows or more, got 1: use fewer"),
@@ -535,6 +543,7 @@ def test_several_recordings_and_windows(lagtop: Lagtop, tmp_path: Path) -> None:
     assert result.exit_code == 0, result.stderr
     assert result.stdout.splitlines()[-1].startswith("b does not decay: its relative rate is")
     failed = lagtop("fit", path, "--window", 3, "--sigma", 0.1, "--format", "json")
-    assert (failed.exit_code, json.loads(failed.stdout)["verdict"]) == (1, "failed")
+    assert failed.exit_code == 1
+    assert "failed" in {x["verdict"] for x in json.loads(failed.stdout)["windows"]}
     unwritten = lagtop("fit", path, "--sigma", 0.1, "-o", tmp_path / "no.toml")
     assert (unwritten.exit_code, (tmp_path / "no.toml").exists()) == (1, False)
