@@ -14,7 +14,7 @@ from scenes import EVERY_KIND
 
 from lagrange_cli.motion.over_time.tables import ProvedTable
 
-TOPS = [(scene, digits) for scene in EVERY_KIND.values() for digits in (None, 7, 60, 300)]
+TOPS = [(scene, digits) for scene in EVERY_KIND.values() for digits in (None, 60)]
 
 
 def record(task: tuple[dict[str, Any], int | None]) -> str:
