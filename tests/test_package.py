@@ -117,7 +117,7 @@ def test_the_distributions_hold_what_they_should(distributions: Path) -> None:
         *("lagrange_cli", "lagtop.py", "lagtop-stubs"),
     }
     assert {"lagrange_cli/py.typed", "lagrange_cli/CITATION.cff"} <= set(files)
-    assert "Why closed form" in readme
+    assert "How exact and how fast" in readme
     assert re.findall(r"\]\((?!https?:)[^)]*\)", readme) == []  # an index has no such files
     with tarfile.open(sdist) as archive:
         roots = {name.split("/")[1] for name in archive.getnames() if "/" in name}

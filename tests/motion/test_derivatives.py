@@ -75,6 +75,7 @@ def test_derivatives_of_the_record_are_right_to_the_last_bit(scene: str) -> None
                 middle = (sides[0] + sides[1]) / 2
                 judged = 1e-30 if top.pole else 1e-46  # on an edge differences are one-sided
                 slack = EPS * abs(middle) + judged * abs(record[key] or 0)
+                slack += 1e-30 if abs(derivative) < 1e-60 else 0  # the step of the judge at a 0
                 assert abs(derivative - middle) <= slack, (key, name, derivative, sides)
                 curved = 1e-6 * (abs(middle) + abs(record[key] or 0))
                 assert abs(sides[0] - sides[1]) <= curved, (key, name, sides)
@@ -186,8 +187,12 @@ def worst_error(top: Top) -> float:
     motion, inputs = solve(top), inputs_of(top)
     period = motion.T_nutation
     times = [0.3 * period, -1.6 * period, 1e6 * period]
-    judge, found = Slopes(top), AngleDerivatives(motion, inputs).at(np.array(times))
+    judge, slopes = Slopes(top), AngleDerivatives(motion, inputs)
+    found = slopes.at(np.array(times))
     sizes = [abs(getattr(top, name)) or 1 / period for name in inputs]
+    for i, name in enumerate(inputs):
+        if slopes.noise[name] * sizes[i] > 1e-9:  # where uncertainties take proved rows too
+            found[i] = AngleDerivatives(motion, [name]).in_digits(np.array(times))[0]
     worst = 0.0
     for i, angle in enumerate(("theta", "phi", "psi")):
         exact = [
