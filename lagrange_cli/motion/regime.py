@@ -83,11 +83,6 @@ class Facts(NamedTuple):
         return self.at_rest and not (self.steady or self.regime is Regime.SEPARATRIX)
 
     @property
-    def over_top(self) -> bool:
-        """The axis reaches the upper pole or, on the separatrix, tends to it: beta = b."""
-        return bool(self.upper_root) or self.regime is Regime.SEPARATRIX
-
-    @property
     def meets_a_pole(self) -> bool:
         """The axis passes over a pole, or starts there and nutates."""
         return self.over_bottom or self.upper_root == 1
