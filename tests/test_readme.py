@@ -95,14 +95,14 @@ def test_python_session(path: Path) -> None:
 def keys_table(kind: str, heading: str) -> list[str]:
     """Return the keys of a kind, or the columns, as a table in Markdown."""
     lines = [
-        f"| {heading} | symbol | meaning | unit | formula | source | undefined |",
+        f"| {heading} | symbol | meaning | unit | formula | source | defined only |",
         "|---|---|---|---|---|---|---|",
     ]
     for row in listed():
         if row.kind == kind:
             key = number_key(row.name) if kind != "column" else None
             cells = [f"`{row.name}`", row.symbol, row.meaning, row.unit]
-            cells += [row.formula, row.equation, key.absent if key else ""]
+            cells += [row.formula, row.equation, key.only if key else ""]
             lines.append(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |")
     return lines
 

@@ -16,8 +16,8 @@ class Key(NamedTuple):
     equation: str = ""
     formula: str = ""
     """The formula, written with names of keys, such as `2*m*g*s/A`; see `motion.explanation`."""
-    absent: str = ""
-    """The case in which the number does not exist, such as `if r0 = 0`, besides some regimes."""
+    only: str = ""
+    """The condition of the number, such as `if r0 is not 0`; some regimes lack it too."""
 
     def in_units(self, *, radians: bool, named: Callable[[str], str] = str) -> Key:
         """Return the key with its unit as printed; `named` gives the names of units of a system."""

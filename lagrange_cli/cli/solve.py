@@ -142,7 +142,7 @@ def _chosen_values(motion: Numbers, record: dict[str, Any], keys: Sequence[str])
             text = key.removesuffix("_std")
             raise LagtopError(f"{text} has no uncertainty: leave {key} out of --get")
         if record[key] is None:
-            raise AbsentError(f"{key} is undefined {motion.absence(key)}")
+            raise AbsentError(f"{key} is {motion.absence(key)}")
     return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
 
 

@@ -82,7 +82,7 @@ def write_budget(found: Given, motion: Numbers, key: str, radians: bool, out: Ou
     check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
     value = Motion(motion.exact).record(radians=radians, keys=[key])[key]
     if value is None:
-        raise AbsentError(f"{key} is undefined {motion.absence(key)}")
+        raise AbsentError(f"{key} is {motion.absence(key)}")
     uncertain = first_order(found, motion)
     whole = uncertain.std(key)
     if whole is None:

@@ -129,7 +129,7 @@ def _reasons(motion: Motion, absent: Sequence[str]) -> str:
     names: dict[str, list[str]] = {}
     for name in absent:
         names.setdefault(motion.absence(name), []).append(name)
-    return "; ".join(f"{', '.join(some)}: undefined {why}" for why, some in names.items())
+    return "; ".join(f"{', '.join(some)}: {why}" for why, some in names.items())
 
 
 def _symbols() -> dict[str, str]:

@@ -131,12 +131,12 @@ class Numbers:
         return value * kind.degree if radians and value is not None else value
 
     def absence(self, name: str) -> str:
-        """Return why the motion has no number of this key: `in the regime ...` or `if ...`."""
+        """Return why the motion lacks a number: `undefined in ...` or `defined only if ...`."""
         name = degree_name(name)
         key = number_key(name)
-        if key is None or not key.absent or name in self.kind_class.lacks:
-            return f"in the regime {self.regime.value!r}"
-        return key.absent
+        if key is None or not key.only or name in self.kind_class.lacks:
+            return f"undefined in the regime {self.regime.value!r}"
+        return f"defined only {key.only}"
 
     def _on_request(self, digits: int) -> Any:
         """Return the keys on request in balls of `digits` digits."""

@@ -15,7 +15,7 @@ from .gaps import Gaps, State
 from .quantity import V, key, quantity
 from .regime import Facts
 
-_STARTED = "unless the top is released from rest"
+_STARTED = "if the top is released from rest"
 
 
 constant_key = partial(key, "Constants")
@@ -25,11 +25,11 @@ turning_key = partial(key, "Turning points")
 
 
 def root_key(
-    u: str, meaning: str, equation: str, absent: str = ""
+    u: str, meaning: str, equation: str, only: str = ""
 ) -> Callable[[Callable[[Any], V]], quantity[V]]:
     """Make a method the key of a root u of the cubic (4,9)."""
     formula = f"(energy_constant - a*{u})*(1 - {u}**2) = (momentum_constant - b*{u})**2"
-    return key("Roots", u, meaning, equation, formula, absent=absent)
+    return key("Roots", u, meaning, equation, formula, only=only)
 
 
 class Nutation(Generic[R]):
@@ -65,7 +65,7 @@ class Nutation(Generic[R]):
         below, above = self.gaps.below_u2, self.gaps.above_u2
         return self.ar.where(self.ar.either(above < below), 1 - above, below - 1)
 
-    @root_key("u3", "third root", "(4,11)", absent="without torque")
+    @root_key("u3", "third root", "(4,11)", only="if there is a torque")
     def u3(self) -> R | None:
         """The third root (4,11); None without torque, as it is then infinite."""
         return None if self.facts.free else (self.a + self.gaps.a_u3_above) / self.a
@@ -103,7 +103,7 @@ class Nutation(Generic[R]):
         return complete_k(self.ar, self.k_prime)
 
     @modulus_key(
-        "K'", "integral, first kind, k'", "(2,4)", "ellint_F(pi/2, k_prime)", absent="if k = 0"
+        "K'", "integral, first kind, k'", "(2,4)", "ellint_F(pi/2, k_prime)", only="if k > 0"
     )
     def K_prime(self) -> R | None:
         """The quarter period of the complementary modulus; None if k = 0."""
@@ -127,7 +127,7 @@ class Nutation(Generic[R]):
         """The rate dw/dt of the argument w = sqrt(a (u3 - u2)) t/2 (4,30)."""
         return self.ar.sqrt(self.gaps.a_u3_u2) / 2
 
-    @period_key("T", "nutation period", "(5,1)", "4*K/sqrt(a*(u3 - u2))", absent="if nothing moves")
+    @period_key("T", "nutation period", "(5,1)", "4*K/sqrt(a*(u3 - u2))", only="if the top moves")
     def T_nutation(self) -> R:
         """The period T = 2K/(dw/dt) (5,1)."""
         return 2 * self.K / self.argument_rate
@@ -137,7 +137,7 @@ class Nutation(Generic[R]):
         "cos ϑ at T/4",
         "(5,2)",
         "u1 - (u1 - u2)*k_prime/(1 + k_prime)",
-        absent="unless the start is at u1",
+        only="if the start is at u1",
     )
     def u_quarter(self) -> R | None:
         """u(T/4) after a start at u1 (5,2), as a difference from u1: a large u3 costs no digits."""
@@ -166,7 +166,7 @@ class Nutation(Generic[R]):
         "(7,2)",
         "atan(sqrt((u3 - u2)/(1 + u2)))",
         unit="angle",
-        absent=_STARTED,
+        only=_STARTED,
     )
     def amplitude_deg(self) -> R | None:
         """The amplitude of alpha (7,2) in degrees, from its tangent, after release from rest."""
@@ -175,7 +175,7 @@ class Nutation(Generic[R]):
         sine, cosine = self.ar.sqrt(self.gaps.a_u3_u2), self.ar.sqrt(self.a * self.gaps.below_u2)
         return self.ar.atan2(sine, cosine) / self.degree
 
-    @modulus_key("α", "parameter", "(1,6)", "ellint_F(amplitude, k_prime)", absent=_STARTED)
+    @modulus_key("α", "parameter", "(1,6)", "ellint_F(amplitude, k_prime)", only=_STARTED)
     def alpha(self) -> R | None:
         """The parameter alpha = F(amplitude, k') (1,6), after release from rest only."""
         return self.eta_minus if self.facts.at_rest else None

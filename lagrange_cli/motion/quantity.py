@@ -36,10 +36,10 @@ def key(
     formula: str,
     *,
     unit: str = "",
-    absent: str = "",
+    only: str = "",
 ) -> Callable[[Callable[[Any], V]], quantity[V]]:
     """Make a method a quantity that is a key of the record; see `Key` for the arguments."""
-    shown = Key(group, symbol, meaning, unit, equation, formula, absent)
+    shown = Key(group, symbol, meaning, unit, equation, formula, only)
 
     def decorate(formula: Callable[[Any], V]) -> quantity[V]:
         return quantity(formula, shown)
@@ -52,7 +52,7 @@ def declared_keys(
     exists: Callable[[Any], object] = lambda of: True,
     *,
     unit: str = "",
-    absent: str = "",
+    only: str = "",
 ) -> Callable[..., quantity[Any]]:
     """Return a function that declares a key of a group by its formula, without a method.
 
@@ -60,7 +60,7 @@ def declared_keys(
     keywords that override those given here.  The value is None unless `exists` is true of the
     object.
     """
-    usual: dict[str, Any] = {"exists": exists, "unit": unit, "absent": absent}
+    usual: dict[str, Any] = {"exists": exists, "unit": unit, "only": only}
 
     def declare(*texts: str, value: Callable[[Any], V], **changed: Any) -> quantity[V | None]:
         options = usual | changed

@@ -34,14 +34,14 @@ _POLES = f"where P = {_UPPER}, Q = {_LOWER}"
 """The means of (beta - b)/(1 - u) and (beta + b)/(1 + u), times K."""
 _HALF = "where U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
 """Definition of the cosine of the tilt half a period after the start."""
-_ON_A_POLE = "if the axis leaves the vertical at the start"
-HALF_OVER_POLE = "if the axis is vertical half a period after the start"
+_NOT_FROM_POLE = "if the axis does not leave the vertical at the start"
+HALF_OFF_POLE = "if the axis is not vertical half a period after the start"
 
 
 def _turn_key(symbol: str, angle: str) -> Callable[..., Any]:
     """Declare the time of one turn at the mean rate of an angle (section 8)."""
-    size, absent = f"abs(mean_{angle}_rate)", f"if the mean {angle} rate is 0"
-    return period_key(symbol, f"mean {angle} period", "§8", f"2*pi/{size}", absent=absent)
+    size, only = f"abs(mean_{angle}_rate)", f"if the mean {angle} rate is not 0"
+    return period_key(symbol, f"mean {angle} period", "§8", f"2*pi/{size}", only=only)
 
 
 class SpinPrecession(Nutation[R]):
@@ -113,7 +113,9 @@ class SpinPrecession(Nutation[R]):
         """The time of one turn at the mean precession rate (section 8)."""
         return turn_time(self.ar, self.mean_precession_rate)
 
-    @rate_key("φ'(0)", "spin rate at start", "(6,2)", "r0 - psidot0*cos(theta0)", absent=_ON_A_POLE)
+    @rate_key(
+        "φ'(0)", "spin rate at start", "(6,2)", "r0 - psidot0*cos(theta0)", only=_NOT_FROM_POLE
+    )
     def spin_rate_start(self) -> R | None:
         """The spin rate at the start (4,8); None on the vertical."""
         return None if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
@@ -123,7 +125,7 @@ class SpinPrecession(Nutation[R]):
         "spin rate at T/2",
         "(6,2)",
         f"r0 - U*precession_rate_half {_HALF}",
-        absent=HALF_OVER_POLE,
+        only=HALF_OFF_POLE,
     )
     def spin_rate_half(self) -> R | None:
         """The spin rate (4,8) half a period after the start; None on a pole."""
@@ -132,7 +134,7 @@ class SpinPrecession(Nutation[R]):
         below, above = self._half
         return self.r0 - (below - above) / 2 * self.precession_rate_half
 
-    @rate_key("ψ'(0)", "precession rate at start", "(4,7)", "psidot0", absent=_ON_A_POLE)
+    @rate_key("ψ'(0)", "precession rate at start", "(4,7)", "psidot0", only=_NOT_FROM_POLE)
     def precession_rate_start(self) -> R | None:
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
@@ -142,7 +144,7 @@ class SpinPrecession(Nutation[R]):
         "precession rate at T/2",
         "(4,7)",
         f"(momentum_constant - b*U)/(1 - U**2) {_HALF}",
-        absent=HALF_OVER_POLE,
+        only=HALF_OFF_POLE,
     )
     def precession_rate_half(self) -> R | None:
         """The precession rate (4,7) half a period after the start; None on a pole."""

@@ -42,7 +42,7 @@ class Textbook(Generic[R]):
         *("λ", "stability factor C²r0²/(4Amgs)", "b²/2a", "b**2/(2*a)"),
         value=lambda of: of.b * of.b / (2 * of.a),
         exists=lambda of: of.exact.a,
-        absent="without torque",
+        only="if there is a torque",
     )
     r0_sleeping = _rate(
         *("r0 sleeping", "least r0 of a stable upright top", "2√(Amgs)/C", "2*sqrt(A*m*g*s)/C"),
@@ -53,14 +53,14 @@ class Textbook(Generic[R]):
         "m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2",
         value=lambda of: of.steady.rate(of.ar, of.a, of.b, of.cos, SLOW),
         exists=lambda of: of.steady.exists(SLOW),
-        absent="if |r0| < r0_steady_min, or if r0 = 0 at 90 degrees",
+        only="if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees",
     )
     steady_rate_fast = _rate(  # the root of larger size, which is infinite at 90 degrees
         *("Ω fast", "fast steady precession", "ϑ'' = 0"),
         "m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
         value=lambda of: of.steady.rate(of.ar, of.a, of.b, of.cos, FAST),
         exists=lambda of: of.steady.exists(FAST),
-        absent="if |r0| < r0_steady_min, or at 90 degrees",
+        only="if |r0| >= r0_steady_min and the tilt is not 90 degrees",
     )
 
     r0_steady_min = _rate(  # 0 from 90 degrees on
@@ -72,14 +72,14 @@ class Textbook(Generic[R]):
         *("ψ' elementary", "precession of a fast top", "mgs/(C r0)", "m*g*s/(C*r0)"),
         value=lambda of: of.a / (2 * of.b),
         exists=lambda of: of.exact.b,
-        absent="if r0 = 0",
+        only="if r0 is not 0",
     )
     T_nutation_elementary = _number(
         *("T elementary", "nutation of a fast top", "2πA/(C r0)", "2*pi*A/(C*abs(r0))"),
         value=lambda of: 2 * of.ar.pi / absolute(of.b),
         exists=lambda of: of.exact.b,
         unit="time",
-        absent="if r0 = 0",
+        only="if r0 is not 0",
     )
 
 

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 from ...arithmetic.numbers import R
 from ..kinds import Kind
 from ..quantity import declared_keys, quantity
-from ..spin_precession import HALF_OVER_POLE, Nutating
+from ..spin_precession import HALF_OFF_POLE, Nutating
 
 if TYPE_CHECKING:
     from ..regime import Exact
 
-_STILL = "unless the top nutates"
+_NUTATES = "if the top nutates"
 _MIDDLE = "where U = u1 - (u1 - u2)*k_prime/(1 + k_prime)"
 """Definition of the cosine of the tilt between two quarters (5,2)."""
 
@@ -30,22 +30,22 @@ _CONSTANTS = "Constants of section 4"
 _constant = declared_keys(_CONSTANTS)
 _square = declared_keys(_CONSTANTS, unit="1/time²")
 _ANGLES = "Angles after half a period and a whole one"
-_whole = declared_keys(_ANGLES, lambda of: of.nutating, unit="angle", absent=_STILL)
+_whole = declared_keys(_ANGLES, lambda of: of.nutating, unit="angle", only=_NUTATES)
 _half = declared_keys(
-    _ANGLES, lambda of: of.over_half, unit="angle", absent=f"{_STILL}, and {HALF_OVER_POLE}"
+    _ANGLES, lambda of: of.over_half, unit="angle", only=f"{_NUTATES}, and {HALF_OFF_POLE}"
 )
 _QUARTERS = "Mean rates of the quarters"
-_nutation = declared_keys(_QUARTERS, lambda of: of.nutating, unit="rad/time", absent=_STILL)
+_nutation = declared_keys(_QUARTERS, lambda of: of.nutating, unit="rad/time", only=_NUTATES)
 _quarter = declared_keys(
     _QUARTERS,
     lambda of: of.next_to_u1,
     unit="rad/time",
-    absent=f"{_STILL}, and if it passes over a pole",
+    only=f"{_NUTATES} and does not pass over a pole",
 )
 _step = declared_keys(
     "Steps of section 8",
     lambda of: of.follows,
-    absent="unless the top nutates after release from rest",
+    only="if the top nutates after release from rest",
 )
 
 
