@@ -1,6 +1,6 @@
-"""Errata of the sources: slips judged one by one, and the figures of Chrapan's section 8.
+"""Errata of the sources: errata one by one, and the figures of Chrapan's section 8.
 
-The tables of tests/README.md are made from here.  The registers of equations check the slips: each
+The tables of tests/README.md are made from here.  The registers of equations check the errata: each
 of them must be listed, and each that is listed by an equation must fail as printed.
 """
 
@@ -18,7 +18,7 @@ from lagtop import Top
 
 
 class Verdict(StrEnum):
-    """Kinds of slips."""
+    """Kinds of errata."""
 
     MATHEMATICS = "mathematics"
     RESTRICTION = "restriction"
@@ -28,10 +28,10 @@ class Verdict(StrEnum):
 
 
 class Erratum(NamedTuple):
-    """A slip in the text at hand.
+    """An erratum in the text at hand.
 
     `place` is the equation as the registers call it, with " as printed, ..." where it has several
-    slips; `tested` says whether a register computes it.
+    errata; `tested` says whether a register computes it.
     """
 
     source: str
@@ -185,21 +185,23 @@ ERRATA = [
         *("η = (γ + s sn)/(1 + d sn) is supplied: it stands on the next page", GAP, False),
     ),
 ]
-"""All slips, in the order of the sources."""
+"""All errata, in the order of the sources."""
 
 
 def misprints(source: str, *sections: int) -> set[str]:
-    """Return the places of the slips in some sections that a register must compute."""
+    """Return the places of the errata in some sections that a register must compute."""
     return {x.place for x in ERRATA if x.source == source and x.section in sections and x.tested}
 
 
 def errata_table() -> list[str]:
-    """Return the slips as a table in Markdown."""
+    """Return the errata as a table in Markdown."""
     lines = ["| place | right | kind |", "|---|---|---|"]
-    for slip in ERRATA:
-        place = slip.place if slip.source == "Chrapan" else f"{slip.source}, {slip.place}"
-        right = slip.right.replace("|", "\\|")
-        lines.append(f"| {place.replace(' as printed', '')} | {right} | {slip.verdict} |")
+    for erratum in ERRATA:
+        place = (
+            erratum.place if erratum.source == "Chrapan" else f"{erratum.source}, {erratum.place}"
+        )
+        right = erratum.right.replace("|", "\\|")
+        lines.append(f"| {place.replace(' as printed', '')} | {right} | {erratum.verdict} |")
     return lines
 
 
@@ -311,7 +313,7 @@ def true_values() -> Any:
     return SimpleNamespace(**numbers, A=mpmath.mpf(top.A), C=mpmath.mpf(top.C))
 
 
-def judged(figure: Figure, true: Any) -> str:
+def carried_on(figure: Figure, true: Any) -> str:
     """Return "" for a figure that is right, else whether it follows from the printed ones.
 
     It does if it is at most one unit of its last place from what they give.
@@ -322,11 +324,11 @@ def judged(figure: Figure, true: Any) -> str:
     own = figure.own({x.name: number(x.text) for x in FIGURES})
     units = abs(number(round_alike(own, figure.text)) - number(figure.text)) / last_place(figure)
     shown = round_alike(own, figure.text)
-    return f"carried on: {shown}" if units < 1.5 else f"slip: {shown}"
+    return f"carried on: {shown}" if units < 1.5 else f"mistake: {shown}"
 
 
 def figures_table() -> list[str]:
-    """Return section 8 as a table in Markdown; what is wrong is bold and judged."""
+    """Return section 8 as a table in Markdown; what is wrong is bold."""
     lines = [
         "| quantity | printed | true | to 15 digits | from the printed figures |",
         "|---|---|---|---|---|",
@@ -335,7 +337,7 @@ def figures_table() -> list[str]:
     with mpmath.workdps(40):
         for figure in FIGURES:
             true = figure.true(values)
-            verdict = judged(figure, true)
+            verdict = carried_on(figure, true)
             mark = "**" if verdict else ""
             shown = f"{mark}{round_alike(true, figure.text)}{mark}"
             digits = mpmath.nstr(true, 15)

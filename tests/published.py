@@ -1,4 +1,4 @@
-"""Numbers that others have printed, judged: the table of sample_inputs/README.md is made from here.
+"""Numbers that others have printed, checked: a table of tests/README.md is made from here.
 
 The exact values are those of `lagtop` in many digits; `exact_by_the_judge` has them from the proved
 enclosures of `ball_judge`, which share no formula with it.
@@ -204,7 +204,7 @@ PRINTED = [
     *(_elementary(t) for t in ("1", "5", "-2")),
     Printed("SciPy 1.17.1, issue 8480: ellipj(50, m)", ELLIPJ, "cn", "-38885294681.78648"),
 ]
-"""All numbers that are judged, as their sources have them."""
+"""All numbers, as their sources have them."""
 
 
 @cache
@@ -276,10 +276,14 @@ def error(x: Printed) -> tuple[Many, bool]:
 
 
 def published_table() -> list[str]:
-    """Return all printed numbers as a table in Markdown; those that are right say so."""
+    """Return printed numbers as a table in Markdown, the worst one of each source and time."""
     lines = ["| source | scene | quantity | printed | exact | error of the print |"]
     lines.append("|---|---|---|---|---|---|")
+    worst: dict[tuple[str, str], Printed] = {}
     for x in PRINTED:
+        now = worst.setdefault((x.source, x.t), x)
+        worst[x.source, x.t] = max(now, x, key=lambda one: abs(error(one)[0]))
+    for x in worst.values():
         off, right = error(x)
         shown = "none to its last digit" if right else f"{float(off):.1e}"
         what = f"{x.quantity}({x.t})" if x.t else f"`{x.quantity}`"

@@ -94,15 +94,14 @@ def test_python_session(path: Path) -> None:
 
 def keys_table(kind: str, heading: str) -> list[str]:
     """Return the keys of a kind, or the columns, as a table in Markdown."""
-    lines = [
-        f"| {heading} | symbol | meaning | unit | formula | source | defined only |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    heads = [heading, "symbol", "meaning", "unit", "formula", "source"]
+    heads += ["defined only"] if kind != "column" else []
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for row in listed():
-        if row.kind == kind:
-            key = number_key(row.name) if kind != "column" else None
-            cells = [f"`{row.name}`", row.symbol, row.meaning, row.unit]
-            cells += [row.formula, row.equation, key.only if key else ""]
+        if row.kind == kind and row.name not in {*DECLARED, "theta0_deg"}:
+            key = number_key(row.name)
+            cells = [f"`{row.name}`", row.symbol, row.meaning, row.unit, row.formula, row.equation]
+            cells += [key.only if key else ""] if kind != "column" else []
             lines.append(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |")
     return lines
 
@@ -128,7 +127,7 @@ TABLES: list[tuple[Callable[[], list[str]], str]] = [
         (partial(keys_table, kind, heading), "lagrange_cli/motion")
         for kind, heading in KINDS_OF_KEYS.items()
     ),
-    (published_table, "sample_inputs"),
+    (published_table, "tests"),
     *((table, "lagrange_cli/compare") for table in COMPARE_TABLES),
 ]
 """Tables that are made, and the folders of the pages that show them."""
