@@ -96,7 +96,6 @@ def compare_command(
             curves.extend(
                 ErrorCurve(str(x.file), x.t, x.error, x.step, error)
                 for x, error in zip(results, errors, strict=True)
-                if x.t is not None and x.error is not None
             )
         return comparison_report(motion, results, found, limit)
 

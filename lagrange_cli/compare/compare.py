@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from itertools import repeat
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,9 +12,10 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.files import shown_path, utf8_path
-from ..inputs.names import ANGLES
+from ..inputs.names import ANGLES, check_names
 from ..inputs.observed import Conventions, quantities_of
 from ..inputs.top import Top
+from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.notebook import HasRecord
 from ..motion.solve import Motion, solve
 from .causes import likely_cause
@@ -40,6 +42,8 @@ LEAST_ORDER = 0.5
 _SURE = 2.0
 """Largest change of a difference from row to row, in radians, for whole turns to be counted."""
 _COMPARED = {"attitude": "attitude", "axis": "axis", **dict.fromkeys(ANGLES, "angles")}
+_KEYS = {"error": "error_max", "norm": "norm_error", "energy": "energy_drift", "Lz": "Lz_drift"}
+"""Keys of greatest differences; the others end in `_error_max`."""
 
 
 def _key(meaning: str, default: Any = None) -> Any:
@@ -84,9 +88,9 @@ class Comparison(HasRecord):
 
     error_start: float = field(default=0.0, compare=False)
     """Error of the first row, or of its rates."""
-    t: Array | None = field(default=None, compare=False)
+    t: Array = field(default_factory=lambda: np.empty(0), compare=False)
     """Times of the rows."""
-    error: Array | None = field(default=None, compare=False)
+    error: Array = field(default_factory=lambda: np.empty(0), compare=False)
     """Errors of the rows; NaN where the trajectory is lost."""
 
     def record(self) -> dict[str, Any]:
@@ -94,14 +98,9 @@ class Comparison(HasRecord):
         return {name: getattr(self, name) for name in COMPARISON_KEYS}
 
     def plot(self, figure: Figure | None = None) -> Figure:
-        """Draw the error over time, on a figure of matplotlib or a new one, and return the figure.
-
-        Raises LagtopError if the comparison has no errors.
-        """
+        """Draw the error over time, on a figure of matplotlib or a new one, and return it."""
         from ..plot.reports import ErrorCurve, draw_error_panels, new_figure  # start-up: matplotlib
 
-        if self.t is None or self.error is None:
-            raise LagtopError("the comparison has no errors to draw")
         figure = figure or new_figure()
         curve = ErrorCurve(self.file or "trajectory", self.t, self.error, None, self.error_max)
         draw_error_panels(figure, [curve], LIMIT)
@@ -121,30 +120,21 @@ def compare(
     top: Top | Motion,
     t: ArrayLike,
     *,
-    quaternion: ArrayLike | None = None,
-    matrix: ArrayLike | None = None,
-    theta: ArrayLike | None = None,
-    phi: ArrayLike | None = None,
-    psi: ArrayLike | None = None,
-    euler: ArrayLike | None = None,
-    rotvec: ArrayLike | None = None,
-    axis: ArrayLike | None = None,
-    position: ArrayLike | None = None,
-    rates: ArrayLike | None = None,
-    angle_rates: ArrayLike | None = None,
     quaternion_order: str = "wxyz",
     euler_sequence: str = "xyz",
     rates_frame: str = "body",
     align: Sequence[str] = (),
     max_error: float = LIMIT,
+    **arrays: ArrayLike | None,
 ) -> Comparison:
     """Compare a trajectory of n rows, at the times t, with the exact motion of a top.
 
-    Pass any of the following arrays.  The attitude: quaternion (n, 4) from body to space, matrix
-    (n, 3, 3) or (n, 9), or a rotation vector (n, 3).  Angles: theta, phi, psi (n,), or three angles
-    about coordinate axes (n, 3) with a sequence in scipy's notation.  Directions: the figure axis
-    (n, 3), or the position of the centre of mass from the pivot (n, 3).  Rates: angular velocity
-    (n, 3) in the frame of the `body` or of `space`, or the rates of theta, phi, psi (n, 3).
+    Pass any of the following arrays by name.  The attitude: `quaternion` (n, 4) from body to space,
+    `matrix` (n, 3, 3) or (n, 9), or a rotation vector `rotvec` (n, 3).  Angles: `theta`, `phi`,
+    `psi` (n,), or `euler` (n, 3), angles about coordinate axes with a sequence in scipy's notation.
+    Directions: the figure axis `axis` (n, 3), or the `position` (n, 3) of the centre of mass from
+    the pivot.  Rates: angular velocity `rates` (n, 3) in the frame of the `body` or of `space`, or
+    `angle_rates` (n, 3), the rates of theta, phi, psi.
 
     Angles are in radians; a masked element is a missing number.  `align` changes the trajectory
     first, as in `lagtop compare`.  A trajectory is fine up to `max_error` radians.
@@ -157,23 +147,20 @@ def compare(
     ('fine', '1e-04', 50)
     >>> figure, keys = found.plot(), found.to_dict().keys()
     """
-    angles = {"theta": theta, "phi": phi, "psi": psi}
-    attitude = {"quaternion": quaternion, "matrix": matrix, "euler": euler, "rotvec": rotvec}
-    directions = {"axis": axis, "position": position}
-    arrays = attitude | angles | directions | {"rates": rates, "angle_rates": angle_rates}
-    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
-    given = quantities_of(t, {key: x for key, x in arrays.items() if x is not None})
-    if len(given) == 1:
+    check_type("top", top, Top, Motion)
+    given = {key: x for key, x in arrays.items() if x is not None}
+    if not given:
         raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
-    times = given["t"]
-    steps = times[1:], times[:-1]  # a difference may exceed the range of doubles
+    check_names("arrays", [*given], [x for x in QUANTITIES if x != "t"])
+    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
+    trajectory = Trajectory(quantities_of(t, given), conventions, Alignment.of(align))
+    times = trajectory.given["t"]
+    before, after = times[:-1], times[1:]
     if not len(times):
         raise LagtopError("t must have at least one row, got none", "t")
-    if not np.isfinite(times).all() or not (np.all(np.greater(*steps)) or np.all(np.less(*steps))):
+    if not np.isfinite(times).all() or not ((before < after).all() or (before > after).all()):
         raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
-    check_type("top", top, Top, Motion)
     motion = top if isinstance(top, Motion) else solve(top)
-    trajectory = Trajectory(given, conventions, Alignment.of(align))
     return compared(motion, [trajectory], max_error)[0][0]
 
 
@@ -195,26 +182,24 @@ def compared(
         raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
     if wrong := [step for step in step_sizes or [] if not step > 0]:
         raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
-    results, found = [_measured(motion, trajectory) for trajectory in trajectories], None
-    if step_sizes is not None:
-        results = [replace(x, step=step) for x, step in zip(results, step_sizes, strict=True)]
-        found = convergence(results)
-        results = [replace(x, order=found and found.order) for x in results]
+    steps = step_sizes or repeat(None)
+    results = [_measured(motion, x, step) for x, step in zip(trajectories, steps, strict=False)]
+    found = convergence(results) if step_sizes else None
     for i, (x, trajectory) in enumerate(zip(results, trajectories, strict=True)):
-        is_off, verdict = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit, "fine"
-        name, remaining = None, None
-        if is_off and not (found and found.falls):
-            name, remaining = likely_cause(motion, trajectory, limit) or (None, None)
-        if is_off:
-            is_known = remaining is not None and remaining <= limit
+        verdict, cause = "fine", None
+        if max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit:
+            cause = None if found and found.falls else likely_cause(motion, trajectory, limit)
+            is_known = cause is not None and cause[1] <= limit
             verdict = "another top" if is_known or (found and not found.falls) else "drifts"
         verdict = "off from the start" if x.error_start > limit else verdict
         verdict = "lost" if x.lost_at is not None else verdict
-        results[i] = replace(x, verdict=verdict, cause=name, cause_error=remaining)
+        name, remaining = cause or (None, None)
+        order = found and found.order
+        results[i] = replace(x, verdict=verdict, order=order, cause=name, cause_error=remaining)
     return results, found
 
 
-def _measured(motion: Motion, trajectory: Trajectory) -> Comparison:
+def _measured(motion: Motion, trajectory: Trajectory, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
     run = trajectory.align.aligned(trajectory.observed(), motion)
     try:
@@ -225,19 +210,17 @@ def _measured(motion: Motion, trajectory: Trajectory) -> Comparison:
         raise DataError(f"{shown_path(trajectory.file)}: {wrong}") from None
     error, t, known = found["error"], run.t, dict[str, Any]()
     for name, values in found.items():
-        finite = abs(values[np.isfinite(values)])
-        if finite.size:
-            ending = "_drift" if name in {"energy", "Lz"} else "_error_max"
-            key = {"error": "error_max", "norm": "norm_error"}.get(name, name + ending)
-            known[key] = float(finite.max())
-    for name in found.keys() & ANGLES:
-        rows = np.isfinite(found[name])
-        angle = np.unwrap(found[name][rows])
-        if rows.sum() > 2 and abs(np.diff(angle)).max() <= _SURE:
-            known[f"{name}_drift"] = float(np.polyfit(t[rows] - t[rows].mean(), angle, 1)[0])
+        finite = np.isfinite(values)
+        if finite.any():
+            known[_KEYS.get(name, f"{name}_error_max")] = float(abs(values[finite]).max())
+        if name in ANGLES and finite.sum() > 2:
+            times, angle = t[finite] - t[finite].mean(), np.unwrap(values[finite])
+            if abs(np.diff(angle)).max() <= _SURE:
+                known[f"{name}_drift"] = float(np.polyfit(times, angle, 1)[0])
     lost = np.flatnonzero(np.isnan(error))
     return Comparison(
         file=trajectory.file and utf8_path(trajectory.file),
+        step=step,
         rows=t.size,
         compared=next((word for name, word in _COMPARED.items() if name in found), "rates"),
         error_final=None if np.isnan(error[-1]) else float(error[-1]),
@@ -268,18 +251,16 @@ def convergence(results: Sequence[Comparison]) -> Convergence | None:
     """
     if len({x.step for x in results}) < 2:
         return None
-    curves = []
-    for x in results:
-        error = np.fmax.accumulate(np.nan_to_num(np.asarray(x.error), nan=np.inf))
-        curves.append((abs(np.asarray(x.t) - np.asarray(x.t)[0]), error))
+    curves = [
+        (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf))) for x in results
+    ]
     until = min(t[max(np.searchsorted(error, LOST_PHASE) - 1, 0)] for t, error in curves)
     errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
-    points = sorted((x.step or 0.0, error) for x, error in zip(results, errors, strict=True))
-    ratio = points[-1][0] / points[0][0]
-    falls = not ROUNDING <= min(errors) or max(errors) >= min(errors) * ratio**LEAST_ORDER
-    least = min(range(len(points)), key=lambda i: points[i][1])
-    usable = [(step, error) for step, error in points[least:] if 0 < error < LOST_PHASE]
-    if len({step for step, _ in usable}) < 2:
-        return Convergence(None, falls, errors)
-    x, y = np.log(usable).T
-    return Convergence(float(np.polyfit(x, y, 1)[0]), falls, errors)
+    step, error = np.array(sorted((x.step, y) for x, y in zip(results, errors, strict=True))).T
+    least = error.min()
+    falls = least < ROUNDING or error.max() >= least * (step[-1] / step[0]) ** LEAST_ORDER
+    usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
+    if len({*step[usable]}) < 2:
+        return Convergence(None, bool(falls), errors)
+    slope = np.polyfit(np.log(step[usable]), np.log(error[usable]), 1)[0]
+    return Convergence(float(slope), bool(falls), errors)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -21,7 +22,6 @@ from ..inputs.top import Top
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 
-AXES = ("x", "y", "z", "-x", "-y", "-z")
 WORDS = {
     "axis=y": "the figure axis is the body's y axis (or x, -x, -y, -z)",
     "up=y": "up is the y axis of space (or x, -x, -y, -z)",
@@ -51,11 +51,10 @@ class Alignment(NamedTuple):
             raise LagtopError(f"align must be a list of words, got {quoted(words)}", "align")
         found: dict[str, Any] = {}
         for word in words:
-            key, _, axis = str(word).partition("=")
-            has_axis = key in {"axis", "up"} and axis in AXES
-            if not has_axis and word not in {"left", "start", "time"}:
+            if not re.fullmatch("(axis|up)=-?[xyz]|left|start|time", str(word)):
                 wanted = f"align must be among {', '.join(WORDS)}"
                 raise LagtopError(f"{wanted}, got {quoted(word)}", "align")
+            key, _, axis = word.partition("=")
             found[key] = axis or True
         return cls(**found)
 
@@ -124,17 +123,12 @@ class Trajectory(NamedTuple):
         """Return the motion of the trajectory, in its own frames."""
         return observe(self.given, self.conventions, self.named)
 
-    def errors(self, motion: Motion, change: Callable[[Observed], Observed] = lambda x: x) -> Array:
-        """Return the error of each row, or that of its rates, after a change of the motion."""
-        found = differences(motion, self.align.aligned(change(self.observed()), motion))
-        worst: Array = np.maximum(found["error"], found.get("rates", 0.0))
-        return worst
 
-    def greatest(
-        self, motion: Motion, change: Callable[[Observed], Observed] = lambda x: x
-    ) -> float:
-        """Return the greatest error that is known, infinite if none is."""
-        return float(np.nan_to_num(np.fmax.reduce(self.errors(motion, change)), nan=np.inf))
+def errors(motion: Motion, run: Observed, align: Alignment) -> Array:
+    """Return the error of each row, or that of its rates if it is greater."""
+    found = differences(motion, align.aligned(run, motion))
+    worst: Array = np.maximum(found["error"], found.get("rates", 0.0))
+    return worst
 
 
 def differences(motion: Motion, run: Observed) -> dict[str, Array]:
@@ -147,59 +141,44 @@ def differences(motion: Motion, run: Observed) -> dict[str, Array]:
     """
     exact = motion.table(run.t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
     q = np.stack([exact[f"quaternion_{x}"] for x in "wxyz"], axis=1)
-    found = _attitude(motion, run, q, {key: exact[key] for key in ANGLES})
-    found |= _rates(motion, run, q, np.stack([exact[x] for x in "pqr"], axis=1))
+    angles, axis, found = dict(run.angles), run.axis, dict[str, Array]()
+    if run.quaternion is not None:
+        found["attitude"] = rotations.angle_between(q, run.quaternion)
+        angles, axis = rotations.angles_of(run.quaternion), rotations.axis_of(run.quaternion)
+    elif axis is not None:
+        angles = rotations.angles_of_axis(axis)
+    if axis is not None:
+        found["axis"] = rotations.angle_between_vectors(rotations.axis_of(q), axis)
+    if axis is not None and motion.regime in {Regime.SLEEPING, Regime.HANGING}:
+        for one in (angles, exact) if "phi" in angles else ():  # only phi + psi, phi - psi exist
+            one["phi"] = one["phi"] + (1 if motion.regime is Regime.SLEEPING else -1) * one["psi"]
+        del angles["psi"]
+    found |= {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
+    found |= _rates(motion.top, run, q, np.stack([exact[x] for x in "pqr"], axis=1))
     if run.norm is not None:
         found["norm"] = abs(run.norm)
     if run.distance is not None and motion.top.s:
         found["norm"] = abs(run.distance / float(motion.top.s) - 1.0)
-    angles = [abs(found[key]) for key in ANGLES if key in found]
-    parts = [found["rates"]] if not angles else [np.max(angles, axis=0)]
-    error = np.array(found.get("attitude", found.get("axis", parts[0])))
+    parts = [abs(found[key]) for key in angles] or [found["rates"]]
+    error = np.array(found.get("attitude", found.get("axis", np.max(parts, axis=0))))
     error[~np.all([np.isfinite(x) for x in found.values()], axis=0)] = np.nan
     return found | {"error": error}
 
 
-def _attitude(motion: Motion, run: Observed, q: Array, exact: dict[str, Array]) -> dict[str, Array]:
-    """Return the differences of the attitude, or of the parts of it that are given."""
-    found: dict[str, Array] = {}
-    angles, axis = dict(run.angles), run.axis
-    if run.quaternion is not None:
-        found["attitude"] = rotations.angle_between(q, run.quaternion)
-        angles, axis = (
-            rotations.angles_of(run.quaternion),
-            rotations.axis_of(run.quaternion),
-        )
-    if axis is not None:
-        found["axis"] = rotations.angle_between_vectors(rotations.axis_of(q), axis)
-    if run.quaternion is None and axis is not None:
-        angles = rotations.angles_of_axis(axis)
-    if motion.regime in {Regime.SLEEPING, Regime.HANGING}:  # only the sum or difference is defined
-        sign = 1 if motion.regime == Regime.SLEEPING else -1
-        if run.quaternion is not None:
-            for one in (angles, exact):
-                one["phi"] = one["phi"] + sign * one["psi"]
-        if run.quaternion is not None or axis is not None:
-            del angles["psi"]
-    return found | {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
-
-
-def _rates(motion: Motion, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
+def _rates(top: Top, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
     """Return the differences of the angular velocity, and the changes of what it conserves."""
-    top, own = motion.top, run.body_rates
     swing, torque, size = sizes(top)
-    if run.space_rates is not None:
-        given, rates = run.space_rates, rotations.rotated(q, exact)
-    elif own is not None:
-        given, rates = own, exact
-    else:
+    own, fixed = run.body_rates, run.space_rates
+    given = own if fixed is None else fixed
+    if given is None:
         return {}
-    found = {"rates": np.linalg.norm(given - rates, axis=1) / size}
+    off = given - (exact if fixed is None else rotations.rotated(q, exact))
+    found = {"rates": np.linalg.norm(off, axis=1) / size}
     if run.quaternion is None:
         return found
     to_body = rotations.conjugate(run.quaternion)
-    own = rotations.rotated(to_body, given) if own is None else own
-    up = rotations.rotated(to_body, np.broadcast_to([0.0, 0.0, 1.0], own.shape))
+    own = given if fixed is None else rotations.rotated(to_body, fixed)
+    up = rotations.rotated(to_body, np.array([0.0, 0.0, 1.0]))
     A, C, r0 = float(top.A), float(top.C), float(top.r0)
     moments = np.array([A, A, C])
     energy = (moments * own**2).sum(axis=1) / 2 + torque * up[:, 2]

@@ -97,10 +97,12 @@ def _sentence(x: Comparison) -> str:
 
 
 def _order(results: Sequence[Comparison], found: Convergence) -> str:
-    if not found.falls and all(x.verdict == "fine" for x in results):
-        return "The error does not fall with the step: the numbers may have been rounded."
     if not found.falls:
-        return "The error does not fall with the step: this is the motion of another top."
+        is_fine = all(x.verdict == "fine" for x in results)
+        why = (
+            "the numbers may have been rounded" if is_fine else "this is the motion of another top"
+        )
+        return f"The error does not fall with the step: {why}."
     if found.order is None:
         return "The errors are too small or too large to show an order of convergence."
     if found.order < LEAST_ORDER:
