@@ -1,4 +1,4 @@
-"""`lagtop compare`: files, options, reports, pictures and exit codes; a trajectory by MuJoCo."""
+"""`lagtop compare`: files, options, reports, pictures and exit codes."""
 
 from __future__ import annotations
 
@@ -97,26 +97,3 @@ def test_bad_requests_get_one_line(
     lagtop: Lagtop, text: str, arguments: str, code: int, message: str
 ) -> None:
     assert_one_line(lagtop("compare", "-", *arguments.split(), input=text), code, message)
-
-
-def test_mujoco(lagtop: Lagtop, tmp_path: Path) -> None:
-    """Engines take moments about the mass centre.  Seen with MuJoCo 4.0.0: 8.0e-7 rad at 1 ms."""
-    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    M, A, C, S = 1.587, 3.9032e-3, 1.7458e-3, 0.04
-    names = ["t", *(f"qpos_{i}" for i in range(4)), *(f"qvel_{i}" for i in range(3))]
-    top = ["--m", M, "--A", A, "--C", C, "--s", S, "--g", 9.81, "--r0", 50, "--theta0", 30]
-    for moment, said in ((A - M * S**2, "fine"), (A, "A about the pivot was taken as A about")):
-        model = mujoco.MjModel.from_xml_string(
-            f"""<mujoco><option gravity="0 0 -9.81" timestep="0.002" integrator="RK4"/>
-            <worldbody><body><joint type="ball" damping="0"/><inertial pos="0 0 {S}" mass="{M}"
-            diaginertia="{moment} {moment} {C}"/></body></worldbody></mujoco>"""
-        )
-        data = mujoco.MjData(model)
-        data.qpos[:4] = np.cos(np.pi / 12), np.sin(np.pi / 12), 0, 0
-        data.qvel[2] = 50
-        rows = []
-        for i in range(501):
-            rows.append([i * 0.002, *data.qpos, *data.qvel])
-            mujoco.mj_step(model, data)
-        np.savetxt(tmp_path / "run", rows, delimiter=",", header=",".join(names), comments="")
-        assert said in lagtop("compare", tmp_path / "run", *top).stdout
