@@ -1,7 +1,8 @@
 """Compare today's numbers with those of commit eec8223, which proved them by another arithmetic.
 
-`frozen.json` was written once by `tools/freeze.py` of commit 69ed2d7.  A later commit may only remove names from it,
-or replace the branch of a complex function that mpmath shows to be wrong; DIGEST changes with it.
+`frozen.json` was written once by `tools/freeze.py` of commit 69ed2d7.  A later commit may only
+remove names from it, or replace the branch of a complex function that mpmath shows to be wrong;
+DIGEST changes with it.
 A key that is null in the lists `keys` and `radian_keys` is not compared.
 """
 
