@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
 from functools import partial
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import quoted
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from ..inputs.values import Value
     from ..motion.solve import Motion
     from ..output.destination import Output
+    from ..sweep.plan import NumberedBlock
 
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
@@ -94,7 +96,7 @@ def sweep_command(
     repeat the command to resume a run that was killed.
     """
     from ..sweep.parts import Parts
-    from ..sweep.plan import ErrorCount, plan, shard_of
+    from ..sweep.plan import ErrorCount, plan
     from ..sweep.workers import in_order
 
     opt.exclude(jobs=jobs, dask=dask)
@@ -122,12 +124,13 @@ def sweep_command(
     if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
         sweep, out = sweep._replace(fmt="csv"), out._replace(fmt="csv")
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
-    count, blocks = ErrorCount(hidden), shard_of(todo.blocks, shard)
+    count, (first, every) = ErrorCount(hidden), shard or (1, 1)
+    blocks: Iterable[NumberedBlock] = islice(todo.blocks, first - 1, None, every)
     folder = None if parts is None else Parts(parts, sweep, todo.description)
     if folder:
         blocks = folder.missing(blocks, count)
     with closing(in_order(sweep.part, blocks, jobs or 1, dask)) as computed:
-        total = todo.size // (shard or (1, 1))[1] or None
+        total = todo.size // every or None
         done = with_progress(count.passing(computed), "tops", total, lambda part: part.size)
         if folder:
             folder.write(done)

@@ -171,14 +171,6 @@ def runs_of(columns: Iterable[ResultColumn]) -> Columns:
     return runs
 
 
-def shard_of(
-    blocks: Iterable[NumberedBlock], shard: tuple[int, int] | None
-) -> Iterator[NumberedBlock]:
-    """Return every N-th block from the I-th on, for the shard (I, N), or all blocks."""
-    first, step = shard or (1, 1)
-    return (block for block in blocks if block[0] % step == first - 1)
-
-
 class ErrorCount:
     """A count of the tops that have an error."""
 

@@ -7,13 +7,19 @@ import io
 import itertools
 import json
 import math
+import os
+import subprocess
+import time
 import tracemalloc
+from fcntl import ioctl
 from pathlib import Path
+from subprocess import PIPE
+from termios import FIONREAD
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Lagtop
+from conftest import LAGTOP, Lagtop, wait_until
 from lagtop import LagtopError, Top, solve, sweep
 from scenes import UNIT
 
@@ -337,3 +343,29 @@ BODY = {"m": 1587.0, "C": 17458.0, "s": 4.0, "g": 981.0}
 def test_memory_of_a_sweep_is_little_more_than_its_result(inputs: dict[str, Any]) -> None:
     """Measured 1.3 to 2.1 times the result: inputs that are one number for all take no room."""
     assert peak_over_result(**inputs) < 2.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("command", "header", "rest"),
+    [
+        ("sweep - --keys r0", "r0", ""),
+        ("table --times -", "t", ""),
+        ("compare - --max-error 9 --format csv", "t,theta", ",30"),
+    ],
+)
+def test_standard_input_that_does_not_block(command: str, header: str, rest: str) -> None:
+    """The reader finds an empty pipe before the second half comes."""
+    reading, writing = os.pipe()
+    os.set_blocking(reading, False)
+    lines = [f"{header}\n", *(f"{i}{rest}\n" for i in range(2000))]
+    with subprocess.Popen([*LAGTOP, *command.split()], stdin=reading, stdout=PIPE) as running:
+        for half in (lines[:1001], lines[1001:]):
+            os.write(writing, "".join(half).encode())
+            wait_until(lambda: not any(ioctl(reading, FIONREAD, bytes(4))), running)
+            time.sleep(0.5)
+        os.close(writing)
+        out = running.communicate(timeout=60)[0].decode().splitlines()
+    os.close(reading)
+    assert running.returncode == 0
+    assert ",2000," in out[1] if "compare" in command else len(out) == 2001
