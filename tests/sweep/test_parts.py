@@ -21,15 +21,6 @@ def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
     assert sum(len(lines) - 1 for lines in alone) == 9000
 
 
-def test_shards_of_a_file(tmp_path: Path, lagtop: Lagtop) -> None:
-    file, parts = tmp_path / "tops.ndjson", tmp_path / "parts"
-    file.write_text("".join(f'{{"id": {i}, "r0": {i / 100}}}\n' for i in range(9000)))
-    options = ["sweep", file, "--keys", "T_nutation", "--format", "ndjson"]
-    for i in (1, 2):
-        lagtop(*options, "--shard", f"{i}/2", "--parts", parts)
-    assert joined(parts) == lagtop(*options).stdout_bytes
-
-
 NINES = "9" * 5000
 
 

@@ -69,12 +69,19 @@ def test_quantities_are_converted_to_si() -> None:
         sweep(m=unit.Quantity(350, "g"), s=4.0)
 
 
+UNREAL: list[Any] = [np.array([1, 2j]), np.array(["2020-01-01"], "datetime64[D]"), 10**400]
+UNREAL += [["50"], [True], [[1], [2, 3]]]
+
+
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [
         ({"theta0": 30.0}, r"got 'theta0' \(did you mean 'theta0_deg'"),
         ({"r0": [1.0, 2.0], "theta0_deg": [1.0, 2.0, 3.0]}, r"r0 \(2,\), theta0_deg \(3,\)"),
         ({"r0": ufloat(50, 2)}, "r0 is uncertain: a sweep does not propagate uncertainties"),
+        *(({"r0": x}, "r0 must be real numbers, got") for x in UNREAL),
+        ({"r0": np.ma.array([1.0, 2.0], mask=[False, True])}, "r0 must not be masked"),
+        ({"keys": ["x"]}, "keys must be among"),
         ({"r0": xarray.DataArray(SPINS, dims="run")}, r"r0 has named dimensions: pass r0.to_numpy"),
     ],
 )
