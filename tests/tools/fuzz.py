@@ -207,14 +207,18 @@ def by_mpmath(top: Top, digits: int) -> tuple[dict[str, Any], Reference]:
 def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[float]) -> None:
     """Judge numbers and attitudes by `Reference`, which shares no formula with lagtop.
 
-    Numbers that differ in 80 and in 240 digits, and zeros, are left out.
+    Numbers that differ in 80 and in 240 digits, and zeros, are left out.  So are tops that pass so
+    close to the vertical that the parts of Legendre's third integral cancel in all these digits.
     """
     facts = motion.exact.facts
     if facts.free or facts.steady or facts.meets_a_pole or not motion.T_nutation:
         return
     try:
         (exact, _), (rough, reference) = (by_mpmath(motion.top, count) for count in (240, 80))
+        far = all(at_u1 < 10**60 * at_u2 for at_u1, at_u2 in reference.gaps)
     except ZeroDivisionError:  # next to a pole
+        far = False
+    if not far or any(isinstance(x, mpmath.mpc) for x in exact.values()):
         tally.counts["too few digits in mpmath"] += 1
         return
     record = motion.record(digits=digits or None, keys=list(exact))
