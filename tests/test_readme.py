@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -43,12 +44,12 @@ def sessions(text: str) -> Iterator[tuple[str, str]]:
             yield command, output
 
 
-def run(command: str) -> str:
+def run(command: str, folder: Path = ROOT) -> str:
     """Return what a terminal would show for a command."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
         ["bash", "-c", command],
-        cwd=ROOT,
+        cwd=folder,
         env=os.environ | {"PATH": path, "PYTHONIOENCODING": "utf-8"},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -77,6 +78,23 @@ def test_session(command: str, shown: str) -> None:
     assert NUMBER.sub("#", real) == NUMBER.sub("#", shown)
     pairs = zip(NUMBER.findall(real), NUMBER.findall(shown), strict=True)
     assert all(float(a) == pytest.approx(float(b), rel=1e-13, abs=1e-13) for a, b in pairs)
+
+
+LINES = [
+    pytest.param(line, id=f"{name(path)}: {line}"[:120])
+    for path in PAGES
+    for block in re.findall(r"```sh\n(.*?)```", path.read_text(), re.DOTALL)
+    for line in block.splitlines()
+    if line.startswith("lagtop ")
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("line", LINES)
+def test_line_without_output(line: str, tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "sample_inputs", tmp_path / "sample_inputs")
+    assert "Error" not in run(line, tmp_path)
+    assert all((tmp_path / file).is_file() for file in re.findall(r"(?:-o|--plot) (\S+)", line))
 
 
 def test_there_are_sessions() -> None:
