@@ -68,7 +68,7 @@ def compare_command(
     """
     from ..compare.compare import LIMIT, compared
     from ..compare.differences import Alignment
-    from ..compare.report import comparison_report, failures, read
+    from ..compare.report import comparison_report, read, sentence
     from ..inputs.observed import Conventions
 
     opt.check_plot(plot, out.path)
@@ -88,7 +88,7 @@ def compare_command(
         results, found = compared(motion, trajectories, limit, step_sizes)
         if top.scene is None and not top.inputs:
             complain("Warning: no scene and no inputs: compared with the worked example")
-        failed.extend(failures(results))
+        failed.extend(sentence(x) for x in results if x.verdict != "fine")
         if plot:
             from ..plot.reports import ErrorCurve
 

@@ -24,12 +24,17 @@ _AS_GOOD, _ROUNDING = 10.0, 1e-9
 """Factor between the remaining errors of two causes, and least error, that make no difference."""
 _MOST_SHIFTS = 500
 _GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
-_FRAMES = (
-    *("left", "up=y,left"),
-    *(f"axis={x},up={x}" for x in ("x", "y", "-z")),
-    *(f"{word}={x}" for x in ("x", "y", "-z") for word in ("axis", "up")),
-)
-"""Other frames, as words of `--align`."""
+_FRAMES = {
+    "start": "spin and precession do not start at 0",
+    "left": "the frame is left-handed with z up: read the quaternion as (-x, y, -z, w)",
+    "up=y,left": "the frame is left-handed with y up: read the quaternion as (-x, -z, -y, w)",
+    **{
+        words: "the axes are others"
+        for x in ("x", "y", "-z")
+        for words in (f"axis={x},up={x}", f"axis={x}", f"up={x}")
+    },
+}
+"""Other frames: words of `--align`, with their names."""
 _ANGLES = {
     "phi and psi are exchanged": {"phi": "psi", "psi": "phi"},
     "psi is counted backwards": {"psi": "-psi"},
@@ -74,10 +79,7 @@ def likely_cause(motion: Motion, trajectory: Trajectory, limit: float) -> tuple[
     every = causes(motion.top, trajectory, shift, count) if hopeful else ()
     found = [(x.name, x.error(motion, align)) for x in every if x.name in hopeful]
     least = min((error for _, error in found), default=math.inf)
-    if least <= limit:
-        enough = min(enough, limit, max(_AS_GOOD * least, _ROUNDING))
-    else:
-        enough = min(enough, least)
+    enough = min(enough, max(least, min(limit, max(_AS_GOOD * least, _ROUNDING))))
     return next((x for x in found if x[1] <= enough), None)
 
 
@@ -105,18 +107,12 @@ def causes(top: Top, trajectory: Trajectory, shift: float, most: int) -> Iterato
             moved = trajectory._replace(given=given).few(most).observed()
             yield Cause(f"rows are off by one: each holds the state of the {word} time", moved)
     yield Cause("time runs backwards", replace(run, t=-run.t))
-    for words in ("start", *_FRAMES, *(f"{words},start" for words in _FRAMES)):
-        said = (
-            "spin and precession do not start at 0" if words == "start" else "the axes are others"
-        )
-        if "left" in words:
-            up, q = ("y", "(-x, -z, -y, w)") if "up=y" in words else ("z", "(-x, y, -z, w)")
-            said = f"the frame is left-handed with {up} up: read the quaternion as {q}"
-        yield Cause(f"{said} (--align {words})", run, words=words)
-    remedy = (
-        " (--align time)" if math.isclose(shift, trajectory.given["t"][0, 0], rel_tol=1e-4) else ""
-    )
-    yield Cause(f"the clock is shifted by {shift:.5g}{remedy}", replace(run, t=run.t - shift))
+    for more in ("", ",start"):
+        for words, said in _FRAMES.items():
+            yield Cause(f"{said} (--align {words}{more})", run, words=words + more)
+    is_start = math.isclose(shift, trajectory.given["t"][0, 0], rel_tol=1e-4)
+    name = f"the clock is shifted by {shift:.5g}" + " (--align time)" * is_start
+    yield Cause(name, replace(run, t=run.t - shift))
 
 
 def _other_tops(top: Top) -> dict[str, dict[str, Any]]:
@@ -162,9 +158,9 @@ def _other_attitudes(top: Top, run: Observed) -> Iterator[Cause]:
         }.items():
             yield Cause(f"the quaternion is {name}", replace(run, quaternion=other))
 
-    def with_angles(changed: Mapping[str, Any]) -> Observed:
-        turned = None if q is None else rotations.of_angles(**changed)
-        return replace(run, angles={} if q is not None else changed, quaternion=turned)
+    def with_angles(changed: dict[str, Any]) -> Observed:
+        other = {"angles": changed} if q is None else {"quaternion": rotations.of_angles(**changed)}
+        return replace(run, **other)
 
     for name, meanings in _ANGLES.items():
         meant = {meanings.get(x, x): y for x, y in angles.items()}

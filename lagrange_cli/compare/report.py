@@ -70,13 +70,8 @@ def comparison_report(
     return Report(conditions, fields_of([*COMPARISON_KEYS], *shown), results, lines)
 
 
-def failures(results: Sequence[Comparison]) -> list[str]:
-    """Return the trajectories that are not fine, with reasons."""
-    return [_sentence(x) for x in results if x.verdict != "fine"]
-
-
 def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iterator[str]:
-    yield f"{_sentence(x)}."
+    yield f"{sentence(x)}."
     if x.compared == "attitude" and (x.norm_error or 0.0) > _WRONG_NORM:
         yield f"The norm of its quaternion or matrix is up to {x.norm_error:.1e} off 1."
     if x.cause is not None and x.cause_error is not None:
@@ -86,7 +81,7 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
         yield "None of the known causes explains the error."
 
 
-def _sentence(x: Comparison) -> str:
+def sentence(x: Comparison) -> str:
     """Return the verdict on a trajectory with its errors."""
     verdict = f"lost at t = {x.lost_at}" if x.verdict == "lost" else x.verdict
     unit = "of the rates" if x.compared == "rates" else "rad"
@@ -99,9 +94,7 @@ def _sentence(x: Comparison) -> str:
 def _order(results: Sequence[Comparison], found: Convergence) -> str:
     if not found.falls:
         is_fine = all(x.verdict == "fine" for x in results)
-        why = (
-            "the numbers may have been rounded" if is_fine else "this is the motion of another top"
-        )
+        why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
         return f"The error does not fall with the step: {why}."
     if found.order is None:
         return "The errors are too small or too large to show an order of convergence."
