@@ -11,8 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from lagtop import Top
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def wxyz(turn: Rotation) -> Array:
+    """Return rotations as quaternions, the real part first."""
+    return np.asarray(turn.as_quat(scalar_first=True))
 
 
 class Body(NamedTuple):

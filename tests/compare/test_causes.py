@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from engines import Array, Body, dop853
+from engines import Array, Body, dop853, wxyz
 from lagtop import Top, compare
 from scipy.spatial.transform import Rotation
 
@@ -32,10 +32,6 @@ def run(name: str, mistake: str = "", method: str = "DOP853") -> tuple[Rotation,
     """Return the attitude and the body rates that an engine computes with a mistake or none."""
     _, states = dop853(bodies(TOPS[name])[mistake], T, 1e-10, method)
     return Rotation.from_quat(states[:, :4], scalar_first=True), states[:, 4:]
-
-
-def wxyz(turn: Rotation) -> Array:
-    return np.asarray(turn.as_quat(scalar_first=True))
 
 
 def bodies(top: Top) -> dict[str, Body]:
