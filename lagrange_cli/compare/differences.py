@@ -47,8 +47,6 @@ class Alignment(NamedTuple):
     @classmethod
     def of(cls, words: Sequence[str]) -> Alignment:
         """Return the alignment of some words.  Raises LagtopError for an unknown word."""
-        if isinstance(words, str):
-            raise LagtopError(f"align must be a list of words, got {quoted(words)}", "align")
         found: dict[str, Any] = {}
         for word in words:
             if not re.fullmatch("(axis|up)=-?[xyz]|left|start|time", str(word)):
@@ -65,12 +63,9 @@ class Alignment(NamedTuple):
         """
         axis = self.axis or (self.up if self.left else "z")
         if run.quaternion is None and (axis != "z" or self.left):
-            word = f"axis={axis}" if axis != "z" else "left"
-            raise LagtopError(f"align {word} needs the whole attitude: leave it out", "align")
-        directed = (run.quaternion, run.axis, run.space_rates)
-        if self.up != "z" and all(x is None for x in directed):
-            wanted = "the axis or the whole attitude"
-            raise LagtopError(f"align up={self.up} needs {wanted}: leave it out", "align")
+            raise LagtopError("align axis and left need the whole attitude: omit them", "align")
+        if self.up != "z" and all(x is None for x in (run.quaternion, run.axis, run.space_rates)):
+            raise LagtopError("align up needs the axis or the whole attitude: omit it", "align")
         run = run.turned(rotations.to_z(self.up), rotations.to_z(axis))
         if self.left:  # as is usual: Unreal turns y round, Unity exchanges y and z
             run = _mirrored(run, np.diag([1.0, -1, 1]) if self.up[-1] == "z" else _EXCHANGE_XY)
@@ -82,13 +77,10 @@ class Alignment(NamedTuple):
 def _mirrored(run: Observed, mirror: Array) -> Observed:
     """Return the motion after a reflection of both frames, a matrix of shape (3, 3)."""
     assert run.quaternion is not None
-    q, own, fixed = run.quaternion, run.body_rates, run.space_rates
-    return replace(
-        run,
-        quaternion=np.concatenate([q[:, :1], -q[:, 1:] @ mirror], axis=1),
-        body_rates=None if own is None else -own @ mirror,
-        space_rates=None if fixed is None else -fixed @ mirror,
-    )
+    names = (x for x in ("body_rates", "space_rates") if getattr(run, x) is not None)
+    rates = {x: -getattr(run, x) @ mirror for x in names}
+    q = np.concatenate([run.quaternion[:, :1], -run.quaternion[:, 1:] @ mirror], axis=1)
+    return replace(run, quaternion=q, **rates)
 
 
 def _counted_from_start(run: Observed, motion: Motion) -> Observed:

@@ -33,9 +33,6 @@ def table(text: str) -> list[Record]:
     return list(csv.DictReader(io.StringIO(text)))
 
 
-# Accuracy
-
-
 SPECIAL: list[dict[str, Any]] = [
     {},
     {"r0": 0},
@@ -131,9 +128,6 @@ def test_settings_of_the_host_program_change_no_bit(inputs: Record) -> None:
             np.testing.assert_array_equal(column, found[key])
 
 
-# Grids
-
-
 def test_the_last_option_is_the_fastest(lagtop: Lagtop) -> None:
     options = ["--theta0", "5,10", "--r0", "1:3:3", "--keys", "theta0_deg,r0"]
     found = table(lagtop("sweep", *options).stdout)
@@ -198,9 +192,6 @@ def test_scene_and_grid(lagtop: Lagtop) -> None:
     assert len({row["m"] for row in table(shown.stdout)}) == 1
     assert lagtop("sweep", "nowhere.toml").exit_code == 65
     assert lagtop("sweep", "a.csv", "b.csv").exit_code == 2
-
-
-# Files of tops
 
 
 def test_rows_of_csv(tmp_path: Path, lagtop: Lagtop) -> None:
