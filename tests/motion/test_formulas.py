@@ -164,21 +164,6 @@ def test_over_a_pole_the_formula_shows_its_limit_and_no_division_by_0(poles: str
         assert float(value) == pytest.approx(row.value, rel=2e-5)
 
 
-def test_only_the_numbers_of_the_formula_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
-    computed = []
-    number = Motion.number
-
-    def counted(motion: Motion, name: str, *args: Any, **how: Any) -> Any:
-        computed.append(name)
-        return number(motion, name, *args, **how)
-
-    monkeypatch.setattr(Motion, "number", counted)
-    explanations(solve(Top()), ["T_nutation", "psidot"])
-    assert sorted(computed) == sorted(
-        ["T_nutation", "K", "a", "b", "u2", "u3", "momentum_constant"]
-    )
-
-
 def test_a_word_for_a_rate_is_its_number_in_a_formula() -> None:
     motion = solve(Top(r0=60.0, psidot0="steady"))
     (row,) = explanations(motion, ["precession_rate_start"])

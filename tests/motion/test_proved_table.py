@@ -9,7 +9,7 @@ from typing import Any
 import mpmath
 import pytest
 from ball_judge import Judge
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop
 from lagtop import Top, solve
 from scenes import UNIT
 
@@ -151,18 +151,6 @@ def test_commands_write_radii(lagtop: Lagtop) -> None:
     assert "theta_deg_radius" in drawn
     derived = lagtop("solve", "--certify", "--derivation", "--format", "json").stdout
     assert 0 < json.loads(derived)["E_amplitude_radius"] < 1e-15
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ("table --certify --columns t,e", "--columns must be among t, theta, phi,"),
-        ("table --certify --format parquet -o x", "--format parquet holds doubles"),
-        ("solve --certify --r0 nan", "--r0 must be a finite decimal number"),
-    ],
-)
-def test_bad_input_is_one_line(lagtop: Lagtop, options: str, message: str) -> None:
-    assert_one_line(lagtop(*options.split()), 2, message)
 
 
 def test_the_separatrix_is_decided_at_once_at_any_time(lagtop: Lagtop) -> None:

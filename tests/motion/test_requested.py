@@ -5,21 +5,17 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from typing import Any
 
-import numpy as np
 import pytest
 from chrapan_top import ar
 from conftest import Lagtop
 from errata import FIGURES, round_alike, true_values
-from lagtop import LagtopError, Top, solve, sweep
+from lagtop import LagtopError, Top, solve
 
 from lagrange_cli.motion.paper.requested import derivation_keys
-from lagrange_cli.motion.record import KEYS, all_keys, record_keys, requested_keys
+from lagrange_cli.motion.record import requested_keys
 
-DIGITS = 40
 
 
 def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
@@ -38,18 +34,6 @@ def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
         assert true in {round_alike(step, figure.text) for step in steps}, figure.name
         right += true == figure.text
     assert right == 16
-
-
-def test_the_derivation_is_a_table_of_every_step(lagtop: Lagtop) -> None:
-    shown = lagtop("solve", "--derivation", "--rad").stdout
-    assert max(map(len, shown.splitlines())) <= 80
-    assert set(
-        map(str, solve(Top()).record(radians=True, keys=derivation_keys(radians=True)).values())
-    ) <= (set(shown.split()))
-    lines = shown.splitlines()
-    names = ("Inputs", "m   ", "ϑ0", "2mgs/A", "2 u3", "(7,2)")
-    order = [next(i for i, line in enumerate(lines) if name in line) for name in names]
-    assert order == sorted(order)
 
 
 @pytest.mark.parametrize("options", ["--g 0", "--theta0 0", "--thetadot0 1", "--psidot0 2"])
@@ -83,21 +67,6 @@ def test_undefined_quantities_are_none(lagtop: Lagtop) -> None:
     assert (found.exit_code, found.stdout) == (1, "")
 
 
-def test_sweeps_take_them_from_solve(lagtop: Lagtop) -> None:
-    keys = ["r0", "Lz", "T_nutation", "psi_half_deg", "error"]
-    columns = sweep(r0=[20.0, 0.0, np.nan, -50.0], theta0_deg=30.0, keys=keys)
-    for i, r0 in ((0, 20.0), (1, 0.0), (3, -50.0)):
-        motion = solve(Top(r0=r0))
-        assert columns["Lz"][i] == motion.Lz
-        assert columns["psi_half_deg"][i] == motion.psi_half_deg or r0 == 0
-    assert np.isnan(columns["psi_half_deg"][1])
-    assert columns["error"][2].startswith("r0 must be")
-    assert np.isnan(columns["Lz"][2])
-    assert lagtop("sweep", "--r0", "20,30", "--keys", "Lz").stdout.count("\n") == 3
-    with pytest.raises(LagtopError, match=r"keys must be among .* got 'L_z' \(did you mean 'Lz'"):
-        sweep(r0=[1.0], keys=["L_z"])
-
-
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
@@ -110,25 +79,3 @@ def test_sweeps_take_them_from_solve(lagtop: Lagtop) -> None:
 def test_keys_of_a_record_are_checked(keys: Any, message: str) -> None:
     with pytest.raises(LagtopError, match=message):
         solve(Top()).record(keys=keys)
-
-
-def test_explain_lists_them(lagtop: Lagtop) -> None:
-    shown = lagtop("explain", "--format", "csv").stdout
-    assert all(f"\n{key}," in shown for key in requested_keys())
-    assert [*record_keys(), *requested_keys()] == all_keys()
-
-
-def test_a_record_loads_none_of_their_modules() -> None:
-    code = (
-        "import sys; from lagtop import Top, solve; solve(Top()).record();"
-        "names = 'requested', 'sections';"
-        "print([x for x in sys.modules if x.endswith(names)])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
-    assert done.stdout == "[]\n"
-
-
-def test_each_input_is_in_the_group_of_inputs_under_its_symbol() -> None:
-    tilted = {"theta0_deg": "ϑ0", "thetadot0": "ϑ'0", "psidot0": "ψ'0"}
-    for name in Top().inputs():
-        assert (KEYS[name].group, KEYS[name].symbol) == ("Inputs", tilted.get(name, name))

@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from lagtop import Motion, Top, solve
+from lagtop import Top, solve
 from scenes import UNIT
 
 from lagrange_cli.motion.over_time.columns import (
-    COLUMNS,
-    SCALARS,
     ColumnConstants,
     chosen_columns,
 )
@@ -30,16 +28,6 @@ STARTS: dict[str, dict[str, float]] = {
 }
 T = np.linspace(-3, 40, 40_000)
 CONSTANTS: Any = ColumnConstants(*np.ones(9))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("start", STARTS, ids=str)
-def test_a_column_is_the_same_whatever_stands_beside_it(start: str) -> None:
-    motion = solve(Top(**STARTS[start]))
-    together = motion.table(T, list(COLUMNS))
-    for name in SCALARS:
-        alone = motion.table(T, [name])[name]
-        np.testing.assert_array_equal(alone, together[name])
 
 
 @pytest.mark.parametrize(
@@ -91,20 +79,3 @@ def test_blocks_fit_together(start: str, count: int) -> None:
     motion = solve(Top(**STARTS[start]))
     for whole, part in zip(motion.angles(T), motion.angles(T[:count]), strict=True):
         np.testing.assert_array_equal(whole[:count], part)
-
-
-def _counts(motion: Motion) -> list[int]:
-    return [len(part) for frame in vars(motion.sampler())["frames"] for part in frame.parts]
-
-
-def test_series_near_the_separatrix_are_short() -> None:
-    """The nome of the complement is small there: fewer terms do, as few as for a fast top."""
-    near, far = solve(Top(theta0_deg=1e-3, r0=37)), solve(Top())
-    assert max(_counts(near)) == 2 < max(_counts(far)) == 4
-    assert max(_counts(solve(Top(r0=2000)))) == 2
-
-
-def test_times_are_left_as_they_were() -> None:
-    times = T.copy()
-    solve(Top()).table(times, list(COLUMNS))
-    np.testing.assert_array_equal(times, T)

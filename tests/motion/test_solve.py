@@ -20,10 +20,6 @@ def test_tilt_in_radians() -> None:
     assert solve(Top(theta0_rad=math.pi)).regime is Regime.REGULAR  # the double is not pi
 
 
-def test_released_at_rest_means_zero_precession_rate() -> None:
-    assert solve(Top()).precession_rate_start == 0.0
-
-
 def test_one_ulp_across_the_threshold_of_sleeping() -> None:
     """lambda = 1: the formulas change sides, the numbers stay the nearest doubles."""
     for r0 in (math.nextafter(2, 0), math.nextafter(2, 3)):
@@ -96,12 +92,6 @@ def test_rates_keep_their_digits_next_to_the_pole_and_for_tiny_starts() -> None:
         assert motion.precession_rate_half == pytest.approx(2, rel=4e-16)
 
 
-def test_torque_free_means_are_exact() -> None:
-    """The cone of the axis does not enclose the vertical, so there is no mean precession."""
-    motion = solve(Top(**(UNIT | {"g": 0}), r0=5, theta0_deg=60, thetadot0=0.5, psidot0=0.5))
-    assert (motion.mean_precession_rate, motion.T_precession) == (0, None)
-
-
 @pytest.mark.parametrize("inputs", [{"theta0_deg": 0}, {"theta0_deg": 180, "thetadot0": 1}])
 def test_no_precession_on_the_vertical(inputs: dict[str, float]) -> None:
     with pytest.raises(LagtopError, match="psidot0 must be 0 if the axis is vertical, got 1"):
@@ -172,22 +162,6 @@ def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
             f"pseudo-regular precession: nutates by {float(nods):.3g} deg in "
             f"{float(period):.3g} time; its mean is {where} mgs/(C r0) = {float(rate):.3g} rad/time"
         )
-
-
-@pytest.mark.parametrize(
-    "start", [{"r0": 50.0}, {"r0": 1000.0, "psidot0": 0.1}, {"r0": 1000.0, "g": 0.0}, {"r0": 0.0}]
-)
-def test_other_precessions_are_not_pseudo_regular(start: dict[str, float]) -> None:
-    assert "pseudo" not in (solve(Top(**start)).remark or "")
-
-
-def test_the_remark_is_in_radians_where_the_record_is() -> None:
-    top = Top(r0=1000.0)
-    keys = ["remark"]
-    degrees, radians = (solve(top).record(radians=x, keys=keys)["remark"] for x in (False, True))
-    nods, nods_in_radians = (float(text.split()[4]) for text in (degrees, radians))
-    assert (" deg in " in degrees, " rad in " in radians) == (True, True)
-    assert math.radians(nods) == pytest.approx(nods_in_radians, rel=0.01)
 
 
 def test_an_unknown_key_is_refused() -> None:

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-import pickle
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
-from ball_judge import assert_nearest
 from conftest import Lagtop, assert_one_line
 from lagtop import (
     LagtopError,
     Regime,
     Top,
-    read_scene,
     solve,
 )
 from scenes import UNIT
@@ -26,22 +22,6 @@ from lagrange_cli.motion.record import all_keys
 
 DIGITS = 50
 WORDS = {"steady": "steady_rate_slow", "steady-fast": "steady_rate_fast"}
-
-
-@pytest.mark.parametrize(
-    "inputs",
-    [
-        {"r0": 0, "theta0_deg": 135},
-        {"r0": 0, "theta0_deg": 45},
-        {"r0": 0.3, "theta0_deg": 90},
-        {"r0": -0.3, "theta0_deg": 120},
-        {"r0": 2.7, "theta0_deg": 20},
-        {"r0": 3.7, "theta0_deg": math.nextafter(90, 0)},
-        {"r0": 1.1, "theta0_deg": 0.1},
-    ],
-)
-def test_steady_rates_next_to_their_edges(inputs: dict[str, float]) -> None:
-    assert_nearest({"m": 1.3, "A": 2.1, "C": 1.7, "s": 0.9, "g": 0.7} | inputs)
 
 
 @pytest.mark.parametrize(
@@ -115,18 +95,6 @@ def test_the_steady_motion_is_that_of_the_exact_root() -> None:
     assert (word.regime, double.regime) == (Regime.STEADY, Regime.REGULAR)
     assert word.k == 0
     assert 0 < double.k < 1e-7
-
-
-def test_a_top_keeps_the_word_steady(tmp_path: Path) -> None:
-    path = tmp_path / "steady.toml"
-    path.write_text('r0 = 60\npsidot0 = "steady"\n')
-    top = read_scene(path)
-    assert top == pickle.loads(pickle.dumps(top))
-    for same in (top, pickle.loads(pickle.dumps(top)), Top(r0=60, psidot0=top.psidot0)):
-        assert same.steady_word == "steady"
-        assert "--psidot0 steady" in same.options()
-    assert top.replace(r0=70).psidot0 < top.psidot0
-    assert solve(top).record()["psidot0"] == "steady"
 
 
 @pytest.mark.parametrize(
