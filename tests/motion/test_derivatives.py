@@ -63,7 +63,7 @@ def slope(top: Top, name: str, value: Callable[[Judge], arb], step: Fraction) ->
 
 def angle_slope(top: Top, name: str, angle: str, t: float) -> float:
     """Return the derivative of an angle at a time."""
-    return slope(top, name, lambda judge: getattr(judge.at(t, 60), angle), Fraction(1, 10**25))
+    return slope(top, name, lambda judge: getattr(judge.at(t, 90), angle), Fraction(1, 10**36))
 
 
 def test_derivatives_of_a_record_in_radians() -> None:

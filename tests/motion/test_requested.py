@@ -17,7 +17,6 @@ from lagrange_cli.motion.paper.requested import derivation_keys
 from lagrange_cli.motion.record import requested_keys
 
 
-
 def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
     """To the digits printed, where the print is right; the others are the true ones."""
     header, cells = lagtop("solve", "--derivation", "--format", "csv").stdout.splitlines()
