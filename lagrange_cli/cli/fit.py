@@ -163,5 +163,5 @@ def _drawn(found: list[Outcome], path: str) -> bytes:
     from ..plot.reports import draw_fit
 
     curves = [curve for outcome in found for curve in outcome.curves()]
-    title = f"lagtop fit: {found[0].verdict}" if len(found) == 1 else ""
+    title = found[0].title if len(found) == 1 else ""
     return draw_fit(curves, found[0].angle, path, title)

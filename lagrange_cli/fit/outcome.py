@@ -110,6 +110,13 @@ class Outcome(HasRecord):
         return FAILED if self.failures() else STEADY if self.inputs is None else GOOD
 
     @property
+    def title(self) -> str:
+        """The verdict, the first three numbers, and chi^2 if sigma is given, for a picture."""
+        shown = [f"{x} = {uncertain_text(*y)}" for x, y in [*self.numbers.items()][:3]]
+        shown += [f"chi2/dof = {self.chi2_dof:.3g}"] * bool(self.recording.sigma)
+        return f"lagtop fit: {', '.join([self.verdict, *shown])}"
+
+    @property
     def correlations(self) -> dict[str, float]:
         """Correlations of a, b and r0 by pairs, such as `a and b`."""
         return {

@@ -94,6 +94,10 @@ def steady_outcome(
         if "r0" not in known:
             r0 = spin + rate * cosine, math.hypot(spin_std, rate_std * cosine)
             numbers["r0"] = r0
+            notes.append(
+                "r0 is known only up to whole turns per frame, multiples of "
+                f"{2 * math.pi / recording.frame:.6g}"
+            )
     if rate and r0[0]:
         given = {"A", "C"} <= known.keys()
         bias = abs(rate * cosine / r0[0]) / (known["C"] / known["A"] if given else _RATIO)

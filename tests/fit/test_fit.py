@@ -358,6 +358,7 @@ def test_a_fast_top_has_mean_rates(way: int) -> None:
     outcome = fit(t, theta=seen["theta"], phi=seen["phi"], psi=way * seen["psi"])
     assert outcome.verdict == "good, no nutation"
     assert outcome.inputs is None
+    assert any("only up to whole turns per frame, multiples of 2500.71" in x for x in outcome.notes)
     exact = solve(top)
     tilt = (exact.theta_min_deg + exact.theta_max_deg) / 2
     truth = {"mean_precession_rate": exact.mean_precession_rate, "r0": 400, "mean_tilt_deg": tilt}
@@ -524,6 +525,7 @@ def test_the_record_and_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
     record = json.loads(lagtop("fit", path, *words, picture).stdout)
     assert record["verdict"] == "good"
     assert picture.read_text().startswith("<?xml")
+    assert "lagtop fit: good, a = " in picture.read_text()
     assert abs(record["r0"] - 52.36) < 4 * record["r0_std"]
     assert record["theta_rms_deg"] == pytest.approx(0.3, rel=0.3)
 
