@@ -23,10 +23,10 @@ _SAMPLE = 1000
 """Number of rows that decide whether numbers have decimal commas."""
 _TITLES = 5
 """Most rows above the headings, such as the title `mass A` of Tracker."""
-_ROWS_AT_ONCE = 50_000
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
+_CHARACTERS = set("0123456789.eE+-")
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
@@ -41,8 +41,6 @@ class Table:
 
     place = "line"
     """The unit of `lines` in messages: `line` or `row`."""
-    decimal = ""
-    """The decimal mark, a point or a comma; empty if it is not decided."""
 
     def __init__(
         self,
@@ -50,54 +48,56 @@ class Table:
         headings: Sequence[str] | None,
         rows: Sequence[Any],
         lines: Sequence[int],
-        delimiter: str = "",
+        delimiter: str = ",",
     ) -> None:
-        """Take the name of the file and its rows: lines of text, or lists of values of JSON.
+        """Take the name of the file and its rows: lists of cells, or the errors of rows.
 
-        `lines` are their numbers in messages.  `headings` are None if the file has none.
+        `headings` are None if the file has none.  `lines` are the numbers of the rows in messages.
         """
-        self.name, self.headings, self.texts, self.lines = name, headings, rows, lines
-        self.delimiter, self.comments = delimiter, list[str]()
-        self.width = len(headings or (self.cells(0, whole=False) if rows else ()))
+        self.name, self.headings, self.rows, self.lines = name, headings, rows, lines
+        self.delimiter = delimiter
+        self.decimal = "." if delimiter == "," else ""
+        """The decimal mark, a point or a comma; empty if it is not decided."""
+        first = headings or next(iter(rows), ())
+        self.width = 0 if isinstance(first, LagtopError) else len(first)
 
     def where(self, row: int) -> str:
         """Return the name of the file and the place of a row."""
         return f"{self.name}, {self.place} {self.lines[row]}"
 
-    def cells(self, row: int, *, whole: bool = True) -> list[Any]:
-        """Return the cells of a row.
-
-        Raises DataError for a wrong quote and, if `whole`, for another number of cells.
-        """
-        text = self.texts[row]
-        try:
-            cells = split_row(text, self.delimiter) if isinstance(text, str) else text
-            if whole and len(cells) != self.width:
-                wrong = f"a row must have {self.width} cells, got {len(cells)}"
-                if self.delimiter == "," and len(cells) == 2 * self.width:
-                    wrong += ": a comma cannot both separate cells and be the decimal mark"
-                raise LagtopError(wrong)
-        except LagtopError as error:
-            raise DataError(f"{self.where(row)}: {error}") from None
+    def cells(self, row: int) -> list[Any]:
+        """Return the cells of a row.  Raises LagtopError for a bad row."""
+        cells: list[Any] | LagtopError = self.rows[row]
+        if isinstance(cells, LagtopError):
+            raise cells
+        if len(cells) != self.width:
+            wrong = f"a row must have {self.width} cells, got {len(cells)}"
+            if self.delimiter == "," and len(cells) == 2 * self.width:
+                wrong += ": a comma cannot both separate cells and be the decimal mark"
+            raise LagtopError(wrong)
         return cells
 
     def column(self, index: int) -> list[Any]:
-        """Return the cells of one column.  Raises DataError as `cells` does."""
-        return [self.cells(row)[index] for row in range(len(self.texts))]
+        """Return the cells of one column.  Raises DataError for a bad row."""
+        cells = list[Any]()
+        try:
+            while len(cells) < len(self.rows):
+                cells.append(self.cells(len(cells))[index])
+        except LagtopError as error:
+            raise DataError(f"{self.where(len(cells))}: {error}") from None
+        return cells
 
     def decide(self, columns: Iterable[int]) -> None:
         """Set the decimal mark from the first rows of some columns, unless it is set.
 
         Raises DataError if a comma may be a decimal mark or separate thousands.
         """
-        if self.delimiter in {"", ","}:
-            self.decimal = "."
         if self.decimal:
             return
         wanted, places = set(columns), dict[str, int]()
-        for row, text in enumerate(self.texts[:_SAMPLE]):
-            for i, cell in enumerate(self.cells(row, whole=False) if "," in text else ()):
-                if i in wanted and "," in cell and _NUMBER.fullmatch(cell):
+        for row, cells in enumerate(self.rows[:_SAMPLE]):
+            for i, cell in enumerate(() if isinstance(cells, LagtopError) else cells):
+                if "," in cell and i in wanted and _NUMBER.fullmatch(cell):
                     places.setdefault(cell, row)
         if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
             cell, row = next(iter(places.items()))
@@ -114,33 +114,26 @@ class Table:
         import numpy as np
 
         self.decide(columns)
-        blocks = [np.empty((0, len(columns)))]
-        for first in range(0, len(self.texts), _ROWS_AT_ONCE):
-            rows = range(first, min(first + _ROWS_AT_ONCE, len(self.texts)))
-            values = self._by_numpy(self.texts[rows.start : rows.stop])
-            if values is not None:
-                blocks.append(values[:, columns])
-                continue
-            each = ((row, self.cells(row)) for row in rows)
-            found = [[self._double(row, i, names[i], x[i]) for i in columns] for row, x in each]
-            blocks.append(np.array(found))
-        return np.concatenate(blocks)
+        values = np.empty((len(self.rows), len(columns)))
+        for at, i in enumerate(columns):
+            cells = self.column(i)
+            found = self.doubles(cells)
+            if found is None:
+                found = [self._double(row, i, names[i], cell) for row, cell in enumerate(cells)]
+            values[:, at] = found
+        return values
 
-    def _by_numpy(self, texts: Sequence[Any]) -> Array | None:
-        """Return all columns of some rows, or None if NumPy cannot read them."""
+    def doubles(self, cells: Sequence[Any]) -> Any:
+        """Return cells as doubles, NaN if they are empty; None if a cell has another character."""
         import numpy as np
 
-        text = "\n".join(texts) if self.delimiter else '"'
-        if not text.isascii() or '"' in text or "\0" in text:
-            return None
-        if self.decimal == ",":
-            texts = text.translate(_SWAPPED).split("\n")
-        delimiter = None if self.delimiter == " " else self.delimiter
         try:
-            values = np.loadtxt(texts, delimiter=delimiter, ndmin=2, comments=None)
-        except ValueError:
-            return None
-        return values if values.shape == (len(texts), self.width) else None
+            plain = [self._plain(x) for x in cells] if self.decimal == "," else cells
+            if set("".join(plain)) <= _CHARACTERS:
+                return np.array([x or "nan" for x in plain], np.float64)
+        except (TypeError, AttributeError, ValueError):  # values of JSON, or no number
+            pass
+        return None
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
@@ -149,10 +142,10 @@ class Table:
         if not cell and cell is not False:
             return float("nan")
         plain = self._plain(cell) if isinstance(cell, str) else ""
-        if "," in plain or not _NUMBER.fullmatch(plain):
-            wrong = f"{name} must be a number, got {_shown(cell)}{self._hint(cell)}"
-            raise DataError(f"{self.where(row)}, column {column + 1}: {wrong}")
-        return float(plain)
+        if _NUMBER.fullmatch(plain) and "," not in plain:
+            return float(plain)
+        wrong = f"{name} must be a number, got {_shown(cell)}{self._hint(cell)}"
+        raise DataError(f"{self.where(row)}, column {column + 1}: {wrong}")
 
     def number(self, cell: Any) -> Fraction:
         """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
@@ -175,7 +168,7 @@ class Table:
     def _hint(self, cell: Any) -> str:
         """Return a hint in parentheses if a cell is a number with the other decimal mark."""
         other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
-        fits = self.delimiter not in {"", ","} and mark in cell and _NUMBER.fullmatch(cell)
+        fits = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
         return f" (use --decimal {other})" if fits else ""
 
 
@@ -188,69 +181,65 @@ def read_table(
     first rows decide.  `width` is the number of columns if their names are given; headings in the
     file are then ignored.  Raises DataError.
     """
-    lines, start = decoded(content, name).split("\n"), 0
-    if lines[0].startswith(_LABVIEW):
-        ends = (i for i, x in enumerate(lines, 1) if x.startswith(_END_OF_HEADER))
-        start = max(ends, default=0)
-    kept = [
-        i for i in range(start, len(lines)) if (x := lines[i].strip()) and x[0] not in "#\u2500"
-    ]
+    lines = decoded(content, name).split("\n")
+    ends = [i for i, x in enumerate(lines, 1) if x.startswith(_END_OF_HEADER)]
+    start = ends[-1] if ends and lines[0].startswith(_LABVIEW) else 0
+    kept = [i for i, x in enumerate(lines) if i >= start and x.strip() and x.strip()[0] not in "#─"]
     if kept and re.fullmatch('"?sep=."?', lines[kept[0]].strip()):
         del kept[0]
     if kept and lines[kept[0]].lstrip()[0] in "{[":
         return _json_table(name, lines, kept)
-    top = [lines[i] for i in kept[: _TITLES + 1]]
-    at, delimiter = _layout(top, known, decimal, width) if top else (None, " ")
-    headings, below = None, kept if at is None else kept[at + 1 :]
-    rows = [lines[i] for i in below]
-    if at is not None and not width:
-        headings = _split(top[at], delimiter)
-        if delimiter == " " and {len(x.split()) for x in rows} == {1}:
-            headings = [top[at].strip()]
-        elif delimiter != " ":
-            headings = Table(name, None, [top[at]], [kept[at] + 1], delimiter).cells(0)
+    at, delimiter = _layout([lines[i] for i in kept[: _TITLES + 1]], known, decimal, width)
+    below = kept[at + 1 :]
+    rows = [_row(lines[i], delimiter) for i in below]
+    headings: Any = None
+    if at >= 0 and not width:
+        line, sizes = lines[kept[at]], {len(x) for x in rows if isinstance(x, list)}
+        headings = _split(line, " ") if delimiter == " " else _row(line, delimiter)
+        if isinstance(headings, LagtopError):
+            raise DataError(f"{name}, line {kept[at] + 1}: {headings}")
+        if delimiter == " " and sizes == {1}:
+            headings = [line.strip()]
     table = Table(name, headings, rows, [i + 1 for i in below], delimiter)
-    table.decimal = decimal
-    above = lines[start : kept[0]] if kept else []
-    table.comments = [x.strip("# \t") for x in above if x.lstrip().startswith("#")]
+    table.decimal = table.decimal or decimal
+    if headings is None and not width:  # perhaps in a comment, as numpy.savetxt writes them
+        comments = [re.sub("[#,;]", " ", x).split() for x in lines[start : min(kept, default=0)]]
+        fits = [x for x in comments if len(x) == table.width and known(x)]
+        table.headings = fits[-1] if fits else None
     return table
 
 
-def _layout(
-    texts: Sequence[str], known: Known, decimal: str, width: int | None
-) -> tuple[int | None, str]:
-    """Return the index of the row with the headings, or None, and the delimiter.
+def _layout(texts: Sequence[str], known: Known, decimal: str, width: int | None) -> tuple[int, str]:
+    """Return the index of the row with the headings, -1 if there is none, and the delimiter.
 
     The row with most known headings has them, or else the row above the first number.
     """
+    if not texts:
+        return -1, " "
     best, found = 0, (0, _delimiters(texts[0], decimal)[0])
     for i, text in enumerate(texts):
-        if any(_are_numbers(_split(text, x)) for x in (*_delimiters(text, decimal), " ")):
+        delimiters = _delimiters(text, decimal)
+        if any(_are_numbers(_split(text, x)) for x in [*delimiters, " "]):
             break
-        for delimiter in _delimiters(text, decimal):
+        for delimiter in delimiters:
             if (count := known(_split(text, delimiter))) > best:
                 best, found = count, (i, delimiter)
-    numeric = (i for i, x in enumerate(texts) if _has_number(x, decimal))
-    first = found[0] + 1 if best else next(numeric, len(texts))
-    if first == len(texts) or (best and (width is None or found[1] != " ")):
+    has_number = (
+        any(_NUMBER.fullmatch(x) for d in _delimiters(text, decimal) for x in _split(text, d))
+        for text in texts
+    )
+    first = found[0] + 1 if best else [*has_number, True].index(True)
+    if first == len(texts) or (best and not (width and found[1] == " ")):
         return found
-
-    def fits(delimiter: str) -> tuple[bool, bool]:
-        cells = _split(texts[first], delimiter)
-        return width in {None, len(cells)}, _are_numbers(cells)
-
-    return first - 1 if first else None, max([*_delimiters(texts[first], decimal), " "], key=fits)
+    rows = {x: _split(texts[first], x) for x in [*_delimiters(texts[first], decimal), " "]}
+    fits = {x: (width in {None, len(row)}, _are_numbers(row)) for x, row in rows.items()}
+    return first - 1, max(fits, key=fits.__getitem__)
 
 
 def _delimiters(text: str, decimal: str) -> list[str]:
     """Return the possible delimiters of a row, the most probable one first."""
     bare = _ENCLOSED.sub("", text)
     return [x for x in "\t;," if x in bare and x != decimal] or [" "]
-
-
-def _has_number(text: str, decimal: str) -> bool:
-    """Return whether some cell of a row is a number."""
-    return any(_NUMBER.fullmatch(x) for d in _delimiters(text, decimal) for x in _split(text, d))
 
 
 def _are_numbers(cells: Sequence[str]) -> bool:
@@ -262,14 +251,12 @@ def _split(text: str, delimiter: str) -> list[str]:
     """Return the headings in a row; a blank before a unit in brackets is not a delimiter."""
     if delimiter == " ":
         return [x.strip('"') for x in _HEADING.findall(text)]
-    try:
-        return split_row(text, delimiter)
-    except LagtopError:
-        return [x.strip() for x in text.split(delimiter)]
+    cells = _row(text, delimiter)
+    return cells if isinstance(cells, list) else [x.strip() for x in text.split(delimiter)]
 
 
-def split_row(text: str, delimiter: str) -> list[str]:
-    """Return the cells of a line.  Raises LagtopError for a quoted cell that does not end on it."""
+def _row(text: str, delimiter: str) -> list[str] | LagtopError:
+    """Return the cells of a line, or the error of a quoted cell that does not end on it."""
     if '"' not in text:
         return text.split() if delimiter == " " else [x.strip() for x in text.split(delimiter)]
     try:
@@ -277,7 +264,7 @@ def split_row(text: str, delimiter: str) -> list[str]:
         return [x.strip() for x in next(rows)]
     except csv.Error as error:
         wrong = "a quoted cell must end with its quote, and on its line"
-        raise LagtopError(f"{wrong}: {error}") from None
+        return LagtopError(f"{wrong}: {error}")
 
 
 def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
@@ -285,43 +272,39 @@ def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
 
     Raises DataError.
     """
-    first, place = kept[0], "line"
-    if lines[first].lstrip()[0] == "[":
-        objects, place = _parsed(name, "\n".join(lines[first:]), first), "row"
-        numbers: Sequence[int] = range(1, len(objects) + 1)
-    else:
-        objects = [_parsed(name, lines[i], i) for i in kept]
-        numbers = [i + 1 for i in kept]
-    sizes: dict[str, int] = {}
-    for number, row in zip(numbers, objects, strict=True):
-        if not isinstance(row, dict):
-            raise DataError(f"{name}, {place} {number}: a row must be a JSON object")
-        for key, value in row.items():
-            if not sizes.get(key):
-                sizes[key] = len(value) if isinstance(value, list) else 0
-    rows: list[list[Any]] = []
-    for number, row in zip(numbers, objects, strict=True):
-        rows.append([])
-        for key, size in sizes.items():
-            value = row.get(key)
-            if size and value is not None and not (isinstance(value, list) and len(value) == size):
-                wrong = f"column {key}: must be {size} numbers, got {_shown(value)}"
-                raise DataError(f"{name}, {place} {number}, {wrong}")
-            rows[-1] += (value or [None] * size) if size else [value]
-    table = Table(name, [x for key, size in sizes.items() for x in parts(key, size)], rows, numbers)
-    table.place = place
-    return table
-
-
-def _parsed(name: str, text: str, first: int) -> Any:
-    """Return parsed JSON that begins in the line with index `first`.  Raises DataError."""
     import orjson
 
-    try:
-        return orjson.loads(text)
-    except orjson.JSONDecodeError as error:
-        wrong = f"not JSON: {error.msg} at character {error.colno}"
-        raise DataError(f"{name}, line {first + error.lineno}: {wrong}") from None
+    def parsed(text: str, first: int) -> Any:
+        try:
+            return orjson.loads(text)
+        except orjson.JSONDecodeError as error:
+            wrong = f"not JSON: {error.msg} at character {error.colno}"
+            raise DataError(f"{name}, line {first + error.lineno}: {wrong}") from None
+
+    if lines[kept[0]].lstrip()[0] == "[":
+        objects = parsed("\n".join(lines[kept[0] :]), kept[0])
+        table = Table(name, None, objects, range(1, len(objects) + 1))
+        table.place = "row"
+    else:
+        table = Table(name, None, [parsed(lines[i], i) for i in kept], [i + 1 for i in kept])
+    sizes: dict[str, int] = {}
+    for row, found in enumerate(table.rows):
+        if not isinstance(found, dict):
+            raise DataError(f"{table.where(row)}: a row must be a JSON object")
+        for key, value in found.items():
+            sizes[key] = sizes.get(key) or (len(value) if isinstance(value, list) else 0)
+    rows: list[list[Any]] = []
+    for row, found in enumerate(table.rows):
+        rows.append([])
+        for key, size in sizes.items():
+            value = found.get(key)
+            if size and value is not None and not (isinstance(value, list) and len(value) == size):
+                wrong = f"must be {size} numbers, got {_shown(value)}"
+                raise DataError(f"{table.where(row)}, column {key}: {wrong}")
+            rows[-1] += (value or [None] * size) if size else [value]
+    names = [part for key, size in sizes.items() for part in parts(key, size)]
+    table.headings, table.rows, table.width = names, rows, len(names)
+    return table
 
 
 def _shown(value: Any) -> str:

@@ -1,71 +1,106 @@
-"""Files of tops, one per row: a table with headings, or JSON objects.
+"""Many tops: the combinations of some values, or a file with a top in each row.
 
-Rows are split into blocks before their numbers are read, so that any process can do that.  A row
-that cannot be read becomes an error of its own and does not affect other rows.
+A file has a table with headings, or JSON objects.  A row that cannot be read becomes an error of
+its own and does not affect other rows.
 """
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from math import prod
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from ..arithmetic.points import MOST_POINTS, Points
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError
 from .files import read_bytes, shown_path
 from .given import Given, gather
 from .headings import name_and_unit
-from .input_keys import TILT, checked_double, one_of_each, overridden
+from .input_keys import SAME, TILT, checked_double, one_of_each
 from .names import repeated
-from .text_tables import Table, read_table, split_row
+from .text_tables import Table, read_table
 from .top import INPUTS
-from .values import STEADY_WORDS, InputArrays, Value, steady_refused
+from .values import STEADY_WORDS, Value, steady_refused
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
 
 
-class TopRow(NamedTuple):
-    """One top: its line number, its extra columns, and its inputs or an error message."""
+class Tops(NamedTuple):
+    """The inputs of some tops, with the columns, lines and errors of each."""
 
-    line: int
-    carried: Sequence[Any]
-    inputs: Mapping[str, float]
-    error: str | None = None
+    size: int
+    """The number of tops."""
+    inputs: Mapping[str, Array | float]
+    """For each input an array, or one number for all tops; NaN for a top without the input."""
+    carried: Sequence[Sequence[Any]] = ()
+    """The extra columns, which are copied to the output."""
+    lines: Sequence[int] | None = None
+    """The line number of each top, if the tops come from a file."""
+    errors: Mapping[int, str] = {}
+    """Messages of the errors found so far, by row."""
+
+    def blocks(self, size: int) -> Iterator[Tops]:
+        """Yield all tops of a file, `size` at a time."""
+        for first in range(0, self.size, size):
+            rows = slice(first, first + size)
+            lines = (self.lines or ())[rows]
+            errors = {i - first: x for i, x in self.errors.items() if first <= i < first + size}
+            inputs = {name: np.asarray(x)[rows] for name, x in self.inputs.items()}
+            yield Tops(len(lines), inputs, [x[rows] for x in self.carried], lines, errors)
+
+    def arrays(self, shared: Mapping[str, float]) -> Tops:
+        """Return the tops with `shared` inputs as the defaults of rows without error."""
+        inputs = dict(self.inputs)
+        for name, value in shared.items():
+            is_open = np.ones(self.size, dtype=np.bool_)
+            is_open[[*self.errors]] = False
+            for other, values in self.inputs.items():
+                if SAME.get(other, other) == SAME.get(name, name):
+                    is_open &= np.isnan(values)
+            inputs[name] = np.where(is_open, value, self.inputs.get(name, np.nan))
+        return self._replace(inputs=inputs)
 
 
-class Lines(NamedTuple):
-    """Consecutive rows of a file of tops, whose numbers have not been read yet."""
+class Product(NamedTuple):
+    """Combinations of the values of several inputs; the last input varies fastest."""
 
-    file: TopsFile
-    texts: Sequence[tuple[int, Any]]
-    """The line of each row, and its text or the values of its JSON object."""
+    axes: Mapping[str, Points]
+    """The values of each input, by its name."""
+    first: int = 0
+    """The number of the first combination."""
+    stop: int | None = None
+    """One more than the number of the last combination; None for all combinations."""
 
     @property
     def size(self) -> int:
-        """The number of tops."""
-        return len(self.texts)
+        """The number of combinations.  Raises LagtopError for more than 1e9 of them."""
+        stop = prod(x.count for x in self.axes.values()) if self.stop is None else self.stop
+        if stop > MOST_POINTS:
+            raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {stop:.4g}")
+        return stop - self.first
 
-    def rows(self) -> list[TopRow]:
-        """Return the tops."""
-        return [self.file.row(*text) for text in self.texts]
+    def blocks(self, size: int) -> Iterator[Product]:
+        """Yield all combinations, `size` at a time."""
+        for first in range(0, self.size, size):
+            yield Product(self.axes, first, min(first + size, self.size))
 
-    def arrays(self, shared: Mapping[str, float]) -> InputArrays:
-        """Return the inputs of the tops; `shared` inputs are the defaults of rows without error."""
-        import numpy as np
-
-        rows = self.rows()
-        inputs = [row.inputs if row.error else overridden(shared, row.inputs) for row in rows]
-        return InputArrays(
-            len(rows),
-            {name: np.array([x.get(name, math.nan) for x in inputs]) for name in INPUTS},
-            list(zip(*(row.carried for row in rows), strict=True)),
-            [row.line for row in rows],
-            {i: row.error for i, row in enumerate(rows) if row.error},
+    def arrays(self, shared: Mapping[str, float]) -> Tops:
+        """Return the inputs of the combinations; `shared` holds those that do not vary."""
+        numbers = np.arange(self.first, self.first + self.size)
+        _, *places = np.unravel_index(
+            numbers, (MOST_POINTS, *(x.count for x in self.axes.values()))
         )
+        found = {name: x.at(i) for (name, x), i in zip(self.axes.items(), places, strict=True)}
+        return Tops(self.size, {**shared, **found})
 
 
 class TopsFile(NamedTuple):
-    """The format of a file, the same for all of its blocks."""
+    """A file of tops whose numbers have not been read yet."""
 
     columns: Sequence[str]
     """The keys of inputs, and the other headings as they are written."""
@@ -73,8 +108,7 @@ class TopsFile(NamedTuple):
     """The extra columns, which are copied to the output, in their order."""
     units: Mapping[str, Value]
     """The value 1 in the unit of its heading, for each column of an input."""
-    form: Table
-    """The table without its rows."""
+    table: Table
     factors: Mapping[str, Fraction] = {}
     """The conversion factor of each column whose heading has a unit."""
 
@@ -87,36 +121,63 @@ class TopsFile(NamedTuple):
             found = gather(inputs, scene, varying=self.units.keys(), others=self.units)
         except LagtopError as error:
             if error.key in self.units and error.key not in inputs:
-                raise DataError(f"{self.form.name}, heading {error.key}: {error}") from None
+                raise DataError(f"{self.table.name}, heading {error.key}: {error}") from None
             raise
         keys = dict(zip(self.units, found.others, strict=True))
         factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
         return found, self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
-    def row(self, line: int, raw: Any) -> TopRow:
-        """Return the top of a row, or its error message."""
-        values: Mapping[str, Any] = {}
-        inputs: dict[str, float] = {}
-        error = None
+    def tops(self) -> Tops:
+        """Return the tops; a row that cannot be read has an error."""
+        errors = dict[int, str]()
+        rows = list[Sequence[Any]]()
+        for row, found in enumerate(self.table.rows):
+            cells = found if isinstance(found, list) else []
+            rows.append([*cells, *[None] * len(self.columns)][: len(self.columns)])
+            try:
+                self.table.cells(row)
+            except LagtopError as error:
+                errors[row] = str(error)
+        columns = dict(zip(self.columns, zip(*rows, strict=True) if rows else (), strict=False))
+        inputs = {
+            x: self._doubles(x, columns.get(x, ()), errors) for x in INPUTS if x in self.columns
+        }
         try:
-            cells = split_row(raw, self.form.delimiter) if isinstance(raw, str) else raw
-            values = dict(zip(self.columns, cells, strict=False))
-            if len(cells) != len(self.columns):
-                raise LagtopError(f"a row must have {len(self.columns)} cells, got {len(cells)}")
-            for name in INPUTS:
-                if values.get(name) is not None:
-                    inputs[name] = self._double(name, values[name])
             one_of_each(inputs)
-        except LagtopError as wrong:
-            error = str(wrong)
-        return TopRow(line, [values.get(name) for name in self.carried], inputs, error)
+        except LagtopError:
+            for row in range(len(rows)):
+                try:
+                    one_of_each(name for name, x in inputs.items() if not np.isnan(x[row]))
+                except LagtopError as error:
+                    errors[row] = str(error)
+                    for values in inputs.values():
+                        values[row] = np.nan
+        carried = [columns.get(name, ()) for name in self.carried]
+        return Tops(len(rows), inputs, carried, self.table.lines, errors)
+
+    def _doubles(self, name: str, cells: Sequence[Any], errors: dict[int, str]) -> Array:
+        """Return the numbers in a column, NaN for an empty or a bad cell and in rows with errors.
+
+        A bad cell is added to the errors.
+        """
+        values: Array | None = None if name in self.factors else self.table.doubles(cells)
+        if values is None or not np.isfinite(values).all() or not values.all():
+            values = np.full(len(cells), np.nan)
+            for row, cell in enumerate(cells):
+                try:
+                    if cell is not None and row not in errors:
+                        values[row] = self._double(name, cell)
+                except LagtopError as error:
+                    errors[row] = str(error)
+        values[[*errors]] = np.nan
+        return values
 
     def _double(self, name: str, cell: Any) -> float:
         """Return the input in a cell.  Raises LagtopError."""
         if cell in STEADY_WORDS:
             raise LagtopError(f"{name} {steady_refused(cell)}")
         try:
-            number = self.form.number(cell)
+            number = self.table.number(cell)
         except LagtopError as error:
             if isinstance(cell, str) and re.search(r"\d\s*(\(\d|±|\+/?-)", cell):
                 wrong = f"must have no uncertainty, got {quoted(cell)}: loop over solve"
@@ -125,23 +186,14 @@ class TopsFile(NamedTuple):
         return checked_double(name, number * self.factors.get(name, 1))
 
 
-def read_tops(
-    path: str, computed: Collection[str], size: int, decimal: str = ""
-) -> tuple[TopsFile, Iterator[Lines]]:
-    """Return the format of a file (standard input for `-`), and its rows in blocks of `size`.
+def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFile:
+    """Return a file of tops, or standard input for `-`.
 
     Columns named in `computed` are neither read nor copied.  `decimal` is a point or a comma, or
     empty if the file decides.  Raises DataError for a file that cannot be read, or that has no
     headings of inputs.
     """
     table = read_table(read_bytes(path), shown_path(path), _known_inputs, decimal)
-    file = _format(table, computed)
-    rows = list(zip(table.lines, table.texts, strict=True))
-    return file, (Lines(file, rows[i : i + size]) for i in range(0, len(rows), size))
-
-
-def _format(table: Table, computed: Collection[str]) -> TopsFile:
-    """Return the format of a table.  Raises DataError for bad headings."""
     name, headings = table.name, table.headings or []
     found = [_column_of(x) for x in headings]
     columns = [column for column, _ in found]
@@ -165,10 +217,7 @@ def _format(table: Table, computed: Collection[str]) -> TopsFile:
             except LagtopError as error:
                 raise DataError(f"{name}, heading {column} [{one.unit}]: {error}") from None
     table.decide(i for i, x in enumerate(columns) if x in units)
-    # Blocks of rows go to other processes, without the rest of the file.
-    form = Table(name, headings, (), (), table.delimiter)
-    form.decimal = table.decimal
-    return TopsFile(columns, carried, units, form)
+    return TopsFile(columns, carried, units, table)
 
 
 def _column_of(heading: str) -> tuple[str, str]:

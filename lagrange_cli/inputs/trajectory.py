@@ -123,19 +123,11 @@ def _column_names(table: Table, columns: Sequence[str] | None) -> Sequence[str]:
         )
     names = table.headings if columns is None else columns
     if names is None:
-        names = _names_in_comments(table.comments, table.width)
-    if names is None:
         raise DataError(
             f"{table.name} has no header: name its {table.width} columns with --columns, "
             "such as t,quaternion"
         )
     return names
-
-
-def _names_in_comments(comments: Sequence[str], width: int) -> list[str] | None:
-    """Return names of columns from the last comment that has them, as numpy.savetxt writes it."""
-    split = (x.replace(",", " ").replace(";", " ").split() for x in reversed(comments))
-    return next((x for x in split if len(x) == width and known_quantities(x)), None)
 
 
 def read_trajectory(
@@ -260,11 +252,11 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     column, factor = _time_column(table)
     table.decide([column])
     times = []
-    for i, cell in enumerate(table.column(column)):
+    for row, cell in enumerate(table.column(column)):
         try:
             times.append(factor * table.number(cell))
         except LagtopError as error:
-            raise DataError(f"{table.where(i)}: the time {error}") from None
+            raise DataError(f"{table.where(row)}: the time {error}") from None
     if not times:
         raise DataError(f"{table.name} must hold at least one time, got none")
     return ListedPoints(times)

@@ -10,18 +10,14 @@ unit         at the end of any of them: `480 rpm`, `477(2) rpm`, `60:80:3 rpm`
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from math import prod
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
-
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
 
 LOG = "log:"
 """Prefix of a range with equal ratios."""
@@ -323,61 +319,3 @@ def _in_quarters(multiples: Sequence[Multiple], mixed: LagtopError) -> bool:
     if len(kinds) > 1:
         raise mixed
     return True in kinds
-
-
-class InputArrays(NamedTuple):
-    """The inputs of some tops, with the columns, lines and errors of each."""
-
-    size: int
-    """The number of tops."""
-    inputs: Mapping[str, Array | float]
-    """For each input an array, or one number for all tops; NaN for a top without the input."""
-    carried: Sequence[Sequence[Any]] = ()
-    """The extra columns, which are copied to the output."""
-    lines: Sequence[int] | None = None
-    """The line number of each top, if the tops come from a file."""
-    errors: Mapping[int, str] = {}
-    """Messages of the errors found so far, by row."""
-
-
-class Product(NamedTuple):
-    """Combinations of the values of several inputs; the last input varies fastest."""
-
-    axes: Mapping[str, Points]
-    """The values of each input, by its name."""
-    first: int = 0
-    """The number of the first combination."""
-    stop: int | None = None
-    """One more than the number of the last combination; None for all combinations."""
-
-    @property
-    def size(self) -> int:
-        """The number of combinations."""
-        stop = prod(x.count for x in self.axes.values()) if self.stop is None else self.stop
-        return stop - self.first
-
-    def blocks(self, size: int) -> Iterator[Product]:
-        """Yield all combinations, `size` at a time."""
-        for first in range(0, self.size, size):
-            yield Product(self.axes, first, min(first + size, self.size))
-
-    def values(self) -> dict[str, Array]:
-        """Return the values of each input in these combinations."""
-        import numpy as np
-
-        left = np.arange(self.first, self.first + self.size)
-        values = {}
-        for name, axis in reversed(list(self.axes.items())):
-            values[name] = axis.at(left % axis.count)
-            left //= axis.count
-        return values
-
-    def arrays(self, shared: Mapping[str, float]) -> InputArrays:
-        """Return the inputs of the combinations; `shared` holds those that do not vary."""
-        return InputArrays(self.size, {**shared, **self.values()})
-
-    def checked(self) -> Product:
-        """Return the product.  Raises LagtopError for more than 1e9 combinations."""
-        if self.size > MOST_POINTS:
-            raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")
-        return self

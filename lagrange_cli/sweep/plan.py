@@ -19,8 +19,8 @@ from ..errors import LagtopError, SomeFailedError
 from ..inputs.files import digest_of
 from ..inputs.given import Given, gather
 from ..inputs.input_keys import checked_double, overridden
-from ..inputs.tops_file import Lines, read_tops
-from ..inputs.values import Product, Value, steady_refused
+from ..inputs.tops_file import Product, Tops, read_tops
+from ..inputs.values import Value, steady_refused
 from ..output.formats import Columns, block_text
 from .records import BLOCK_ROWS, check_keys, column_keys, records
 from .results import ResultColumn
@@ -29,7 +29,7 @@ from .top_arrays import top_arrays
 if TYPE_CHECKING:
     from ..inputs.units import System
 
-NumberedBlock = tuple[int, Product | Lines]
+NumberedBlock = tuple[int, Product | Tops]
 """The number of a part, and the tops that it is made of."""
 
 
@@ -109,7 +109,7 @@ def plan(
     if path is None:
         found = gather(axes, scene)
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
-        grid, ranges = Product(points).checked(), ranges_of(points)
+        grid, ranges = Product(points), ranges_of(points)
         shared = shared_inputs(found, varying=ranges)
         sweep = Sweep(chosen, shared, chosen, radians, fmt, found.system)
         inputs = shared | {name: str(axis) for name, axis in ranges.items()}
@@ -119,12 +119,11 @@ def plan(
         raise LagtopError(f"a range of {min(names)} and a file of tops exclude each other")
     digest = digest_of(path) if described else ""
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
-    file, lines = read_tops(path, computed, BLOCK_ROWS, decimal)
-    found, source = file.among(axes, scene)
+    found, source = read_tops(path, computed, decimal).among(axes, scene)
     shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     sweep = Sweep([*source.carried, *with_error], shared, with_error, radians, fmt, found.system)
-    of_file = enumerate(block._replace(file=source) for block in lines)
+    of_file = enumerate(source.tops().blocks(BLOCK_ROWS))
     return Plan(sweep, of_file, 0, _described(sweep, shared, digest), found)
 
 

@@ -7,6 +7,7 @@ import os
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
 from lagtop import LagtopError, Top
@@ -168,11 +169,13 @@ def test_keys_of_json_rows_may_differ(tmp_path: Path) -> None:
     path = tmp_path / "tops.ndjson"
     rows = [{"id": 4, "r0": 4}, {"id": 5, "r0": 5, "T_nutation": 1}, {"theta0_deg": 6, "name": "x"}]
     path.write_text("".join(json.dumps(row) + "\n" for row in rows))
-    file, blocks = read_tops(str(path), {"T_nutation"}, 2)
+    file = read_tops(str(path), {"T_nutation"})
     assert file.carried == ["id", "name"]
-    found = [row for block in blocks for row in block.rows()]
-    assert [(row.line, row.carried, row.inputs) for row in found] == [
-        (1, [4, None], {"r0": 4}),
-        (2, [5, None], {"r0": 5}),
-        (3, [None, "x"], {"theta0_deg": 6}),
-    ]
+    first, second = file.tops().blocks(2)
+    assert (first.lines, second.lines) == ([1, 2], [3])
+    assert (first.carried, second.carried) == ([(4, 5), (None, None)], [(None,), ("x",)])
+    merged = second.arrays({"r0": 9.0, "theta0_rad": 1.0}).inputs
+    assert {name: np.isnan(x).tolist() for name, x in merged.items()} == {
+        "r0": [False], "theta0_deg": [False], "theta0_rad": [True],
+    }  # fmt: skip
+    assert np.asarray(first.inputs["r0"]).tolist() == [4, 5]

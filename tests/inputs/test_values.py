@@ -20,8 +20,8 @@ from lagtop import LagtopError
 from uncertainties import ufloat
 
 from lagrange_cli.arithmetic.points import POINTS_AT_ONCE, EvenPoints, ListedPoints
+from lagrange_cli.inputs.tops_file import Product
 from lagrange_cli.inputs.values import (
-    Product,
     Value,
     parse_range,
     parse_value,
