@@ -127,7 +127,7 @@ def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> li
 
     named = found.system.named if found.system is not None else str
     chosen = chosen_columns(names).values()
-    units = ["" if column.is_angle else named(column.key.unit) for column in chosen]
+    units = ["" if column.unit == "angle" else named(column.unit) for column in chosen]
     texts = [with_unit(x, unit) for x, unit in zip(header, units, strict=False)]
     return [*texts, *header[len(texts) :]]
 

@@ -1,7 +1,7 @@
-"""The columns of `lagtop table`: each is declared once, with its formula.
+"""The columns of `lagtop table`: their presentation, and their formulas.
 
-A formula is a function of `Parts`, the motion at one time in balls or at many times in doubles.
-Each part is computed on first use, from the attitude
+Formulas are attributes of `Parts`, the motion at one time in balls or at many times in doubles.
+Common parts are computed on first use, from the attitude
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
@@ -26,127 +26,59 @@ if TYPE_CHECKING:
     from ..regime import Exact
 
 
-class Column(NamedTuple):
-    """One column of numbers."""
-
-    key: Key
-    """The presentation of the column; its group is the name of several columns, or empty.
-
-    The formula is in names of columns and keys; t1 is the time of a passage of u1.
-    """
-    value: Callable[[Any], Any]
-    """The formula as a function of `Parts`."""
-
-    @property
-    def is_angle(self) -> bool:
-        """Whether the numbers are in degrees or radians."""
-        return self.key.unit == "angle"
-
-
-def _of(value: Callable[[Any], Any], texts: str, group: str = "") -> Column:
-    """Return a column from its formula and the symbol, meaning, unit, equation and formula."""
-    return Column(Key(group, *(text.strip() for text in texts.split("|"))), value)
-
-
 GROUPS = {
     "axis": "figure axis in space: axis_x, axis_y, axis_z",
     "quaternion": "from body to space, scalar first: quaternion_w, quaternion_x, ...",
 }
 """The meanings of names that stand for several columns."""
 
-_RATE, _WAVE = "rad/time", "less its mean rate times t, a wave"
-_ABOUT, _CONSTANT = "angular velocity about the", "constant except for rounding"
+_DECLARED = r"""
+t | t | time | time
+theta | ϑ | tilt | angle | (4,9) | acos(u)
+phi | φ | spin | angle | (6,1) | integral(phidot, 0, t)
+psi | ψ | precession | angle | (7,1) | integral(psidot, 0, t)
+dphi | Δφ | spin less its mean rate times t, a wave | angle | (6,4) | phi - mean_spin_rate*t
+dpsi | Δψ | precession less its mean rate times t, a wave | angle | (7,4) \
+    | psi - mean_precession_rate*t
+u | u | cos ϑ | | (4,30) | u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2
+thetadot | ϑ' | nutation rate | rad/time | (4,2) \
+    | thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)
+phidot | φ' | spin rate | rad/time | (4,8) | r0 - psidot*u
+psidot | ψ' | precession rate | rad/time | (4,7) | (momentum_constant - b*u)/(1 - u**2)
+p | p | angular velocity about the body's x axis | rad/time | (4,1) \
+    | thetadot*cos(phi) + psidot*sin(theta)*sin(phi)
+q | q | angular velocity about the body's y axis | rad/time | (4,1) \
+    | psidot*sin(theta)*cos(phi) - thetadot*sin(phi)
+r | r | angular velocity about the figure axis | rad/time | (4,1) | r0
+moment | M | moment of the weight about the line of nodes | mass len²/time² | | m*g*s*sin(theta)
+axis_x | | x part in space | | | sin(theta)*sin(psi)
+axis_y | | y part in space | | | -sin(theta)*cos(psi)
+axis_z | | z part in space | | | u
+quaternion_w | | real part of X = w + i z | | | cos(theta/2)*cos((psi + phi)/2)
+quaternion_x | | real part of Y = x + i y | | | sin(theta/2)*cos((psi - phi)/2)
+quaternion_y | | imaginary part of Y = x + i y | | | sin(theta/2)*sin((psi - phi)/2)
+quaternion_z | | imaginary part of X = w + i z | | | cos(theta/2)*sin((psi + phi)/2)
+energy | E | energy; constant except for rounding | mass len²/time² | (4,2) \
+    | (A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u
+Lz | c2 | vertical angular momentum; constant except for rounding | mass len²/time | (4,3) \
+    | A*psidot*sin(theta)**2 + C*r0*u
+"""
+"""Name, symbol, meaning, unit, equation and formula of each column.
 
-SCALARS: dict[str, Column] = {
-    "t": _of(lambda at: at.t, "t | time | time"),
-    "theta": _of(lambda at: at.tilt, "ϑ | tilt | angle | (4,9) | acos(u)"),
-    "phi": _of(lambda at: at.spin, "φ | spin | angle | (6,1) | integral(phidot, 0, t)"),
-    "psi": _of(lambda at: at.precession, "ψ | precession | angle | (7,1) | integral(psidot, 0, t)"),
-    "dphi": _of(
-        lambda at: at.spin_wave, f"Δφ | spin {_WAVE} | angle | (6,4) | phi - mean_spin_rate*t"
-    ),
-    "dpsi": _of(
-        lambda at: at.precession_wave,
-        f"Δψ | precession {_WAVE} | angle | (7,4) | psi - mean_precession_rate*t",
-    ),
-    "u": _of(
-        lambda at: at.u,
-        "u | cos ϑ |  | (4,30) | u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2",
-    ),
-    "thetadot": _of(
-        lambda at: at.thetadot,
-        f"ϑ' | nutation rate | {_RATE} | (4,2) | "
-        "thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)",
-    ),
-    "phidot": _of(
-        lambda at: at.top.drift + at.south - at.north,
-        f"φ' | spin rate | {_RATE} | (4,8) | r0 - psidot*u",
-    ),
-    "psidot": _of(
-        lambda at: at.south + at.north,
-        f"ψ' | precession rate | {_RATE} | (4,7) | (momentum_constant - b*u)/(1 - u**2)",
-    ),
-    "p": _of(
-        lambda at: at.across * at.sin_spin + at.thetadot * at.cos_spin,
-        f"p | {_ABOUT} body's x axis | {_RATE} | (4,1) | "
-        "thetadot*cos(phi) + psidot*sin(theta)*sin(phi)",
-    ),
-    "q": _of(
-        lambda at: at.across * at.cos_spin - at.thetadot * at.sin_spin,
-        f"q | {_ABOUT} body's y axis | {_RATE} | (4,1) | "
-        "psidot*sin(theta)*cos(phi) - thetadot*sin(phi)",
-    ),
-    "r": _of(lambda at: at.top.r0, f"r | {_ABOUT} figure axis | {_RATE} | (4,1) | r0"),
-    "moment": _of(
-        lambda at: at.top.torque * at.sine,
-        "M | moment of the weight about the line of nodes | mass len²/time² |  | m*g*s*sin(theta)",
-    ),
-    "axis_x": _of(
-        lambda at: at.sine * at.ar.sin(at.around),
-        " | x part in space |  |  | sin(theta)*sin(psi)",
-        "axis",
-    ),
-    "axis_y": _of(
-        lambda at: -at.sine * at.ar.cos(at.around),
-        " | y part in space |  |  | -sin(theta)*cos(psi)",
-        "axis",
-    ),
-    "axis_z": _of(lambda at: at.u, " | z part in space |  |  | u", "axis"),
-    "quaternion_w": _of(
-        lambda at: at.unit[0] * at.ar.cos(at.args[0]),
-        " | real part of X = w + i z |  |  | cos(theta/2)*cos((psi + phi)/2)",
-        "quaternion",
-    ),
-    "quaternion_x": _of(
-        lambda at: at.unit[1] * at.ar.cos(at.args[1]),
-        " | real part of Y = x + i y |  |  | sin(theta/2)*cos((psi - phi)/2)",
-        "quaternion",
-    ),
-    "quaternion_y": _of(
-        lambda at: at.unit[1] * at.ar.sin(at.args[1]),
-        " | imaginary part of Y = x + i y |  |  | sin(theta/2)*sin((psi - phi)/2)",
-        "quaternion",
-    ),
-    "quaternion_z": _of(
-        lambda at: at.unit[0] * at.ar.sin(at.args[0]),
-        " | imaginary part of X = w + i z |  |  | cos(theta/2)*sin((psi + phi)/2)",
-        "quaternion",
-    ),
-    "energy": _of(
-        lambda at: at.rotation_energy + at.top.torque * at.u,
-        f"E | energy; {_CONSTANT} | mass len²/time² | (4,2) | "
-        "(A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u",
-    ),
-    "Lz": _of(
-        lambda at: at.top.A * at.across * at.sine + at.top.C * at.top.r0 * at.u,
-        f"c2 | vertical angular momentum; {_CONSTANT} | mass len²/time | (4,3) | "
-        "A*psidot*sin(theta)**2 + C*r0*u",
-    ),
-}
-COLUMNS: dict[str, dict[str, Column]] = {}
+A formula is in names of columns and keys; t1 is the time of a passage of u1.
+"""
+
+SCALARS: dict[str, Key] = {}
+"""The presentation of each column; its group is the name of several columns, or empty."""
+for _line in _DECLARED.replace("\\\n", "").strip().splitlines():
+    _name, *_texts = (text.strip() for text in _line.split("|"))
+    _group = _name.partition("_")[0]
+    SCALARS[_name] = Key(_group if _group in GROUPS else "", *_texts)
+
+COLUMNS: dict[str, dict[str, Key]] = {}
 """The columns that each name stands for, in the order of `SCALARS`."""
 for _name, _column in SCALARS.items():
-    COLUMNS.setdefault(_column.key.group or _name, {})[_name] = _column
+    COLUMNS.setdefault(_column.group or _name, {})[_name] = _column
 
 DEFAULT_COLUMNS = ("t", *ANGLES)
 
@@ -156,9 +88,9 @@ def shown_columns(*, radians: bool = False, named: Callable[[str], str] = str) -
 
     The formula of a group has one equation per column.
     """
-    keys = {name: column.key for name, column in SCALARS.items()}
+    keys = dict(SCALARS)
     for group, meaning in GROUPS.items():
-        formula = ", ".join(f"{name} = {keys[name].formula}" for name in COLUMNS[group])
+        formula = ", ".join(f"{name} = {key.formula}" for name, key in COLUMNS[group].items())
         keys[group] = Key(group, "", meaning, formula=formula)
     return {name: keys[name].in_units(radians=radians, named=named) for name in COLUMNS}
 
@@ -168,7 +100,7 @@ def column_names() -> list[str]:
     return list(COLUMNS | SCALARS)
 
 
-def chosen_columns(names: Sequence[str]) -> dict[str, Column]:
+def chosen_columns(names: Sequence[str]) -> dict[str, Key]:
     """Return the columns of some names, groups expanded.
 
     Raises LagtopError for an unknown or repeated name.
@@ -183,7 +115,7 @@ def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
     """Return the headings of some columns.  Raises LagtopError for an unknown one."""
     unit = "rad" if radians else "deg"
     return [
-        f"{name}_{unit}" if column.is_angle else name
+        f"{name}_{unit}" if column.unit == "angle" else name
         for name, column in chosen_columns(columns).items()
     ]
 
@@ -222,12 +154,12 @@ def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
 class Parts(Generic[R]):
     """A motion at one or several times.
 
-    Subclasses have the arithmetic `ar`, the times `t`, the constants `top`, the `tilt`, the angles
-    `spin` and `precession`, their periodic parts `spin_wave` and `precession_wave`, and attributes
-    that are annotated here.
+    Each column is an attribute of its name; subclasses have `theta`, `phi`, `psi`, `dphi`, `dpsi`
+    and the attributes that are annotated here.
     """
 
     ar: Arithmetic[R]
+    t: Any
     top: ColumnConstants[R]
     sizes: Any
     """|X| and |Y|."""
@@ -272,8 +204,28 @@ class Parts(Generic[R]):
         x, y = self.sizes
         return self.over(self.top.plus * y, x) + self.over(self.top.minus * x, y)
 
+    phidot = property(lambda at: at.top.drift + at.south - at.north)
+    psidot = property(lambda at: at.south + at.north)
+    p = property(lambda at: at.across * at.sin_spin + at.thetadot * at.cos_spin)
+    q = property(lambda at: at.across * at.cos_spin - at.thetadot * at.sin_spin)
+    r = property(lambda at: at.top.r0)
+    moment = property(lambda at: at.top.torque * at.sine)
+    axis_x = property(lambda at: at.sine * at.ar.sin(at.around))
+    axis_y = property(lambda at: -at.sine * at.ar.cos(at.around))
+    axis_z = property(lambda at: at.u)
+    quaternion_w = property(lambda at: at.unit[0] * at.ar.cos(at.args[0]))
+    quaternion_x = property(lambda at: at.unit[1] * at.ar.cos(at.args[1]))
+    quaternion_y = property(lambda at: at.unit[1] * at.ar.sin(at.args[1]))
+    quaternion_z = property(lambda at: at.unit[0] * at.ar.sin(at.args[0]))
+
     @property
-    def rotation_energy(self) -> Any:
-        """A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 (4,2)."""
+    def energy(self) -> Any:
+        """A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs u (4,2)."""
         swing = self.thetadot * self.thetadot + self.across * self.across
-        return self.top.A / 2 * swing + self.top.C / 2 * self.top.r0 * self.top.r0
+        rotation = self.top.A / 2 * swing + self.top.C / 2 * self.top.r0 * self.top.r0
+        return rotation + self.top.torque * self.u
+
+    @property
+    def Lz(self) -> Any:
+        """A psi' sin^2 theta + C r0 u (4,3)."""
+        return self.top.A * self.across * self.sine + self.top.C * self.top.r0 * self.u

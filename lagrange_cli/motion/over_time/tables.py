@@ -53,16 +53,15 @@ class Sample(Parts[Array]):
     def __init__(self, attitude: Attitude, top: ColumnConstants[Array], wrap: bool) -> None:
         self.attitude, self.top, self.wrap, self.t = attitude, top, wrap, attitude.t
 
-    tilt = property(lambda at: at.attitude.tilt)
+    theta = property(lambda at: at.attitude.tilt)
     moduli = property(lambda at: at.attitude.moduli)
     sizes = quantity[Any](lambda at: [np.sqrt(square) for square in at.moduli])
-    spin = property(lambda at: at.attitude.phi(wrap=at.wrap))
-    precession = property(lambda at: at.attitude.psi(wrap=at.wrap))
+    phi = property(lambda at: at.attitude.phi(wrap=at.wrap))
+    psi = property(lambda at: at.attitude.psi(wrap=at.wrap))
     within = quantity[Any](lambda at: at.attitude.phi(wrap=True))
     around = quantity[Any](lambda at: at.attitude.psi(wrap=True))
-
-    spin_wave = property(lambda at: at.attitude.waves()[0])
-    precession_wave = property(lambda at: at.attitude.waves()[1])
+    dphi = property(lambda at: at.attitude.waves()[0])
+    dpsi = property(lambda at: at.attitude.waves()[1])
 
     @quantity
     def thetadot(self) -> Any:
@@ -108,9 +107,9 @@ def columns_at(
         for part, attitude in motion.sampler().attitudes(t):
             with ARRAYS.working():
                 sample = Sample(attitude, constants, wrap)
-                found = [np.broadcast_to(x.value(sample), sample.t.shape) for x in chosen.values()]
+                found = [np.broadcast_to(getattr(sample, x), sample.t.shape) for x in chosen]
             for i, column in enumerate(chosen.values()):
-                if column.is_angle and not radians:
+                if column.unit == "angle" and not radians:
                     found[i] = np.degrees(found[i])
             first = sample.t == 0
             if first.any():
@@ -218,9 +217,9 @@ class BallSample(Parts[Ball]):
         self.motion, self.kind, self.ar = motion, motion.kind(digits), balls(digits)
         self.top, self.t, self.tilting = top, t, at.tilting
         self.sizes, self.moduli = (at.x, at.y), (at.x * at.x, at.y * at.y)
-        self.within, self.around = self.spin, self.precession = at.phi, at.psi
+        self.within, self.around = self.phi, self.psi = at.phi, at.psi
 
-    tilt = property(lambda at: 2 * at.ar.atan2(at.sizes[1], at.sizes[0]))
+    theta = property(lambda at: 2 * at.ar.atan2(at.sizes[1], at.sizes[0]))
 
     def over(self, value: Ball, divisor: Ball) -> Ball:
         """Return a quotient, and 0 if the value is exactly 0."""
@@ -233,10 +232,10 @@ class BallSample(Parts[Ball]):
             return ar.pi * int(ar.nint(angle / ar.pi) % 2)
         return angle - 2 * ar.pi * int(ar.ceiling(angle / (2 * ar.pi) - ar.convert(0.5)))
 
-    spin_wave = property(lambda at: at.periodic(at.within, "mean_spin_rate"))
-    precession_wave = property(lambda at: at.periodic(at.around, "mean_precession_rate"))
+    dphi = property(lambda at: at.periodic(at.within, "mean_spin_rate"))
+    dpsi = property(lambda at: at.periodic(at.around, "mean_precession_rate"))
 
-    def periodic(self, angle: Ball, name: str) -> Ball:
+    def periodic(self, angle: Ball, name: str) -> Any:
         """Return an angle less its mean rate times t; on the separatrix the rate is its limit."""
         if isinstance(self.kind, Constant):
             return 0 * self.t
@@ -323,10 +322,10 @@ class ProvedTable:
 
     def _enclosure(self, name: str, sample: BallSample) -> Any:
         """Return a ball that contains a column, with angles in the unit in use."""
-        value = self.chosen[name].value(sample)
+        value: Any = getattr(sample, name)
         if self.wrap and name in {"phi", "psi"}:
             value = sample.wrapped(value)
-        in_degrees = self.chosen[name].is_angle and not self.radians
+        in_degrees = self.chosen[name].unit == "angle" and not self.radians
         return value * 180 / sample.ar.pi if in_degrees else value
 
     def rows(
