@@ -1,6 +1,6 @@
 """The methods that `bench` and `stability` compare.
 
-A new method is one entry in METHODS: its settings, and a function of a top and a setting.  That
+A new method is one entry in METHODS: its settings, and a function of a motion and a setting.  That
 function makes the set-up, and returns a function that computes the attitudes at increasing times.
 Integrators solve Euler's equations for p, q and the quaternion, which are singular nowhere.  Rates
 are in the units of the scene, and a tolerance is both the relative and the absolute one.
@@ -11,8 +11,9 @@ from __future__ import annotations
 import math
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,22 +34,16 @@ class SlowError(Exception):
     """A run has exceeded its limit of CPU time."""
 
 
-class Run(NamedTuple):
-    """The output of a run, and its work."""
-
-    output: Any
-    """The numbers that the method computes, which are all that is timed."""
-    evaluations: int | None = None
-    """Evaluations of the right-hand side; of Taylor's method, its steps times its order."""
-    to_attitudes: Callable[[Any], Array] = np.asarray
-    """Convert the output to quaternions w, x, y, z from body to space, of shape (times, 4)."""
-
-
+Run = tuple[Sequence[Array] | Array, int | None]
+"""The columns theta, phi and psi, or the quaternion w, x, y, z from body to space; and the number
+of evaluations of the right-hand side (of Taylor's method, its steps times its order)."""
 Sample = Callable[[Array, float], Run]
 """A function of increasing times and of a limit of CPU seconds.
 
 It may raise SlowError, or ArithmeticError if the method fails.
 """
+Slope = Callable[[float, Any], list[Any]]
+"""The derivative of p, q (body axes) and of the quaternion, by time and state."""
 
 
 class Method(NamedTuple):
@@ -63,21 +58,11 @@ class Method(NamedTuple):
     """Whether steps have one length, which divides the gaps between the times."""
 
 
-class Problem(NamedTuple):
-    """Euler's equations of a top, for p, q (body axes) and the quaternion."""
-
-    start: Array
-    slope: Callable[[float, Sequence[Any]], list[Any]]
-
-
-def problem_of(top: Top) -> Problem:
-    """Return the initial state (p, q, w, x, y, z) and its derivative, in doubles."""
-    a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
-    r0 = float(top.r0)
-    twist = r0 - float(top.C) * r0 / float(top.A)
-    tilt = top.tilt(DOUBLES)
-    sin, cos_half, sin_half = tilt.sin, tilt.cos_half, tilt.sin_half
-    start = [float(top.thetadot0), float(top.psidot0) * sin, cos_half, sin_half, 0.0, 0.0]
+def problem_of(top: Top) -> tuple[Array, Slope]:
+    """Return the initial state (p, q, w, x, y, z) and Euler's equations, in doubles."""
+    a, b, r0, tilt = *constants(top), float(top.r0), top.tilt(DOUBLES)
+    rates = float(top.thetadot0), float(top.psidot0) * tilt.sin
+    twist = r0 - b
 
     def slope(_: float, state: Sequence[Any]) -> list[Any]:
         p, q, w, x, y, z = state
@@ -90,49 +75,46 @@ def problem_of(top: Top) -> Problem:
             (w * r0 + x * q - y * p) / 2,
         ]
 
-    return Problem(np.array(start), slope)
+    return np.array([*rates, tilt.cos_half, tilt.sin_half, 0.0, 0.0]), slope
 
 
-def counted(
-    problem: Problem, limit: float
-) -> tuple[Callable[[float, Array], list[float]], list[int]]:
+def constants(top: Top) -> tuple[float, float]:
+    """Return a = 2 m g s/A and b = C r0/A in doubles."""
+    A = float(top.A)
+    return 2 * float(top.m) * float(top.g) * float(top.s) / A, float(top.C) * float(top.r0) / A
+
+
+def counted(slope: Slope, limit: float) -> tuple[Slope, list[int]]:
     """Return the slope with a limit of CPU seconds, and a list whose element counts its calls."""
     end, calls = time.process_time() + limit, [0]
 
-    def slope(t: float, state: Array) -> list[float]:
+    def watched(t: float, state: Array) -> list[float]:
         calls[0] += 1
         if calls[0] % 256 == 0 and time.process_time() > end:
             raise SlowError
-        return problem.slope(t, state.tolist())
+        return slope(t, state.tolist())
 
-    return slope, calls
+    return watched, calls
 
 
-def quaternions(halves: Sequence[Array]) -> Array:
-    """Return the attitudes, of shape (times, 4), from theta/2, (psi + phi)/2 and (psi - phi)/2."""
-    half, plus, minus = halves
-    cos, sin = np.cos(half), np.sin(half)
-    parts = [cos * np.cos(plus), sin * np.cos(minus), sin * np.sin(minus), cos * np.sin(plus)]
-    return np.stack(parts, axis=1)
+def attitudes(columns: Sequence[Array] | Array) -> Array:
+    """Return the quaternions, of shape (times, 4), from the columns of a run."""
+    if len(columns) == 3:
+        theta, plus, minus = columns[0], columns[2] + columns[1], columns[2] - columns[1]
+        cos, sin = np.cos(theta / 2), np.sin(theta / 2)
+        x, y = sin * np.cos(minus / 2), sin * np.sin(minus / 2)
+        columns = [cos * np.cos(plus / 2), x, y, cos * np.sin(plus / 2)]
+    return np.stack([*columns], axis=1)
 
 
 def lagtop(motion: Motion, output: str) -> Sample:
     """Return lagtop in doubles: the three angles of `Motion.angles`, or the quaternion."""
     fresh = solve(motion.top)
     fresh.sampler()
+    if output == "angles":
+        return lambda t, _: (fresh.angles(t), None)
     names = [f"quaternion_{part}" for part in "wxyz"]
-
-    def quaternion(t: Array, _: float) -> Run:
-        return Run(fresh.table(t, names), None, lambda x: np.stack(list(x.values()), axis=1))
-
-    def angles(t: Array, _: float) -> Run:
-        return Run(fresh.angles(t), None, of_angles)
-
-    def of_angles(angles: Any) -> Array:
-        theta, phi, psi = angles
-        return quaternions([theta / 2, (psi + phi) / 2, (psi - phi) / 2])
-
-    return {"angles": angles, "quaternion": quaternion}[output]
+    return lambda t, _: ([*fresh.table(t, names).values()], None)
 
 
 def closed_form_in_doubles(motion: Motion, _: Any) -> Sample:
@@ -143,47 +125,42 @@ def closed_form_in_doubles(motion: Motion, _: Any) -> Sample:
 
         1/(1 +- u) = 1/(1 +- u3) + (1/(1 +- u1) - 1/(1 +- u3))/(1 - n sn^2).
     """
-    from scipy import special
+    from scipy.special import ellipj, ellipk, ellipkinc, elliprf, elliprj
 
     top = motion.top
-    a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
-    r0, psi_rate, theta_rate = float(top.r0), float(top.psidot0), float(top.thetadot0)
-    b, u0 = float(top.C) * r0 / float(top.A), float(top.tilt(DOUBLES).cos)
+    a, b = constants(top)
+    psi_rate, theta_rate, u0 = float(top.psidot0), float(top.thetadot0), top.tilt(DOUBLES).cos
     beta = psi_rate * (1 - u0 * u0) + b * u0
     alpha = theta_rate**2 + psi_rate**2 * (1 - u0 * u0) + a * u0
     cubic = [a, -(alpha + b * b), 2 * b * beta - a, alpha - beta * beta]
     u2, u1, u3 = np.sort(np.roots(cubic).real)
     m = (u1 - u2) / (u3 - u2)
-    K, speed = special.ellipk(m), math.sqrt(a * (u3 - u2)) / 2
+    K, speed = ellipk(m), math.sqrt(a * (u3 - u2)) / 2
 
     def third(sign: int, w: Array) -> Array:
         at_u1, at_u3 = 1 + sign * u1, 1 + sign * u3
-        n = m * at_u3 / at_u1
-        turns = np.rint(w / (2 * K))
-        sn, cn, dn, _ = special.ellipj(w - turns * 2 * K, m)
-        whole = K + n / 3 * special.elliprj(0.0, 1 - m, 1.0, 1 - n)
-        part = special.elliprf(cn * cn, dn * dn, 1.0)
-        part += n / 3 * sn * sn * special.elliprj(cn * cn, dn * dn, 1.0, 1 - n * sn * sn)
-        integral: Array = w / at_u3 + (1 / at_u1 - 1 / at_u3) * (2 * turns * whole + sn * part)
-        return integral / speed
-
-    def halves(w: Array) -> tuple[Array, Array]:
-        return (beta + b) / 2 * third(1, w), (beta - b) / 2 * third(-1, w)
+        n, turns = m * at_u3 / at_u1, np.rint(w / (2 * K))
+        sn, cn, dn, _ = ellipj(w - turns * 2 * K, m)
+        whole = K + n / 3 * elliprj(0.0, 1 - m, 1.0, 1 - n)
+        part = elliprf(cn * cn, dn * dn, 1.0)
+        part += n / 3 * sn * sn * elliprj(cn * cn, dn * dn, 1.0, 1 - n * sn * sn)
+        integral = w / at_u3 + (1 / at_u1 - 1 / at_u3) * (2 * turns * whole + sn * part)
+        half: Array = (beta + sign * b) / 2 * (integral / speed)
+        return half
 
     start = 0.0
     if theta_rate or abs(u0 - u2) < abs(u0 - u1):
         sn2 = (u1 - u0) * (u3 - u2) / ((u3 - u0) * (u1 - u2))
-        start = float(special.ellipkinc(math.asin(math.sqrt(min(max(sn2, 0), 1))), m))
+        start = float(ellipkinc(math.asin(math.sqrt(min(max(sn2, 0), 1))), m))
         start = math.copysign(start, theta_rate)
-    first = halves(np.array(start))
+    first = [third(sign, np.array(start)) for sign in (1, -1)]
 
     def sample(t: Array, _: float) -> Run:
-        w = start + speed * t
-        plus, minus = (now - then for now, then in zip(halves(w), first, strict=True))
-        drift = (r0 - b) / 2 * t
-        sn, _, dn, _ = special.ellipj(w - np.rint(w / (2 * K)) * 2 * K, m)
-        half = np.arccos(np.clip(u1 - (u1 - u2) * (1 - m) * (sn / dn) ** 2, -1, 1)) / 2  # (4,20)
-        return Run([half, plus + drift, minus - drift], None, quaternions)
+        w, drift = start + speed * t, (float(top.r0) - b) * t
+        plus, minus = (third(sign, w) - then for sign, then in zip((1, -1), first, strict=True))
+        sn, _, dn, _ = ellipj(w - np.rint(w / (2 * K)) * 2 * K, m)
+        theta = np.arccos(np.clip(u1 - (u1 - u2) * (1 - m) * (sn / dn) ** 2, -1, 1))  # (4,20)
+        return [theta, plus - minus + drift, plus + minus], None
 
     return sample
 
@@ -192,51 +169,51 @@ def scipy_method(name: str, motion: Motion, tolerance: float) -> Sample:
     """Return a method of SciPy's solve_ivp, with its own interpolation between the steps."""
     from scipy.integrate import solve_ivp
 
-    problem = problem_of(motion.top)
+    start, equations = problem_of(motion.top)
 
     def sample(t: Array, limit: float) -> Run:
-        slope, calls = counted(problem, limit)
+        slope, calls = counted(equations, limit)
+        options = {"method": name, "rtol": tolerance, "atol": tolerance}
         with warnings.catch_warnings(action="ignore"):  # a failure is in the message
-            span = 0.0, float(t[-1])
-            flow = solve_ivp(
-                slope, span, problem.start, name, t_eval=t, rtol=tolerance, atol=tolerance
-            )
+            flow = solve_ivp(slope, (0.0, float(t[-1])), start, t_eval=t, **options)
         if not flow.success:
             raise ArithmeticError(flow.message)
-        return Run(flow.y[2:], calls[0], np.transpose)
+        return flow.y[2:], calls[0]
 
     return sample
 
 
+def fixed_steps(times: Array, longest: float) -> Iterator[tuple[int, float]]:
+    """Yield the number and the length of equal steps from 0 to the first time, and so on.
+
+    The number is the least whose steps are not too long.
+    """
+    for start, end in pairwise([0.0, *times.tolist()]):
+        count = math.ceil((end - start) / longest * (1 - 1e-9))
+        yield count, (end - start) / max(count, 1)
+
+
 def rk4(motion: Motion, per_period: int) -> Sample:
     """Return the classical Runge-Kutta method with equal steps between two times."""
-    problem, period = problem_of(motion.top), float(motion.T_nutation or 1)
+    (start, equations), period = problem_of(motion.top), float(motion.T_nutation or 1)
 
     def sample(t: Array, limit: float) -> Run:
-        slope, calls = counted(problem, limit)
+        slope, calls = counted(equations, limit)
 
         def f(state: Array) -> Array:
             return np.array(slope(0.0, state))
 
-        state, now, rows = problem.start, 0.0, []
-        for end in t.tolist():
-            count = steps_between(now, end, period / per_period)
-            h = (end - now) / max(count, 1)
+        state, rows = start, []
+        for count, h in fixed_steps(t, period / per_period):
             for _ in range(count):
                 k1 = f(state)
                 k2 = f(state + h / 2 * k1)
                 k3 = f(state + h / 2 * k2)
                 state = state + h / 6 * (k1 + 2 * (k2 + k3) + f(state + h * k3))
-            now = end
             rows.append(state[2:])
-        return Run(np.array(rows), calls[0])
+        return np.array(rows).T, calls[0]
 
     return sample
-
-
-def steps_between(start: float, end: float, longest: float) -> int:
-    """Return the least number of equal steps between two times that are not too long."""
-    return math.ceil((end - start) / longest * (1 - 1e-9))
 
 
 def taylor(motion: Motion, tolerance: float) -> Sample:
@@ -245,27 +222,26 @@ def taylor(motion: Motion, tolerance: float) -> Sample:
 
     heyoka.llvm_state.clear_memcache()  # so that each set-up compiles
     heyoka.llvm_state.set_diskcache_enabled(False)
-    problem = problem_of(motion.top)
+    start, slope = problem_of(motion.top)
+    fine = heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit
     names = heyoka.make_vars(*"pqwxyz")
-    system = list(zip(names, problem.slope(0.0, names), strict=True))
-    integrator = heyoka.taylor_adaptive(system, problem.start, tol=tolerance)
+    system = list(zip(names, slope(0.0, names), strict=True))
+    integrator = heyoka.taylor_adaptive(system, start, tol=tolerance)
 
     def sample(t: Array, limit: float) -> Run:
-        end = time.process_time() + limit
-        integrator.time, integrator.state[:] = 0.0, problem.start
-        rows, rest, steps = [np.empty((0, 6))], t, 0
-        if t[0] == 0:
-            rows, rest = [problem.start[None]], t[1:]
+        end, steps = time.process_time() + limit, 0
+        integrator.time, integrator.state[:] = 0.0, start
+        rows, rest = [start[None]], t[t > 0]
         while rest.size:
+            if time.process_time() > end:
+                raise SlowError
             grid = np.concatenate(([integrator.time], rest))
             outcome, _, _, some, _, found = integrator.propagate_grid(grid, max_steps=LOOKS)
+            if outcome not in fine:
+                raise ArithmeticError(f"heyoka stopped: {outcome}")
             rows.append(np.array(found[1:]))
             rest, steps = rest[len(found) - 1 :], steps + some
-            if outcome not in (heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit):
-                raise ArithmeticError(f"heyoka stopped: {outcome}")
-            if rest.size and time.process_time() > end:
-                raise SlowError
-        return Run(np.concatenate(rows)[:, 2:], steps * integrator.order)
+        return np.concatenate(rows)[-t.size :, 2:].T, steps * integrator.order
 
     return sample
 
@@ -277,10 +253,9 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
     """
     import mujoco as engine
 
-    top, problem, period = motion.top, problem_of(motion.top), float(motion.T_nutation or 1)
-    m, A, C = float(top.m), float(top.A), float(top.C) / float(top.A)
-    s = float(top.s) * math.sqrt(m / A)
-    g = m * float(top.g) * float(top.s) / A / s * period**2
+    top, period, (start, _) = motion.top, float(motion.T_nutation or 1), problem_of(motion.top)
+    s, C = float(top.s) * math.sqrt(float(top.m) / float(top.A)), float(top.C) / float(top.A)
+    g = constants(top)[0] / 2 / s * period**2
     if C > 2 * (1 - s * s):
         raise LagtopError("MuJoCo needs C <= 2 (A - m s^2)")
     model = engine.MjModel.from_xml_string(
@@ -295,25 +270,23 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
     )
     data, warned = engine.MjData(model), list[str]()
     engine.set_mju_user_warning(warned.append)  # or else MuJoCo writes a file
-    rates = np.array([*problem.start[:2], float(top.r0)]) * period
+    rates = np.array([*start[:2], float(top.r0)]) * period
 
     def sample(t: Array, limit: float) -> Run:
-        end = time.process_time() + limit
+        end, rows = time.process_time() + limit, []
         warned.clear()
         engine.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:] = problem.start[2:], rates
-        rows, now = np.empty((t.size, 4)), 0.0
-        for row, then in zip(rows, (t / period).tolist(), strict=True):
-            count = steps_between(now, then, 1 / per_period)
+        data.qpos[:], data.qvel[:] = start[2:], rates
+        for count, h in fixed_steps(t / period, 1 / per_period):
             if count:
-                model.opt.timestep = (then - now) / count
+                model.opt.timestep = h
                 engine.mj_step(model, data, count)
             if warned:
                 raise ArithmeticError(warned[0].strip())
             if time.process_time() > end:
                 raise SlowError
-            row[:], now = data.qpos, then
-        return Run(rows)
+            rows.append(data.qpos.copy())
+        return np.array(rows).T, None
 
     return sample
 
@@ -326,9 +299,7 @@ METHODS: dict[str, Method] = {
     "LSODA": Method([1e-4, 1e-7, 1e-10, 1e-12], partial(scipy_method, "LSODA")),
     "Radau": Method([1e-3, 1e-5, 1e-7], partial(scipy_method, "Radau")),
     "Taylor": Method([1e-5, 1e-8, 1e-12, 1e-16], taylor, "heyoka"),
-    "RK4": Method([50, 200, 800], rk4, has_fixed_steps=True),
-    "MuJoCo-RK4": Method([50, 200, 800], partial(mujoco, "RK4"), "mujoco", has_fixed_steps=True),
-    "MuJoCo-Euler": Method(
-        [200, 800, 3200], partial(mujoco, "Euler"), "mujoco", has_fixed_steps=True
-    ),
+    "RK4": Method([50, 200, 800], rk4, "", True),
+    "MuJoCo-RK4": Method([50, 200, 800], partial(mujoco, "RK4"), "mujoco", True),
+    "MuJoCo-Euler": Method([200, 800, 3200], partial(mujoco, "Euler"), "mujoco", True),
 }

@@ -38,11 +38,8 @@ def rotation_angle(computed: Sequence[Any], exact: Attitude) -> float:
         w, x, y, z = map(mpmath.mpf, computed)
         a, b, c, d = exact
         along = a * w + b * x + c * y + d * z
-        across = (
-            a * x - b * w - c * z + d * y,
-            a * y - c * w - d * x + b * z,
-            a * z - d * w - b * y + c * x,
-        )
+        i, j, k = a * x - b * w, a * y - c * w, a * z - d * w
+        across = i - c * z + d * y, j - d * x + b * z, k - b * y + c * x
         angle = float(2 * mpmath.atan2(mpmath.norm(across), abs(along)))
     return angle if math.isfinite(angle) else math.inf
 
@@ -70,57 +67,32 @@ class Reference:
     """The exact motion of a top that nutates under a torque."""
 
     def __init__(self, inputs: Mapping[str, Many]) -> None:
-        """Compute the roots and the start from the result of `inputs_of`.
-
-        Raises LagtopError without a torque.
-        """
-        with mpmath.workdps(ROOT_DIGITS):
-            self._find_roots(inputs)
-        with mpmath.workdps(DIGITS):
-            self.speed = mpmath.sqrt(self.a * self.u3_u2) / 2
-            self.k2, self.k2_prime = self.band / self.u3_u2, self.u3_u1 / self.u3_u2
-            self.K = mpmath.ellipk(self.k2)
-            self.T = 2 * self.K / self.speed
-            self.w0 = self._start_argument(mpmath.sign(inputs["thetadot0"]))
-            self.wholes = [
-                self._third(at_u1 / at_u2, 1, 0, self.k2_prime) for at_u1, at_u2 in self.gaps
-            ]
-            self.start = self._halves(mpmath.mpf(0))
-
-    def _find_roots(self, inputs: Mapping[str, Many]) -> None:
-        """Set the constants, the roots, and all differences that may cancel."""
-        m, A, C, s, g, r0 = (inputs[name] for name in ("m", "A", "C", "s", "g", "r0"))
-        self.a, self.b = 2 * m * g * s / A, C * r0 / A
-        if not self.a:
+        """Compute roots and start from the result of `inputs_of`; raise LagtopError if g s = 0."""
+        m, A, C, s, g, r0, theta_rate, psi_rate, theta = inputs.values()
+        if not m * g * s:
             raise LagtopError("the reference needs a torque: g and s must not be 0")
-        u0, theta_rate, psi_rate = (
-            mpmath.cos(inputs["theta"]),
-            inputs["thetadot0"],
-            inputs["psidot0"],
-        )
-        around = psi_rate * mpmath.sin(inputs["theta"]) ** 2
-        beta = around + self.b * u0
-        alpha = theta_rate**2 + around * psi_rate + self.a * u0
-        u2, u1, self.u3 = viete_roots(
-            -(alpha + self.b**2) / self.a,
-            2 * self.b * beta / self.a - 1,
-            (alpha - beta**2) / self.a,
-        )
-        if not theta_rate:  # the start is a root, to all digits
-            u1, u2 = (u0, u2) if abs(u0 - u1) < abs(u0 - u2) else (u1, u0)
-        self.u1, self.u2 = u1, u2
-        self.band, self.u3_u1, self.u3_u2 = u1 - u2, self.u3 - u1, self.u3 - u2
-        self.gaps = (1 + u1, 1 + u2), (1 - u1, 1 - u2)
-        self.momenta = beta + self.b, beta - self.b
-        self.drift = (r0 - self.b) / 2
-        self.of_start = u0 - u2, u1 - u0, self.u3 - u0
-
-    def _start_argument(self, theta_sign: Many) -> Many:
-        """Return w at t = 0, which is negative while the tilt grows."""
-        from_u2, to_u1, to_u3 = self.of_start
-        s2, c2, d2 = from_u2 / self.band, to_u1 / self.band, to_u3 / self.u3_u2
-        w = mpmath.sqrt(s2) * mpmath.elliprf(max(c2, 0), d2, 1)
-        return -w if theta_sign > 0 else w
+        with mpmath.workdps(ROOT_DIGITS):  # differences of roots may cancel
+            a, b, u0 = 2 * m * g * s / A, C * r0 / A, mpmath.cos(theta)
+            around = psi_rate * mpmath.sin(theta) ** 2
+            beta, alpha = around + b * u0, theta_rate**2 + around * psi_rate + a * u0
+            cubic = -(alpha + b**2) / a, 2 * b * beta / a - 1, (alpha - beta**2) / a
+            u2, u1, u3 = viete_roots(*cubic)
+            if not theta_rate:  # the start is a root, to all digits
+                u1, u2 = (u0, u2) if abs(u0 - u1) < abs(u0 - u2) else (u1, u0)
+            band, u3_u2 = u1 - u2, u3 - u2
+            self.k2, self.k2_prime = band / u3_u2, (u3 - u1) / u3_u2
+            self.u1, self.u2, self.u3 = u1, u2, u3
+            self.gaps = (1 + u1, 1 + u2), (1 - u1, 1 - u2)
+            self.momenta, self.drift = (beta + b, beta - b), (r0 - b) / 2
+            sn2, cn2, dn2 = (u0 - u2) / band, (u1 - u0) / band, (u3 - u0) / u3_u2
+        with mpmath.workdps(DIGITS):
+            self.speed, self.K = mpmath.sqrt(a * u3_u2) / 2, mpmath.ellipk(self.k2)
+            self.T = 2 * self.K / self.speed
+            self.w0 = mpmath.sqrt(sn2) * mpmath.elliprf(max(cn2, 0), dn2, 1)
+            if theta_rate > 0:  # the tilt grows towards u2, where w = 0
+                self.w0 = -self.w0
+            self.wholes = [self._third(x1 / x2, 1, 0, self.k2_prime) for x1, x2 in self.gaps]
+            self.start = self._halves(mpmath.mpf(0))
 
     def _jacobi(self, t: Many) -> tuple[Many, ...]:
         """Return the whole half periods until a time, and sn, cn, dn of the rest."""
@@ -134,31 +106,20 @@ class Reference:
         part = (1 - rest) / 3 * sn**2 * mpmath.elliprj(cn2, dn2, 1, cn2 + rest * sn**2)
         return sn * (mpmath.elliprf(cn2, dn2, 1) + part)
 
-    def _halves(self, t: Many) -> tuple[Many, Many]:
+    def _halves(self, t: Many) -> list[Many]:
         """Return (psi + phi)/2 and (psi - phi)/2, up to their values at t = 0."""
         (turns, sn, cn, dn), drift = self._jacobi(t), self.drift * t
-        plus, minus = (
-            momentum
-            / 2
-            * (2 * turns * whole + self._third(at_u1 / at_u2, sn, cn**2, dn**2))
-            / (at_u2 * self.speed)
-            for momentum, (at_u1, at_u2), whole in zip(
-                self.momenta, self.gaps, self.wholes, strict=True
-            )
-        )
-        return drift + plus, -drift + minus
+        halves = []
+        for momentum, (x1, x2), whole in zip(self.momenta, self.gaps, self.wholes, strict=True):
+            integral = 2 * turns * whole + self._third(x1 / x2, sn, cn**2, dn**2)
+            halves.append(momentum / 2 * integral / (x2 * self.speed))
+        return [drift + halves[0], -drift + halves[1]]
 
     def attitude(self, t: Many) -> Attitude:
         """Return the attitude at a time, which is on the line of nodes at t = 0."""
         with mpmath.workdps(DIGITS):
             _, sn, cn, _ = self._jacobi(mpmath.mpf(t))
-            below, above = (at_u1 * sn**2 + at_u2 * cn**2 for at_u1, at_u2 in self.gaps)
-            cos_half, sin_half = mpmath.sqrt(below / 2), mpmath.sqrt(above / 2)
-            halves = zip(self._halves(mpmath.mpf(t)), self.start, strict=True)
-            plus, minus = (now - then for now, then in halves)
-            return (
-                cos_half * mpmath.cos(plus),
-                sin_half * mpmath.cos(minus),
-                sin_half * mpmath.sin(minus),
-                cos_half * mpmath.sin(plus),
-            )
+            cos, sin = (mpmath.sqrt((x1 * sn**2 + x2 * cn**2) / 2) for x1, x2 in self.gaps)
+            plus, minus = map(mpmath.fsub, self._halves(mpmath.mpf(t)), self.start)
+            upright = cos * mpmath.cos(plus), cos * mpmath.sin(plus)
+            return upright[0], sin * mpmath.cos(minus), sin * mpmath.sin(minus), upright[1]

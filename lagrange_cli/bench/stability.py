@@ -1,7 +1,6 @@
 """Errors of methods in stiff and extreme scenes, beside the error that input rounding causes.
 
-A new kind of scene is one entry in KINDS: its fixed scenes, and a function for random ones, whose
-docstring describes the kind.
+A new kind of scene is one entry in KINDS.  The README describes the kinds.
 """
 
 from __future__ import annotations
@@ -13,19 +12,16 @@ from random import Random
 from typing import Any, NamedTuple
 
 import mpmath
-import numpy as np
 
-from ..arithmetic.types import Array
-from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.top import Top
 from ..motion.regime import Regime
 from ..motion.solve import Motion, solve
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import Progress, silent
-from .methods import METHODS, Sample, SlowError
-from .reference import DIGITS, Attitude, Reference, inputs_of, rotation_angle
-from .work_precision import exact_motion, machine
+from .methods import METHODS
+from .reference import DIGITS, ROOT_DIGITS, Reference, inputs_of, rotation_angle
+from .work_precision import machine, measure, task_of
 
 SPANS = 1.0, 100.0
 """Spans in nutation periods."""
@@ -36,6 +32,8 @@ LIMIT = 1.0
 """CPU seconds after which a run is too slow."""
 AT_ROUNDING, LOST = 100, 1e-3
 """Limits of the verdicts: a multiple of the effect of input rounding, and an error in rad."""
+VERDICTS = "rounding level", "inaccurate", "lost", "too slow", "failed", "not installed"
+"""The verdicts from good to bad."""
 
 Scene = dict[str, float]
 UNIT: Scene = {"m": 1, "s": 1, "g": 1, "A": 1, "C": 0.5}
@@ -53,24 +51,14 @@ def moving(rng: Random) -> Scene:
     return body(rng) | {"theta0_deg": rng.uniform(10, 170)} | rates
 
 
+def ten_to(rng: Random, low: float, high: float) -> float:
+    """Return a number between 10^low and 10^high, with a uniform logarithm."""
+    return 10 ** rng.uniform(low, high)
+
+
 def sleeping_spin(scene: Scene) -> float:
     """Return the spin above which the upright top is stable."""
     return 2 * math.sqrt(scene["A"]) / scene["C"]
-
-
-def fast_spin(rng: Random) -> Scene:
-    """Spin of 1e3 to 1e6: highly oscillatory, the stiff case of explicit methods."""
-    return moving(rng) | {"r0": 10 ** rng.uniform(3, 6)}
-
-
-def slow_spin(rng: Random) -> Scene:
-    """Spin of 1e-9 to 1e-2: the axis passes close to the lower vertical."""
-    return body(rng) | {"r0": 10 ** rng.uniform(-9, -2), "theta0_deg": rng.uniform(20, 170)}
-
-
-def near_separatrix(rng: Random) -> Scene:
-    """A rise whose energy is within 1e-9 to 1e-3 of that of the upright top."""
-    return rising(rng, 10 ** rng.uniform(-9, -3))
 
 
 def rising(rng: Random, miss: float) -> Scene:
@@ -85,36 +73,25 @@ def rising(rng: Random, miss: float) -> Scene:
 
 
 def near_vertical(rng: Random) -> Scene:
-    """A start 1e-8 to 1e-2 degrees from the vertical, or a path that passes as close to it."""
+    """Return a start next to the vertical, or a path that passes next to it."""
     if rng.random() < 0.5:
-        return moving(rng) | {"theta0_deg": 10 ** rng.uniform(-8, -2)}
+        return moving(rng) | {"theta0_deg": ten_to(rng, -8, -2)}
     scene = rising(rng, -rng.uniform(0.1, 1))
-    return scene | {"psidot0": scene["psidot0"] * (1 + 10 ** rng.uniform(-10, -4))}
-
-
-def tiny_tilt_with_rates(rng: Random) -> Scene:
-    """A tilt of 1e-60 to 1e-9 degrees with rates of the size of 1."""
-    return moving(rng) | {"theta0_deg": 10 ** rng.uniform(-60, -9)}
+    return scene | {"psidot0": scene["psidot0"] * (1 + ten_to(rng, -10, -4))}
 
 
 def near_steady(rng: Random) -> Scene:
-    """A steady precession, disturbed by 1e-12 to 1e-3 of its rate."""
+    """Return a steady precession with a disturbed rate."""
     scene = body(rng) | {"theta0_deg": rng.uniform(20, 160)}
     spin = sleeping_spin(scene) * rng.uniform(1.1, 5)
     b, u = scene["C"] * spin, math.cos(math.radians(scene["theta0_deg"]))
     steady = 2 / (b + math.sqrt(b * b - 4 * scene["A"] * u))
-    return scene | {"r0": spin, "psidot0": steady * (1 + 10 ** rng.uniform(-12, -3))}
-
-
-def near_hanging(rng: Random) -> Scene:
-    """A swing of 1e-9 to 1e-2 degrees about the hanging position."""
-    tilt = 180 - 10 ** rng.uniform(-9, -2)
-    return body(rng) | {"r0": rng.uniform(-5, 5), "theta0_deg": tilt}
+    return scene | {"r0": spin, "psidot0": steady * (1 + ten_to(rng, -12, -3))}
 
 
 def extreme_sizes(rng: Random) -> Scene:
-    """Units of mass, length and time that are 1e-12 to 1e12 of those of an ordinary top."""
-    mass, length, second = (10 ** rng.uniform(-12, 12) for _ in range(3))
+    """Return an ordinary top in other units of mass, length and time."""
+    mass, length, second = (ten_to(rng, -12, 12) for _ in range(3))
     scene = moving(rng)
     found = scene | {"m": mass, "s": length, "g": length / second**2}
     found |= {name: scene[name] * mass * length**2 for name in ("A", "C")}
@@ -122,22 +99,30 @@ def extreme_sizes(rng: Random) -> Scene:
 
 
 KINDS: dict[str, tuple[list[Scene], Callable[[Random], Scene]]] = {
-    "fast-spin": ([UNIT | {"r0": 1e4, "theta0_deg": 30, "psidot0": 1}], fast_spin),
-    "slow-spin": ([UNIT | {"r0": 1e-3, "theta0_deg": 120}], slow_spin),
-    "near-separatrix": ([rising(Random(1), 1e-6)], near_separatrix),
+    "fast-spin": (
+        [UNIT | {"r0": 1e4, "theta0_deg": 30, "psidot0": 1}],
+        lambda rng: moving(rng) | {"r0": ten_to(rng, 3, 6)},
+    ),
+    "slow-spin": (
+        [UNIT | {"r0": 1e-3, "theta0_deg": 120}],
+        lambda rng: body(rng) | {"r0": ten_to(rng, -9, -2), "theta0_deg": rng.uniform(20, 170)},
+    ),
+    "near-separatrix": ([rising(Random(1), 1e-6)], lambda rng: rising(rng, ten_to(rng, -9, -3))),
     "near-vertical": (
         [UNIT | {"r0": 2, "theta0_deg": 1e-6, "psidot0": 1}, rising(Random(2), -0.5)],
         near_vertical,
     ),
     "tiny-tilt-with-rates": (
         [UNIT | {"r0": 3, "theta0_deg": 1e-30, "thetadot0": 1}],
-        tiny_tilt_with_rates,
+        lambda rng: moving(rng) | {"theta0_deg": ten_to(rng, -60, -9)},
     ),
-    "near-steady": (
-        [UNIT | {"r0": 6, "theta0_deg": 60, "psidot0": 0.382}],
-        near_steady,
+    "near-steady": ([UNIT | {"r0": 6, "theta0_deg": 60, "psidot0": 0.382}], near_steady),
+    "near-hanging": (
+        [UNIT | {"r0": 2, "theta0_deg": 179.999}],
+        lambda rng: (
+            {"theta0_deg": 180 - ten_to(rng, -9, -2)} | body(rng) | {"r0": rng.uniform(-5, 5)}
+        ),
     ),
-    "near-hanging": ([UNIT | {"r0": 2, "theta0_deg": 179.999}], near_hanging),
     "extreme-sizes": (
         [{"m": 1e12, "s": 1e-12, "g": 1e6, "A": 1e-12, "C": 1e-12, "r0": 1e9, "theta0_deg": 50}],
         extreme_sizes,
@@ -171,8 +156,6 @@ FIELDS = fields_of(
     Field("input_rounding", "input rounding", short),
     Field("verdict", "verdict", is_text=True),
 )
-VERDICTS = "rounding level", "inaccurate", "lost", "too slow", "failed", "not installed"
-"""The verdicts from good to bad."""
 
 
 def stability(
@@ -208,19 +191,18 @@ def motions(kind: str, samples: int, seed: int) -> list[Motion]:
 
 def compared(kind: str, motion: Motion) -> Iterator[Row]:
     """Yield the rows of all methods in one scene, span by span."""
-    reference, scene = exact_motion(motion), motion.top.options()
     moved = list(neighbours(motion.top))
     for span in SPANS:
-        times = np.linspace(0, 0.97 * span * float(reference.T), TIMES + 1)[1:]
-        exact = [reference.attitude(t) for t in times.tolist()]
+        task = task_of(kind, motion, 0.97 * span, TIMES + 1)
         rounding = max(
-            sum(rotation_angle(each.attitude(t), x) for each in moved)
-            for t, x in list(zip(times.tolist(), exact, strict=True))[3::4]
+            sum(rotation_angle(each.attitude(t), exact) for each in moved)
+            for t, exact in list(zip(task.times.tolist(), task.exact, strict=True))[4::4]
         )
         for name in COMPARED:
-            error, failure, remark = run(name, motion, times, exact)
-            verdict = failure or verdict_of(error, rounding)
-            yield Row(kind, name, span, error, rounding, verdict, scene, remark)
+            found = measure(task, name, METHODS[name].settings[-1], LIMIT, runs=1)
+            verdict = verdict_of(found.error_rad, rounding, found.remark)
+            scene = motion.top.options()
+            yield Row(kind, name, span, found.error_rad, rounding, verdict, scene, found.remark)
 
 
 def neighbours(top: Top) -> Iterator[Reference]:
@@ -230,34 +212,16 @@ def neighbours(top: Top) -> Iterator[Reference]:
         if value:
             with mpmath.workdps(DIGITS):
                 half_ulp = mpmath.mpf(2) ** (mpmath.floor(mpmath.log(abs(value), 2)) - 53)
-            with mpmath.workdps(1000):
+            with mpmath.workdps(ROOT_DIGITS):
                 moved = value + half_ulp
             yield Reference({**exact, name: moved})
 
 
-def run(
-    name: str, motion: Motion, times: Array, exact: Sequence[Attitude]
-) -> tuple[float | None, str, str | None]:
-    """Return the error of a method, or else why it has none, and in which words."""
-    method = METHODS[name]
-    try:
-        with np.errstate(all="ignore"):
-            sample: Sample = method.prepare(motion, method.settings[-1])
-            found = sample(times, LIMIT)
-            attitudes = found.to_attitudes(found.output)
-    except ImportError:
-        return None, "not installed", f"needs {method.package}: pip install {method.package}"
-    except SlowError:
-        return None, "too slow", None
-    except (LagtopError, ArithmeticError, ValueError) as failure:
-        return None, "failed", str(failure)
-    error = max(map(rotation_angle, attitudes.tolist(), exact))
-    return (error, "", None) if math.isfinite(error) else (None, "failed", "not finite")
-
-
-def verdict_of(error: float | None, rounding: float) -> str:
-    """Return the verdict on an error over a span, from the effect of input rounding there."""
-    if error is None or error <= AT_ROUNDING * rounding:
+def verdict_of(error: float | None, rounding: float, remark: str | None = None) -> str:
+    """Return the verdict on a run: from its remark, or from its error and the input rounding."""
+    if error is None:
+        return (remark or "").partition(":")[0]
+    if error <= AT_ROUNDING * rounding:
         return VERDICTS[0]
     return "lost" if error > LOST else "inaccurate"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import platform
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,9 +20,9 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from ..output.report import Field, Report, fields_of, short
+from ..output.report import Field, Report, short
 from ..output.terminal import Progress, silent
-from .methods import METHODS, SlowError
+from .methods import METHODS, SlowError, attitudes
 from .reference import Attitude, Reference, inputs_of, rotation_angle
 
 PERIODS = 20.3
@@ -55,8 +56,7 @@ class Row(NamedTuple):
     remark: str | None = None
 
 
-FIELDS = fields_of(
-    Row._fields,
+FIELDS = [
     Field("scene", "scene", is_text=True, names_the_row=True),
     Field("method", "method", is_text=True, names_the_row=True),
     Field("setting", "setting", names_the_row=True),
@@ -68,7 +68,7 @@ FIELDS = fields_of(
     Field("order", "order", "{:.1f}".format),
     Field("front", "front", lambda front: "*" if front else ""),
     Field("remark", "remark", is_text=True),
-)
+]
 
 
 class Task(NamedTuple):
@@ -96,23 +96,14 @@ def bench(
     Raises LagtopError for an unknown method, and for a scene that does not nutate.
     """
     names = list(METHODS) if methods is None else check_names("methods", methods, METHODS)
-    tasks = [
-        task_of(scene, motion, span, count) for scene, motion in scenes.items() for span in spans
-    ]
-    runs = [
-        (task, name, setting)
-        for task in tasks
-        for name in names
-        for setting in METHODS[name].settings[0 if len(spans) == 1 else -1 :]
-    ]
+    tasks = [task_of(scene, x, span, count) for scene, x in scenes.items() for span in spans]
+    first = 0 if len(spans) == 1 else -1
+    runs = [(x, name, y) for x in tasks for name in names for y in METHODS[name].settings[first:]]
     found = [measure(*run) for run in progress(runs, "methods")]
-    rows = [
-        row
-        for task in tasks
-        for row in marked([x for x in found if (x.scene, x.periods) == (task.scene, task.periods)])
-    ]
-    lines = [*(growth(rows) if len(spans) > 1 else rivals_of_lagtop(rows)), *missing(rows)]
-    return Report(conditions(tasks), FIELDS, rows, lines)
+    each = len(found) // len(tasks)
+    rows = [row for i in range(0, len(found), each) for row in marked(found[i : i + each])]
+    lines = growth(rows) if len(spans) > 1 else rivals_of_lagtop(rows)
+    return Report(conditions(tasks), FIELDS, rows, [*lines, *missing(rows)])
 
 
 def exact_motion(motion: Motion) -> Reference:
@@ -135,90 +126,86 @@ def task_of(scene: str, motion: Motion, periods: float, count: int) -> Task:
     return Task(scene, motion, periods, times, checked, exact)
 
 
-def measure(task: Task, name: str, setting: float | str) -> Row:
+def measure(
+    task: Task, name: str, setting: float | str, limit: float = LIMIT, runs: int = RUNS
+) -> Row:
     """Return the error and the times of one method; a remark states why it has none."""
     row, method = Row(task.scene, name, setting, task.periods), METHODS[name]
     times = task.times[task.checked] if method.has_fixed_steps else task.times
-    seconds: list[float] = []
+    setups, seconds = list[float](), list[float]()
     try:
         if method.package:
             import_module(method.package)  # before the clock starts
         with np.errstate(all="ignore"):  # numbers that are not finite have an infinite error
-            setups = []
-            for _ in range(2):  # the first one may import
+            while len(setups) < min(2, runs):  # the first one may import
                 begun = time.process_time()
                 sample = method.prepare(task.motion, setting)
                 setups.append(time.process_time() - begun)
-            while len(seconds) <= RUNS and sum(seconds) <= SECONDS_OF_RUNS:
+            while not seconds or (len(seconds) <= runs and sum(seconds) <= SECONDS_OF_RUNS):
                 begun = time.process_time()
-                run = sample(times, LIMIT)
+                columns, evaluations = sample(times, limit)
                 seconds.append(time.process_time() - begun)
-            attitudes = run.to_attitudes(run.output)
+            found = attitudes(columns)
     except SlowError:
-        return row._replace(remark=f"too slow: more than {LIMIT:g} s")
+        return row._replace(remark=f"too slow: more than {limit:g} s")
     except ImportError:
-        return row._replace(remark=f"needs {method.package}: pip install {method.package}")
+        return row._replace(remark=f"not installed: pip install {method.package}")
     except (LagtopError, ArithmeticError, ValueError) as failure:
         return row._replace(remark=f"failed: {failure}")
-    found = attitudes if method.has_fixed_steps else attitudes[task.checked]
-    error = max(map(rotation_angle, found.tolist(), task.exact))
+    judged = slice(None) if method.has_fixed_steps else task.checked
+    error = max(map(rotation_angle, found[judged].tolist(), task.exact))
     if not math.isfinite(error):
         return row._replace(remark="failed: numbers are not finite")
     return row._replace(
         error_rad=error,
         ns_per_sample=min(seconds[1:] or seconds) / task.times.size * 1e9,
         setup_ms=min(setups) * 1e3,
-        evaluations=run.evaluations,
+        evaluations=evaluations,
     )
 
 
 def marked(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of a scene and span with orders and front, the most accurate method first."""
-    found: list[Row] = []
-    for before, row in zip([None, *rows], rows, strict=False):
-        front = row.error_rad is not None and not rivals(row, rows)
-        found.append(row._replace(front=front, order=order_between(before, row)))
+    """Return the rows of a task with orders and front, the most accurate method first."""
     best = {
-        name: min(error_of(x) for x in rows if x.method == name)
-        for name in {x.method for x in rows}
+        name: min(costs(x) for x in rows if x.method == name)
+        for name in {row.method for row in rows}
     }
-    return sorted(found, key=lambda x: (best[x.method], x.method, error_of(x)))
-
-
-def error_of(row: Row) -> float:
-    """Return the error of a row, infinite if it has none."""
-    return math.inf if row.error_rad is None else row.error_rad
-
-
-def order_between(before: Row | None, row: Row) -> float | None:
-    """Return the exponent by which the error of fixed steps falls with their number."""
-    if before is None or before.method != row.method or not METHODS[row.method].has_fixed_steps:
-        return None
-    if not (ROUNDING < error_of(row) < error_of(before) < LOST):
-        return None
-    ratio = float(row.setting) / float(before.setting)
-    return math.log(error_of(before) / error_of(row)) / math.log(ratio)
-
-
-def rivals(row: Row, rows: Sequence[Row]) -> list[Row]:
-    """Return the rows at least as fast and accurate as a row, and better in one of both."""
-    mine = error_of(row), row.ns_per_sample or math.inf
-    return [
-        other
-        for other in rows
-        if other.ns_per_sample
-        and (theirs := (error_of(other), other.ns_per_sample)) != mine
-        and theirs[0] <= mine[0]
-        and theirs[1] <= mine[1]
+    found = [
+        row._replace(
+            front=row.error_rad is not None and not any(beats(x, row) for x in rows),
+            order=order_between(before, row),
+        )
+        for before, row in zip([rows[0], *rows], rows, strict=False)
     ]
+    return sorted(found, key=lambda x: (best[x.method], x.method, costs(x)))
+
+
+def costs(row: Row) -> tuple[float, float]:
+    """Return the error and the time per sample, infinite without a result."""
+    error, ns = row.error_rad, row.ns_per_sample
+    return math.inf if error is None else error, math.inf if ns is None else ns
+
+
+def beats(other: Row, row: Row) -> bool:
+    """Return whether another row is both faster and more accurate than a row."""
+    return all(map(operator.lt, costs(other), costs(row)))
+
+
+def order_between(before: Row, row: Row) -> float | None:
+    """Return the exponent by which the error of fixed steps falls with their number."""
+    large, small = costs(before)[0], costs(row)[0]
+    has_steps = before.method == row.method and METHODS[row.method].has_fixed_steps
+    if not (has_steps and ROUNDING < small < large < LOST):
+        return None
+    return math.log(large / small) / math.log(float(row.setting) / float(before.setting))
 
 
 def rivals_of_lagtop(rows: Sequence[Row]) -> Iterator[str]:
     """Yield which methods are both faster and more accurate than lagtop, scene by scene."""
     for row in rows:
         if row.method == "lagtop" and row.error_rad is not None:
-            better = rivals(row, [x for x in rows if x.scene == row.scene and x.method != "lagtop"])
-            names = ", ".join(f"{x.method} at {x.setting}" for x in better)
+            others = [x for x in rows if x.scene == row.scene and x.method != "lagtop"]
+            names = ", ".join(f"{x.method} at {x.setting}" for x in others if beats(x, row))
             yield (
                 f"{row.scene}: faster and more accurate than lagtop's {row.setting}: "
                 f"{names or 'no other method'}."
@@ -228,9 +215,9 @@ def rivals_of_lagtop(rows: Sequence[Row]) -> Iterator[str]:
 def growth(rows: Sequence[Row]) -> Iterator[str]:
     """Yield the exponent p of each method whose error grows as span^p, by least squares."""
     for scene, name in dict.fromkeys((row.scene, row.method) for row in rows):
-        mine = [x for x in rows if (x.scene, x.method) == (scene, name) and 0 < error_of(x) < LOST]
+        mine = [x for x in rows if (x.scene, x.method) == (scene, name) and 0 < costs(x)[0] < LOST]
         if len(mine) > 1:
-            x, y = np.log([x.periods for x in mine]), np.log([error_of(x) for x in mine])
+            x, y = np.log([x.periods for x in mine]), np.log([costs(x)[0] for x in mine])
             yield f"{scene}: the error of {name} grows as span^{np.polyfit(x, y, 1)[0]:.1f}."
 
 
@@ -245,9 +232,9 @@ def missing(rows: Sequence[Row]) -> Iterator[str]:
 
 def machine() -> dict[str, str]:
     """Return the processor with its vector instructions, and the versions of all packages."""
-    names = []
+    names = [platform.processor() or "unknown processor"]
     with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8") as lines:
-        names = [line.partition(":")[2].strip() for line in lines if "model name" in line]
+        names += [line.partition(":")[2].strip() for line in lines if "model name" in line]
     vector = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
     versions = [f"Python {platform.python_version()}"]
     for name in ("lagtop", "numpy", "scipy", "mpmath", "heyoka", "mujoco"):
@@ -255,20 +242,18 @@ def machine() -> dict[str, str]:
             versions.append(f"{name} {version(name)}")
         except PackageNotFoundError:
             versions.append(f"no {name}")
-    return {
-        "machine": f"{names[0] if names else platform.processor() or 'unknown processor'}, "
-        f"{platform.system()} {platform.machine()}, "
-        f"{vector[-1] if vector else 'unknown vector instructions'}",
-        "versions": ", ".join(versions),
-    }
+    system = f"{platform.system()} {platform.machine()}"
+    parts = names[-1], system, (vector or ["unknown vector instructions"])[-1]
+    return {"machine": ", ".join(parts), "versions": ", ".join(versions)}
 
 
 def conditions(tasks: Sequence[Task]) -> dict[str, str]:
     """Return what the figures depend on."""
+    scenes = dict.fromkeys(f"{x.scene}: {x.motion.top.options()}" for x in tasks)
+    spans = dict.fromkeys(f"{x.periods:g}" for x in tasks)
     return machine() | {
-        "scenes": "; ".join(dict.fromkeys(f"{x.scene}: {x.motion.top.options()}" for x in tasks)),
-        "times": f"{tasks[0].times.size} from 0 over "
-        f"{', '.join(dict.fromkeys(f'{x.periods:g}' for x in tasks))} nutation periods",
+        "scenes": "; ".join(scenes),
+        "times": f"{tasks[0].times.size} from 0 over {', '.join(spans)} nutation periods",
         "error": "greatest rotation (rad) from the exact to the computed attitude, at "
         f"{tasks[0].checked.size} of the times; the reference is Legendre's third integral "
         "in 50 digits of mpmath",

@@ -13,6 +13,7 @@ from conftest import Lagtop
 from lagtop import Top, solve
 
 from lagrange_cli.bench import stability as hard
+from lagrange_cli.bench import work_precision
 from lagrange_cli.bench.methods import METHODS, Run, problem_of
 from lagrange_cli.bench.pictures import methods_figure, stability_figure
 from lagrange_cli.bench.reference import inputs_of, rotation_angle
@@ -64,11 +65,12 @@ def test_spans_use_the_tightest_setting() -> None:
 def test_only_the_method_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The conversion to attitudes is no part of a run."""
 
-    def slow(output: Any) -> Any:
-        return np.tile([1.0, 0, 0, 0], (sum(i * 0 for i in range(300_000)) + len(output), 1))
+    def slow(columns: Any) -> Any:
+        return np.tile([1.0, 0, 0, 0], (sum(i * 0 for i in range(300_000)) + len(columns), 1))
 
-    method = METHODS["RK4"]._replace(prepare=lambda *_: lambda t, _: Run(t, None, slow))
+    method = METHODS["RK4"]._replace(prepare=lambda *_: lambda t, _: (t, None))
     monkeypatch.setitem(METHODS, "RK4", method)
+    monkeypatch.setattr(work_precision, "attitudes", slow)
     report = bench(WORKED, ["RK4"], count=10)
     assert report.rows[0].ns_per_sample < 1e5
 
@@ -141,11 +143,9 @@ def test_input_rounding_is_the_effect_of_half_an_ulp() -> None:
     top = Top(m=1, s=1, g=1, A=1, C=0.5, r0=6, theta0_deg=60, psidot0=0.5)
 
     def attitude(moved: Top) -> Any:
-        problem = problem_of(moved)
-        span = 0.0, 5.0
-        return solve_ivp(problem.slope, span, problem.start, "DOP853", rtol=1e-13, atol=1e-13).y[
-            2:, -1
-        ]
+        start, slope = problem_of(moved)
+        flow = solve_ivp(slope, (0.0, 5.0), start, "DOP853", rtol=1e-13, atol=1e-13)
+        return flow.y[2:, -1]
 
     names = list(inputs_of(top))
     moved = dict(zip(names, hard.neighbours(top), strict=False))

@@ -10,7 +10,7 @@ import pytest
 from lagtop import LagtopError, Top, solve
 from scipy.integrate import solve_ivp
 
-from lagrange_cli.bench.methods import METHODS, Run, SlowError, steps_between
+from lagrange_cli.bench.methods import METHODS, Run, SlowError, attitudes, fixed_steps
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
 from lagrange_cli.bench.work_precision import bench, measure, task_of
 
@@ -36,8 +36,7 @@ def run(name: str, setting: Any, times: Any, limit: float = 60.0) -> Run:
 def test_the_tightest_setting_agrees_with_the_reference(name: str) -> None:
     reference = Reference(inputs_of(MOTION.top))
     times = np.linspace(0, 3 * float(reference.T), 8)
-    done = run(name, METHODS[name].settings[-1], times)
-    found = done.to_attitudes(done.output)
+    found = attitudes(run(name, METHODS[name].settings[-1], times)[0])
     assert found.shape == (8, 4)
     exact = [reference.attitude(t) for t in times.tolist()]
     error = max(map(rotation_angle, found.tolist(), exact))
@@ -46,9 +45,10 @@ def test_the_tightest_setting_agrees_with_the_reference(name: str) -> None:
 
 def test_angles_of_lagtop_give_the_attitude() -> None:
     times = np.linspace(0, 3.0, 50)
-    angles, quaternion = (run("lagtop", each, times) for each in ("angles", "quaternion"))
-    difference = angles.to_attitudes(angles.output) - quaternion.to_attitudes(quaternion.output)
-    assert np.abs(difference).max() < 1e-13
+    angles, quaternion = (
+        attitudes(run("lagtop", each, times)[0]) for each in ("angles", "quaternion")
+    )
+    assert np.abs(angles - quaternion).max() < 1e-13
 
 
 def moments(_: float, state: Any) -> list[float]:
@@ -71,9 +71,9 @@ def test_scipy_runs_as_in_a_plain_call(name: str) -> None:
     start = [START["thetadot0"], across, math.cos(half), math.sin(half), 0.0, 0.0]
     times = np.linspace(0, 1.5, 30)
     plain = solve_ivp(moments, (0, 1.5), start, name, t_eval=times, rtol=1e-7, atol=1e-7)
-    done = run(name, 1e-7, times)
-    assert done.evaluations == pytest.approx(plain.nfev, rel=0.01)
-    assert np.abs(done.to_attitudes(done.output) - plain.y[2:].T).max() < 1e-6
+    columns, evaluations = run(name, 1e-7, times)
+    assert evaluations == pytest.approx(plain.nfev, rel=0.01)
+    assert np.abs(attitudes(columns) - plain.y[2:].T).max() < 1e-6
 
 
 @pytest.mark.parametrize("name", ["RK4", "MuJoCo-RK4"])
@@ -88,15 +88,12 @@ def test_fixed_steps_converge_with_order_4(name: str) -> None:
 
 
 def test_fixed_steps_divide_the_gaps_between_times() -> None:
-    assert [steps_between(0, end, 0.1) for end in (0.0, 0.05, 0.1, 0.10001, 1.0)] == [
-        0,
-        1,
-        1,
-        2,
-        10,
-    ]
-    assert run("RK4", 50, np.array([0.0, 0.5])).evaluations == 4 * steps_between(
-        0, 0.5, float(MOTION.T_nutation or 0) / 50
+    times = np.array([0.0, 0.05, 0.15, 0.25001, 1.25001])
+    steps = list(fixed_steps(times, 0.1))
+    assert [count for count, _ in steps] == [0, 1, 1, 2, 10]
+    assert np.cumsum([count * h for count, h in steps]) == pytest.approx(times)
+    assert run("RK4", 50, times)[1] == 4 * sum(
+        count for count, _ in fixed_steps(times, float(MOTION.T_nutation or 0) / 50)
     )
 
 
@@ -116,7 +113,7 @@ def test_mujoco_refuses_a_body_without_a_shape() -> None:
 def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(METHODS, "Taylor", METHODS["Taylor"]._replace(package="no_such_package"))
     report = bench({"scene": MOTION}, ["lagtop", "Taylor"], count=3)
-    assert "Not compared: Taylor (needs no_such_package: pip install no_such_package)." in (
+    assert "Not compared: Taylor (not installed: pip install no_such_package)." in (
         report.conclusions
     )
 
