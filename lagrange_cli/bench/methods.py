@@ -52,8 +52,6 @@ class Method(NamedTuple):
     settings: Sequence[Any]
     prepare: Callable[[Motion, Any], Sample]
     """The set-up.  It may raise ImportError, or LagtopError for a top that the method refuses."""
-    package: str = ""
-    """The package to install, if lagtop does not require it."""
     has_fixed_steps: bool = False
     """Whether steps have one length, which divides the gaps between the times."""
 
@@ -259,14 +257,11 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
     if C > 2 * (1 - s * s):
         raise LagtopError("MuJoCo needs C <= 2 (A - m s^2)")
     model = engine.MjModel.from_xml_string(
-        f"""<mujoco>
-          <compiler balanceinertia="false"/>
+        f"""<mujoco><compiler balanceinertia="false"/>
           <option integrator="{scheme}" gravity="0 0 {-g!r}"/>
-          <worldbody><body>
-            <joint type="ball" damping="0"/>
+          <worldbody><body><joint type="ball"/>
             <inertial pos="0 0 {s!r}" mass="1" diaginertia="{1 - s * s!r} {1 - s * s!r} {C!r}"/>
-          </body></worldbody>
-        </mujoco>"""
+          </body></worldbody></mujoco>"""
     )
     data, warned = engine.MjData(model), list[str]()
     engine.set_mju_user_warning(warned.append)  # or else MuJoCo writes a file
@@ -298,8 +293,8 @@ METHODS: dict[str, Method] = {
     "DOP853": Method([1e-4, 1e-7, 1e-10, TIGHTEST], partial(scipy_method, "DOP853")),
     "LSODA": Method([1e-4, 1e-7, 1e-10, 1e-12], partial(scipy_method, "LSODA")),
     "Radau": Method([1e-3, 1e-5, 1e-7], partial(scipy_method, "Radau")),
-    "Taylor": Method([1e-5, 1e-8, 1e-12, 1e-16], taylor, "heyoka"),
-    "RK4": Method([50, 200, 800], rk4, "", True),
-    "MuJoCo-RK4": Method([50, 200, 800], partial(mujoco, "RK4"), "mujoco", True),
-    "MuJoCo-Euler": Method([200, 800, 3200], partial(mujoco, "Euler"), "mujoco", True),
+    "Taylor": Method([1e-5, 1e-8, 1e-12, 1e-16], taylor),
+    "RK4": Method([50, 200, 800], rk4, True),
+    "MuJoCo-RK4": Method([50, 200, 800], partial(mujoco, "RK4"), True),
+    "MuJoCo-Euler": Method([200, 800, 3200], partial(mujoco, "Euler"), True),
 }

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice, repeat
 from random import Random
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import mpmath
 
@@ -20,8 +20,11 @@ from ..motion.solve import Motion, solve
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import Progress, silent
 from .methods import METHODS
-from .reference import DIGITS, ROOT_DIGITS, Reference, inputs_of, rotation_angle
-from .work_precision import machine, measure, task_of
+from .reference import ROOT_DIGITS, Reference, inputs_of, rotation_angle
+from .work_precision import ERROR, LOOKS, drawn, machine, measure, panels_of, task_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SPANS = 1.0, 100.0
 """Spans in nutation periods."""
@@ -36,7 +39,7 @@ VERDICTS = "rounding level", "inaccurate", "lost", "too slow", "failed", "not in
 """The verdicts from good to bad."""
 
 Scene = dict[str, float]
-UNIT: Scene = {"m": 1, "s": 1, "g": 1, "A": 1, "C": 0.5}
+UNIT: Scene = {"m": 1, "s": 1, "g": 1, "A": 1, "C": 0.5, "theta0_deg": 50}
 
 
 def body(rng: Random) -> Scene:
@@ -72,6 +75,17 @@ def rising(rng: Random, miss: float) -> Scene:
     return scene | start | {"r0": spin, "thetadot0": -rise * (1 - miss)}
 
 
+def slow_spin(rng: Random) -> Scene:
+    """Return a release from rest with hardly any spin."""
+    return body(rng) | {"r0": ten_to(rng, -9, -2), "theta0_deg": rng.uniform(20, 170)}
+
+
+def near_hanging(rng: Random) -> Scene:
+    """Return a small swing about the hanging position."""
+    tilt = 180 - ten_to(rng, -9, -2)
+    return body(rng) | {"r0": rng.uniform(-5, 5), "theta0_deg": tilt}
+
+
 def near_vertical(rng: Random) -> Scene:
     """Return a start next to the vertical, or a path that passes next to it."""
     if rng.random() < 0.5:
@@ -98,37 +112,29 @@ def extreme_sizes(rng: Random) -> Scene:
     return found | {name: scene[name] / second for name in ("r0", "thetadot0", "psidot0")}
 
 
-KINDS: dict[str, tuple[list[Scene], Callable[[Random], Scene]]] = {
-    "fast-spin": (
-        [UNIT | {"r0": 1e4, "theta0_deg": 30, "psidot0": 1}],
-        lambda rng: moving(rng) | {"r0": ten_to(rng, 3, 6)},
-    ),
-    "slow-spin": (
-        [UNIT | {"r0": 1e-3, "theta0_deg": 120}],
-        lambda rng: body(rng) | {"r0": ten_to(rng, -9, -2), "theta0_deg": rng.uniform(20, 170)},
-    ),
-    "near-separatrix": ([rising(Random(1), 1e-6)], lambda rng: rising(rng, ten_to(rng, -9, -3))),
-    "near-vertical": (
-        [UNIT | {"r0": 2, "theta0_deg": 1e-6, "psidot0": 1}, rising(Random(2), -0.5)],
-        near_vertical,
-    ),
-    "tiny-tilt-with-rates": (
-        [UNIT | {"r0": 3, "theta0_deg": 1e-30, "thetadot0": 1}],
-        lambda rng: moving(rng) | {"theta0_deg": ten_to(rng, -60, -9)},
-    ),
-    "near-steady": ([UNIT | {"r0": 6, "theta0_deg": 60, "psidot0": 0.382}], near_steady),
-    "near-hanging": (
-        [UNIT | {"r0": 2, "theta0_deg": 179.999}],
-        lambda rng: (
-            {"theta0_deg": 180 - ten_to(rng, -9, -2)} | body(rng) | {"r0": rng.uniform(-5, 5)}
-        ),
-    ),
-    "extreme-sizes": (
-        [{"m": 1e12, "s": 1e-12, "g": 1e6, "A": 1e-12, "C": 1e-12, "r0": 1e9, "theta0_deg": 50}],
-        extreme_sizes,
-    ),
+FIXED: list[tuple[str, Scene]] = [
+    ("fast-spin", {"r0": 1e4, "theta0_deg": 30, "psidot0": 1}),
+    ("slow-spin", {"r0": 1e-3, "theta0_deg": 120}),
+    ("near-separatrix", rising(Random(1), 1e-6)),
+    ("near-vertical", {"r0": 2, "theta0_deg": 1e-6, "psidot0": 1}),
+    ("near-vertical", rising(Random(2), -0.5)),
+    ("tiny-tilt-with-rates", {"r0": 3, "theta0_deg": 1e-30, "thetadot0": 1}),
+    ("near-steady", {"r0": 6, "theta0_deg": 60, "psidot0": 0.382}),
+    ("near-hanging", {"r0": 2, "theta0_deg": 179.999}),
+    ("extreme-sizes", {"m": 1e12, "s": 1e-12, "g": 1e6, "A": 1e-12, "C": 1e-12, "r0": 1e9}),
+]
+"""The fixed scenes of each kind, for the body UNIT."""
+KINDS: dict[str, Callable[[Random], Scene]] = {
+    "fast-spin": lambda rng: moving(rng) | {"r0": ten_to(rng, 3, 6)},
+    "slow-spin": slow_spin,
+    "near-separatrix": lambda rng: rising(rng, ten_to(rng, -9, -3)),
+    "near-vertical": near_vertical,
+    "tiny-tilt-with-rates": lambda rng: moving(rng) | {"theta0_deg": ten_to(rng, -60, -9)},
+    "near-steady": near_steady,
+    "near-hanging": near_hanging,
+    "extreme-sizes": extreme_sizes,
 }
-"""The fixed scenes of each kind, and the function that returns a random one."""
+"""The function that returns a random scene of each kind."""
 
 
 class Row(NamedTuple):
@@ -182,9 +188,8 @@ def stability(
 
 def motions(kind: str, samples: int, seed: int) -> list[Motion]:
     """Return the fixed motions of a kind, and random ones that nutate under a torque."""
-    fixed, draw = KINDS[kind]
-    rng = Random(f"{seed} {kind}")
-    tops = (Top(**scene) for scene in chain(fixed, (draw(rng) for _ in repeat(None))))
+    fixed, rng = [UNIT | scene for name, scene in FIXED if name == kind], Random(f"{seed} {kind}")
+    tops = (Top(**x) for x in chain(fixed, (KINDS[kind](rng) for _ in repeat(None))))
     nutating = (x for x in map(solve, tops) if x.regime in (Regime.REGULAR, Regime.NO_SPIN))
     return list(islice(nutating, len(fixed) + samples))
 
@@ -196,7 +201,7 @@ def compared(kind: str, motion: Motion) -> Iterator[Row]:
         task = task_of(kind, motion, 0.97 * span, TIMES + 1)
         rounding = max(
             sum(rotation_angle(each.attitude(t), exact) for each in moved)
-            for t, exact in list(zip(task.times.tolist(), task.exact, strict=True))[4::4]
+            for t, exact in list(zip(task.times.tolist(), task.exact.values(), strict=True))[4::4]
         )
         for name in COMPARED:
             found = measure(task, name, METHODS[name].settings[-1], LIMIT, runs=1)
@@ -210,10 +215,8 @@ def neighbours(top: Top) -> Iterator[Reference]:
     exact = inputs_of(top)
     for name, value in exact.items():
         if value:
-            with mpmath.workdps(DIGITS):
-                half_ulp = mpmath.mpf(2) ** (mpmath.floor(mpmath.log(abs(value), 2)) - 53)
             with mpmath.workdps(ROOT_DIGITS):
-                moved = value + half_ulp
+                moved = value + math.ulp(float(value)) / 2
             yield Reference({**exact, name: moved})
 
 
@@ -238,21 +241,19 @@ def failures(report: Report) -> list[str]:
 
 
 def conclusions(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield one line for each method: the number of kinds by verdict after the longest span."""
-    for name in dict.fromkeys(row.method for row in rows):
-        mine = [row for row in rows if row.method == name and row.periods == SPANS[-1]]
-        words = {
-            verdict: [row.kind for row in mine if row.verdict == verdict] for verdict in VERDICTS
-        }
-        said = "; ".join(
-            f"{verdict} in {'all kinds' if len(kinds) == len(mine) else ', '.join(kinds)}"
-            for verdict, kinds in words.items()
-            if kinds
-        )
-        yield f"{name} over {SPANS[-1]:g} periods: {said}."
+    """Yield one line for each method: its kinds by verdict after the longest span."""
+    for name in COMPARED:
+        mine = {x.kind: x.verdict for x in rows if (x.method, x.periods) == (name, SPANS[-1])}
+        kinds = {y: [kind for kind, x in mine.items() if x == y] for y in VERDICTS}
+        said = [
+            f"{verdict} in {'all kinds' if len(found) == len(mine) else ', '.join(found)}"
+            for verdict, found in kinds.items()
+            if found
+        ]
+        yield f"{name} over {SPANS[-1]:g} periods: {'; '.join(said)}."
 
 
-def conditions(samples: int, seed: int) -> dict[str, Any]:
+def conditions(samples: int, seed: int) -> dict[str, str]:
     """Return what the figures depend on."""
     settings = ", ".join(f"{name} {METHODS[name].settings[-1]}" for name in COMPARED)
     return machine() | {
@@ -265,3 +266,21 @@ def conditions(samples: int, seed: int) -> dict[str, Any]:
         f"error above {LOST:g} rad; inaccurate: between; too slow: more than {LIMIT:g} s of CPU",
         "settings": settings,
     }
+
+
+def stability_figure(report: Report) -> Figure:
+    """Return a panel for each span: the error of each method by kind, over the input rounding."""
+    kinds = list(dict.fromkeys(row.kind for row in report.rows))
+    figure, panels = panels_of(1, len(SPANS), 13, 5)
+    for axes, span in zip(panels, SPANS, strict=True):
+        rows = [row for row in report.rows if row.periods == span]
+        bars = [max(x.input_rounding for x in rows if x.kind == kind) for kind in kinds]
+        axes.bar(kinds, bars, color="0.85", label="input rounding")
+        for i, name in enumerate(COMPARED):
+            mine = [x for x in rows if x.method == name and x.error_rad is not None]
+            places = [kinds.index(x.kind) + 0.12 * (i - 2) for x in mine]
+            axes.plot(places, [*map(drawn, mine)], ls="none", **LOOKS[name])
+        axes.set(yscale="log", ylim=(1e-17, 10), ylabel=ERROR, title=f"span of {span:g} T")
+        axes.set_xticks(range(len(kinds)), kinds, rotation=40, ha="right")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")
+    return figure

@@ -8,12 +8,10 @@ import platform
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
@@ -25,6 +23,9 @@ from ..output.terminal import Progress, silent
 from .methods import METHODS, SlowError, attitudes
 from .reference import Attitude, Reference, inputs_of, rotation_angle
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 PERIODS = 20.3
 """Default span in nutation periods.  It does not end at a turning point, where errors are least."""
 CHECKED = 51
@@ -33,6 +34,14 @@ RUNS, SECONDS_OF_RUNS, LIMIT = 9, 0.3, 3.0
 """Most warm runs, the CPU seconds after which they end, and the limit of one run."""
 ROUNDING, LOST = 1e-11, 0.1
 """Errors (rad) between which an order of convergence is measured."""
+
+
+ERROR = "greatest error (rad)"
+LOOKS = {
+    name: {"label": name, "marker": mark, "ms": 5, "color": f"C{i}"}
+    for i, (name, mark) in enumerate(zip(METHODS, "os^Dv<>pP*", strict=True))
+}
+"""The arguments of matplotlib's `plot` for each method."""
 
 
 class Row(NamedTuple):
@@ -78,9 +87,8 @@ class Task(NamedTuple):
     motion: Motion
     periods: float
     times: Array
-    checked: NDArray[np.int64]
-    """Indices of the times with an exact attitude."""
-    exact: list[Attitude]
+    exact: dict[int, Attitude]
+    """The exact attitudes, by the index of their time."""
 
 
 def bench(
@@ -102,7 +110,7 @@ def bench(
     found = [measure(*run) for run in progress(runs, "methods")]
     each = len(found) // len(tasks)
     rows = [row for i in range(0, len(found), each) for row in marked(found[i : i + each])]
-    lines = growth(rows) if len(spans) > 1 else rivals_of_lagtop(rows)
+    lines = growth(rows) if len(spans) > 1 else rivals(rows)
     return Report(conditions(tasks), FIELDS, rows, [*lines, *missing(rows)])
 
 
@@ -121,9 +129,8 @@ def task_of(scene: str, motion: Motion, periods: float, count: int) -> Task:
     reference = exact_motion(motion)
     end = periods * float(reference.T)
     times = np.linspace(0.0, end, count) if count > 1 else np.array([end])
-    checked = np.unique(np.linspace(0, count - 1, min(CHECKED, count)).round().astype(np.int64))
-    exact = [reference.attitude(t) for t in times[checked].tolist()]
-    return Task(scene, motion, periods, times, checked, exact)
+    checked = np.linspace(0, count - 1, min(CHECKED, count)).round().astype(int).tolist()
+    return Task(scene, motion, periods, times, {i: reference.attitude(times[i]) for i in checked})
 
 
 def measure(
@@ -131,11 +138,10 @@ def measure(
 ) -> Row:
     """Return the error and the times of one method; a remark states why it has none."""
     row, method = Row(task.scene, name, setting, task.periods), METHODS[name]
-    times = task.times[task.checked] if method.has_fixed_steps else task.times
+    checked = list(task.exact)
+    times = task.times[checked] if method.has_fixed_steps else task.times
     setups, seconds = list[float](), list[float]()
     try:
-        if method.package:
-            import_module(method.package)  # before the clock starts
         with np.errstate(all="ignore"):  # numbers that are not finite have an infinite error
             while len(setups) < min(2, runs):  # the first one may import
                 begun = time.process_time()
@@ -148,12 +154,12 @@ def measure(
             found = attitudes(columns)
     except SlowError:
         return row._replace(remark=f"too slow: more than {limit:g} s")
-    except ImportError:
-        return row._replace(remark=f"not installed: pip install {method.package}")
+    except ImportError as failure:
+        return row._replace(remark=f"not installed: pip install {failure.name}")
     except (LagtopError, ArithmeticError, ValueError) as failure:
         return row._replace(remark=f"failed: {failure}")
-    judged = slice(None) if method.has_fixed_steps else task.checked
-    error = max(map(rotation_angle, found[judged].tolist(), task.exact))
+    judged = found if method.has_fixed_steps else found[checked]
+    error = max(map(rotation_angle, judged.tolist(), task.exact.values()))
     if not math.isfinite(error):
         return row._replace(remark="failed: numbers are not finite")
     return row._replace(
@@ -200,16 +206,14 @@ def order_between(before: Row, row: Row) -> float | None:
     return math.log(large / small) / math.log(float(row.setting) / float(before.setting))
 
 
-def rivals_of_lagtop(rows: Sequence[Row]) -> Iterator[str]:
+def rivals(rows: Sequence[Row]) -> Iterator[str]:
     """Yield which methods are both faster and more accurate than lagtop, scene by scene."""
     for row in rows:
         if row.method == "lagtop" and row.error_rad is not None:
             others = [x for x in rows if x.scene == row.scene and x.method != "lagtop"]
-            names = ", ".join(f"{x.method} at {x.setting}" for x in others if beats(x, row))
-            yield (
-                f"{row.scene}: faster and more accurate than lagtop's {row.setting}: "
-                f"{names or 'no other method'}."
-            )
+            names = [f"{x.method} at {x.setting}" for x in others if beats(x, row)]
+            said = f"{row.scene}: faster and more accurate than lagtop's {row.setting}"
+            yield f"{said}: {', '.join(names) or 'no other method'}."
 
 
 def growth(rows: Sequence[Row]) -> Iterator[str]:
@@ -226,24 +230,22 @@ def missing(rows: Sequence[Row]) -> Iterator[str]:
     done = {row.method for row in rows if row.error_rad is not None}
     reasons = {row.method: row.remark for row in reversed(rows) if row.method not in done}
     if reasons:
-        said = (f"{name} ({remark})" for name, remark in sorted(reasons.items()))
-        yield f"Not compared: {', '.join(said)}."
+        yield f"Not compared: {', '.join(f'{x} ({y})' for x, y in sorted(reasons.items()))}."
 
 
 def machine() -> dict[str, str]:
     """Return the processor with its vector instructions, and the versions of all packages."""
-    names = [platform.processor() or "unknown processor"]
+    names, versions = ["unknown processor"], [f"Python {platform.python_version()}"]
     with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8") as lines:
         names += [line.partition(":")[2].strip() for line in lines if "model name" in line]
     vector = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
-    versions = [f"Python {platform.python_version()}"]
     for name in ("lagtop", "numpy", "scipy", "mpmath", "heyoka", "mujoco"):
         try:
             versions.append(f"{name} {version(name)}")
         except PackageNotFoundError:
             versions.append(f"no {name}")
     system = f"{platform.system()} {platform.machine()}"
-    parts = names[-1], system, (vector or ["unknown vector instructions"])[-1]
+    parts = names[-1], system, *(vector or ["unknown vector instructions"])[-1:]
     return {"machine": ", ".join(parts), "versions": ", ".join(versions)}
 
 
@@ -255,7 +257,7 @@ def conditions(tasks: Sequence[Task]) -> dict[str, str]:
         "scenes": "; ".join(scenes),
         "times": f"{tasks[0].times.size} from 0 over {', '.join(spans)} nutation periods",
         "error": "greatest rotation (rad) from the exact to the computed attitude, at "
-        f"{tasks[0].checked.size} of the times; the reference is Legendre's third integral "
+        f"{len(tasks[0].exact)} of the times; the reference is Legendre's third integral "
         "in 50 digits of mpmath",
         "setting": "rtol = atol in the units of the scene; of fixed steps, their number per "
         "nutation period",
@@ -264,3 +266,44 @@ def conditions(tasks: Sequence[Task]) -> dict[str, str]:
         "compiled": "Taylor (heyoka) and MuJoCo; SciPy and RK4 call a right-hand side in Python",
         "not timed": "energy, conversion of lagtop's angles to attitudes, imports",
     }
+
+
+def methods_figure(report: Report) -> Figure:
+    """Return a panel for each scene: error against time, or against the span if there are several.
+
+    A grey step marks the front: no other method is both faster and more accurate.
+    """
+    scenes = list(dict.fromkeys(row.scene for row in report.rows))
+    is_long = len({row.periods for row in report.rows}) > 1
+    wide = min(2, len(scenes))
+    figure, panels = panels_of(-(-len(scenes) // wide), wide, 5 * wide + 2, 4)
+    for axes, scene in zip(panels, scenes, strict=False):
+        rows = [x for x in report.rows if x.scene == scene and x.error_rad is not None]
+        front = sorted((row.error_rad, row.ns_per_sample) for row in rows if row.front)
+        if front and not is_long:
+            axes.step(*zip(*front, strict=True), where="post", color="0.85", lw=6, label="front")
+        for name, look in LOOKS.items():
+            mine = sorted((x.periods, drawn(x), x.ns_per_sample) for x in rows if x.method == name)
+            if mine:
+                spans, errors, times = zip(*mine, strict=True)
+                axes.plot(*((spans, errors) if is_long else (errors, times)), **look)
+        labels = ("span (nutation periods)", ERROR) if is_long else (ERROR, "time per sample (ns)")
+        axes.set(xscale="log", yscale="log", title=scene, xlabel=labels[0], ylabel=labels[1])
+        axes.grid(True, color="0.9")
+    for empty in panels[len(scenes) :]:
+        empty.set_axis_off()
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")
+    return figure
+
+
+def panels_of(rows: int, columns: int, width: float, height: float) -> tuple[Figure, list[Any]]:
+    """Return a figure, `width` inches wide, with panels of a height that share their axes."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height * rows), layout="constrained")
+    return figure, [*figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flat]
+
+
+def drawn(row: Any) -> float:
+    """Return the error of a row, or the least error that is drawn."""
+    return float(max(row.error_rad, 1e-17))

@@ -69,8 +69,7 @@ def bench_command(
     Taylor's method needs heyoka, and MuJoCo its own package; a missing one is named.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
-    from ..bench.pictures import methods_figure
-    from ..bench.work_precision import PERIODS, bench
+    from ..bench.work_precision import PERIODS, bench, methods_figure
     from ..inputs.given import read_scene
     from ..motion.solve import solve
 
@@ -109,8 +108,7 @@ def stability_command(
     The exit code is 1 if an error of lagtop exceeds 100 times the input rounding.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))
-    from ..bench.pictures import stability_figure
-    from ..bench.stability import failures, stability
+    from ..bench.stability import failures, stability, stability_figure
 
     opt.check_plot(plot, out.path)
     report = opt.write_report(

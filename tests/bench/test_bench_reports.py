@@ -15,9 +15,15 @@ from lagtop import Top, solve
 from lagrange_cli.bench import stability as hard
 from lagrange_cli.bench import work_precision
 from lagrange_cli.bench.methods import METHODS, Run, problem_of
-from lagrange_cli.bench.pictures import methods_figure, stability_figure
 from lagrange_cli.bench.reference import inputs_of, rotation_angle
-from lagrange_cli.bench.work_precision import Row, bench, exact_motion, growth, marked
+from lagrange_cli.bench.work_precision import (
+    Row,
+    bench,
+    exact_motion,
+    growth,
+    marked,
+    methods_figure,
+)
 
 WORKED = {"worked": solve(Top())}
 
@@ -116,7 +122,7 @@ def test_pictures_draw_each_method(monkeypatch: pytest.MonkeyPatch) -> None:
     _, curve = methods_figure(report).axes[0].get_lines()[-2:]
     errors = sorted(x.error_rad for x in report.rows if x.method == "RK45")
     assert sorted(np.asarray(curve.get_xdata()).tolist()) == errors
-    figure = stability_figure(hard.stability(["near-hanging"], 0))
+    figure = hard.stability_figure(hard.stability(["near-hanging"], 0))
     assert [axes.get_title() for axes in figure.axes] == ["span of 1 T", "span of 100 T"]
 
 
