@@ -6,9 +6,10 @@ of them must be listed, and each that is listed by an equation must fail as prin
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable
 from decimal import Decimal
-from enum import StrEnum
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -17,180 +18,30 @@ from ball_judge import Judge
 from lagtop import Top
 
 
-class Verdict(StrEnum):
-    """Kinds of errata."""
-
-    MATHEMATICS = "mathematics"
-    RESTRICTION = "restriction"
-    UNDECIDED = "misprint or OCR"
-    OCR = "most likely OCR"
-    GAP = "not legible"
-
-
 class Erratum(NamedTuple):
-    """An erratum in the text at hand.
+    """An erratum in the text at hand: a row of `errata.tsv`.
 
     `place` is the equation as the registers call it, with " as printed, ..." where it has several
     errata; `tested` says whether a register computes it.
     """
 
     source: str
-    section: int
+    section: str
     place: str
+    kind: str
+    tested: str
     right: str
-    verdict: Verdict
-    tested: bool = True
 
 
-MATHEMATICS, RESTRICTION, UNDECIDED, OCR, GAP = Verdict
-ONLY = "holds for r0 > 0; for r0 < 0 "
-
-ERRATA = [
-    Erratum("Chrapan", 1, "(1,1)", "√(1+k̄²) stands before Z00(v\\*, k)", MATHEMATICS),
-    Erratum("Chrapan", 1, "(1,2)", "√(1+k̄²) stands before Z11(v\\*, k)", MATHEMATICS),
-    Erratum("Chrapan", 1, "(1,4)", "k², as the line above and (3,7) have, for k′²", UNDECIDED),
-    Erratum(
-        *("Chrapan", 1, "(1,6)"),
-        *("1 − ζ² for −ζ² under the root, and the upper limit ζ for ξ", OCR, False),
-    ),
-    Erratum("Chrapan", 1, "(1,8)", "minus for the equals sign, iα in both arguments", OCR),
-    Erratum("Chrapan", 2, "(2,4)", "q = exp(−πK′/K); the page is blurred", OCR, tested=False),
-    Erratum(
-        *("Chrapan", 2, "(2,5)"),
-        "sinh πα/K and cosh πα/K for sinh h πα/K and cosh h πα/K, as (7,1) and (7,4) have; in φ(h) "
-        "and Ω11 before it too, eight times in all",
-        OCR,
-    ),
-    Erratum("Chrapan", 3, "(3,7)", "the point is w = K, as in (2,11), not w = k", OCR),
-    Erratum(
-        *("Chrapan", 4, "section 4 a: the line of nodes"),
-        *("ī1 = ī cos ψ + j̄ sin ψ for ī cos φ + j̄ sin φ", OCR),
-    ),
-    Erratum(
-        *("Chrapan", 4, "section 4 b: the angular velocity"),
-        *("ψ for φ in ī1, and ψ̇k̄ for φ̇k̄, in all three lines", OCR),
-    ),
-    Erratum("Chrapan", 4, "(4,1) solved for the rates", "the first left side is ψ̇", OCR),
-    Erratum(
-        *("Chrapan", 4, "section 4 d: p and q by the rates"),
-        *("ψ̇ for φ̇ in p² + q², and in p sin φ + q cos φ in two lines", OCR),
-    ),
-    Erratum("Chrapan", 4, "(4,1)", "ψ̇, not φ̇, in p and q and in the first term of r", OCR),
-    Erratum("Chrapan", 4, "(4,2)", "ψ̇² for φ̇²", OCR),
-    Erratum("Chrapan", 4, "(4,3)", "ψ̇ for φ̇", OCR),
-    Erratum("Chrapan", 4, "(4,7)", "the left side is ψ̇", OCR),
-    Erratum("Chrapan", 4, "(4,8)", "the left side is φ̇", OCR),
-    Erratum(
-        *("Chrapan", 4, "section 4 ch: rate of precession as printed, the left side"),
-        "ψ̇ for φ̇, here and in the lines before it; dψ for dφ after it, and ψ for φ in section 4 i",
-        OCR,
-    ),
-    Erratum(
-        *("Chrapan", 4, "section 4 ch: rate of precession as printed, the power"),
-        *("κ² for κ³; the second term and the next line have κ²", OCR),
-    ),
-    Erratum(
-        *("Chrapan", 4, "section 4 i: sn, cn, dn of the parameters"),
-        "sn α₂ and dn α₂ are negative if α₂ = α₁ + iK′; squares and (4,28) hold",
-        MATHEMATICS,
-    ),
-    Erratum("Chrapan", 4, "line before (4,27)", "√(u3−u1) for √(u3+u1)", UNDECIDED),
-    Erratum("Chrapan", 4, "(4,27)", ONLY + "|b| for b", RESTRICTION),
-    Erratum("Chrapan", 4, "(4,28)", ONLY + "|b| for b", RESTRICTION),
-    Erratum("Chrapan", 4, "(4,29)", ONLY + "ψ changes sign", RESTRICTION),
-    Erratum(
-        *("Chrapan", 4, "(4,30) as printed, the roots"),
-        *("√(u3−u2)/√(u3−u1) for √(u3+u2)/√(u3−u2)", UNDECIDED),
-    ),
-    Erratum("Chrapan", 4, "(4,30) as printed, the modulus", "√(1+k̄²) for √(1+k²)", UNDECIDED),
-    Erratum("Chrapan", 4, "(4,34)", ONLY + "φ changes sign", RESTRICTION),
-    Erratum("Chrapan", 4, "section 4 l: w", "½, as (4,30) has, for ⅓", OCR),
-    Erratum(
-        *("Chrapan", 5, "section 5: quarters of the nutation as printed, the labels of u"),
-        *("u(T/4) and u(3T/4) for u(T)/4 and u(3T)/4, in both inequalities", OCR),
-    ),
-    Erratum(
-        *("Chrapan", 5, "section 5: quarters of the nutation as printed, the tilt"),
-        "slower in the first and last quarter: true for u = cos ϑ, not always for ϑ",
-        MATHEMATICS,
-    ),
-    Erratum("Chrapan", 5, "(5,3)", "ϑ̇ at the left; minus in the second half period", RESTRICTION),
-    Erratum(
-        *("Chrapan", 6, "(6,1) as printed, in the second half of a period"),
-        *("√(u−u2) has the sign of cn w, so that the arccot runs from 0 to π", MATHEMATICS),
-    ),
-    Erratum(
-        "Chrapan", 6, "(6,1) as printed, for r0 < 0", ONLY + "the arccot changes sign", RESTRICTION
-    ),
-    Erratum(
-        *("Chrapan", 6, "(6,1) as printed, after the first period"),
-        *("holds for 0 ≤ t ≤ T; later the arccot grows by π per whole period", RESTRICTION),
-    ),
-    Erratum(
-        *("Chrapan", 6, "section 6: spin after half a period and a whole one"),
-        *(ONLY + "π/2 and π change sign", RESTRICTION),
-    ),
-    Erratum("Chrapan", 6, "(6,3)", ONLY + "π/T changes sign", RESTRICTION),
-    Erratum("Chrapan", 6, "(6,4)", "false after odd half periods, however read", MATHEMATICS),
-    Erratum("Chrapan", 6, "(6,5)", "τ counts from the last whole period", MATHEMATICS),
-    Erratum(
-        *("Chrapan", 7, "(7,1) as printed, the bracket"),
-        *("E − F·(1 − E/K), as ψ(T/2), ψ(T) and (7,3) have, for (E − F)·(1 − E/K)", OCR),
-    ),
-    Erratum(
-        *("Chrapan", 7, "(7,1) as printed, for r0 < 0"),
-        *(ONLY + "all but the first term change sign", RESTRICTION),
-    ),
-    Erratum(
-        *("Chrapan", 7, "(7,1) as printed, after the first period"),
-        *("holds for 0 ≤ t ≤ T; later the arccot grows by π per whole period", RESTRICTION),
-    ),
-    Erratum(
-        *("Chrapan", 7, "section 7: rates of the precession at T/2 and T"),
-        *("ψ̇ for φ̇, and ψ for φ where its halves are compared", OCR),
-    ),
-    Erratum(
-        *("Chrapan", 7, "(7,3) as printed, for r0 < 0"),
-        *(ONLY + "the last term changes sign", RESTRICTION),
-    ),
-    Erratum("Chrapan", 7, "(7,3) as printed, the left side", "ψ̇′ for φ̇′", OCR),
-    Erratum("Chrapan", 7, "(7,4)", "false after odd half periods, however read", MATHEMATICS),
-    Erratum(
-        *("Chrapan", 8, "section 8: rates of the precession"),
-        *("ψ̇′ = 7,98957 and ψ̇(T/2) = 14,2682 for φ̇′ and φ̇(T)", OCR),
-    ),
-    Erratum("Chrapan", 8, "labels of u", "u(T/4) = u(3T/4) for u(T) = u(3T)/4", OCR, tested=False),
-    Erratum(
-        *("Aksenov", 3, "section 3.1: a linear-fractional substitution"),
-        "0 < k < 1 if the roots are all real or two conjugate pairs, not always: k is not real of "
-        "two real roots and two complex ones",
-        MATHEMATICS,
-    ),
-    Erratum(
-        *("Aksenov", 3, "section 3.1: property 4"),
-        *("dn² + k² sn² = 1: the sign reads as a minus", OCR),
-    ),
-    Erratum("Aksenov", 3, "(3.1.6)", "the exponent of q is negative: the minus is lost", OCR),
-    Erratum("Aksenov", 3, "(3.1.8)", "the known series of K in k² is supplied", GAP, tested=False),
-    Erratum(
-        *("Aksenov", 3, "(3.2.2)"),
-        *("the denominator is supplied, from ξ = ±1 at η = δ and δ*", GAP, False),
-    ),
-    Erratum(
-        *("Aksenov", 3, "(3.2.7)"),
-        *("the integral is supplied, from (3.2.4) and (3.2.6)", GAP, False),
-    ),
-    Erratum(
-        *("Aksenov", 3, "(3.2.11)"),
-        *("η = (γ + s sn)/(1 + d sn) is supplied: it stands on the next page", GAP, False),
-    ),
-]
+with (Path(__file__).parent / "errata.tsv").open(encoding="utf-8", newline="") as _file:
+    ERRATA = [Erratum(*row) for row in csv.reader(_file, "excel-tab")][1:]
 """All errata, in the order of the sources."""
 
 
 def misprints(source: str, *sections: int) -> set[str]:
     """Return the places of the errata in some sections that a register must compute."""
-    return {x.place for x in ERRATA if x.source == source and x.section in sections and x.tested}
+    some = [x for x in ERRATA if x.source == source and int(x.section) in sections]
+    return {x.place for x in some if x.tested == "yes"}
 
 
 def errata_table() -> list[str]:
@@ -201,7 +52,7 @@ def errata_table() -> list[str]:
             erratum.place if erratum.source == "Chrapan" else f"{erratum.source}, {erratum.place}"
         )
         right = erratum.right.replace("|", "\\|")
-        lines.append(f"| {place.replace(' as printed', '')} | {right} | {erratum.verdict} |")
+        lines.append(f"| {place.replace(' as printed', '')} | {right} | {erratum.kind} |")
     return lines
 
 

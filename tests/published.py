@@ -6,9 +6,11 @@ enclosures of `ball_judge`, which share no formula with it.
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import mpmath
@@ -27,7 +29,6 @@ DIGITS, SHOWN = 60, 18
 STEP = Fraction(1, 10**18)
 """Step of the central differences that give the rates; their error is of the size of its square."""
 ELLIPJ, _K = "k = 0.99999999997", "0.99999999997"
-TOP_OF_BRUELS, SIMO_WONG = "bruels-cardona-arnold", "simo-wong-1991"
 
 
 class State(NamedTuple):
@@ -111,17 +112,6 @@ u is the displacement of the mass centre, Rot are Tait-Bryan angles about x, y a
 """
 
 
-def _printed(scene: str, source: str, t: str, quantities: dict[str, str]) -> list[Printed]:
-    """Return several numbers that one source has printed for one time."""
-    return [Printed(source, scene, name, text, t) for name, text in quantities.items()]
-
-
-def _omegas(t: str, values: dict[str, str]) -> list[Printed]:
-    """Return the angular velocities of a test of EXUDYN, by method."""
-    test = "EXUDYN explicitLieGroupIntegratorTest"
-    return [Printed(f"{test}, {x}", TOP_OF_BRUELS, "omega_y", y, t) for x, y in values.items()]
-
-
 def _elementary(t: str) -> Printed:
     """Return the tilt of Whittaker's top by his formula, to 20 digits."""
     with mpmath.workdps(30):
@@ -130,80 +120,9 @@ def _elementary(t: str) -> Printed:
     return Printed("Whittaker §71, sec ϑ = 1 + sech √3t", "whittaker-71", "theta", text, t)
 
 
-PRINTED = [
-    *_omegas(
-        "2",
-        {
-            "RK44, step 1e-4": "-106.16380619750855",
-            "RK44, step 1e-5": "-106.163804141195",
-            "RK67, step 1e-3": "-106.16380495843258",
-            "RK67, step 1e-4": "-106.1638041430917",
-            "RK67, step 5e-5": "-106.16380414217615",
-            "RK67, step 2e-5": "-106.16380414311477",
-            "RK67, step 1e-5": "-106.16380414096614",
-            "ODE23, tolerance 1e-12": "-106.16380410174922",
-            "DOPRI5, tolerance 1e-12": "-106.16380413741084",
-            "DOPRI5, tolerance 1e-14": "-106.16380414306643",
-        },
-    ),
-    *_omegas(
-        "0.01",
-        {
-            "Lie group, in Python": "149.8473939540758",
-            "index 2, Euler parameters": "149.84738885863888",
-            "index 2, Euler angles": "149.85635042397638",
-            "RK67, 4000 steps, Euler angles": "149.84739395407394",
-            "RK44, 4000 steps, rotation vector": "149.89507599262697",
-        },
-    ),
-    *_printed(
-        *(TOP_OF_BRUELS, "EXUDYN heavyTop, RK4 in MATLAB", "0.2"),
-        {"q0": "-0.70828", "q1": "0.43878", "q2": "0.54573", "q3": "0.0894"},
-    ),
-    *_printed(
-        *(TOP_OF_BRUELS, "EXUDYN heavyTop, generalised alpha", "0.2"),
-        {"q0": "-0.70813", "q1": "0.43881", "q2": "0.54593", "q3": "0.089251"},
-    ),
-    *_printed(
-        *(TOP_OF_BRUELS, "EXUDYN heavyTop, its own", "0.2"),
-        {
-            **{"q0": "-0.70824157", "q1": "0.43878143", "q2": "0.54578152", "q3": "0.08937154"},
-            **{"Rot x": "29.86975964", "Rot y": "-0.7683481513", "Rot z": "-1.002841906"},
-        },
-    ),
-    *_printed(
-        *(TOP_OF_BRUELS, "Kynema dynamic_heavy_top, benchmark, step 2e-6", "2"),
-        {
-            "u0": "-0.150416985652933",
-            "u1": "-1.724164450779749",
-            "u2": "-0.673023460701136",
-            "q0": "0.122947275600560",
-            "q1": "-0.491079359219981",
-            "q2": "0.350430794926147",
-            "q3": "-0.787986857972906",
-        },
-    ),
-    *_printed(
-        *(TOP_OF_BRUELS, "OTTR test_heavy_top", "0.8"),
-        {"u0": "-0.42217802", "u1": "-0.09458264", "u2": "-0.04455460"},
-    ),
-    *_printed(
-        *(SIMO_WONG, "Taylor series in long double", "10"),
-        {
-            "theta": "0.0542200994026610601",
-            "phi": "495.809793424335",
-            "psi": "4.19619104074063746",
-        },
-    ),
-    Printed("Kinon and Betsch, steady spin", "kinon-betsch-cone", "mean_spin_rate", "135.6"),
-    Printed("Kinon and Betsch, its precession", "kinon-betsch-cone", "mean_precession_rate", "10"),
-    Printed("LS-DYNA manual, by g l/(r²ω/2)", "ls-dyna-disc", "mean_precession_rate", "1.60884"),
-    Printed("usual formula m g s/(C ω)", "usubamatov-2018", "mean_precession_rate", "2.9977"),
-    Printed("Hibbeler's Dynamics, slow", "hibbeler-slow", "steady_rate_slow", "5.72"),
-    Printed("Hibbeler's Dynamics, fast", "hibbeler-fast", "steady_rate_fast", "114"),
-    *(_elementary(t) for t in ("1", "5", "-2")),
-    Printed("SciPy 1.17.1, issue 8480: ellipj(50, m)", ELLIPJ, "cn", "-38885294681.78648"),
-]
+with (Path(__file__).parent / "published.tsv").open(encoding="utf-8", newline="") as _file:
+    PRINTED = [Printed(*row) for row in csv.reader(_file, "excel-tab")][1:]
+PRINTED[-1:-1] = [_elementary(t) for t in ("1", "5", "-2")]
 """All numbers, as their sources have them."""
 
 
