@@ -157,11 +157,6 @@ class Judge:
                 "Lz": A * across * sin + C * r0 * cos,
             }
 
-    def angle_errors(self, t: float, computed: tuple[float, float, float]) -> list[float]:
-        """Return the errors of theta, phi, psi (radians) in units."""
-        state = self.at(t)
-        return _errors(computed, _with_units(state)[:3])
-
     def errors(self, t: float, computed: tuple[float, ...]) -> list[float]:
         """Return the errors of theta, phi, psi and the four parts of the quaternion in units."""
         state = self.at(t)

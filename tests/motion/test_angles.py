@@ -1,21 +1,29 @@
-"""The angles over time: symmetries, units, neighbours of edges, poles, shapes and wrapping.
+"""Symmetries, shapes and blocks of the angles over time; columns on request; threads.
 
 `test_columns` compares the numbers with the judge.
 """
 
 from __future__ import annotations
 
+import json
 import math
+from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-from lagtop import LagtopError, Motion, Regime, Top, solve
-from scenes import UNIT, period
+from flint import ctx
+from lagtop import LagtopError, Regime, Top, solve
+from scenes import EVERY_KIND, UNIT, period
 
 from lagrange_cli.inputs.names import ANGLES
-from lagrange_cli.motion.over_time.tables import ProvedTable
+from lagrange_cli.motion.over_time.columns import ColumnConstants, chosen_columns
+from lagrange_cli.motion.over_time.tables import ProvedTable, Sample, columns_at
+
+T = np.linspace(-3, 40, 40_000)
+SERIES = [50, 200]
+"""Spins whose series are hyperbolic and circular."""
 
 
 @pytest.mark.parametrize("r0", [50, -50, 60, -1])
@@ -24,20 +32,19 @@ def test_symmetries(r0: float) -> None:
     half = period(solve(Top(r0=r0))) / 2
     t = np.concatenate([np.linspace(0, 10, 301), half * np.array([1, 2, 3, 9, 1001, 1e9 + 1])])
     plain, mirrored = solve(Top(r0=r0)).angles(t), solve(Top(r0=-r0)).angles(t)
-    backwards = solve(Top(r0=r0)).angles(-t)
-    for other in (mirrored, backwards):
+    for other in (mirrored, solve(Top(r0=r0)).angles(-t)):
         np.testing.assert_array_equal(other.theta, plain.theta)
         np.testing.assert_array_equal(other.phi, -plain.phi)
         np.testing.assert_array_equal(other.psi, -plain.psi)
 
 
-def test_shapes() -> None:
-    motion = solve(Top())
-    assert motion.angles(0.1).theta.shape == ()
-    assert motion.angles([]).phi.shape == (0,)
-    assert motion.angles(np.zeros((2, 3, 4))).psi.shape == (2, 3, 4)
-    assert motion.angles([1, 2]).psi.dtype == np.float64
-    assert motion.angles(np.arange(6).reshape(2, 3).T).theta.shape == (3, 2)
+@pytest.mark.parametrize("shape", [(), (0,), (2, 3, 4)])
+def test_shapes(shape: tuple[int, ...]) -> None:
+    for angle in solve(Top()).angles(np.ones(shape, int)):
+        assert angle.shape == shape
+        assert angle.dtype == np.float64
+    columns = solve(Top()).angles(np.arange(6).reshape(2, 3).T)
+    assert columns.theta.shape == (3, 2)
 
 
 @pytest.mark.parametrize("t", [math.nan, math.inf, 1e15, -1e300])
@@ -54,52 +61,31 @@ def test_next_to_a_pole_at_times_that_are_nearly_0(thetadot0: float) -> None:
     """
     body = {"m": 1, "A": 2, "C": 2, "s": 1, "g": 0, "r0": 1.5, "theta0_deg": 0}
     t = math.copysign(1, thetadot0) * np.array([5e-324, 1e-230, -1e-230])
-    angles = solve(Top(**body, thetadot0=thetadot0)).angles(t)
-    assert abs(angles.phi[:2]).max() < 1e-15
-    assert abs(angles.psi[:2]).max() < 1e-15
-    assert abs(angles.phi[2]) == pytest.approx(math.pi)
-    assert angles.psi[2] == pytest.approx(-angles.phi[2])
-
-
-# Neighbours of edges
-
-
-def neighbours(**change: float) -> list[Motion]:
-    """Return a scene one ulp below, at and one ulp above a value."""
-    ((key, value), *fixed) = change.items()
-    steps = (math.nextafter(value, -math.inf), value, math.nextafter(value, math.inf))
-    return [solve(Top(**(UNIT | dict(fixed) | {key: x}))) for x in steps]
+    _, phi, psi = solve(Top(**body, thetadot0=thetadot0)).angles(t)
+    assert np.abs([phi[:2], psi[:2]]).max() < 1e-15
+    assert abs(phi[2]) == pytest.approx(math.pi)
+    assert psi[2] == pytest.approx(-phi[2])
 
 
 @pytest.mark.parametrize(
-    ("change", "regimes"),
+    ("start", "regimes"),
     [
         ({"psidot0": 0.5, "r0": 2, "theta0_deg": 90}, (Regime.REGULAR, Regime.STEADY)),
-        (
-            {"thetadot0": 1.0, "r0": 0, "theta0_deg": 90, "A": 2},
-            (Regime.NO_SPIN, Regime.SEPARATRIX),
-        ),
+        ({"thetadot0": 1.0, "r0": 0, "theta0_deg": 90, "A": 2}, (Regime.NO_SPIN, "separatrix")),
         ({"r0": 2.0, "theta0_deg": 40}, (Regime.REGULAR, Regime.REGULAR)),
         ({"A": 1.0, "r0": 3, "theta0_deg": 40, "psidot0": 1}, (Regime.REGULAR, Regime.REGULAR)),
         ({"C": 1.9999999999999998, "r0": 3, "theta0_deg": 40}, (Regime.REGULAR, Regime.REGULAR)),
     ],
 )
-def test_one_ulp_on_both_sides_of_a_boundary(
-    change: dict[str, float], regimes: tuple[Regime, Regime]
-) -> None:
-    """The angles do not jump: an ulp of input moves them by its condition, here below 1e-12."""
-    below, at, above = neighbours(**change)
+def test_angles_do_not_jump_one_ulp_beside_a_boundary(start: Any, regimes: Any) -> None:
+    """The first input is moved by one ulp to both sides; the condition is below 1e-12 here."""
+    (key, value), *_ = start.items()
+    steps = (math.nextafter(value, -math.inf), value, math.nextafter(value, math.inf))
+    below, at, above = (solve(Top(**UNIT | start | {key: x})) for x in steps)
     assert (below.regime, at.regime) == regimes
     t = np.linspace(-3, 3, 61)
     for beside in (below, above):
-        for mine, other in zip(at.angles(t), beside.angles(t), strict=True):
-            assert np.abs(mine - other).max() < 1e-12
-
-
-# Extremes
-
-
-# Poles
+        assert np.abs(np.subtract(at.angles(t), beside.angles(t))).max() < 1e-12
 
 
 @pytest.mark.parametrize("kick", [2.0, -2.0])
@@ -114,18 +100,81 @@ def test_the_separatrix_from_the_bottom(kick: float) -> None:
 def test_wrapped_angles_stay_in_their_interval() -> None:
     motion = solve(Top(**(UNIT | {"g": 0}), r0=1, theta0_deg=40))
     around = [math.nextafter(math.pi, up) for up in (0, 9)] + [math.pi, -math.pi, 3 * math.pi]
-    around += [-x for x in around]
-    phi = motion.angles(around, wrap=True).phi
-    assert (phi > -math.pi).all()
-    assert (phi <= math.pi).all()
+    phi = motion.angles([*around, *(-x for x in around)], wrap=True).phi
+    assert ((phi > -math.pi) & (phi <= math.pi)).all()
     assert motion.angles([3.0], wrap=True).phi[0] == 3.0
 
 
 def test_the_angles_of_a_start_with_many_digits() -> None:
     """Roots that are 1e-51 apart: 40 digits decide no mean rate."""
     start: dict[str, Any] = {"r0": 1, "theta0_deg": 90, "thetadot0": 1}
-    start["psidot0"] = 1 + Fraction(1, 10**51)
-    motion = solve(Top(**UNIT | start))
+    motion = solve(Top(**UNIT | start | {"psidot0": 1 + Fraction(1, 10**51)}))
     for t in (0.3, 77.7):
         proved = [x.value for x in ProvedTable(motion, ANGLES, radians=True).row(Fraction(t))]
         np.testing.assert_allclose(np.array(motion.angles(t)), proved, rtol=2e-15)
+
+
+@pytest.mark.parametrize(
+    ("columns", "computed"),
+    [
+        ("t r", ""),
+        ("theta", "functions parts squares tilt"),
+        ("u theta psidot phidot axis_z moment Lz", "functions parts squares tilt moduli"),
+        ("thetadot energy", "functions parts squares moduli rate"),
+        ("phi psi dphi dpsi", "functions parts args"),
+        ("p", "functions parts args squares moduli rate"),
+    ],
+)
+@pytest.mark.parametrize("r0", SERIES)
+def test_columns_that_are_not_requested_are_not_computed(
+    r0: float, columns: str, computed: str
+) -> None:
+    seen: set[str] = set()
+    constants: Any = ColumnConstants(*np.ones(9))
+    for _, attitude in solve(Top(r0=r0)).sampler().attitudes(T):
+        sample = Sample(attitude, constants, False)
+        for column in chosen_columns(columns.split()):
+            getattr(sample, column)
+        seen |= vars(attitude).keys() & set("functions parts squares tilt moduli args rate".split())
+    assert seen == set(computed.split())
+
+
+def test_motions_may_be_sampled_in_turns() -> None:
+    """Blocks of several motions do not share arrays, nor leave NumPy's settings changed."""
+    one, other, before = solve(Top()), solve(Top(r0=200)), np.geterr()
+    both = (columns_at(x, ["phi"], radians=True, wrap=False)(T) for x in (one, other))
+    for (rows, mine), (_, theirs) in zip(*both, strict=True):
+        np.testing.assert_array_equal(mine[0], one.angles(T).phi[rows])
+        np.testing.assert_array_equal(theirs[0], other.angles(T).phi[rows])
+    assert np.geterr() == before
+
+
+@pytest.mark.parametrize("count", [0, 1, 16383, 16384, 16385])
+@pytest.mark.parametrize("r0", SERIES)
+def test_blocks_fit_together(r0: float, count: int) -> None:
+    motion, times = solve(Top(r0=r0)), T.copy()
+    for whole, part in zip(motion.angles(times), motion.angles(T[:count]), strict=True):
+        np.testing.assert_array_equal(whole[:count], part)
+    np.testing.assert_array_equal(times, T)
+
+
+def results(task: tuple[dict[str, Any], int | None]) -> str:
+    """Return a record with radii, a row of a table and angles, as text."""
+    scene, digits = task
+    motion = solve(Top(**scene))
+    row = [str(x.value) for x in ProvedTable(motion, ANGLES, digits).row(Fraction(7, 3))]
+    angles = [float(angle[-1]) for angle in motion.angles(T[:20_000])]
+    return json.dumps([motion.record(digits=digits, radii=True), row, angles], default=str)
+
+
+def test_results_of_eight_threads_are_those_of_one() -> None:
+    """The precision of Arb is global, and work arrays are shared by the blocks of one call."""
+    tasks = [(scene, digits) for scene in EVERY_KIND.values() for digits in (None, 60)][::3]
+    before, ctx.prec = ctx.prec, 77
+    try:
+        serial = [results(task) for task in tasks]
+        with ThreadPoolExecutor(8) as pool:
+            assert list(pool.map(results, tasks)) == serial
+        assert ctx.prec == 77
+    finally:
+        ctx.prec = before

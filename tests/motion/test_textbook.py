@@ -125,12 +125,3 @@ def test_commands_for_one_top_take_the_words(lagtop: Lagtop) -> None:
         keys = "steady_rate_slow and steady_rate_fast"
         wanted = f"must be a number unless one top is solved, got steady: see the keys {keys}"
         assert_one_line(refused, 2, f"--psidot0 {wanted}")
-
-
-def test_the_word_is_another_rate_than_its_double() -> None:
-    steady = Top(r0=60, theta0_deg=30, psidot0="steady")
-    near = Top(r0=60, theta0_deg=30, psidot0=float(steady.psidot0))
-    assert steady != near
-    assert solve(steady) != solve(near)
-    assert steady == Top(r0=60, theta0_deg=30, psidot0="steady")
-    assert len({steady, near, Top(r0=60, theta0_deg=30, psidot0="steady")}) == 2
