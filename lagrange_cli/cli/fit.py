@@ -84,10 +84,8 @@ def fit_command(
     and the mean rates are fitted.  The exit code is 0 if the verdict is good, and 1 if not: the
     last line then says why, and what to try.  With -o FILE.toml a good fit is written as a scene.
     """
-    from ..fit.fit import best_fit
-    from ..fit.problem import known_inputs
-    from ..fit.recording import Reading, read_recordings
-    from ..fit.windows import fit_windows
+    from ..fit.fit import best_fit, fit_windows
+    from ..fit.recording import Reading, known_inputs, read_recordings
     from ..inputs.files import shown_path
     from ..inputs.observed import Conventions
 
@@ -133,12 +131,10 @@ def fit_command(
 
 def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out: Output) -> None:
     """Write a report, or one record for each recording."""
-    from ..fit.report import decay_text, fit_report, windows_report
-    from ..fit.windows import decay_of
+    from ..fit.report import decay_of, decay_text, fit_report
 
     if out.fmt == "table":
-        make = windows_report if is_windows else fit_report
-        opt.write_report(out, lambda: make(found, source, units))
+        opt.write_report(out, lambda: fit_report(found, source, units, is_windows=is_windows))
         return
     records: list[dict[str, Any]] = [x.record() for x in found]
     if out.fmt == "json" and is_windows:
@@ -153,9 +149,8 @@ def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out:
         complain(decay_text(found))
         return
     for x in found:
-        name = f"{x.recording.name}: " if x.recording.name else ""
         for note in x.notes:
-            complain(f"Note: {name}{note}")
+            complain(f"Note: {x.recording.named(note)}")
 
 
 def _drawn(found: list[Outcome], path: str) -> bytes:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from operator import itemgetter
 from types import NoneType
 from typing import Any
 
@@ -18,37 +18,29 @@ from numpy.typing import ArrayLike
 
 from ..arithmetic.text import parse_number
 from ..arithmetic.types import Array
-from ..errors import DataError, check_type
+from ..errors import DataError, LagtopError, check_type
 from ..inputs.given import gather
 from ..inputs.values import value_of
 from .motions import STATE
-from .noise import CHANCE
-from .nutation import Minimum, nutating_outcome
-from .outcome import GOOD, Outcome
-from .problem import Known, Problem, known_inputs
-from .recording import Recording, recording_from, turned_up
+from .nutation import Minimum, Problem, nutating_outcome
+from .outcome import CHANCE, GOOD, Outcome
+from .recording import Known, Recording, known_inputs, recording_from, turned_up
 from .starts import noise_of, oscillation_in, signals_in, starts
 from .steady import steady_outcome
 
 _FEW_ROWS, _ROWS, _MANY_ROWS = 12, 50, 300
 """Rows at which all starts are compared, then the best, and rows of the first steps."""
-_KEPT = 1500
-_BLOCK = 2000
+_KEPT, _BLOCK = 1500, 2000
 _STARTS, _FIRST_STEPS, _FINISHED = 20, 12, 3
 """Starts of the least squares, their first steps, and the number of those that converge."""
 _ALIKE = 0.02
 """Relative difference of a and b below which two starts are the same."""
-_COMPARABLE = 50.0
-"""Factor of chi^2 above the least one, beyond which a start is dropped."""
-_CHANCE = 16.0
-"""Difference of -2 log(likelihood) below which two tops explain a recording equally well."""
+_COMPARABLE, _LIKELY = 50.0, 16.0
+"""Factor of chi^2 above the least one, beyond which a start is dropped, and the difference of
+-2 log(likelihood) below which two tops explain a recording equally well."""
 _WINDOWS = (8, 12, 20, 32, 48)
 """Numbers of windows to suggest if the spin may decay."""
 _ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
-
-
-_Way = tuple[Problem, Array, Array]
-"""A problem, its starts and their scores; psi is counted in one direction."""
 
 
 def best_fit(
@@ -90,11 +82,9 @@ def _nutation(
 ) -> Outcome | None:
     """Return the best fit of a nutation, with its rival if it has one; None without a start."""
     both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
-    ways = [_way(x, known, frequency) for x in [recording, recording.mirrored][: 1 + both]]
-    begun = [
-        (problem, _thinned(problem, _MANY_ROWS).solve(x, _FIRST_STEPS))
-        for problem, x in _best_starts(ways)
-    ]
+    begun = []
+    for problem, x in _best_starts([recording, recording.mirrored][: 1 + both], known, frequency):
+        begun.append((problem, problem.thinned(_MANY_ROWS).solve(x, _FIRST_STEPS)))
     distinct: list[tuple[Problem, Any]] = []
     for problem, end in sorted(begun, key=lambda pair: pair[1].cost):
         is_new = all(p is not problem or abs(e.cost / end.cost - 1) > 1e-6 for p, e in distinct)
@@ -104,12 +94,30 @@ def _nutation(
     if not distinct:
         return None
     best, *found = sorted((Minimum.of(p, e.x) for p, e in distinct), key=lambda x: x.badness)
-    rivals = [x for x in found if x.badness < best.badness + _CHANCE and x.differs(best)]
+    rivals = [x for x in found if x.badness < best.badness + _LIKELY and x.differs(best)]
     return nutating_outcome(best, rivals[0] if rivals else None, frequency, radians=radians)
 
 
-def _way(recording: Recording, known: Known, frequency: float) -> _Way:
-    """Return the starts of a recording with their scores, the logarithm of the noise they leave."""
+def _best_starts(
+    ways: Sequence[Recording], known: Known, frequency: float
+) -> list[tuple[Problem, Array]]:
+    """Return the best starts that differ; in each way psi is counted in one direction."""
+    tried = [
+        (score, problem, x) for way in ways for problem, x, score in _scored(way, known, frequency)
+    ]
+    kept: list[tuple[Problem, Array]] = []
+    for score, problem, x in sorted(tried, key=itemgetter(0)):
+        near = _ALIKE * (np.abs(x[:2]) + 1e-300)
+        is_new = all(p is not problem or np.any(np.abs(x - y)[:2] > near) for p, y in kept)
+        if is_new and len(kept) < _STARTS and math.isfinite(score):
+            kept.append((problem, x))
+    return kept
+
+
+def _scored(
+    recording: Recording, known: Known, frequency: float
+) -> Iterator[tuple[Problem, Array, float]]:
+    """Yield the starts of a recording, scored by the logarithm of the noise that they leave."""
     signals = signals_in(recording)
     noise = noise_of(signals, frequency, recording)
     problem = Problem(recording, known, recording.sigma or noise)
@@ -118,77 +126,55 @@ def _way(recording: Recording, known: Known, frequency: float) -> _Way:
         states[:, STATE.index(name)] = known[name]
     if "r0" in known or problem.is_even:  # r0 has the sign of b
         states = states[states[:, STATE.index("b")] * known.get("r0", 1.0) >= 0]
-    spin = signals.get("phi")
     for count in (_FEW_ROWS, _ROWS) if len(states) > _KEPT else (_ROWS,):
-        few = _thinned(problem, count)
+        few = problem.thinned(count)
         sizes = np.array([*few.sigma.values()])
         tried, scores = [np.zeros((0, len(problem.names)))], [np.zeros(0)]
         for block in np.array_split(states, len(states) // _BLOCK + 1):
-            x = few.parameters_of(block, spin)
+            x = few.parameters_of(block, signals.get("phi"))
             mean = np.nanmean(few.residuals(x) ** 2, axis=2) + sizes**2
             tried.append(x)
             scores.append(np.nan_to_num(np.log(mean).sum(axis=1), nan=np.inf))
         score = np.concatenate(scores)
         order = np.argsort(score)[:_KEPT]
         states = states[order]
-    return problem, np.concatenate(tried)[order], score[order]
-
-
-def _thinned(problem: Problem, count: int) -> Problem:
-    """Return the same problem for at most `count` rows of the recording."""
-    recording = problem.recording
-    rows = np.unique(np.linspace(0, recording.t.size - 1, count).astype(int))
-    angles = {key: x[rows] for key, x in recording.angles.items()}
-    few = replace(recording, t=recording.t[rows], angles=angles)
-    return Problem(few, problem.known, problem.sigma)
-
-
-def _best_starts(ways: Sequence[_Way]) -> Iterator[tuple[Problem, Array]]:
-    """Yield the best starts of both ways that differ from each other."""
-    places = [(score, i, j) for i, way in enumerate(ways) for j, score in enumerate(way[2])]
-    kept: list[tuple[int, Array]] = []
-    for score, i, j in sorted(places):
-        one = ways[i][1][j]
-        if (
-            len(kept) < _STARTS
-            and math.isfinite(score)
-            and all(
-                k != i or np.max(np.abs(one - other)[:2] / (np.abs(one)[:2] + 1e-300)) > _ALIKE
-                for k, other in kept
-            )
-        ):
-            kept.append((i, one))
-            yield ways[i][0], one
+    for x, size in zip(np.concatenate(tried)[order], score[order].tolist(), strict=True):
+        yield problem, x, size
 
 
 def _hints(recording: Recording, known: Known, frequency: float) -> list[str]:
     """Return what to try after a failed fit, if another fit confirms it."""
-    if recording.kind != "angles":
-        for axis in ("y", "x"):
-            turned = best_fit(turned_up(recording, axis), known, helpful=False)
-            if turned.verdict == GOOD:
-                return [f"the {axis} axis of the data points up: use --align up={axis}"]
+    for axis in ("y", "x") if recording.kind != "angles" else ():
+        if best_fit(turned_up(recording, axis), known, helpful=False).verdict == GOOD:
+            return [f"the {axis} axis of the data points up: use --align up={axis}"]
+    body = known.only({"m", "g", "s", "A", "C"})
     for count in _WINDOWS:
         enough = count * _ROWS_PER_WINDOW < recording.t.size
         if not enough or frequency * recording.t[-1] < count * _PERIODS_PER_WINDOW:
             break
         parts = recording.windows(count)
         some = (parts[0], parts[count // 2], parts[-1])
-        tried = (
-            best_fit(part, _without_spin(known), chance=CHANCE / count, helpful=False)
-            for part in some
-        )
-        if all(x.verdict == GOOD for x in tried):
+        chance = CHANCE / count
+        if all(best_fit(x, body, chance=chance, helpful=False).verdict == GOOD for x in some):
             return [
                 f"one top does not explain the motion: the spin may decay, try --window {count}"
             ]
     return ["check columns, units and axes, or try --window if the spin may decay"]
 
 
-def _without_spin(known: Known) -> Known:
-    """Return known inputs that do not change as the spin decays."""
-    kept = {x: y for x, y in known.items() if x in {"m", "g", "s", "A", "C"}}
-    return Known(kept, {x: y for x, y in known.stds.items() if x in kept})
+def fit_windows(
+    recording: Recording, count: int, known: Known, *, radians: bool = False
+) -> list[Outcome]:
+    """Return the fits of equal windows of a recording.
+
+    Raises LagtopError for a bad number of windows, or for a known input of one instant.
+    """
+    for name in known.keys() & {"r0", "theta0", "thetadot0", "psidot0"}:
+        raise LagtopError(f"{name} is not the same in all windows: leave it out", name)
+    return [
+        best_fit(part, known, radians=radians, chance=CHANCE / count, helpful=False)
+        for part in recording.windows(count)
+    ]
 
 
 def fit(

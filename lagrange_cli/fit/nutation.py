@@ -1,21 +1,25 @@
-"""The fit of a nutating top: one minimum of the least squares, and the numbers that follow."""
+"""The fit of a nutating top: its parameters and residuals, a minimum, and every number of it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import OptimizeResult, least_squares
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
+from ..inputs.rotations import within_half_turn
 from ..motion.quantity import unit_name
 from ..motion.record import shown_keys
 from ..sweep.records import sweep
-from .noise import Residuals, chi2_bounds
-from .outcome import Outcome
-from .problem import Problem
+from .motions import STATE, angles
+from .outcome import Outcome, Residuals, chi2_bounds
+from .recording import Known, Recording
+from .starts import Signal
 
 PERCENT = "_percent"
 """Ending of the keys of relative errors of elementary formulas."""
@@ -29,15 +33,14 @@ _MEANINGS = {
     "psi_zero": "psi of the data in the first row",
     "phi_zero": "phi of the data in the first row",
 }
-_DERIVED = (
-    *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
-    *("theta_min_deg", "theta_max_deg", "stability_factor"),
-    *("T_nutation_elementary", "precession_rate_elementary"),
-)
 _ELEMENTARY = {
     "T_nutation_elementary": "T_nutation",
     "precession_rate_elementary": "mean_precession_rate",
 }
+_DERIVED = (
+    *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
+    *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
+)
 _IN_DEGREES = ("theta0", "psi_zero", "phi_zero")
 _DEPENDENT = 1e-7
 """Ratio of singular values of the slopes below which parameters are not determined."""
@@ -47,9 +50,153 @@ _APART = 4.0
 """Standard deviations between different tops, and between numbers that differ for sure."""
 _LEAST, _FASTEST = 2.0, 1e6
 """Standard deviations by which a > 0, and the largest b^2/a at which a is determined."""
-_REWEIGHTINGS, _STEPS, _FEW_STEPS = 4, 80, 20
-_ZERO = 1e-12
-"""Noise in radians that is added to that of residuals, which may be 0."""
+_STEP, _SHORT_STEP, _LEAST_STEP = 1e-6, 1e-7, 1e-3
+"""Steps of central and of forward differences, over the size of a parameter, and its least size."""
+_POLE = 1e-9
+_FAR = 1e3
+"""Weighted residual of a motion that does not exist."""
+
+
+class Problem:
+    """The parameters of a recording, and its residuals for many tops at once.
+
+    Parameters are the state, r0 if the spin is recorded, and the zeros of psi and phi.  Known
+    inputs replace a, b, r0 and the start as far as they determine them.  A known input that is
+    uncertain, and does so, is a parameter with a prior.
+    """
+
+    def __init__(self, recording: Recording, known: Known, sigma: Mapping[str, float]) -> None:
+        self.recording, self.known, self.sigma = recording, known, dict(sigma)
+        seen, has, weight = recording.angles.keys(), known.keys(), {"m", "g", "s"}
+        self.spins = "phi" in seen or "r0" in has
+        self.is_even = seen == {"theta"} and known.get("psidot0") == 0 and not self.spins
+        """Whether the opposite b leaves the same tilt."""
+        self.has_torque = weight | {"A"} <= has
+        self.is_tied = self.spins and "C" in has and ("A" in has or weight <= has)
+        used = {*STATE, *["r0"] * self.spins}
+        if self.has_torque:
+            used |= weight | {"A"}
+        if self.is_tied:
+            used |= {"C"} | ({"A"} if "A" in has else weight)
+        self.priors = [x for x in known.stds if x in used]
+        fixed = {*has, *["a"] * self.has_torque, *["b"] * self.is_tied}
+        self.names = [x for x in (*STATE, *["r0"] * ("phi" in seen)) if x not in fixed]
+        self.names += [f"{x}_zero" for x in ("psi", "phi") if x in seen]
+        self.names += self.priors
+
+    def thinned(self, count: int) -> Problem:
+        """Return the same problem for at most `count` rows of the recording."""
+        one = self.recording
+        rows = np.unique(np.linspace(0, one.t.size - 1, count).astype(int))
+        angles = {key: x[rows] for key, x in one.angles.items()}
+        return Problem(replace(one, t=one.t[rows], angles=angles), self.known, self.sigma)
+
+    def values(self, x: Array) -> dict[str, Array]:
+        """Return the quantities of the motion from parameters, shape (tops, parameters)."""
+        found: dict[str, Any] = {"psi_zero": 0.0, "phi_zero": 0.0, **self.known}
+        found |= dict(zip(self.names, x.T, strict=True))
+        if self.has_torque:
+            found["a"] = 2 * found["m"] * found["g"] * found["s"] / found["A"]
+        if self.is_tied:
+            inertia = found.get("A")
+            if inertia is None:
+                inertia = 2 * found["m"] * found["g"] * found["s"] / found["a"]
+            found["b"] = found["C"] / inertia * found["r0"]
+        found.setdefault("r0", found["b"])
+        return {name: np.broadcast_to(value, len(x)) for name, value in found.items()}
+
+    def angles(self, x: Array, t: Array) -> Array:
+        """Return theta, phi and psi with the zeros of the recording, shape (3, tops, times)."""
+        value = self.values(x)
+        states = np.stack([value[name] for name in STATE], axis=-1)
+        states, tops = np.unique(states, axis=0, return_inverse=True)
+        theta, phi, psi = angles(states, t)[:, tops]
+        phi = phi + np.outer(value["r0"] - value["b"], t) + value["phi_zero"][:, np.newaxis]
+        return np.stack([theta, phi, psi + value["psi_zero"][:, np.newaxis]])
+
+    def residuals(self, x: Array) -> Array:
+        """Return recording minus motion in radians, shape (tops, channels, times)."""
+        theta, phi, psi = self.angles(x, self.recording.t)
+        seen = self.recording.angles
+        if self.recording.kind == "angles":
+            motion = {"theta": theta, "phi": phi, "psi": psi}
+            found = [within_half_turn(seen[key] - motion[key]) for key in self.recording.channels]
+            return np.asarray(np.stack(found, axis=1))
+        turned, sine = within_half_turn(seen["psi"] - psi), np.sin(seen["theta"])
+        along_meridian = sine * np.cos(theta) * np.cos(turned)
+        found = [along_meridian - np.cos(seen["theta"]) * np.sin(theta), sine * np.sin(turned)]
+        if self.recording.kind == "attitude":
+            found.append(within_half_turn(seen["phi"] - phi + turned * np.cos(theta)))
+        return np.stack(found, axis=1)
+
+    def weighted(self, x: Array) -> Array:
+        """Return residuals over standard deviations, a row for each top, and priors at the end."""
+        sizes = np.array([self.sigma[channel] for channel in self.recording.channels])
+        found = (self.residuals(x) / sizes[:, np.newaxis])[:, self.recording.present]
+        value = self.values(x)
+        priors = [(value[y] - self.known[y]) / self.known.stds[y] for y in self.priors]
+        rows: Array = np.nan_to_num(np.column_stack([found, *priors]), nan=_FAR, posinf=_FAR)
+        return rows
+
+    def slopes(self, x: Array, *, central: bool = False) -> Array:
+        """Return the derivatives of the weighted residuals, by forward or central differences."""
+        steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), _LEAST_STEP)
+        if central:
+            steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
+        below = x - np.diag(steps) if central else x[np.newaxis]
+        found = self.weighted(np.concatenate([x + np.diag(steps), below]))
+        return np.asarray((found[: x.size] - found[x.size :]).T / ((1 + central) * steps))
+
+    def solve(self, x: Array, steps: int) -> OptimizeResult:
+        """Return the least squares from one start."""
+        low = [{"a": 1e-30, "theta0": _POLE}.get(name, -np.inf) for name in self.names]
+        high = [math.pi - _POLE if name == "theta0" else np.inf for name in self.names]
+        return least_squares(
+            lambda at: self.weighted(at[np.newaxis])[0],
+            np.clip(x, low, high),
+            self.slopes,
+            bounds=(low, high),
+            x_scale="jac",
+            xtol=1e-12,
+            ftol=1e-11,
+            gtol=1e-12,
+            max_nfev=steps,
+        )
+
+    def parameters_of(self, states: Array, spin: Signal | None) -> Array:
+        """Return the parameters of states, with the best zeros and spin rate of each."""
+        known, seen, t = self.known, self.recording.angles, self.recording.t
+        value: dict[str, Any] = {**known, **dict(zip(STATE, states.T, strict=True))}
+        value |= {name: np.full(len(states), known[name]) for name in known.keys() & {*STATE}}
+        theta, phi, psi = angles(np.stack([value[x] for x in STATE], axis=-1), t)
+        if spin is not None:
+            around = t - t.mean()
+            shown = np.interp(t, spin.t, spin.y) + spin.rate * t
+            r0 = value["b"] + (shown - phi) @ around / (around @ around)
+            r0 = np.asarray(known.get("r0", slowest(r0, value["b"], self.recording.frame)))
+            value["r0"] = np.broadcast_to(r0, len(states))
+            turned = seen["phi"] - phi - np.outer(value["r0"] - value["b"], t)
+            value["phi_zero"] = _mean_angle(turned)
+        if "psi" in seen:
+            value["psi_zero"] = _mean_angle(seen["psi"] - psi, np.sin(theta))
+        rows = [np.broadcast_to(value[name], len(states)) for name in self.names]
+        return np.stack(rows, axis=-1)
+
+
+def slowest(r0: Array, b: Array, frame: float) -> Array:
+    """Return the slowest of the spin rates that look alike in frames and have 0 < b/r0 <= 2.
+
+    If there is none, the given rates are returned.
+    """
+    alike = r0 + 2 * math.pi / frame * np.arange(-3, 4)[:, np.newaxis]
+    size = np.where((b / alike > 0) & (b / alike <= 2.05), np.abs(alike), np.inf)
+    best = alike[np.argmin(size, axis=0), np.arange(np.size(r0))]
+    return np.where(np.isfinite(size.min(axis=0)), best, r0)
+
+
+def _mean_angle(turned: Array, weights: Array | float = 1.0) -> Array:
+    found: Array = np.angle(np.nansum(weights * np.exp(1j * turned), axis=1))
+    return found
 
 
 class Minimum(NamedTuple):
@@ -69,14 +216,14 @@ class Minimum(NamedTuple):
         """Converge; standard deviations that were not given come from the residuals."""
         recording = problem.recording
         problem = Problem(recording, problem.known, problem.sigma)
-        found = problem.solve(start, _STEPS)
+        found = problem.solve(start, 80)
         present = recording.present
         share = present.sum() / max(present.sum() - found.x.size, 1)
-        for _ in range(0 if recording.sigma else _REWEIGHTINGS):
+        for _ in range(0 if recording.sigma else 4):
             rest = np.where(present, problem.residuals(found.x[np.newaxis])[0], np.nan)
-            sizes = np.sqrt(np.nanmean(rest**2, axis=1) * share) + _ZERO
+            sizes = np.sqrt(np.nanmean(rest**2, axis=1) * share) + 1e-12  # never 0
             problem.sigma = dict(zip(recording.channels, sizes.tolist(), strict=True))
-            found = problem.solve(found.x, _FEW_STEPS)
+            found = problem.solve(found.x, 20)
         slopes = problem.slopes(found.x, central=True)
         size = np.linalg.norm(slopes, axis=0) + 1e-300
         _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
@@ -99,11 +246,6 @@ class Minimum(NamedTuple):
         return self.chi2 + 2 * float(rows @ sizes)
 
     @property
-    def deviations(self) -> Array:
-        """The standard deviations of the parameters."""
-        return np.asarray(np.linalg.norm(self.spread, axis=1))
-
-    @property
     def values(self) -> dict[str, float]:
         """The quantities of the motion, and known inputs."""
         found = self.problem.values(self.x[np.newaxis])
@@ -112,7 +254,7 @@ class Minimum(NamedTuple):
     def differs(self, other: Minimum) -> bool:
         """Return whether this is another top: in a, b or r0."""
         rows = [i for i, name in enumerate(self.problem.names) if name in {"a", "b", "r0"}]
-        near = _APART * self.deviations + 1e-6 * np.abs(self.x)
+        near = _APART * np.linalg.norm(self.spread, axis=1) + 1e-6 * np.abs(self.x)
         return bool(np.any((np.abs(self.x - other.x) > near)[rows]))
 
 
@@ -125,9 +267,7 @@ def nutating_outcome(
     present = zip(recording.channels, rows, recording.present, strict=True)
     values, names = found.values, problem.names
     numbers = _numbers(found, radians=radians)
-    notes, faults = [], []
-    if recording.is_mirrored:
-        notes.append("psi counts in the other direction: its sign was changed")
+    notes, faults = recording.notes, []
     if problem.is_even:
         notes.append("the sign of b is not determined: theta alone does not show the direction")
     if rival:
@@ -136,10 +276,11 @@ def nutating_outcome(
     if found.unknown:
         faults.append(f"the recording does not determine {' and '.join(found.unknown)}")
     if problem.spins:
-        i, j = (names.index(x) if x in names else -1 for x in ("b", "r0"))
+        pairs = [
+            (names.index(x), sign / values[x]) for x, sign in (("b", 1), ("r0", -1)) if x in names
+        ]
         ratio = values["b"] / values["r0"] if values["r0"] else 0.0
-        slopes = [1 / values["b"] if i >= 0 else 0.0, -1 / values["r0"] if j >= 0 else 0.0]
-        std = abs(ratio) * float(np.linalg.norm(slopes @ found.spread[[i, j]]))
+        std = abs(ratio) * float(np.linalg.norm(sum(y * found.spread[i] for i, y in pairs)))
         if not -_APART * std < ratio < 2 + _APART * std:
             faults.append(f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2")
         if "phi" in recording.angles and abs(values["r0"]) * recording.frame > math.pi:
@@ -150,9 +291,6 @@ def nutating_outcome(
     if products := [x for x in numbers if set(x) & set("*/")]:
         notes.append(f"only {' and '.join(products)} can be determined: give known inputs")
     body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"}]
-    covariance = {
-        (x, y): float(found.spread[i] @ found.spread[j]) for i, x in body for j, y in body
-    }
     return Outcome(
         recording,
         problem.known,
@@ -167,7 +305,7 @@ def nutating_outcome(
         faults,
         notes,
         _inputs(found, numbers),
-        covariance,
+        {(x, y): float(found.spread[i] @ found.spread[j]) for i, x in body for j, y in body},
     )
 
 
@@ -260,20 +398,16 @@ def _inputs(found: Minimum, numbers: Mapping[str, tuple[float, float]]) -> dict[
     values, body = found.values, ("m", "s", "g", "A", "C", "r0")
     has = {x: values[x] for x in body if x in found.problem.known}
     has |= {x: numbers[x][0] for x in body if x in numbers}
-    if "A" not in has:
-        spins = {"C", "r0"} <= has.keys()
-        has["A"] = has["C"] * has["r0"] / values["b"] if spins else has.get("C", 1.0)
+    has.setdefault("A", has.get("C", 1.0))  # if C and r0 are known, A is a number of the fit
     if "C" not in has:
         has["C"] = values["b"] * has["A"] / has["r0"] if has.get("r0") else has["A"]
-    weight = values["a"] / 2 * has["A"]  # mgs
-    if {"m", "s"} <= has.keys():
-        has.setdefault("g", weight / (has["m"] * has["s"]))
-    gravity = has.setdefault("g", 1.0)
-    if "m" not in has:
-        has.setdefault("s", has["A"] * gravity / (10 * weight))
-        has["m"] = weight / (gravity * has["s"])
-    has.setdefault("s", weight / (gravity * has["m"]))
     has["r0"] = values["b"] * has["A"] / has["C"]
+    weight = values["a"] / 2 * has["A"]  # mgs
+    unknown = [x for x in ("g", "s", "m") if x not in has]
+    for name in unknown[:-1]:
+        has[name] = 1.0 if name == "g" else has["A"] * has["g"] / (10 * weight)
+    for name in unknown[-1:]:
+        has[name] = weight / math.prod(has[x] for x in ("m", "g", "s") if x != name)
     start = {"theta0_deg": math.degrees(values["theta0"])}
     start |= {x: values[x] for x in ("thetadot0", "psidot0")}
     return {**{x: has[x] for x in body}, **start}

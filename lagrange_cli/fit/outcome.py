@@ -1,12 +1,14 @@
-"""The result of a fit: numbers with standard deviations, the verdict, the record and the scene."""
+"""The result of a fit: tests of the residuals, the verdict, the record, the scene, the curves."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from scipy.special import fdtrc, gammaincinv, ndtri
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
@@ -14,50 +16,106 @@ from ..errors import AbsentError
 from ..inputs.rotations import within_half_turn
 from ..motion.notebook import HasRecord
 from ..output.report import uncertain_text
-from .noise import CHANCE, Residuals, chi2_bounds
-from .problem import Known
-from .recording import Recording, shifted_origin
+from .recording import Known, Recording, shifted_origin
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 GOOD, STEADY, FAILED = "good", "good, no nutation", "failed"
-_MOST = 1.0
-"""Largest rms residual of a channel, in radians."""
-_FINE = 1200
+CHANCE = 0.0027
+"""Probability that noise fails a test, as for three standard deviations."""
+_MOST, _ROUNDING = 1.0, 1e-10
+"""Largest rms residual of a channel, and rms of rounding errors, in radians."""
+
+
+class Residuals(NamedTuple):
+    """The residuals of a channel at times t, in radians."""
+
+    t: Array
+    y: Array
+
+    @property
+    def rms(self) -> float:
+        """The root mean square."""
+        return float(np.sqrt(np.mean(self.y**2)))
+
+    @property
+    def autocorrelation(self) -> float:
+        """The correlation of residuals with the next ones."""
+        if self.rms < _ROUNDING or self.y.size < 2:
+            return 0.0
+        return float(self.y[1:] @ self.y[:-1] / (self.y @ self.y))
+
+    def structure(self, frequency: float) -> float:
+        """Return the probability that noise resembles a drifting oscillation as much.
+
+        An F test of three harmonics of a frequency, times 1, t and t^2, against the rest.
+        """
+        if self.rms < _ROUNDING:
+            return 1.0
+        x = 2 * self.t / max(float(self.t[-1]), 1e-300) - 1
+        waves = np.exp(2j * np.pi * frequency * self.t[:, np.newaxis] * np.arange(4))
+        waves = np.concatenate([waves.real, waves.imag[:, 1:]], axis=1)
+        drifts = x[:, np.newaxis, np.newaxis] ** range(3)
+        basis = (waves[:, :, np.newaxis] * drifts).reshape(x.size, -1)[:, : max(x.size // 3, 1)]
+        space, sizes, _ = np.linalg.svd(basis, full_matrices=False)
+        count = int(np.sum(sizes > 1e-6 * sizes[0]))
+        explained = float(np.sum((space[:, :count].T @ self.y) ** 2))
+        rest = (float(self.y @ self.y) - explained) / (x.size - count)
+        return float(fdtrc(count, x.size - count, explained / count / rest))
+
+    def faults(self, name: str, frequency: float, chance: float) -> list[str]:
+        """Return why the residuals are not noise, as sentences.
+
+        A wrong motion leaves neighbours alike, unless it oscillates from row to row.
+        """
+        bound = -float(ndtri(chance / 2)) / math.sqrt(self.y.size)
+        if not -2 * bound < self.autocorrelation < bound:
+            return [
+                f"the residuals of {name} are not noise: neighbours correlate by "
+                f"{self.autocorrelation:.2f}, noise by at most {bound:.2f}"
+            ]
+        if self.structure(frequency) < chance:
+            return [f"the residuals of {name} are not noise: they drift or oscillate"]
+        return []
+
+
+def chi2_bounds(freedom: int, chance: float = CHANCE) -> tuple[float, float]:
+    """Return the bounds that chi^2 per degree of freedom of noise exceeds with this probability."""
+    half = max(freedom, 1) / 2
+    low, high = (float(gammaincinv(half, p)) / half for p in (chance / 2, 1 - chance / 2))
+    return low, high
 
 
 class Curve(NamedTuple):
     """A recorded angle and the fitted motion, in the unit of angles in use."""
 
     name: str
-    """`theta`, `phi` or `psi`; of several recordings, after the name of one and a colon."""
+    """The angle; of several recordings, after the name of one and a colon."""
     t: Array
     data: Array
     """Measured values, shifted by whole turns to the motion; NaN if missing."""
     fine_t: Array
     curve: Array
-    """The motion at the fine times."""
     residual: Array
-    """Data minus motion at the times t."""
 
 
 @dataclass(eq=False)
 class Outcome(HasRecord):
-    """The result of a fit of one recording, by a nutating top or by a steady precession."""
+    """The result of a fit of one recording, by a nutating top or by a steady precession.
+
+    The numbers are values with standard deviations by key, in the unit of angles in use.
+    """
 
     recording: Recording
     known: Known
     radians: bool
     numbers: Mapping[str, tuple[float, float]]
-    """Every number and its standard deviation by key, in the unit of angles in use."""
     meanings: Mapping[str, str]
-    """The meanings of the numbers."""
     residuals: Mapping[str, Residuals]
     """The residuals by channel, in radians."""
     dof: int
     chi2_dof: float
-    """Chi^2 per degree of freedom, and the degrees of freedom."""
     frequency: float
     """The frequency of the nutation, at which residuals are searched for structure."""
     motion: Callable[[Array], Array]
@@ -101,8 +159,7 @@ class Outcome(HasRecord):
 
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""
-        name = f"{self.recording.name}: " if self.recording.name else ""
-        return name + "; ".join([self.failures()[0], *self.hints])
+        return self.recording.named("; ".join([self.failures()[0], *self.hints]))
 
     @property
     def verdict(self) -> str:
@@ -130,29 +187,14 @@ class Outcome(HasRecord):
         """The unit of angles in use, `deg` or `rad`."""
         return angle_unit(radians=self.radians)[1]
 
-    @property
-    def middle(self) -> float:
-        """The time of the middle of the recording."""
-        return self.recording.t_start + float(self.recording.t[-1]) / 2
-
-    def angles(self, t: Array) -> dict[str, Array]:
-        """Return the angles of the motion at times since the first row, in radians."""
-        return dict(zip(("theta", "phi", "psi"), self.motion(np.asarray(t, float)), strict=True))
-
     def record(self) -> dict[str, Any]:
         """Return everything by key, flat."""
         record: dict[str, Any] = {"name": self.recording.name} if self.recording.name else {}
         for key, (value, std) in self.numbers.items():
             record |= {key: value, f"{key}_std": std}
-        low, high = chi2_bounds(self.dof)
-        record |= {
-            "t_start": self.recording.t_start,
-            "rows": self.recording.t.size,
-            "dof": self.dof,
-            "chi2_dof": self.chi2_dof if self.recording.sigma else None,
-            "chi2_dof_low": low,
-            "chi2_dof_high": high,
-        }
+        record |= {"t_start": self.recording.t_start, "rows": self.recording.t.size}
+        record |= {"dof": self.dof, "chi2_dof": self.chi2_dof if self.recording.sigma else None}
+        record["chi2_dof_low"], record["chi2_dof_high"] = chi2_bounds(self.dof)
         scale, unit = angle_unit(radians=self.radians)
         for name, rest in self.residuals.items():
             record[f"{name}_rms_{unit}"] = rest.rms * scale
@@ -181,13 +223,14 @@ class Outcome(HasRecord):
         """Yield the curves of the picture, one for each recorded angle."""
         recording, (scale, _) = self.recording, angle_unit(radians=self.radians)
         t, start = recording.t, recording.t_start
-        fine = np.linspace(0, t[-1], _FINE)
-        at_rows, at_fine = self.angles(t), self.angles(fine)
+        fine = np.linspace(0, t[-1], 1200)
+        names = ("theta", "phi", "psi")
+        motion = dict(zip(names, zip(self.motion(t), self.motion(fine), strict=True), strict=True))
         for name in [x for x in ("theta", "psi", "phi") if x in recording.angles]:
-            rest = within_half_turn(recording.angles[name] - at_rows[name])
-            data, curve = (at_rows[name] + rest) * scale, at_fine[name] * scale
-            label = f"{recording.name}: {name}" if recording.name else name
-            yield Curve(label, t + start, data, fine + start, curve, rest * scale)
+            at_rows, at_fine = motion[name]
+            rest = within_half_turn(recording.angles[name] - at_rows)
+            data, curve = (at_rows + rest) * scale, at_fine * scale
+            yield Curve(recording.named(name), t + start, data, fine + start, curve, rest * scale)
 
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw data, motion and residuals, on a figure of matplotlib or a new one; return it."""

@@ -1,8 +1,9 @@
-"""Recordings of tops: measured angles, an axis or an attitude, from a file or from arrays."""
+"""What is given to a fit: measured angles, an axis or an attitude, and known inputs."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -14,7 +15,7 @@ from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..inputs import rotations
 from ..inputs.input_keys import checked_double
-from ..inputs.names import ANGLES
+from ..inputs.names import ANGLES, check_names
 from ..inputs.observed import (
     Conventions,
     Named,
@@ -24,6 +25,7 @@ from ..inputs.observed import (
     quantities_of,
     rows_of,
 )
+from ..inputs.top import Top
 from ..inputs.trajectory import read_trajectory
 
 CHANNELS = {
@@ -76,6 +78,21 @@ class Recording:
         """The usual time between two rows."""
         steps = np.diff(self.t)
         return float(np.median(steps[steps > 0]))
+
+    @property
+    def middle(self) -> float:
+        """The time of the middle."""
+        return self.t_start + float(self.t[-1]) / 2
+
+    def named(self, text: str) -> str:
+        """Return a text on this recording, after its name if it has one."""
+        return f"{self.name}: {text}" if self.name else text
+
+    @property
+    def notes(self) -> list[str]:
+        """How the recording was interpreted."""
+        mirrored = "psi counts in the other direction: its sign was changed"
+        return [mirrored] * self.is_mirrored
 
     @property
     def mirrored(self) -> Recording:
@@ -244,13 +261,11 @@ def _sigma(raw: Recording, sigma: Mapping[str, float] | float | None) -> dict[st
 
 def turned_up(recording: Recording, axis: str) -> Recording:
     """Return a recording of an axis or attitude in a frame whose z axis is another one of space."""
-    theta, psi = recording.angles["theta"], recording.angles["psi"]
-    turn = rotations.to_z(axis)
-    if recording.kind == "attitude":
-        whole = rotations.of_angles(theta, recording.angles["phi"], psi)
-        return replace(recording, angles=rotations.angles_of(rotations.product(turn, whole)))
-    axes = np.stack([np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)], -1)
-    return replace(recording, angles=rotations.angles_of_axis(rotations.rotated(turn, axes)))
+    theta, psi, turn = recording.angles["theta"], recording.angles["psi"], rotations.to_z(axis)
+    phi = recording.angles.get("phi", np.zeros_like(theta))
+    whole = rotations.product(turn, rotations.of_angles(theta, phi, psi))
+    found = rotations.angles_of(whole)
+    return replace(recording, angles={name: found[name] for name in recording.angles})
 
 
 def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3) -> Array | None:
@@ -274,3 +289,45 @@ def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3)
         return None
     offset: Array = factors[1:]
     return offset
+
+
+class Known(dict[str, float]):
+    """Known inputs by key, theta0 in radians, with the standard deviations of uncertain ones."""
+
+    def __init__(self, inputs: Mapping[str, float], stds: Mapping[str, float]) -> None:
+        super().__init__(inputs)
+        self.stds = dict(stds)
+
+    def only(self, names: Collection[str]) -> Known:
+        """Return some of the inputs."""
+        kept = {x: y for x, y in self.items() if x in names}
+        return Known(kept, {x: y for x, y in self.stds.items() if x in names})
+
+
+def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
+    """Return known inputs from inputs of `Top`, and the standard deviations of some.
+
+    A_cm becomes A = A_cm + m s^2.  Raises LagtopError for an input that a fit cannot use.
+    """
+    check_names("known", [*given] or ["m"], [*Top.fields, "A_cm", "phidot0"])
+    known, spread = {name: checked_double(name, x) for name, x in given.items()}, dict(stds)
+    if "phidot0" in known:
+        raise LagtopError("phidot0 is no input of a fit: give r0", "phidot0")
+    for name in ("m", "s", "g", "A", "C", "r0"):
+        if known.get(name) == 0:
+            raise LagtopError(f"{name} must not be 0 in a fit: leave it out", name)
+    if "A_cm" in known:
+        if not {"m", "s"} <= known.keys():
+            raise LagtopError("A_cm must be given with m and s, as A = A_cm + m s^2", "A_cm")
+        m, s = known["m"], known["s"]
+        known["A"] = known.pop("A_cm") + m * s * s
+        parts = [spread.pop("A_cm", 0.0), spread.get("m", 0.0) * s * s]
+        if (std := math.hypot(*parts, spread.get("s", 0.0) * 2 * m * s)) > 0:
+            spread["A"] = std
+    moment = known.get("A", known.get("C", 1.0))
+    Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **known})
+    for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
+        for values in (known, spread):
+            if key in values:
+                values["theta0"] = values.pop(key) * unit
+    return Known(known, spread)

@@ -8,17 +8,15 @@ cos(theta)/(4 lambda) with the stability factor lambda = b^2/(2a).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from .noise import Residuals
-from .outcome import Outcome
-from .problem import Known
-from .recording import Recording
+from .outcome import Outcome, Residuals
+from .recording import Known, Recording
 from .starts import Oscillation, signals_in
 
 _MOST_TILT, _LEAST_ROWS = 0.04, 30
@@ -38,11 +36,10 @@ _Numbers = dict[str, tuple[float, float]]
 
 
 class _Line(NamedTuple):
-    """A straight line through an angle, or the mean of the tilt, by powers of the time."""
+    """A straight line through an angle, or the mean of the tilt; `leading` is the rate or mean."""
 
-    middle: float
-    factors: Array
-    stds: Array
+    leading: tuple[float, float]
+    at: Callable[[Array], Array]
     residuals: Residuals
 
     @classmethod
@@ -50,17 +47,20 @@ class _Line(NamedTuple):
         """Return the line through the values of an angle."""
         middle = float(t.mean())
         factors, spread = np.polyfit(t - middle, y, degree, cov=True)
-        rest = y - np.polyval(factors, t - middle)
-        return cls(middle, factors, np.sqrt(np.diag(spread)), Residuals(t, rest))
 
-    def at(self, t: Array) -> Array:
-        """Return the line at some times."""
-        return np.asarray(np.polyval(self.factors, t - self.middle))
+        def at(times: Array) -> Array:
+            return np.asarray(np.polyval(factors, times - middle))
 
-    @property
-    def leading(self) -> tuple[float, float]:
-        """The rate, or the mean of the tilt, and its standard deviation."""
-        return float(self.factors[0]), float(self.stds[0])
+        leading = float(factors[0]), math.sqrt(spread[0, 0])
+        return cls(leading, at, Residuals(t, y - at(t)))
+
+
+def _lines(recording: Recording) -> dict[str, _Line]:
+    found = {x: y.t * y.rate + y.y for x, y in signals_in(recording).items()}
+    t = {x: recording.t[np.isfinite(y)] for x, y in recording.angles.items()}
+    if "theta" in found:
+        found["theta"] = recording.angles["theta"][np.isfinite(recording.angles["theta"])]
+    return {x: _Line.through(t[x], y, int(x != "theta")) for x, y in found.items()}
 
 
 def steady_outcome(
@@ -69,9 +69,8 @@ def steady_outcome(
     """Return the result of a fit of a constant tilt and constant rates."""
     scale, unit = angle_unit(radians=radians)
     lines = _lines(recording)
-    tilt, tilt_std = known.get("theta0", math.pi / 2), known.stds.get("theta0", 0.0)
-    if "theta" in lines:
-        tilt, tilt_std = lines["theta"].leading
+    given = known.get("theta0", math.pi / 2), known.stds.get("theta0", 0.0)
+    tilt, tilt_std = lines["theta"].leading if "theta" in lines else given
     (rate, rate_std), (spin, spin_std) = (
         lines[x].leading if x in lines else (0.0, 0.0) for x in ("psi", "phi")
     )
@@ -81,9 +80,7 @@ def steady_outcome(
         recording, rate = recording.mirrored, -rate
         lines = _lines(recording)
     numbers: _Numbers = {}
-    notes = ["no nutation is visible: the numbers are means over the recording"]
-    if recording.is_mirrored:
-        notes.append("psi counts in the other direction: its sign was changed")
+    notes = ["no nutation is visible: the numbers are means over the recording", *recording.notes]
     if "theta" in lines:
         numbers[f"mean_tilt_{unit}"] = tilt * scale, tilt_std * scale
     if "psi" in lines:
@@ -91,18 +88,15 @@ def steady_outcome(
     r0 = known.get("r0", 0.0), known.stds.get("r0", 0.0)
     if "phi" in lines:
         numbers["mean_spin_rate"] = spin, spin_std
-        if "r0" not in known:
-            r0 = spin + rate * cosine, math.hypot(spin_std, rate_std * cosine)
-            numbers["r0"] = r0
-            notes.append(
-                "r0 is known only up to whole turns per frame, multiples of "
-                f"{2 * math.pi / recording.frame:.6g}"
-            )
+    if "phi" in lines and "r0" not in known:
+        r0 = numbers["r0"] = spin + rate * cosine, math.hypot(spin_std, rate_std * cosine)
+        turn = f"{2 * math.pi / recording.frame:.6g}"
+        notes.append(f"r0 is known only up to whole turns per frame, multiples of {turn}")
     if rate and r0[0]:
-        given = {"A", "C"} <= known.keys()
-        bias = abs(rate * cosine / r0[0]) / (known["C"] / known["A"] if given else _RATIO)
+        certain = {"A", "C"} <= known.keys()
+        bias = abs(rate * cosine / r0[0]) / (known["C"] / known["A"] if certain else _RATIO)
         numbers |= _of_body(rate, math.hypot(rate_std / rate, bias), r0, known)
-        assumed = "" if given else f" if C/A = {_RATIO:g}"
+        assumed = "" if certain else f" if C/A = {_RATIO:g}"
         notes.append(
             f"b/a is too small by cos(theta)/(4 lambda), {100 * bias:.2g} %{assumed}, which its "
             "uncertainty contains"
@@ -113,7 +107,7 @@ def steady_outcome(
         channel = {"psi": "across", "phi": "along"}.get(name, name) if whole else name
         size = math.sin(tilt) if channel == "across" else 1.0
         residuals[channel] = line.residuals._replace(y=line.residuals.y * size)
-    dof = sum(x.residuals.y.size - x.factors.size for x in lines.values())
+    dof = sum(x.y.size - 2 for x in residuals.values()) + ("theta" in lines)
     sigma = recording.sigma or {x: y.rms or 1.0 for x, y in residuals.items()}
     chi2 = sum(float(np.sum((y.y / sigma[x]) ** 2)) for x, y in residuals.items())
 
@@ -135,14 +129,6 @@ def steady_outcome(
         [*_faults(recording, residuals, numbers, oscillation)],
         notes,
     )
-
-
-def _lines(recording: Recording) -> dict[str, _Line]:
-    found = {x: y.t * y.rate + y.y for x, y in signals_in(recording).items()}
-    t = {x: recording.t[np.isfinite(y)] for x, y in recording.angles.items()}
-    if "theta" in found:
-        found["theta"] = recording.angles["theta"][np.isfinite(recording.angles["theta"])]
-    return {x: _Line.through(t[x], y, int(x != "theta")) for x, y in found.items()}
 
 
 def _faults(

@@ -19,13 +19,12 @@ from lagtop import LagtopError, Top, fit, read_scene, solve
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from lagrange_cli.fit.fit import fit_windows
 from lagrange_cli.fit.motions import angles, nutating
-from lagrange_cli.fit.noise import CHANCE, Residuals, chi2_bounds
-from lagrange_cli.fit.nutation import body_numbers
-from lagrange_cli.fit.outcome import Outcome
-from lagrange_cli.fit.problem import Problem, known_inputs, slowest
-from lagrange_cli.fit.recording import recording_from, shifted_origin
-from lagrange_cli.fit.windows import decay_of, fit_windows
+from lagrange_cli.fit.nutation import Problem, body_numbers, slowest
+from lagrange_cli.fit.outcome import CHANCE, Outcome, Residuals, chi2_bounds
+from lagrange_cli.fit.recording import known_inputs, recording_from, shifted_origin
+from lagrange_cli.fit.report import decay_of
 
 sys.path.append(str(Path(__file__).parents[1] / "tools"))
 DEGREE = math.pi / 180
