@@ -6,23 +6,17 @@ const DEGREE = 180 / Math.PI;
 
 /** Slope of p, q (rates in the frame that does not spin) and of its quaternion w, x, y, z. */
 function slope([p, q, w, x, y, z], a, b) {
-  return [
-    a * (y * z + w * x) - b * q,
-    b * p - a * (x * z - w * y),
-    (-x * p - y * q) / 2,
-    (w * p - z * q) / 2,
-    (w * q + z * p) / 2,
-    (x * q - y * p) / 2,
-  ];
+  const [dp, dq] = [a * (y * z + w * x) - b * q, b * p - a * (x * z - w * y)];
+  return [dp, dq, (-x * p - y * q) / 2, (w * p - z * q) / 2, (w * q + z * p) / 2, (x * q - y * p) / 2];
 }
 
 /** The state after one step of the classical Runge-Kutta method. */
 function step(state, h, a, b) {
-  const along = (k, part) => state.map((value, i) => value + part * k[i]);
+  const after = (part, k) => slope(state.map((value, i) => value + part * k[i]), a, b);
   const k1 = slope(state, a, b);
-  const k2 = slope(along(k1, h / 2), a, b);
-  const k3 = slope(along(k2, h / 2), a, b);
-  const k4 = slope(along(k3, h), a, b);
+  const k2 = after(h / 2, k1);
+  const k3 = after(h / 2, k2);
+  const k4 = after(h, k3);
   return state.map((value, i) => value + (h / 6) * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]));
 }
 
@@ -50,11 +44,7 @@ function completeK(kPrime) {
 function carlsonF(x, y, z) {
   const mean = (x + y + z) / 3;
   const apart = Math.max(...[x, y, z].map((each) => Math.abs(1 - each / mean)));
-  if (!(apart >= 1e-3)) {
-    const [X, Y] = [1 - x / mean, 1 - y / mean];
-    const [E2, E3] = [-X * X - X * Y - Y * Y, -X * Y * (X + Y)];
-    return (1 - E2 / 10 + E3 / 14 + (E2 * E2) / 24) / Math.sqrt(mean);
-  }
+  if (!(apart >= 1e-8)) return 1 / Math.sqrt(mean);
   const [p, q, r] = [x, y, z].map(Math.sqrt);
   const shift = p * q + p * r + q * r;
   return carlsonF((x + shift) / 4, (y + shift) / 4, (z + shift) / 4);
@@ -187,34 +177,28 @@ export function motionOf(scene) {
     const [p, q] = [plus - zero.plus, minus - zero.minus];
     return { theta, phi: p - q + r0 * t, psi: p + q };
   }
-  const degrees = (u) => (Math.acos(Math.max(-1, Math.min(1, u))) * 180) / Math.PI;
+  const degrees = (u) => DEGREE * Math.acos(Math.max(-1, Math.min(1, u)));
   const spin = isVertical ? r0 : period && (gain.plus - gain.minus) / span + r0;
   const turn = period && (gain.plus + gain.minus) / span;
   const turnTime = (rate) => (rate ? (2 * Math.PI) / Math.abs(rate) : null);
   const away = (degree) => Math.min(degree, 180 - degree);
   const most = Math.max(away(degrees(u1)), away(degrees(u2)), away(tilt));
-  const isNear = !isVertical && ((tilt && away(tilt) < 0.01) || most < 0.05);
+  const k = Math.sqrt(1 - kPrime ** 2);
+  const isNear = (tilt && away(tilt) < 0.01) || most < 0.05;
+  const [high, low, isSwinging] = isVertical ? [u0, u0, false] : [u1, u2, Boolean(a)];
   return {
     scene,
     angles,
     span,
-    isSketch: Boolean(isNear || (!isVertical && a && 1 - Math.sqrt(1 - kPrime ** 2) < 2e-8)),
+    isSketch: Boolean(!isVertical && (isNear || (a && 1 - k < 2e-8))),
     f: (u) => (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2,
     precession: (u) => (beta - b * u) / (1 - u * u),
     record: {
-      a,
-      b,
-      u1: isVertical ? u0 : u1,
-      u2: isVertical ? u0 : u2,
-      u3: a && !isVertical ? u3 : null,
-      k: a && !isVertical ? Math.sqrt(1 - kPrime ** 2) : null,
-      T_nutation: period,
-      T_spin: turnTime(spin),
-      T_precession: turnTime(turn),
+      a, b, u1: high, u2: low, u3: isSwinging ? u3 : null, k: isSwinging ? k : null,
+      T_nutation: period, T_spin: turnTime(spin), T_precession: turnTime(turn),
       theta_min_deg: isVertical ? tilt : 2 * DEGREE * Math.asin(Math.sqrt(gap / 2)),
       theta_max_deg: isVertical ? tilt : degrees(u2),
-      mean_spin_rate: spin,
-      mean_precession_rate: turn,
+      mean_spin_rate: spin, mean_precession_rate: turn,
     },
   };
 }

@@ -3,49 +3,44 @@
 
 const at = Object.fromEntries([...document.querySelectorAll("[id]")].map((part) => [part.id, part]));
 const DEGREES = 180 / Math.PI;
-const ANGLES = { theta: ["ϑ", "blue"], phi: ["φ", "red"], psi: ["ψ", "green"] };
-const TITLES = { theta: "ϑ (°)", phi: "φ less its mean rate (°)", psi: "ψ (°)" };
+const CURVES = {
+  theta: ["ϑ", "ϑ (°)", "blue"],
+  phi: ["φ", "φ less its mean rate (°)", "red"],
+  psi: ["ψ", "ψ (°)", "green"],
+};
 const text = (x, digits = 7) => String(Number(x.toPrecision(digits))).replace(/-/g, "−");
 const number = (word) => (word.trim() ? Number(word.replace("−", "-").replace(",", ".")) : NaN);
+const clamped = (x, least, most) => Math.min(Math.max(x, least), most);
 const even = (from, to, count) =>
   Array.from({ length: count + 1 }, (_, i) => from + ((to - from) * i) / (count || 1));
-const timeUnit = DATA.units.time === "time" ? "time unit" : DATA.units.time;
-const withUnit = (unit) => (/mass|len/.test(unit) || !unit ? "" : ` (${unit})`);
+const circle = even(0, 2 * Math.PI, 120);
+const timeUnit = DATA.time === "time" ? "time unit" : DATA.time;
+const style = getComputedStyle(document.documentElement);  // follows the dark mode
+const colour = (name) => style.getPropertyValue(`--${name}`) || name;
+const camera = { azimuth: -62, elevation: 20, zoom: 1 };
 
 let scene = {};
 let motion = null;
 let curves = null;
 let [t, playing, pace, fresh] = [0, false, 1, false];
-const camera = { azimuth: -62, elevation: 20, zoom: 1 };
-const colours = {};
 
 // --- drawing
-
-function readColours() {
-  const style = getComputedStyle(document.documentElement);
-  for (const name of ["paper", "ink", "quiet", "faint", "blue", "red", "green", "trace"]) {
-    colours[name] = style.getPropertyValue(`--${name}`).trim();
-  }
-}
 
 /** A cleared canvas with its pen, its size in pixels of the page, and the size of its letters. */
 function prepared(canvas) {
   const fine = Math.min(window.devicePixelRatio || 1, 2);
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  if (canvas.width !== Math.round(width * fine)) canvas.width = Math.round(width * fine);
-  if (canvas.height !== Math.round(height * fine)) canvas.height = Math.round(height * fine);
+  [canvas.width, canvas.height] = [width * fine, height * fine];
   const pen = canvas.getContext("2d");
-  pen.setTransform(fine, 0, 0, fine, 0, 0);
-  pen.clearRect(0, 0, width, height);
+  pen.scale(fine, fine);
   const letters = document.fullscreenElement ? 24 : 13;
-  pen.font = `${letters}px system-ui, "DejaVu Sans", sans-serif`;
-  pen.textBaseline = "middle";
+  Object.assign(pen, { font: `${letters}px system-ui, "DejaVu Sans", sans-serif`, textBaseline: "middle" });
   return { pen, width, height, letters };
 }
 
 /** Draw a line through points; a null point interrupts it. */
-function line(pen, points, strokeStyle, { width = 1, dash = [], alpha = 1 } = {}) {
-  Object.assign(pen, { strokeStyle, lineWidth: width, globalAlpha: alpha });
+function line(pen, points, tint, { width = 1, dash = [], alpha = 1 } = {}) {
+  Object.assign(pen, { strokeStyle: colour(tint), lineWidth: width, globalAlpha: alpha });
   pen.setLineDash(dash);
   pen.beginPath();
   let isDown = false;
@@ -57,15 +52,18 @@ function line(pen, points, strokeStyle, { width = 1, dash = [], alpha = 1 } = {}
   pen.globalAlpha = 1;
 }
 
-function area(pen, points, fillStyle) {
-  pen.fillStyle = fillStyle;
+function area(pen, points, tint) {
+  pen.fillStyle = colour(tint);
   pen.beginPath();
   points.forEach((point) => pen.lineTo(...point));
   pen.fill();
 }
 
-function word(pen, letters, [x, y], fillStyle, textAlign = "center") {
-  Object.assign(pen, { fillStyle, textAlign });
+const disc = (pen, [x, y], radius, tint) =>
+  area(pen, circle.map((k) => [x + radius * Math.cos(k), y + radius * Math.sin(k)]), tint);
+
+function word(pen, letters, [x, y], tint, textAlign = "center") {
+  Object.assign(pen, { fillStyle: colour(tint), textAlign });
   pen.fillText(letters, x, y);
 }
 
@@ -80,8 +78,7 @@ function ticks(low, high, most) {
 // --- space
 
 const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-const sum = (...terms) =>
-  [0, 1, 2].map((i) => terms.reduce((total, [x, v]) => total + x * v[i], 0));
+const sum = (...terms) => [0, 1, 2].map((i) => terms.reduce((total, [x, v]) => total + x * v[i], 0));
 
 /** The line of nodes, the figure axis, and the direction across both. */
 function frameOf(theta, psi) {
@@ -89,52 +86,41 @@ function frameOf(theta, psi) {
   return { nodes: [cp, sp, 0], axis: [st * sp, -st * cp, ct], across: [-ct * sp, ct * cp, st] };
 }
 
+/** A point by its cylindrical coordinates about the figure axis. */
+const around = ({ nodes, axis, across }, radius, angle, height) =>
+  sum([radius * Math.cos(angle), nodes], [radius * Math.sin(angle), across], [height, axis]);
+
 /** The camera; zoomed in, it follows the mean motion of the axis. */
 function viewOf(width, height) {
-  const [az, el] = [camera.azimuth / DEGREES, camera.elevation / DEGREES];
-  const [sa, ca, se, ce] = [Math.sin(az), Math.cos(az), Math.sin(el), Math.cos(el)];
-  const [right, up, toward] = [[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]];
+  const { nodes, axis, across } = frameOf((90 - camera.elevation) / DEGREES, (camera.azimuth + 90) / DEGREES);
   const scale = (camera.zoom * Math.min(width, height)) / 2.5;
-  const follow = Math.min(Math.max(camera.zoom - 1.5, 0), 1);
-  const middle = sum([follow, frameOf(curves.tilt, curves.turn * t).axis]);
+  const middle = sum([clamped(camera.zoom - 1.5, 0, 1), frameOf(curves.tilt, curves.turn * t).axis]);
   const place = (p) => {
     const off = sum([1, p], [-1, middle]);
-    return [width / 2 + scale * dot(off, right), height / 2 - scale * dot(off, up)];
+    return [width / 2 + scale * dot(off, nodes), height / 2 - scale * dot(off, across)];
   };
-  const lamp = sum([0.55, toward], [-0.45, right], [0.5, up]);
-  return { scale, place, depth: (p) => dot(p, toward), lamp };
+  return { scale, place, depth: (p) => dot(p, axis), lamp: sum([0.55, axis], [-0.45, nodes], [0.5, across]) };
 }
 
-const PROFILE = [[0, 0], [0.03, 0.1], [0.07, 0.3], [0.34, 0.44], [0.39, 0.5], [0.36, 0.56],
-  [0.08, 0.62], [0.05, 0.84], [0, 0.86]];  // radius and height
+const PROFILE = [[0, 0], [0.03, 0.1], [0.07, 0.3], [0.34, 0.44], [0.39, 0.5], [0.36, 0.56], [0.08, 0.62], [0.05, 0.84],
+  [0, 0.86]];  // radius and height
 const SECTORS = 30;
 
-/** The faces of the top, from back to front, each with its points and its colour. */
+/** The faces of the top, from back to front, each with its depth, its points and its colour. */
 function facesOf(frame, phi, { place, depth, lamp }, blur) {
-  const ring = PROFILE.map(([radius, height]) => even(0, 2 * Math.PI, SECTORS).map((x) => sum(
-    [radius * Math.cos(x + phi), frame.nodes],
-    [radius * Math.sin(x + phi), frame.across],
-    [height, frame.axis],
-  )));
+  const angles = even(phi, phi + 2 * Math.PI, SECTORS);
+  const rings = PROFILE.map(([radius, height]) => angles.map((angle) => around(frame, radius, angle, height)));
   const faces = [];
   for (let j = 0; j + 1 < PROFILE.length; j += 1) {
+    const [dr, dz] = [0, 1].map((k) => PROFILE[j + 1][k] - PROFILE[j][k]);
+    const size = Math.hypot(dr, dz);
     for (let i = 0; i < SECTORS; i += 1) {
-      const corners = [ring[j][i], ring[j][i + 1], ring[j + 1][i + 1], ring[j + 1][i]];
-      const [dr, dz] = [0, 1].map((k) => PROFILE[j + 1][k] - PROFILE[j][k]);
-      const angle = phi + (2 * Math.PI * (i + 0.5)) / SECTORS;
-      const [outward, size] = [dz, Math.hypot(dr, dz)];
-      const normal = sum(
-        [(outward / size) * Math.cos(angle), frame.nodes],
-        [(outward / size) * Math.sin(angle), frame.across],
-        [-dr / size, frame.axis],
-      );
+      const normal = around(frame, dz / size, (angles[i] + angles[i + 1]) / 2, -dr / size);
       if (depth(normal) <= 0) continue;
-      const light = 34 + 40 * Math.max(dot(normal, lamp), 0);
+      const corners = [rings[j][i], rings[j][i + 1], rings[j + 1][i + 1], rings[j + 1][i]];
       const isMark = i < 5 && j > 1 && j < 6;  // a sector that shows the spin
-      const saturation = isMark ? 85 - 60 * blur : 12;
-      const tint = `hsl(25 ${saturation}% ${light}%)`;
-      const middle = corners.reduce((total, p) => total + depth(p), 0);
-      faces.push([middle, corners.map(place), tint]);
+      const tint = `hsl(25 ${isMark ? 85 - 60 * blur : 12}% ${34 + 40 * Math.max(dot(normal, lamp), 0)}%)`;
+      faces.push([corners.reduce((total, p) => total + depth(p), 0), corners.map(place), tint]);
     }
   }
   return faces.sort((x, y) => x[0] - y[0]);
@@ -143,85 +129,87 @@ function facesOf(frame, phi, { place, depth, lamp }, blur) {
 function drawSpace() {
   const { pen, width, height, letters } = prepared(at.space);
   const view = viewOf(width, height);
-  const { place, depth, scale } = view;
-  const { theta, phi, psi } = motion.angles(t);
+  const { place, depth } = view;
+  const angles = motion.angles(t);
+  const { theta, phi, psi } = angles;
   const frame = frameOf(theta, psi);
-  const { ink, quiet, faint, blue, red, green, trace } = colours;
-  const circle = even(0, 2 * Math.PI, 120);
-  const [x0, y0] = place([0, 0, 0]);
-  area(pen, circle.map((x) => [x0 + scale * Math.cos(x), y0 + scale * Math.sin(x)]), faint);
+  disc(pen, place([0, 0, 0]), view.scale, "faint");
   const passed = curves.times.findIndex((time) => time > t);
   const path = curves.axes.slice(0, passed < 0 ? undefined : passed);
+  const axle = [sum([0.86, frame.axis]), frame.axis].map(place);
   function half(isNear) {
-    const side = (points, tint, style = {}) => {
+    const side = (points, tint, look = {}) => {
       const seen = points.map((p) => (depth(p) >= 0 === isNear ? place(p) : null));
-      line(pen, seen, tint, isNear ? style : { ...style, dash: [3, 3], alpha: 0.4 });
+      line(pen, seen, tint, isNear ? look : { ...look, dash: [3, 3], alpha: 0.4 });
     };
-    side(circle.map((x) => frameOf(Math.PI / 2, x).axis), quiet);
     const { theta_min_deg: least, theta_max_deg: most } = motion.record;
-    side(circle.map((x) => frameOf(least / DEGREES, x).axis), blue);
-    side(circle.map((x) => frameOf(most / DEGREES, x).axis), blue, { dash: [9, 3, 2, 3] });
-    side(path, trace, { width: 2.2 });
+    side(circle.map((x) => frameOf(Math.PI / 2, x).axis), "quiet");
+    side(circle.map((x) => frameOf(least / DEGREES, x).axis), "blue");
+    side(circle.map((x) => frameOf(most / DEGREES, x).axis), "blue", { dash: [9, 3, 2, 3] });
+    side(path, "trace", { width: 2.2 });
     for (const [name, axis] of Object.entries({ x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] })) {
-      if (depth(axis) >= 0 === isNear) {
-        line(pen, [[0, 0, 0], sum([1.15, axis])].map(place), quiet);
-        word(pen, name, place(sum([1.2, axis])), quiet);
-      }
+      if (depth(axis) >= 0 !== isNear) continue;
+      line(pen, [[0, 0, 0], sum([1.15, axis])].map(place), "quiet");
+      word(pen, name, place(sum([1.2, axis])), "quiet");
     }
   }
   half(false);
-  const axle = [sum([0.86, frame.axis]), frame.axis].map(place);
-  if (depth(frame.axis) < 0) line(pen, axle, ink, { width: 1.6 });
+  if (depth(frame.axis) < 0) line(pen, axle, "ink", { width: 1.6 });
   const blur = playing ? Math.min((Math.abs(scene.r0) * speed()) / 60, 1) : 0;
   for (const [, points, tint] of facesOf(frame, phi, view, blur)) {
     area(pen, points, tint);
     line(pen, [...points, points[0]], tint, { width: 0.6 });
   }
-  if (depth(frame.axis) >= 0) line(pen, axle, ink, { width: 1.6 });
+  if (depth(frame.axis) >= 0) line(pen, axle, "ink", { width: 1.6 });
   half(true);
   if (at.arcs.checked) {
-    line(pen, [[0, 0, 0], frame.nodes].map(place), green, { dash: [6, 3] });
-    const arc = (name, angle, tint, point) => {
-      const shown = angle % (2 * Math.PI);
-      line(pen, even(0, shown, 40).map((x) => place(point(x))), tint, { width: 2 });
-      word(pen, name, place(sum([1.14, point(shown / 2)])), tint);
+    line(pen, [[0, 0, 0], frame.nodes].map(place), "green", { dash: [6, 3] });
+    const points = {
+      psi: (x) => [0.55 * Math.cos(x), 0.55 * Math.sin(x), 0],
+      theta: (x) => sum([0.95, frameOf(x, psi).axis]),
+      phi: (x) => around(frame, 0.45, x, 0.5),
     };
-    arc("ψ", psi, green, (x) => [0.55 * Math.cos(x), 0.55 * Math.sin(x), 0]);
-    arc("ϑ", theta, blue, (x) => sum([0.95, frameOf(x, psi).axis]));
-    arc("φ", phi, red, (x) => sum([0.45 * Math.cos(x), frame.nodes],
-      [0.45 * Math.sin(x), frame.across], [0.5, frame.axis]));
+    for (const [name, point] of Object.entries(points)) {
+      const [symbol, , tint] = CURVES[name];
+      const shown = angles[name] % (2 * Math.PI);
+      line(pen, even(0, shown, 40).map((x) => place(point(x))), tint, { width: 2 });
+      word(pen, symbol, place(sum([1.14, point(shown / 2)])), tint);
+    }
   }
-  const shown = Object.entries({ theta, phi, psi });
-  at.now.textContent = shown.map(([x, y]) => `${ANGLES[x][0]} = ${text(y * DEGREES)}°`).join("\n");
+  at.now.textContent = Object.entries(angles).map(([x, y]) => `${CURVES[x][0]} = ${text(y * DEGREES)}°`).join("\n");
   at.now.style.fontSize = `${letters}px`;
 }
 
 // --- curves and cubic
 
+/** The names of ticks at the left and at the foot, each with its place. */
+function scales(pen, letters, left, foot, { across = [], up = [] }, digits) {
+  for (const [tick, x] of across) word(pen, text(tick, digits), [x, foot + 0.7 * letters], "ink");
+  for (const [tick, y] of up) {
+    word(pen, text(tick, digits), [left - 6, y], "ink", "right");
+    line(pen, [[left - 3, y], [left, y]], "quiet");
+  }
+}
+
 function drawCurves() {
   const { pen, width, height, letters } = prepared(at.plots);
   const [left, right, foot] = [4.8 * letters, width - 8, height - 2.6 * letters];
   const x = (time) => left + ((time - curves.from) / curves.span) * (right - left);
-  const mean = { phi: motion.record.mean_spin_rate ?? 0 };
-  Object.entries(ANGLES).forEach(([name, [, tint]], i) => {
-    const values = curves.angles.map((angles, j) =>
-      (angles[name] - (mean[name] ?? 0) * curves.times[j]) * DEGREES);
+  const mean = { theta: 0, phi: motion.record.mean_spin_rate ?? 0, psi: 0 };
+  Object.entries(CURVES).forEach(([name, [, title, tint]], i) => {
+    const values = curves.angles.map((angles, j) => (angles[name] - mean[name] * curves.times[j]) * DEGREES);
     const [low, high] = [Math.min(...values), Math.max(...values)];
     const [from, to] = high - low > 1e-7 ? [low, high] : [low - 1, high + 1];
     const [top, bottom] = [(foot * i) / 3 + 1.3 * letters, (foot * (i + 1)) / 3 - 6];
     const y = (value) => bottom - ((value - from) / (to - from)) * (bottom - top);
-    for (const tick of ticks(from, to, 4)) {
-      word(pen, text(tick, 6), [left - 6, y(tick)], colours.ink, "right");
-      line(pen, [[left - 3, y(tick)], [left, y(tick)]], colours.quiet);
-    }
-    word(pen, TITLES[name], [left + 4, top - 0.6 * letters], colours[tint], "left");
-    line(pen, values.map((value, j) => [x(curves.times[j]), y(value)]), colours[tint], { width: 1.8 });
+    scales(pen, letters, left, foot, { up: ticks(from, to, 4).map((tick) => [tick, y(tick)]) }, 6);
+    word(pen, title, [left + 4, top - 0.6 * letters], tint, "left");
+    line(pen, values.map((value, j) => [x(curves.times[j]), y(value)]), tint, { width: 1.8 });
   });
-  for (const tick of ticks(curves.from, curves.from + curves.span, 5)) {
-    word(pen, text(tick, 6), [x(tick), foot + 0.7 * letters], colours.ink);
-  }
-  word(pen, `t (${timeUnit})`, [(left + right) / 2, foot + 1.9 * letters], colours.ink);
-  line(pen, [[x(t), 4], [x(t), foot]], colours.trace, { width: 1.5 });
+  const across = ticks(curves.from, curves.from + curves.span, 5).map((tick) => [tick, x(tick)]);
+  scales(pen, letters, left, foot, { across }, 6);
+  word(pen, `t (${timeUnit})`, [(left + right) / 2, foot + 1.9 * letters], "ink");
+  line(pen, [[x(t), 4], [x(t), foot]], "trace", { width: 1.5 });
   curves.timeAt = (place) => curves.from + ((place - left) / (right - left)) * curves.span;
 }
 
@@ -232,35 +220,30 @@ function drawCubic() {
   const last = u3 !== null && u3 - u1 < 1.5 * (u1 - u2) ? u3 : u1;
   const room = 0.35 * (last - u2) || 0.2;
   const points = even(u2 - room, last + room, 200).map((u) => [u, motion.f(u)]);
-  const hump = Math.max(...points.filter(([u]) => u >= u2 && u <= u1).map(([, f]) => f), 0);
-  const most = hump || Math.max(...points.map(([, f]) => Math.abs(f))) || 1;
+  const hump = points.filter(([u]) => u >= u2 && u <= u1);
+  const most = Math.max(...hump.map(([, f]) => f), 0) || Math.max(...points.map(([, f]) => Math.abs(f))) || 1;
   const x = (u) => left + ((u - u2 + room) / (last - u2 + 2 * room)) * (right - left);
   const y = (f) => (top + bottom) / 2 - (f / (1.3 * most)) * ((bottom - top) / 2);
+  const place = ([u, f]) => [x(u), y(f)];
   pen.save();
   pen.beginPath();
   pen.rect(left, top - 8, right - left, bottom - top + 16);
   pen.clip();
-  const inside = points.filter(([u]) => u >= u2 && u <= u1).map(([u, f]) => [x(u), y(f)]);
-  area(pen, [[x(u2), y(0)], ...inside, [x(u1), y(0)]], colours.faint);
-  line(pen, points.map(([u, f]) => [x(u), y(f)]), colours.blue, { width: 1.8 });
+  area(pen, [[u2, 0], ...hump, [u1, 0]].map(place), "faint");
+  line(pen, points.map(place), "blue", { width: 1.8 });
   pen.restore();
-  line(pen, [[left, y(0)], [right, y(0)]], colours.quiet);
-  for (const tick of ticks(-most, most, 3)) {
-    word(pen, text(tick, 3), [left - 6, y(tick)], colours.ink, "right");
-  }
-  for (const tick of ticks(u2 - room, last + room, 4)) {
-    word(pen, text(tick, 4), [x(tick), bottom + 0.7 * letters], colours.ink);
-  }
-  for (const [name, u] of Object.entries({ "u₂": u2, "u₁": u1, "u₃": last === u3 ? u3 : null })) {
-    if (u === null || (name === "u₁" && u1 === u2)) continue;
-    area(pen, even(0, 2 * Math.PI, 12).map((k) => [x(u) + 3 * Math.cos(k), y(0) + 3 * Math.sin(k)]), colours.ink);
-    const label = u1 === u2 ? "u₁ = u₂" : name;
-    word(pen, label, [x(u) + (name === "u₃" ? 9 : -9), y(0) - 11], colours.ink);
+  line(pen, [[left, y(0)], [right, y(0)]], "quiet");
+  scales(pen, letters, left, bottom, { up: ticks(-most, most, 3).map((tick) => [tick, y(tick)]) }, 3);
+  scales(pen, letters, left, bottom, { across: ticks(u2 - room, last + room, 4).map((tick) => [tick, x(tick)]) }, 4);
+  const roots = u1 === u2 ? { "u₁ = u₂": u2 } : { "u₂": u2, "u₁": u1 };
+  for (const [name, u] of Object.entries(last === u3 ? { ...roots, "u₃": u3 } : roots)) {
+    disc(pen, place([u, 0]), 3, "ink");
+    word(pen, name, [x(u) + (name === "u₃" ? 9 : -9), y(0) - 11], "ink");
   }
   const u = Math.cos(motion.angles(t).theta);
-  area(pen, even(0, 2 * Math.PI, 16).map((k) => [x(u) + 6 * Math.cos(k), y(motion.f(u)) + 6 * Math.sin(k)]), colours.trace);
-  word(pen, "f(u) = u̇²", [left + 4, 0.8 * letters], colours.blue, "left");
-  word(pen, "u = cos ϑ", [(left + right) / 2, bottom + 1.9 * letters], colours.ink);
+  disc(pen, place([u, motion.f(u)]), 6, "trace");
+  word(pen, "f(u) = u̇²", [left + 4, 0.8 * letters], "blue", "left");
+  word(pen, "u = cos ϑ", [(left + right) / 2, bottom + 1.9 * letters], "ink");
 }
 
 // --- scene, time and camera
@@ -271,16 +254,9 @@ function sample() {
   const from = Math.floor(t / span) * span;
   const times = even(from, from + span, 1200);
   const angles = times.map(motion.angles);
+  const axes = angles.map(({ theta, psi }) => frameOf(theta, psi).axis);
   const { theta_min_deg: low, theta_max_deg: high, mean_precession_rate: turn } = motion.record;
-  curves = {
-    from,
-    span,
-    times,
-    angles,
-    axes: angles.map(({ theta, psi }) => frameOf(theta, psi).axis),
-    tilt: (low + high) / 2 / DEGREES,
-    turn: turn ?? 0,
-  };
+  curves = { from, span, times, angles, axes, tilt: (low + high) / 2 / DEGREES, turn: turn ?? 0 };
 }
 
 function draw() {
@@ -296,15 +272,13 @@ function draw() {
 }
 
 const fields = {};
-for (const [name, { symbol, name: meaning, unit }] of Object.entries(DATA.inputs)) {
-  const row = Object.assign(document.createElement("div"), { className: "input" });
-  const label = document.createElement("label");
-  const field = Object.assign(document.createElement("input"), { type: "text", id: `field-${name}` });
-  const slider = Object.assign(document.createElement("input"), { type: "range", step: "any" });
-  label.htmlFor = field.id;
-  label.textContent = `${symbol}  ${meaning}${withUnit(unit)}`;
-  field.inputMode = "decimal";
-  slider.ariaLabel = `${meaning}, slider`;
+for (const [name, { symbol, meaning, unit }] of Object.entries(DATA.inputs)) {
+  const make = (tag, parts) => Object.assign(document.createElement(tag), parts);
+  const words = `${symbol}  ${meaning}${/mass|len/.test(unit) || !unit ? "" : ` (${unit})`}`;
+  const label = make("label", { htmlFor: `field-${name}`, textContent: words });
+  const field = make("input", { type: "text", id: `field-${name}`, inputMode: "decimal" });
+  const slider = make("input", { type: "range", step: "any", ariaLabel: `${meaning}, slider` });
+  const row = make("div", { className: "input" });
   row.append(label, field, slider);
   at.inputs.append(row);
   fields[name] = { field, slider };
@@ -328,12 +302,10 @@ function complaint(given) {
   for (const [name, x] of Object.entries(given)) {
     const { symbol, sign } = DATA.inputs[name];
     if (!Number.isFinite(x)) return `${symbol} must be a number`;
-    if (sign === "positive" && !(x > 0)) return `${symbol} must be positive`;
-    if (sign === "not negative" && x < 0) return `${symbol} must not be negative`;
+    if (x < 0 ? sign : sign === "be positive" && !x) return `${symbol} must ${sign}`;
   }
   if (given.C > 2 * given.A) return `C must be at most 2A = ${text(2 * given.A)}`;
-  const isTilt = given.theta0_deg >= 0 && given.theta0_deg <= 180;
-  if (!isTilt) return `ϑ0 must be from 0° to 180°`;
+  if (given.theta0_deg < 0 || given.theta0_deg > 180) return "ϑ0 must be from 0° to 180°";
   return given.theta0_deg % 180 === 0 && given.psidot0 ? "a vertical axis has no ψ̇0" : "";
 }
 
@@ -353,17 +325,13 @@ function change(changes, anew = false) {
   if (anew) pace = motion.span / 2.5;
   at.words.textContent = sentence(motion, timeUnit);
   at.sketch.hidden = !motion.isSketch;
-  const rows = Object.entries(motion.record).filter(([, x]) => x !== null);
-  at.record.replaceChildren(...rows.map(([name, x]) => {
+  const shown = Object.entries(motion.record).filter(([, x]) => x !== null);
+  at.record.replaceChildren(...shown.map(([name, x]) => {
     const { symbol, meaning, unit, formula } = DATA.keys[name];
     const row = document.createElement("tr");
-    const [, what, value] = [symbol, meaning, `${text(x)} ${unit}`].map((words) => {
-      const cell = row.insertCell();
-      cell.textContent = words;
-      return cell;
-    });
-    what.append(Object.assign(document.createElement("small"), { textContent: formula }));
-    value.title = formula;
+    for (const words of [symbol, meaning, `${text(x)} ${unit}`]) row.insertCell().textContent = words;
+    row.cells[1].append(Object.assign(document.createElement("small"), { textContent: formula }));
+    row.cells[2].title = formula;
     return row;
   }));
   stale();
@@ -378,7 +346,6 @@ function stale() {
 
 function setTime(time) {
   if (Number.isFinite(time)) t = Math.max(time, 0);
-  fresh = false;
 }
 
 function play(isOn) {
@@ -407,21 +374,9 @@ function restore() {
   return words.size > 0;
 }
 
-function zoom(factor) {
-  camera.zoom = Math.max(0.5, Math.min(400, camera.zoom * factor));
-  fresh = false;
-}
-
-function resetView() {
-  Object.assign(camera, { azimuth: -62, elevation: 20, zoom: 1 });
-  fresh = false;
-}
-
-function fullScreen() {
-  if (document.fullscreenElement) document.exitFullscreen();
-  else at.stage.requestFullscreen();
-}
-
+const zoom = (factor) => Object.assign(camera, { zoom: clamped(camera.zoom * factor, 0.5, 400) });
+const resetView = () => Object.assign(camera, { azimuth: -62, elevation: 20, zoom: 1 });
+const fullScreen = () => (document.fullscreenElement ? document.exitFullscreen() : at.stage.requestFullscreen());
 const KEYS = {
   " ": () => play(!playing),
   ArrowRight: () => setTime(t + motion.span / 50),
@@ -432,46 +387,43 @@ const KEYS = {
   0: resetView,
   f: fullScreen,
 };
-at.play.addEventListener("click", () => play(!playing));
-at.restart.addEventListener("click", () => setTime(0));
-at.reset.addEventListener("click", resetView);
-at.full.addEventListener("click", fullScreen);
-at.time.addEventListener("change", () => setTime(number(at.time.value)));
-at.scrub.addEventListener("input", () => setTime((Number(at.scrub.value) * motion.span) / 10));
-at.arcs.addEventListener("change", stale);
-at.plots.addEventListener("pointermove", (event) => {
-  if (event.buttons) setTime(curves.timeAt(event.offsetX));
-});
-at.space.addEventListener("pointerdown", (event) => at.space.setPointerCapture(event.pointerId));
-at.space.addEventListener("pointermove", (event) => {
+const on = (part, kinds, act, options) => kinds.split(" ").forEach((kind) => part.addEventListener(kind, act, options));
+on(at.play, "click", () => play(!playing));
+on(at.restart, "click", () => setTime(0));
+on(at.reset, "click", resetView);
+on(at.full, "click", fullScreen);
+on(at.time, "change", () => setTime(number(at.time.value)));
+on(at.scrub, "input", () => setTime((Number(at.scrub.value) * motion.span) / 10));
+on(at.plots, "pointermove", (event) => event.buttons && setTime(curves.timeAt(event.offsetX)));
+on(at.space, "pointerdown", (event) => at.space.setPointerCapture(event.pointerId));
+on(at.space, "pointermove", (event) => {
   if (!event.buttons) return;
   camera.azimuth -= event.movementX * 0.5;
-  camera.elevation = Math.max(-90, Math.min(90, camera.elevation + event.movementY * 0.5));
-  fresh = false;
+  camera.elevation = clamped(camera.elevation + event.movementY * 0.5, -90, 90);
 });
-at.space.addEventListener("wheel", (event) => {
+on(at.space, "wheel", (event) => {
   event.preventDefault();
   zoom(event.deltaY < 0 ? 1.1 : 1 / 1.1);
 }, { passive: false });
-for (const kind of ["change", "pointerup", "wheel"]) document.addEventListener(kind, link);
-document.addEventListener("keydown", (event) => {
+on(document, "keydown", (event) => {
   if (event.target.closest("input, select, button") || !(event.key in KEYS)) return;
   event.preventDefault();
   KEYS[event.key]();
 });
 at.scenes.append(...["this scene", ...Object.keys(DATA.scenes)].map((name) => new Option(name)));
-at.scenes.value = DATA.name in DATA.scenes ? DATA.name : "this scene";
-at.scenes.addEventListener("change", () => {
-  change(DATA.scenes[at.scenes.value]?.inputs ?? DATA.scene, true);
-  at.scenes.title = DATA.scenes[at.scenes.value]?.remark ?? "";
+on(at.scenes, "change", () => {
+  const { inputs, remark } = DATA.scenes[at.scenes.value] ?? { inputs: DATA.scene, remark: "" };
+  change(inputs, true);
+  at.scenes.title = remark;
   setTime(0);
 });
+on(document, "change pointerup wheel", link);
+on(document, "change input click pointermove wheel keydown", () => { fresh = false; });
+on(document, "fullscreenchange", stale);
+on(matchMedia("(prefers-color-scheme: dark)"), "change", stale);
+on(window, "hashchange", () => restore());
 new ResizeObserver(stale).observe(document.body);
-document.addEventListener("fullscreenchange", stale);
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); stale(); });
-window.addEventListener("hashchange", restore);
 
-readColours();
 const isLinked = restore();
 play(!isLinked && !matchMedia("(prefers-reduced-motion: reduce)").matches);
 let last = performance.now();

@@ -30,6 +30,8 @@ SHOWN = (
 """The keys of the record that `motion.js` computes."""
 TRACES = {LIGHT: "#472d7b", DARK: "#dde318"}
 """Colour of the path of the axis on each paper."""
+SIGNS = {"positive": "be positive", "0 or more": "not be negative"}
+"""The words of the page for the bound of an input."""
 MOST = 1e30
 """Largest size of an input, and the inverse of the smallest, within the range of doubles."""
 
@@ -45,44 +47,44 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     '<!DOCTYPE html>'
     """
     check_type("motion", motion, Motion)
-    style = filled(text_of("style.css"), {"light": colours(LIGHT), "dark": colours(DARK)})
-    scripts = text_of("motion.js").replace("export ", "") + text_of("page.js")
+    style, motion_js, page_js, html = (
+        files(__package__).joinpath(name).read_text(encoding="utf-8")
+        for name in ("style.css", "motion.js", "page.js", "page.html")
+    )
     data = json.dumps(page_data(motion, unit), ensure_ascii=False).replace("</", "<\\/")
-    parts = {"style": style, "script": f"const DATA = {data};\n{scripts}"}
-    hashes = {f"{name}_hash": hash_of(part) for name, part in parts.items()}
-    return Document(filled(text_of("page.html"), parts | hashes))
+    scripts = motion_js.replace("export ", "") + page_js
+    parts = {
+        "style": filled(style, {"light": colours(LIGHT), "dark": colours(DARK)}),
+        "script": f"const DATA = {data};\n{scripts}",
+    }
+    for name, part in list(parts.items()):  # the content policy permits only these
+        digest = b64encode(sha256(part.encode()).digest()).decode()
+        parts[f"{name}_hash"] = f"'sha256-{digest}'"
+    return Document(filled(html, parts))
 
 
 def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
     """Return the constant DATA of the page."""
     formulas = {row.name: row.formula for row in listed()}
-    signs = {"positive": "positive", "0 or more": "not negative"}
+    inputs = {"theta0_deg" if name == "theta0" else name: DECLARED[name] for name in NINE}
+
+    def described(key: Any, meaning: str, **more: str) -> dict[str, str]:
+        unit_text = "°" if key.unit == "angle" else unit(key.unit)
+        return {"symbol": key.symbol, "meaning": meaning, "unit": unit_text, **more}
+
+    def sign(key: Any) -> str:
+        return next((y for x, y in SIGNS.items() if key.bound.startswith(x)), "")
+
     return {
         "scene": page_scene(motion),
-        "name": "",
         "scenes": {
             name: {"remark": scene_remark(name), "inputs": page_scene(solve(read_scene(name)))}
             for name in scene_names()
         },
-        "units": {name: unit(name) for name in ("mass", "len", "time")},
-        "inputs": {
-            "theta0_deg" if name == "theta0" else name: {
-                "symbol": DECLARED[name].symbol,
-                "name": DECLARED[name].name,
-                "unit": "°" if DECLARED[name].unit == "angle" else unit(DECLARED[name].unit),
-                "sign": next(
-                    (y for x, y in signs.items() if DECLARED[name].bound.startswith(x)), ""
-                ),
-            }
-            for name in NINE
-        },
+        "time": unit("time"),
+        "inputs": {name: described(x, x.name, sign=sign(x)) for name, x in inputs.items()},
         "keys": {
-            name: {
-                "symbol": KEYS[name].symbol,
-                "meaning": KEYS[name].meaning,
-                "unit": "°" if KEYS[name].unit == "angle" else unit(KEYS[name].unit),
-                "formula": formulas.get(name, ""),
-            }
+            name: described(KEYS[name], KEYS[name].meaning, formula=formulas.get(name, ""))
             for name in SHOWN
         },
     }
@@ -107,19 +109,9 @@ def colours(look: Look) -> str:
     return " ".join(f"--{name}: {colour};" for name, colour in names.items())
 
 
-def hash_of(text: str) -> str:
-    """Return the source of a content policy that permits only this style or script."""
-    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
-
-
 def filled(text: str, parts: dict[str, str]) -> str:
     """Return a text with its {{names}} replaced."""
     return re.sub(r"\{\{(\w+)\}\}", lambda name: parts[name[1]], text)
-
-
-def text_of(name: str) -> str:
-    """Return the text of a file of this folder."""
-    return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 def open_page(page: Document, path: str | None) -> None:
