@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from itertools import chain, starmap
 from typing import Any, ClassVar
 
 import pytest
@@ -54,6 +55,11 @@ class Register:
         for number, sides in holds.items():
             self.equation(number)(partial(_pairs, sides, cases))
 
+    def table(self, cases: Cases, holds: Mapping[str, Callable[..., Iterable[Any]]]) -> None:
+        """Register equations with several pairs of sides in each case."""
+        for number, pairs in holds.items():
+            self.equation(number)(partial(_all_pairs, pairs, cases))
+
     def each_as_printed(self, cases: Cases, fails: Mapping[str, Pair]) -> None:
         """Register misprints with one pair of sides in each case."""
         for number, sides in fails.items():
@@ -67,6 +73,11 @@ class Register:
 def _pairs(sides: Pair, cases: Cases) -> Sides:
     """Yield the pair of sides of each case."""
     return (sides(*case) for case in cases())
+
+
+def _all_pairs(pairs: Callable[..., Iterable[Any]], cases: Cases) -> Sides:
+    """Yield all pairs of sides of each case."""
+    return chain.from_iterable(starmap(pairs, cases()))
 
 
 def _entry(equations: dict[str, Equation], number: str) -> Callable[[Equation], Equation]:

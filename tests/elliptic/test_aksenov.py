@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterable
 from fractions import Fraction
-from itertools import islice
+from functools import partial
+from itertools import chain, islice
 from typing import Any, ClassVar
 
 import pytest
@@ -17,152 +19,24 @@ from lagrange_cli.elliptic.eta import EtaConstants, EtaTable, Quadrature, eta_co
 from lagrange_cli.elliptic.nome_series import k_series, nome_series
 
 aksenov = Register()
-equation, as_printed = aksenov.equation, aksenov.as_printed
-misreading = aksenov.misreading
-
 MODULI = [ar.mpf(x) for x in ("0.03", "0.5", "0.9", "0.9999")]
 ARGUMENTS = [ar.mpf(x) for x in ("-2.3", "0.4", "1.7", "11")]
+pairs: Callable[..., Any] = partial(zip, strict=True)
 
 
-def _cross_ratios(roots: list[Any]) -> list[Any]:
-    """Return the six values that k^2 may have after a linear-fractional substitution."""
-    a, b, c, d = roots
-    x = (a - b) * (c - d) / ((a - c) * (b - d))
-    return [x, 1 / x, 1 - x, 1 / (1 - x), 1 - 1 / x, x / (x - 1)]
+def moduli() -> Iterable[tuple[Any, ...]]:
+    """Yield k, k^2 and K."""
+    return ((k, k**2, ar.ellipk(k**2)) for k in MODULI)
 
 
-@equation("section 3.1: a linear-fractional substitution")
-def _() -> Sides:
-    a, b, c, d = roots = [ar.mpf(x) for x in ("2.1", "0.4", "-0.9", "-3")]
-    m, y = _cross_ratios(roots)[0], ar.mpf("1.3")
-    phi = ar.asin(ar.sqrt((a - c) * (y - b) / ((a - b) * (y - c))))
-
-    def integrand(z: Any) -> Any:  # with x = b + z^2 under the root of (a - x)(x - b)(x - c)(x - d)
-        x = b + z * z
-        return 2 / ar.sqrt((a - x) * (x - c) * (x - d))
-
-    there = ar.quad(integrand, [0, ar.sqrt(y - b)])
-    factor = 2 / ar.sqrt((a - c) * (b - d))
-    yield factor * incomplete_f(phi, ar.sqrt(m)), there
-    pairs = [ar.mpc("0.3", x) for x in (1, -1)] + [ar.mpc("-0.8", x) for x in ("1.7", "-1.7")]
-    yield from ((ar.im(x), 0) for x in _cross_ratios(pairs))
+def points() -> Iterable[tuple[Any, ...]]:
+    """Yield k, k^2, u, and our am, sn, cn, dn."""
+    return ((k, k**2, u, *jacobi(u, k)) for k in MODULI for u in ARGUMENTS)
 
 
-@as_printed("section 3.1: a linear-fractional substitution")
-def _() -> Sides:
-    """Show that two real roots and two complex ones have no real modulus."""
-    roots = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
-    yield from ((ar.im(x), 0) for x in _cross_ratios(roots))
-
-
-@equation("(3.1.1)")
-def _() -> Sides:
-    for k in MODULI:
-        x, m = ar.mpf("0.7"), k**2
-        integral = ar.quad(lambda t: 1 / ar.sqrt((1 - t * t) * (1 - m * t * t)), [0, x])  # noqa: B023
-        yield jacobi(integral, k)[1], x
-
-
-@equation("(3.1.2)")
-def _() -> Sides:
-    for k in MODULI:
-        for phi in (ar.mpf("0.7"), ar.mpf("4.4")):
-            yield incomplete_f(phi, k), ar.ellipf(phi, k**2)
-        yield quarter_period(k), ar.ellipk(k**2)
-
-
-@equation("(3.1.3)")
-def _() -> Sides:
-    for k in MODULI:
-        for u in ARGUMENTS:
-            yield ar.ellipf(jacobi(u, k)[0], k**2), u
-
-
-@equation("section 3.1: definitions of sn, cn, dn")
-def _() -> Sides:
-    for k in MODULI:
-        for u in ARGUMENTS:
-            am, sn, cn, dn = jacobi(u, k)
-            yield sn, ar.sin(am)
-            yield cn, ar.cos(am)
-            yield dn, ar.sqrt(1 - k**2 * ar.sin(am) ** 2)
-            yield sn, ar.ellipfun("sn", u, m=k**2)
-
-
-@equation("section 3.1: property 1")
-def _() -> Sides:
-    for k in MODULI:
-        K = ar.ellipk(k**2)
-        for u in ARGUMENTS:
-            here, half = jacobi(u, k), jacobi(u + 2 * K, k)
-            yield from zip(half, (here[0] + ar.pi, -here[1], -here[2], here[3]), strict=True)
-            yield from zip(jacobi(u + 4 * K, k)[1:], here[1:], strict=True)
-
-
-@equation("section 3.1: property 2")
-def _() -> Sides:
-    for k in MODULI:
-        K = ar.ellipk(k**2)
-        values = [jacobi(i * K / 2, k) for i in range(-5, 6)]
-        for extreme in (min, max):
-            sign = 1 if extreme is max else -1
-            yield extreme(value[1] for value in values), sign
-            yield extreme(value[2] for value in values), sign
-        yield min(value[3] for value in values), ar.sqrt(1 - k**2)
-        yield max(value[3] for value in values), 1
-
-
-@equation("section 3.1: table 2")
-def _() -> Sides:
-    for k in MODULI:
-        K, less = ar.ellipk(k**2), ar.sqrt(1 - k**2)
-        table = [(0, 1, 1), (1, 0, less), (0, -1, 1), (-1, 0, less), (0, 1, 1)]
-        for quarter, values in enumerate(table):
-            yield from zip(jacobi(quarter * K, k)[1:], values, strict=True)
-
-
-@equation("section 3.1: property 3")
-def _() -> Sides:
-    for k in MODULI:
-        for u in ARGUMENTS:
-            here, there = jacobi(u, k), jacobi(-u, k)
-            yield from zip(there, (-here[0], -here[1], here[2], here[3]), strict=True)
-
-
-@equation("section 3.1: property 4")
-def _() -> Sides:
-    for k in MODULI:
-        for u in ARGUMENTS:
-            _, sn, cn, dn = jacobi(u, k)
-            m = k**2
-            yield sn**2 + cn**2, 1
-            yield dn**2 + m * sn**2, 1
-            yield dn**2 - m * cn**2 + m, 1
-
-
-@as_printed("section 3.1: property 4")
-def _() -> Sides:
-    _, sn, _, dn = jacobi(ARGUMENTS[1], MODULI[1])
-    yield dn**2 + MODULI[1] ** 2 * sn**2, -1
-
-
-@equation("section 3.1: property 5")
-def _() -> Sides:
-    for u in ARGUMENTS:
-        yield from zip(jacobi(u, 0), (u, ar.sin(u), ar.cos(u), 1), strict=True)
-        limit = jacobi(u, 1)
-        yield from zip(limit[1:], (ar.tanh(u), ar.sech(u), ar.sech(u)), strict=True)
-
-
-@equation("section 3.1: property 5, next terms")
-def _() -> Sides:
-    for u in ARGUMENTS[:3]:
-        small = ar.mpf(10) ** -12
-        circular = -ar.cos(u) * (u - ar.sin(u) * ar.cos(u)) / 4
-        yield (jacobi(u, small)[1] - ar.sin(u)) / small**2 * 1, circular
-        hyperbolic = (ar.sinh(u) * ar.cosh(u) - u) / ar.cosh(u) ** 2 / 4
-        near_one = jacobi(u, ar.sqrt(1 - small**2))[1]
-        yield (near_one - ar.tanh(u)) / small**2, hyperbolic
+def theirs(u: Any, m: Any) -> list[Any]:
+    """Return sn, cn, dn by mpmath."""
+    return [ar.ellipfun(name, u, m=m) for name in ("sn", "cn", "dn")]
 
 
 def partial_sum(name: str, k: Any, u: Any = 0, terms: int = 250) -> Any:
@@ -176,47 +50,102 @@ def partial_sum(name: str, k: Any, u: Any = 0, terms: int = 250) -> Any:
     return ours.evaluated(compute)
 
 
-@equation("(3.1.4)")
-def _() -> Sides:
-    for k in MODULI:
-        for u in ARGUMENTS:
-            yield partial_sum("sn", k, u), ar.ellipfun("sn", u, m=k**2)
+def first_kind(x: Any, m: Any) -> Any:
+    """Return the integral (3.1.1) by quadrature."""
+    return ar.quad(lambda t: 1 / ar.sqrt((1 - t * t) * (1 - m * t * t)), [0, x])
 
 
-@equation("(3.1.5)")
-def _() -> Sides:
-    for k in MODULI:
-        for u in ARGUMENTS:
-            yield partial_sum("cn", k, u), ar.ellipfun("cn", u, m=k**2)
+def cross_ratios(roots: list[Any]) -> list[Any]:
+    """Return the six values that k^2 may have after a linear-fractional substitution."""
+    a, b, c, d = roots
+    x = (a - b) * (c - d) / ((a - c) * (b - d))
+    return [x, 1 / x, 1 - x, 1 / (1 - x), 1 - 1 / x, x / (x - 1)]
 
 
-@equation("(3.1.6)")
-def _() -> Sides:
-    for k in MODULI:
-        m = k**2
-        there = ar.exp(-ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
-        yield nome(k), there
+def substituted() -> Sides:
+    """Yield the integral between four real roots, and the moduli of two complex pairs."""
+    a, b, c, d = roots = [ar.mpf(x) for x in ("2.1", "0.4", "-0.9", "-3")]
+    m, y = cross_ratios(roots)[0], ar.mpf("1.3")
+    phi = ar.asin(ar.sqrt((a - c) * (y - b) / ((a - b) * (y - c))))
+
+    def integrand(z: Any) -> Any:  # with x = b + z^2 under the root of (a - x)(x - b)(x - c)(x - d)
+        x = b + z * z
+        return 2 / ar.sqrt((a - x) * (x - c) * (x - d))
+
+    factor = 2 / ar.sqrt((a - c) * (b - d))
+    yield factor * incomplete_f(phi, ar.sqrt(m)), ar.quad(integrand, [0, ar.sqrt(y - b)])
+    complex_roots = [ar.mpc(x, sign * y) for x, y in ((0.3, 1), (-0.8, 1.7)) for sign in (1, -1)]
+    yield from ((ar.im(x), 0) for x in cross_ratios(complex_roots))
 
 
-@as_printed("(3.1.6)")
-def _() -> Sides:
-    m = MODULI[1] ** 2
-    left = nome(MODULI[1])
-    yield left, ar.exp(ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
-
-
-@equation("(3.1.7)")
-def _() -> Sides:
-    for k in MODULI:
-        for u in ARGUMENTS:
-            yield ar.ellipf(partial_sum("am", k, u), k**2), u
-
-
-@equation("(3.1.8)")
-def _() -> Sides:
-    for k in MODULI[:3]:
-        yield partial_sum("K", k, terms=600), ar.ellipk(k**2)
-
+aksenov.table(
+    lambda: [()],
+    {
+        "section 3.1: a linear-fractional substitution": substituted,
+        "section 3.1: property 5": lambda: chain(
+            *(pairs(jacobi(u, 0), (u, ar.sin(u), ar.cos(u), 1)) for u in ARGUMENTS),
+            *(pairs(jacobi(u, 1)[1:], (ar.tanh(u), ar.sech(u), ar.sech(u))) for u in ARGUMENTS),
+        ),
+    },
+)
+aksenov.table(
+    moduli,
+    {
+        "(3.1.1)": lambda k, m, K: [(jacobi(first_kind(ar.mpf("0.7"), m), k)[1], ar.mpf("0.7"))],
+        "(3.1.2)": lambda k, m, K: [
+            (quarter_period(k), K),
+            *((incomplete_f(phi, k), ar.ellipf(phi, m)) for phi in (ar.mpf("0.7"), ar.mpf("4.4"))),
+        ],
+        "section 3.1: property 2": lambda k, m, K: [
+            (extreme(jacobi(i * K / 2, k)[name] for i in range(-5, 6)), value)
+            for extreme, values in ((min, (-1, -1, ar.sqrt(1 - m))), (max, (1, 1, 1)))
+            for name, value in enumerate(values, 1)
+        ],
+        "section 3.1: table 2": lambda k, m, K: [
+            pair
+            for i, values in enumerate([(0, 1, 1), (1, 0, 0), (0, -1, 1), (-1, 0, 0), (0, 1, 1)])
+            for pair in pairs(jacobi(i * K, k)[1:], (*values[:2], values[2] or ar.sqrt(1 - m)))
+        ],
+        "(3.1.6)": lambda k, m, K: [(nome(k), ar.exp(-ar.pi * ar.ellipk(1 - m) / K))],
+        "(3.1.8)": lambda k, m, K: [(partial_sum("K", k, terms=600), K)] if k < 0.99 else [],
+    },
+)
+aksenov.table(
+    points,
+    {
+        "(3.1.3)": lambda k, m, u, am, *_: [(ar.ellipf(am, m), u)],
+        "section 3.1: definitions of sn, cn, dn": lambda k, m, u, am, *found: [
+            *pairs(found, (ar.sin(am), ar.cos(am), ar.sqrt(1 - m * ar.sin(am) ** 2))),
+            *pairs(found, theirs(u, m)),
+        ],
+        "section 3.1: property 1": lambda k, m, u, am, sn, cn, dn: [
+            *pairs(jacobi(u + 2 * ar.ellipk(m), k), (am + ar.pi, -sn, -cn, dn)),
+            *pairs(jacobi(u + 4 * ar.ellipk(m), k)[1:], (sn, cn, dn)),
+        ],
+        "section 3.1: property 3": lambda k, m, u, am, sn, cn, dn: pairs(
+            jacobi(-u, k), (-am, -sn, cn, dn)
+        ),
+        "section 3.1: property 4": lambda k, m, u, am, sn, cn, dn: [
+            *((sn**2 + cn**2, 1), (dn**2 + m * sn**2, 1), (dn**2 - m * cn**2 + m, 1))
+        ],
+        "(3.1.4)": lambda k, m, u, *_: [(partial_sum("sn", k, u), ar.ellipfun("sn", u, m=m))],
+        "(3.1.5)": lambda k, m, u, *_: [(partial_sum("cn", k, u), ar.ellipfun("cn", u, m=m))],
+        "(3.1.7)": lambda k, m, u, *_: [(ar.ellipf(partial_sum("am", k, u), m), u)],
+    },
+)
+SMALL = ar.mpf(10) ** -12
+aksenov.table(
+    lambda: ((u, ar.sin(u), ar.cos(u), ar.sinh(u), ar.cosh(u)) for u in ARGUMENTS[:3]),
+    {
+        "section 3.1: property 5, next terms": lambda u, sin, cos, sinh, cosh: [
+            ((jacobi(u, SMALL)[1] - sin) / SMALL**2, -cos * (u - sin * cos) / 4),
+            (
+                (jacobi(u, ar.sqrt(1 - SMALL**2))[1] - ar.tanh(u)) / SMALL**2,
+                (sinh * cosh - u) / cosh**2 / 4,
+            ),
+        ]
+    },
+)
 
 # Section 3.2 on a generic quadrature: the integral, and each constant by the text's own formula.
 
@@ -227,7 +156,9 @@ TABLE = EtaTable(ListedPoints([]), NESTED)
 DELTA, DELTA_STAR, P_, Q_, G_ = (
     ar.mpf(x.numerator) / x.denominator for x in (UPPER, LOWER, P, Q, G)
 )
+MIDDLE, HALF = (DELTA + DELTA_STAR) / 2, (DELTA - DELTA_STAR) / 2
 K1 = ar.ellipk(C.k1**2)
+TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]
 
 
 def eta_at(tau: Any) -> Any:
@@ -235,123 +166,107 @@ def eta_at(tau: Any) -> Any:
     return ours.evaluated(lambda: TABLE.columns(fraction(tau), TABLE.constants())["eta"])
 
 
-TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]
+def times() -> Iterable[tuple[Any, ...]]:
+    """Yield tau, eta, and xi = sn(h1, k1) of (3.2.11) with its amplitude."""
+    found = ((tau, ar.ellipfun("sn", C.sigma1 * tau - K1, m=C.k1**2)) for tau in TAUS)
+    return ((tau, eta_at(tau), xi, ar.asin(xi)) for tau, xi in found)
 
 
-@equation("(3.2.1)")
-def _() -> Sides:
-    middle, half = (DELTA + DELTA_STAR) / 2, (DELTA - DELTA_STAR) / 2
-    for tau in TAUS:
-        angle = ar.asin((eta_at(tau) - middle) / half)  # takes the root at delta* away
-
-        def integrand(x: Any) -> Any:
-            return 1 / ar.sqrt(Q_**2 - (middle + half * ar.sin(x) - P_) ** 2)
-
-        yield ar.quad(integrand, [-ar.pi / 2, angle]), ar.sqrt(G_) * tau
+def to(angle: Any, integrand: Callable[[Any], Any]) -> Any:
+    """Return the integral from -pi/2 to an angle of an even function over the root of another."""
+    return ar.quad(lambda x: 1 / ar.sqrt(integrand(x)), [-ar.pi / 2, angle])
 
 
-def xi(tau: Any) -> Any:
-    """Return sn(h1, k1) of (3.2.11)."""
-    return ar.ellipfun("sn", C.sigma1 * tau - K1, m=C.k1**2)
+def fractional(sine: Any) -> Any:
+    """Return the right side of (3.2.6), (3.2.9) and (3.2.11)."""
+    return (C.gamma + C.s * sine) / (1 + C.d * sine)
 
 
-@equation("(3.2.2)")
-def _() -> Sides:
-    less, more = C.m1 - C.m2, C.m1 + C.m2
-    for tau in TAUS:
-        fraction = (less - more * xi(tau)) / (less * xi(tau) - more)
-        yield eta_at(tau), (DELTA + DELTA_STAR) / 2 + (DELTA - DELTA_STAR) / 2 * fraction
-
-
-@equation("(3.2.3)")
-def _() -> Sides:
-    yield C.m1, ar.sqrt(Q_**2 - (DELTA - P_) ** 2)
-    yield C.m2, ar.sqrt(Q_**2 - (DELTA_STAR - P_) ** 2)
-
-
-@equation("(3.2.4)")
-def _() -> Sides:
-    for tau in TAUS:
-        angle = ar.asin(xi(tau))
-        integral = ar.quad(lambda x: 1 / ar.sqrt(1 + C.k**2 * ar.cos(x) ** 2), [-ar.pi / 2, angle])
-        yield integral, ar.sqrt(G_ * C.m1 * C.m2) * tau
-
-
-def _k2(sign: int) -> Any:
+def k2(sign: int) -> Any:
     """Return the right side of (3.2.5) with a sign between the two squares."""
     return ((DELTA - DELTA_STAR) ** 2 + sign * (C.m1 - C.m2) ** 2) / (4 * C.m1 * C.m2)
 
 
-@equation("(3.2.5)")
-def _() -> Sides:
-    yield C.k**2, _k2(1)
+aksenov.table(
+    times,
+    {
+        "(3.2.1)": lambda tau, eta, xi, theta: [  # over a sine, which takes the root at delta* away
+            (
+                to(
+                    ar.asin((eta - MIDDLE) / HALF),
+                    lambda x: Q_**2 - (MIDDLE + HALF * ar.sin(x) - P_) ** 2,
+                ),
+                ar.sqrt(G_) * tau,
+            )
+        ],
+        "(3.2.2)": lambda tau, eta, xi, theta: [
+            (
+                (eta - MIDDLE) / HALF,
+                (C.m1 - C.m2 - (C.m1 + C.m2) * xi) / ((C.m1 - C.m2) * xi - C.m1 - C.m2),
+            )
+        ],
+        "(3.2.4)": lambda tau, eta, xi, theta: [
+            (to(theta, lambda x: 1 + C.k**2 * ar.cos(x) ** 2), ar.sqrt(G_ * C.m1 * C.m2) * tau)
+        ],
+        "(3.2.6)": lambda tau, eta, xi, theta: [(eta, fractional(ar.sin(theta)))],
+        "(3.2.7)": lambda tau, eta, xi, theta: [
+            (to(theta, lambda x: 1 - (C.k1 * ar.sin(x)) ** 2), C.sigma1 * tau),
+            (ar.ellipf(theta, C.k1**2) + K1, C.sigma1 * tau),
+        ],
+        "(3.2.9)": lambda tau, eta, xi, theta: [
+            (eta, fractional(ar.sin(jacobi(C.sigma1 * tau - K1, C.k1)[0])))
+        ],
+        "(3.2.11)": lambda tau, eta, xi, theta: [(eta, fractional(xi))],
+    },
+)
+aksenov.table(
+    lambda: [()],
+    {
+        "(3.2.3)": lambda: [
+            (C.m1, ar.sqrt(Q_**2 - (DELTA - P_) ** 2)),
+            (C.m2, ar.sqrt(Q_**2 - (DELTA_STAR - P_) ** 2)),
+        ],
+        "(3.2.5)": lambda: [(C.k**2, k2(1))],
+        "(3.2.8)": lambda: [
+            (C.k1**2, k2(1) / (1 + k2(1))),
+            (C.sigma1, ar.sqrt(G_ * C.m1 * C.m2 * (1 + k2(1)))),
+            (C.k1_prime**2, 1 - C.k1**2),
+        ],
+        "(3.2.10)": lambda: [
+            (eta_at(ar.mpf(0)), DELTA_STAR),
+            (eta_at(2 * K1 / C.sigma1), DELTA),
+            (C.period, 4 * K1 / C.sigma1),
+        ],
+        "(3.2.12)": lambda: [
+            (C.s, (C.m2 * DELTA - C.m1 * DELTA_STAR) / (C.m1 + C.m2)),
+            (C.d, (C.m2 - C.m1) / (C.m1 + C.m2)),
+            (C.gamma, (C.m1 * DELTA_STAR + C.m2 * DELTA) / (C.m1 + C.m2)),
+        ],
+    },
+)
 
-
-@misreading("(3.2.5) as printed, the plus read as a minus")
-def _() -> Sides:
-    share = 4 * C.m1 * C.m2 / (C.m1 - C.m2) ** 2
-    yield share * C.k**2, share * _k2(-1)
-
-
-@equation("(3.2.6)")
-def _() -> Sides:
-    for tau in TAUS:
-        theta = ar.asin(xi(tau))
-        yield eta_at(tau), (C.gamma + C.s * ar.sin(theta)) / (1 + C.d * ar.sin(theta))
-
-
-@equation("(3.2.7)")
-def _() -> Sides:
-    for tau in TAUS:
-        theta = ar.asin(xi(tau))
-        integral = ar.quad(lambda x: 1 / ar.sqrt(1 - (C.k1 * ar.sin(x)) ** 2), [-ar.pi / 2, theta])
-        yield integral, C.sigma1 * tau
-        yield ar.ellipf(theta, C.k1**2) + K1, C.sigma1 * tau
-
-
-@equation("(3.2.8)")
-def _() -> Sides:
-    k2 = _k2(1)
-    yield C.k1**2, k2 / (1 + k2)
-    yield C.sigma1, ar.sqrt(G_ * C.m1 * C.m2 * (1 + k2))
-    yield C.k1_prime**2, 1 - C.k1**2
-
-
-@equation("(3.2.9)")
-def _() -> Sides:
-    for tau in TAUS:
-        h1 = C.sigma1 * tau - K1
-        theta = jacobi(h1, C.k1)[0]
-        yield eta_at(tau), (C.gamma + C.s * ar.sin(theta)) / (1 + C.d * ar.sin(theta))
-
-
-@equation("(3.2.10)")
-def _() -> Sides:
-    yield eta_at(ar.mpf(0)), DELTA_STAR
-    yield eta_at(2 * K1 / C.sigma1), DELTA
-    yield C.period, 4 * K1 / C.sigma1
-
-
-@misreading("(3.2.10) as printed, the minus read as a plus")
-def _() -> Sides:
-    sn = ar.ellipfun("sn", C.sigma1 * TAUS[0] + K1, m=C.k1**2)
-    yield eta_at(TAUS[0]), (C.gamma + C.s * sn) / (1 + C.d * sn)
-
-
-@equation("(3.2.11)")
-def _() -> Sides:
-    for tau in TAUS:
-        yield eta_at(tau), (C.gamma + C.s * xi(tau)) / (1 + C.d * xi(tau))
-
-
-@equation("(3.2.12)")
-def _() -> Sides:
-    total = C.m1 + C.m2
-    yield C.s, -(C.m1 * DELTA_STAR - C.m2 * DELTA) / total
-    yield C.d, -(C.m1 - C.m2) / total
-    yield C.gamma, (C.m1 * DELTA_STAR + C.m2 * DELTA) / total
-    yield C.gamma + C.s, DELTA * (1 + C.d)
-    yield C.gamma - C.s, DELTA_STAR * (1 - C.d)
+two_real = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
+aksenov.each_as_printed(
+    lambda: [()],
+    {
+        "(3.1.6)": lambda: (nome(0.5), ar.exp(ar.pi * ar.ellipk(0.75) / ar.ellipk(0.25))),
+        "section 3.1: property 4": lambda: (
+            jacobi(1, 0.5)[3] ** 2 + jacobi(1, 0.5)[1] ** 2 / 4,
+            -1,
+        ),
+    },
+)
+aksenov.as_printed("section 3.1: a linear-fractional substitution")(
+    lambda: ((ar.im(x), 0) for x in cross_ratios(two_real))  # no real modulus
+)
+aksenov.misreading("(3.2.5) as printed, the plus read as a minus")(
+    lambda: iter([(x * C.k**2, x * k2(-1)) for x in [4 * C.m1 * C.m2 / (C.m1 - C.m2) ** 2]])
+)
+aksenov.misreading("(3.2.10) as printed, the minus read as a plus")(
+    lambda: iter(
+        [(eta_at(x), fractional(ar.ellipfun("sn", C.sigma1 * x + K1, m=C.k1**2))) for x in TAUS[:1]]
+    )
+)
 
 
 class TestAksenov(EquationTests):
