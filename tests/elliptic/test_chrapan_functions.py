@@ -53,15 +53,16 @@ k, COMPLEMENT, K, K_PRIME, E, Q, K_BAR, STRETCH, S, C, D, IMAGINARY, OTHER = nam
 # IMAGINARY is the nome and K of the modulus i k_bar, OTHER of k'.
 
 
-def theta_there(ij: str, v: Any, q: Any = None, quarter: Any = None, order: int = 0) -> Any:
-    """Return Theta_ij(v) or a derivative by mpmath, for another modulus by its q and K."""
-    scale = ar.pi / (2 * (quarter or K))
-    return scale**order * ar.jtheta(NUMBER[ij], scale * v, q or Q, order)
+def theta_there(ij: str, v: Any, *of: Any, order: int = 0) -> Any:
+    """Return Theta_ij(v) or a derivative by mpmath, for another modulus by its nome and K."""
+    q, quarter = of or (Q, K)
+    scale = ar.pi / (2 * quarter)
+    return scale**order * ar.jtheta(NUMBER[ij], scale * v, q, order)
 
 
 def zeta_there(ij: str, v: Any, *of: Any) -> Any:
     """Return Z_ij(v) by mpmath."""
-    return theta_there(ij, v, *(of or (None, None)), 1) / theta_there(ij, v, *of)
+    return theta_there(ij, v, *of, order=1) / theta_there(ij, v, *of)
 
 
 def ratio_there(ij: str, eta: Any, v: Any, *of: Any) -> Any:

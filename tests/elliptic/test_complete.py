@@ -25,39 +25,39 @@ RATIOS = [(0.0, 1.0), (1e-60, 1.0), (0.3, 0.7), (2.0, 1e-30), (1.0, 0.0)]
 
 
 def _place(m: Any, s2: Any, c2: Any) -> Any:
-    """Return pi F(phi, m)/2K(m) for the amplitude with tan^2 phi = s2/c2."""
+    """Return pi F(phi, m) for the amplitude with tan^2 phi = s2/c2."""
     return mpmath.pi * mpmath.ellipf(mpmath.atan2(mpmath.sqrt(s2), mpmath.sqrt(c2)), m)
 
 
-def _of_complement(name: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return a function of ar and k', and the same by mpmath."""
-    ours: dict[str, Callable[..., Any]] = {
-        "agm": lambda ar, k: complete.agm(ar, 1, k),
-        "K": complete.complete_k,
-        "E": complete.complete_e,
-        "mean": lambda ar, k: complete.period_mean(ar, k, 0 * k + 0.375, 2, 3),
-        "nome": lambda ar, k: complete.nome(ar, m=(1 - k) * (1 + k), k_prime=k),
-        "R_F": lambda ar, k: carlson_rf(ar, 0 * k, k, 5 + k),
-        "place": lambda ar, k: complete.place(
-            ar, m=(1 - k) * (1 + k), k_prime=k, sn=0 * k + 0.5, cn2=0 * k + 0.75
-        ),
-    }
-    theirs: dict[str, Callable[..., Any]] = {
-        "agm": lambda k: mpmath.agm(1, k),
-        "K": lambda k: mpmath.ellipk(1 - k * k),
-        "E": lambda k: mpmath.ellipe(1 - k * k),
-        # (2 cn^2 + 3 sn^2)/(cn^2 + p sn^2) is (a + (b - a) sn^2)/(1 - n sn^2), n = 1 - p
-        "mean": lambda k: (
-            (mpmath.ellippi(0.625, 1 - k * k) / mpmath.ellipk(1 - k * k)) * (2 + mpmath.mpf(8) / 5)
-            - mpmath.mpf(8) / 5
-        ),
-        "nome": lambda k: mpmath.qfrom(m=1 - k * k),
-        "R_F": lambda k: mpmath.elliprf(0, k, 5 + k),
-        "place": lambda k: (
-            mpmath.pi * mpmath.ellipf(mpmath.asin(0.5), 1 - k * k) / (2 * mpmath.ellipk(1 - k * k))
-        ),
-    }
-    return ours[name], theirs[name]
+def _squares(k: Any) -> dict[str, Any]:
+    return {"m": (1 - k) * (1 + k), "k_prime": k}
+
+
+def _mean_there(k: Any) -> Any:
+    """(2 cn^2 + 3 sn^2)/(cn^2 + p sn^2) is (a + (b - a) sn^2)/(1 - n sn^2), n = 1 - p."""
+    share = mpmath.ellippi(0.625, 1 - k * k) / mpmath.ellipk(1 - k * k)
+    return share * mpmath.mpf(18) / 5 - mpmath.mpf(8) / 5
+
+
+OF_A_COMPLEMENT: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
+    "agm": (lambda ar, k: complete.agm(ar, 1, k), lambda k: mpmath.agm(1, k)),
+    "K": (complete.complete_k, lambda k: mpmath.ellipk(1 - k * k)),
+    "E": (complete.complete_e, lambda k: mpmath.ellipe(1 - k * k)),
+    "mean": (lambda ar, k: complete.period_mean(ar, k, 0 * k + 0.375, 2, 3), _mean_there),
+    "nome": (
+        lambda ar, k: complete.nome(ar, **_squares(k)),
+        lambda k: mpmath.qfrom(m=1 - k * k),
+    ),
+    "R_F": (
+        lambda ar, k: carlson_rf(ar, 0 * k, k, 5 + k),
+        lambda k: mpmath.elliprf(0, k, 5 + k),
+    ),
+    "place": (
+        lambda ar, k: complete.place(ar, **_squares(k), sn=0 * k + 0.5, cn2=0 * k + 0.75),
+        lambda k: _place(1 - k * k, 1, 3) / mpmath.ellipk(1 - k * k) / 2,
+    ),
+}
+"""Functions of ar and k', and the same by mpmath."""
 
 
 def check(ours: Callable[..., Any], exact: list[Any], inputs: Sequence[tuple[float, ...]]) -> None:
@@ -76,9 +76,9 @@ def check(ours: Callable[..., Any], exact: list[Any], inputs: Sequence[tuple[flo
             assert float(ball.rad()) <= 1e-38 * max(abs(true), 1e-40), numbers
 
 
-@pytest.mark.parametrize("name", ["agm", "K", "E", "mean", "nome", "R_F", "place"])
+@pytest.mark.parametrize("name", OF_A_COMPLEMENT)
 def test_functions_of_a_complement(name: str) -> None:
-    ours, theirs = _of_complement(name)
+    ours, theirs = OF_A_COMPLEMENT[name]
     usual = COMPLEMENTS[:-1] if name == "nome" else COMPLEMENTS  # q of k = 0 is 0
     with mpmath.workdps(70):
         check(ours, [theirs(mpmath.mpf(k)) for k in usual], [(k,) for k in usual])
@@ -94,7 +94,7 @@ def test_places(imaginary: bool, part: int) -> None:
     inputs = [(k, *ratio) for k in (0.25, 0.75) for ratio in RATIOS]
 
     def ours(ar: Any, k: Any, s2: Any, c2: Any) -> Any:
-        return function(ar, m=(1 - k) * (1 + k), k_prime=k, s2=s2, c2=c2)[part]
+        return function(ar, **_squares(k), s2=s2, c2=c2)[part]
 
     def theirs(k: Any, s2: Any, c2: Any) -> Any:
         m = 1 - k * k

@@ -1,4 +1,4 @@
-"""eta(tau) against its quadrature in 60 digits, in every layout and near every degeneracy."""
+"""eta(tau) by mpmath and its differential equation, in every layout, near every degeneracy."""
 
 from __future__ import annotations
 
@@ -67,86 +67,40 @@ WITH_CHAIN = ("eta", "h1", "theta", "xi_prime")
 PARTS = [1e-6, 0.21, 0.4999, 0.62, 3.3, -7.7]
 
 
-class Integral:
-    """tau as a function of eta by quadrature over eta = middle - half cos chi; the judge."""
-
-    def __init__(self, of: Quadrature) -> None:
-        numbers = (of.lower, of.upper, of.g, of.height, *of.outer)
-        self.lower, self.upper, self.g, self.height, *self.outer = map(big, numbers)
-
-    def eta(self, chi: Any) -> Any:
-        return self.lower + (self.upper - self.lower) * mpmath.sin(chi / 2) ** 2
-
-    def pace(self, chi: Any) -> Any:
-        """Return d tau/d chi."""
-        eta = self.eta(chi)
-        product = abs(mpmath.fprod(eta - root for root in self.outer))
-        return 1 / mpmath.sqrt(self.g * (product + self.height**2))
-
-    def tau(self, chi: Any) -> Any:
-        """Return tau since delta* at chi = 0; split where an outer root is close."""
-        corners = [mpmath.mpf(10) ** -n for n in (12, 9, 6, 4, 2)]
-        ends: Any = {*corners, 1, mpmath.pi - 1, *(mpmath.pi - x for x in corners)}
-        if self.height and self.lower < self.outer[0] < self.upper:
-            share = (self.outer[0] - self.lower) / (self.upper - self.lower)
-            middle = 2 * mpmath.asin(mpmath.sqrt(share))
-            ends |= {middle, *(middle + sign * x for x in corners for sign in (-1, 1))}
-        ends = sorted(ends)
-        return mpmath.quad(self.pace, [0, *(x for x in ends if x < chi), chi])
-
-    def chi(self, tau: Any, guess: Any) -> Any:
-        """Return chi by two steps of Newton's method from our own answer."""
-        for _ in range(2):
-            guess -= (self.tau(guess) - tau) / self.pace(guess)
-        return guess
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ORBITS)
-def test_eta(name: str) -> None:
-    """Every number is the double next to that of the quadrature."""
-    of = ORBITS[name]
-    with mpmath.workdps(60):
-        integral = Integral(of)
-        period = 2 * integral.tau(mpmath.pi)
-        assert abs(mpmath.mpf(eta_record(of, 45)["period"]) / period - 1) < 1e-44
-        times = [Fraction(float(period) * part) for part in PARTS]
-        for time, row in zip(times, rows_of(of, times, ("eta", "etadot")), strict=True):
-            tau = big(time) - period * mpmath.nint(big(time) / period)
-            risen = (mpmath.mpf(row["eta"]) - integral.lower) / (integral.upper - integral.lower)
-            guess = 2 * mpmath.asin(mpmath.sqrt(max(0, min(1, risen))))
-            chi = integral.chi(abs(tau), guess)
-            slope = mpmath.sign(tau) * (integral.upper - integral.lower) * mpmath.sin(chi) / 2
-            assert is_nearest(row["eta"], integral.eta(chi))
-            assert is_nearest(row["etadot"], slope / integral.pace(chi))
-
-
 @pytest.mark.parametrize("name", ORBITS)
 def test_chain(name: str) -> None:
-    """Every column by mpmath and (3.2.2), with the constants (3.2.5) and (3.2.8) from the roots."""
+    """Every column by mpmath and (3.2.2), with the constants (3.2.5) and (3.2.8) from the roots.
+
+    The differential equation of eta judges the formulas in each layout.
+    """
     of = ORBITS[name]
     with mpmath.workdps(60):
-        integral = Integral(of)
+        lower, upper, g, height, *outer = map(big, (of.lower, of.upper, of.g, of.height, *of.outer))
         less, more = (mpmath.sqrt(big(x)) for x in of.squares)
-        width = integral.upper - integral.lower
-        sign = 0 if len(of.outer) < 2 else 1 if of.layout == "one on each side" else -1
+        width = upper - lower
+        sign = 0 if len(outer) < 2 else 1 if of.layout == "one on each side" else -1
         k2 = (sign * width**2 + (less - more) ** 2) / (4 * less * more)
-        m, sigma1 = k2 / (1 + k2), mpmath.sqrt(integral.g * less * more * (1 + k2))
+        m, sigma1 = k2 / (1 + k2), mpmath.sqrt(g * less * more * (1 + k2))
         K = mpmath.ellipk(m)
-        times = [Fraction(float(4 * K / sigma1) * part) for part in PARTS]
+        assert abs(mpmath.mpf(eta_record(of, 45)["period"]) * sigma1 / 4 / K - 1) < 1e-44
 
         def eta_at(h1: Any) -> Any:
             xi = mpmath.re(mpmath.ellipfun("sn", h1, m=m))
             share = (less - more - (less + more) * xi) / ((less - more) * xi - less - more)
-            return (integral.upper + integral.lower + width * share) / 2
+            return (upper + lower + width * share) / 2
 
+        times = [Fraction(float(4 * K / sigma1) * part) for part in PARTS]
         for time, row in zip(times, rows_of(of, times, (*WITH_CHAIN, "etadot")), strict=True):
             h1 = sigma1 * big(time) - K
             turns = mpmath.nint(h1 / (2 * K))
             sn, cn = (mpmath.re(mpmath.ellipfun(f, h1 - 2 * turns * K, m=m)) for f in ("sn", "cn"))
-            assert is_nearest(row["eta"], eta_at(h1))
-            slope = (eta_at(h1 + 1e-20) - eta_at(h1 - 1e-20)) / 2e-20
-            assert row["etadot"] == pytest.approx(float(sigma1 * slope), rel=1e-9, abs=1e-17)
+            eta = eta_at(h1)
+            product = abs(mpmath.fprod(eta - root for root in outer)) + height**2
+            speed = mpmath.sqrt(g * (upper - eta) * (eta - lower) * product)
+            slope = sigma1 * (eta_at(h1 + 1e-20) - eta_at(h1 - 1e-20)) / 2e-20
+            assert abs(slope) == pytest.approx(speed, rel=1e-9, abs=1e-17)
+            assert is_nearest(row["eta"], eta)
+            assert is_nearest(row["etadot"], mpmath.sign(slope) * speed)
             assert is_nearest(row["h1"], h1)
             assert is_nearest(row["theta_rad"], mpmath.atan2(sn, cn) + turns * mpmath.pi)
             assert is_nearest(row["xi_prime"], sn * (-1) ** int(turns))

@@ -67,12 +67,13 @@ def test_amplitudes_of_the_command(lagtop: Lagtop) -> None:
             assert abs(first - quarters * mpmath.ellipk(m)) <= abs(first) * 5.01e-25
             assert abs(second - quarters * mpmath.ellipe(m)) <= abs(second) * 5.01e-25
     assert lines[2] == "0.0,0.0,0.0"
-    shown = lagtop(*"jacobi --k 1 --phi 90,-210 --digits 20 --format csv".split()).stdout
-    assert shown.splitlines()[1:] == ["90.0,,1.0", "-210.0,,-2.5"]
-    shown = lagtop(*"jacobi --k 1 --phi 90,0 --format csv".split()).stdout
-    assert shown.splitlines()[1:] == ["90.0,,1.0", "0.0,0.0,0.0"]
-    shown = lagtop(*"jacobi --k 0 --rad --phi 1.5 --digits 20 --format csv".split()).stdout
-    assert shown.splitlines() == ["phi_rad,F,E", "1.5,1.5,1.5"]
+    for options, rows in {
+        "--k 1 --phi 90,-210 --digits 20": ["90.0,,1.0", "-210.0,,-2.5"],
+        "--k 1 --phi 90,0": ["90.0,,1.0", "0.0,0.0,0.0"],
+        "--k 0 --rad --phi 1.5 --digits 20": ["1.5,1.5,1.5"],
+    }.items():
+        shown = lagtop("jacobi", *options.split(), "--format", "csv").stdout
+        assert shown.splitlines()[1:] == rows
 
 
 def test_far_amplitudes_with_digits(lagtop: Lagtop) -> None:
@@ -87,12 +88,10 @@ def test_far_amplitudes_with_digits(lagtop: Lagtop) -> None:
 
 @pytest.mark.parametrize("sign", ["", "-"])
 def test_the_double_below_a_quarter_turn_is_below_it(lagtop: Lagtop, sign: str) -> None:
-    """F(phi, 1) = asinh(tan phi), by mpmath."""
-    phi = 1.5707963267948966
+    """F(phi, 1) = asinh(tan phi), by mpmath; the next double is above the quarter turn."""
+    options = f"jacobi --k 1 --rad --phi={sign}1.5707963267948966,{sign}1.5707963267948968"
+    _, below, above = lagtop(*options.split(), "--format", "csv").stdout.splitlines()
     with mpmath.workdps(50):
-        true = mpmath.asinh(mpmath.tan(mpmath.mpf(phi)))
-    options = ["--k", "1", "--rad", f"--phi={sign}{phi}", "--format", "csv"]
-    _, line = lagtop("jacobi", *options).stdout.splitlines()
-    assert float(line.split(",")[1]) == float(f"{sign}{float(true)}")
-    beyond = [*options[:3], f"--phi={sign}1.5707963267948968", *options[4:]]
-    assert lagtop("jacobi", *beyond).stdout.splitlines()[1].split(",")[1] == ""
+        true = mpmath.asinh(mpmath.tan(mpmath.mpf(1.5707963267948966)))
+    assert float(below.split(",")[1]) == float(f"{sign}{float(true)}")
+    assert above.split(",")[1] == ""
