@@ -162,6 +162,8 @@ def test_zeros_that_count_from_the_first_row() -> None:
     found = compare(TOP, T + 17, quaternion=turned, align=["start", "time"])
     assert (found.lost_at, found.verdict) == (0, "lost")
     assert (found.error_max or 0) < 2e-12
+    late = compare(TOP, T + 17, quaternion=wxyz(about_z(1.0) * TURN), align=["time"])
+    assert "(--align start)" in (late.cause or "")
     parts = {"phi": PHI + 2, "psi": PSI - 1}
     assert (compare(TOP, T, **parts, align=["start"]).error_max or 0) < 2e-12
     axis = about_z(0.7).apply(TURN.apply([0, 0, 1]))
