@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import BytesIO
-from typing import BinaryIO
+from typing import Any
 
 from ..errors import CannotWriteError, DataError, LagtopError
 
@@ -29,14 +29,21 @@ def read_bytes(path: str, most: int = LARGEST_FILE) -> bytes:
         with _opened(path) as file:
             content = _read_whole(file, most)
         if content[:2] == _GZIP:
-            content = _decompressed(content, most)
+            import gzip  # for few files only, like zlib
+            import zlib
+
+            try:
+                with gzip.open(BytesIO(content)) as file:
+                    content = _read_whole(file, most)
+            except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+                raise OSError(f"not a gzip file: {error}") from None
     except OSError as error:
         raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
     return content
 
 
 @contextmanager
-def _opened(path: str) -> Iterator[BinaryIO]:
+def _opened(path: str) -> Iterator[Any]:
     """Open a file for reading bytes.  Standard input waits for all of its bytes."""
     if path != "-":
         with open(path, "rb") as file:
@@ -49,7 +56,7 @@ def _opened(path: str) -> Iterator[BinaryIO]:
     yield sys.stdin.buffer
 
 
-def _read_whole(file: BinaryIO, most: int) -> bytes:
+def _read_whole(file: Any, most: int) -> bytes:
     """Return the bytes of a file.  Raises OSError for more than `most` of them."""
     chunks, size = list[bytes](), 0
     while chunk := file.read(_AT_ONCE):
@@ -58,18 +65,6 @@ def _read_whole(file: BinaryIO, most: int) -> bytes:
         if size > most:
             raise OSError(f"it must have at most {most} bytes, has more")
     return b"".join(chunks)
-
-
-def _decompressed(content: bytes, most: int) -> bytes:
-    """Return the contents of a gzip file.  Raises OSError for a broken one."""
-    import gzip  # for few files only, like zlib
-    import zlib
-
-    try:
-        with gzip.open(BytesIO(content)) as file:
-            return _read_whole(file, most)  # type: ignore[arg-type]
-    except (EOFError, zlib.error, gzip.BadGzipFile) as error:
-        raise OSError(f"not a gzip file: {error}") from None
 
 
 def decoded(content: bytes, name: str) -> str:

@@ -79,8 +79,7 @@ EXAMPLE = {
 """The inputs of the worked example of Chrapan (1952), section 8, in CGS: the defaults."""
 BODY = {name: EXAMPLE[name] for name in ("m", "A", "C", "s", "g")}
 BODY_UNITS = {"m": "g", "A": "g*cm^2", "C": "g*cm^2", "s": "cm", "g": "cm/s^2"}
-SAME = STANDS_FOR | dict.fromkeys(("theta0_deg", "theta0_rad"), TILT)
-"""The keys that set the same input, with one name for each."""
+_SAME = STANDS_FOR | dict.fromkeys(("theta0_deg", "theta0_rad"), TILT)
 
 
 def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
@@ -88,8 +87,8 @@ def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
 
     A tilt replaces a tilt in either unit, A_cm replaces A, and phidot0 replaces r0.
     """
-    taken = {SAME.get(key, key) for key in given}
-    kept = {key: x for key, x in inputs.items() if SAME.get(key, key) not in taken}
+    taken = {_SAME.get(key, key) for key in given}
+    kept = {key: x for key, x in inputs.items() if _SAME.get(key, key) not in taken}
     return kept | dict(given)
 
 

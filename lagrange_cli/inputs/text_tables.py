@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,6 @@ _TITLES = 5
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
-_CHARACTERS = set("0123456789.eE+-")
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
@@ -50,7 +50,7 @@ class Table:
         lines: Sequence[int],
         delimiter: str = ",",
     ) -> None:
-        """Take the name of the file and its rows: lists of cells, or the errors of rows.
+        """Take the name of the file and its rows: lines of text, or lists of values of JSON.
 
         `headings` are None if the file has none.  `lines` are the numbers of the rows in messages.
         """
@@ -58,34 +58,43 @@ class Table:
         self.delimiter = delimiter
         self.decimal = "." if delimiter == "," else ""
         """The decimal mark, a point or a comma; empty if it is not decided."""
-        first = headings or next(iter(rows), ())
-        self.width = 0 if isinstance(first, LagtopError) else len(first)
+        self.width = len(headings or (self.at(0, whole=False) if rows else ()))
 
     def where(self, row: int) -> str:
         """Return the name of the file and the place of a row."""
         return f"{self.name}, {self.place} {self.lines[row]}"
 
-    def cells(self, row: int) -> list[Any]:
-        """Return the cells of a row.  Raises LagtopError for a bad row."""
-        cells: list[Any] | LagtopError = self.rows[row]
-        if isinstance(cells, LagtopError):
-            raise cells
+    def cells(self, row: int, *, whole: bool = True) -> list[Any]:
+        """Return the cells of a row.
+
+        Raises LagtopError for a wrong quote and, if `whole`, for another number of cells.
+        """
+        text = self.rows[row]
+        cells = split_row(text, self.delimiter) if isinstance(text, str) else text
+        if whole:
+            self.check(cells)
+        return cells
+
+    def check(self, cells: Sequence[Any]) -> None:
+        """Raise LagtopError for a row with another number of cells."""
         if len(cells) != self.width:
             wrong = f"a row must have {self.width} cells, got {len(cells)}"
             if self.delimiter == "," and len(cells) == 2 * self.width:
                 wrong += ": a comma cannot both separate cells and be the decimal mark"
             raise LagtopError(wrong)
-        return cells
 
-    def column(self, index: int) -> list[Any]:
-        """Return the cells of one column.  Raises DataError for a bad row."""
-        cells = list[Any]()
+    def part(self, rows: slice) -> Table:
+        """Return some of the rows."""
+        table = copy(self)
+        table.rows, table.lines = self.rows[rows], self.lines[rows]
+        return table
+
+    def at(self, row: int, *, whole: bool = True) -> list[Any]:
+        """Return the cells of a row.  Raises DataError with the place in place of LagtopError."""
         try:
-            while len(cells) < len(self.rows):
-                cells.append(self.cells(len(cells))[index])
+            return self.cells(row, whole=whole)
         except LagtopError as error:
-            raise DataError(f"{self.where(len(cells))}: {error}") from None
-        return cells
+            raise DataError(f"{self.where(row)}: {error}") from None
 
     def decide(self, columns: Iterable[int]) -> None:
         """Set the decimal mark from the first rows of some columns, unless it is set.
@@ -95,8 +104,8 @@ class Table:
         if self.decimal:
             return
         wanted, places = set(columns), dict[str, int]()
-        for row, cells in enumerate(self.rows[:_SAMPLE]):
-            for i, cell in enumerate(() if isinstance(cells, LagtopError) else cells):
+        for row, text in enumerate(self.rows[:_SAMPLE]):
+            for i, cell in enumerate(self.at(row, whole=False) if "," in text else ()):
                 if "," in cell and i in wanted and _NUMBER.fullmatch(cell):
                     places.setdefault(cell, row)
         if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
@@ -104,6 +113,10 @@ class Table:
             wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
             raise DataError(f"{self.where(row)}: {wrong}: pass --decimal point or --decimal comma")
         self.decimal = "," if places else "."
+
+    def column(self, index: int) -> list[Any]:
+        """Return the cells of one column.  Raises DataError as `at` does."""
+        return [self.at(row)[index] for row in range(len(self.rows))]
 
     def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
         """Return columns of numbers, shape (rows, columns), with NaN for empty cells.
@@ -114,26 +127,27 @@ class Table:
         import numpy as np
 
         self.decide(columns)
-        values = np.empty((len(self.rows), len(columns)))
-        for at, i in enumerate(columns):
-            cells = self.column(i)
-            found = self.doubles(cells)
-            if found is None:
-                found = [self._double(row, i, names[i], cell) for row, cell in enumerate(cells)]
-            values[:, at] = found
-        return values
+        values = self.at_once()
+        if values is not None:
+            return values[:, columns]
+        rows = ((row, self.at(row)) for row in range(len(self.rows)))
+        found = [[self._double(row, i, names[i], x[i]) for i in columns] for row, x in rows]
+        return np.array(found).reshape(-1, len(columns))
 
-    def doubles(self, cells: Sequence[Any]) -> Any:
-        """Return cells as doubles, NaN if they are empty; None if a cell has another character."""
+    def at_once(self) -> Array | None:
+        """Return all columns, or None if NumPy cannot read the lines as numbers."""
         import numpy as np
 
+        text = "\n".join(self.rows) if self.rows and isinstance(self.rows[0], str) else '"'
+        if not text.isascii() or '"' in text or "\0" in text:
+            return None
+        rows = text.translate(_SWAPPED).split("\n") if self.decimal == "," else self.rows
+        mark = None if self.delimiter == " " else self.delimiter
         try:
-            plain = [self._plain(x) for x in cells] if self.decimal == "," else cells
-            if set("".join(plain)) <= _CHARACTERS:
-                return np.array([x or "nan" for x in plain], np.float64)
-        except (TypeError, AttributeError, ValueError):  # values of JSON, or no number
-            pass
-        return None
+            values = np.loadtxt(rows, delimiter=mark, ndmin=2, comments=None)
+        except ValueError:
+            return None
+        return values if values.shape == (len(rows), self.width) else None
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
@@ -191,14 +205,13 @@ def read_table(
         return _json_table(name, lines, kept)
     at, delimiter = _layout([lines[i] for i in kept[: _TITLES + 1]], known, decimal, width)
     below = kept[at + 1 :]
-    rows = [_row(lines[i], delimiter) for i in below]
-    headings: Any = None
+    rows, headings = [lines[i] for i in below], None
     if at >= 0 and not width:
-        line, sizes = lines[kept[at]], {len(x) for x in rows if isinstance(x, list)}
-        headings = _split(line, " ") if delimiter == " " else _row(line, delimiter)
-        if isinstance(headings, LagtopError):
-            raise DataError(f"{name}, line {kept[at] + 1}: {headings}")
-        if delimiter == " " and sizes == {1}:
+        line = lines[kept[at]]
+        headings = _split(line, " ")
+        if delimiter != " ":
+            headings = Table(name, None, [line], [kept[at] + 1], delimiter).at(0)
+        elif {len(x.split()) for x in rows} == {1}:
             headings = [line.strip()]
     table = Table(name, headings, rows, [i + 1 for i in below], delimiter)
     table.decimal = table.decimal or decimal
@@ -251,12 +264,14 @@ def _split(text: str, delimiter: str) -> list[str]:
     """Return the headings in a row; a blank before a unit in brackets is not a delimiter."""
     if delimiter == " ":
         return [x.strip('"') for x in _HEADING.findall(text)]
-    cells = _row(text, delimiter)
-    return cells if isinstance(cells, list) else [x.strip() for x in text.split(delimiter)]
+    try:
+        return split_row(text, delimiter)
+    except LagtopError:
+        return [x.strip() for x in text.split(delimiter)]
 
 
-def _row(text: str, delimiter: str) -> list[str] | LagtopError:
-    """Return the cells of a line, or the error of a quoted cell that does not end on it."""
+def split_row(text: str, delimiter: str) -> list[str]:
+    """Return the cells of a line.  Raises LagtopError for a quoted cell that does not end on it."""
     if '"' not in text:
         return text.split() if delimiter == " " else [x.strip() for x in text.split(delimiter)]
     try:
@@ -264,7 +279,7 @@ def _row(text: str, delimiter: str) -> list[str] | LagtopError:
         return [x.strip() for x in next(rows)]
     except csv.Error as error:
         wrong = "a quoted cell must end with its quote, and on its line"
-        return LagtopError(f"{wrong}: {error}")
+        raise LagtopError(f"{wrong}: {error}") from None
 
 
 def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:

@@ -20,7 +20,7 @@ from ..errors import DataError, LagtopError
 from .files import read_bytes, shown_path
 from .given import Given, gather
 from .headings import name_and_unit
-from .input_keys import SAME, TILT, checked_double, one_of_each
+from .input_keys import TILT, checked_double, one_of_each, overridden
 from .names import repeated
 from .text_tables import Table, read_table
 from .top import INPUTS
@@ -43,27 +43,6 @@ class Tops(NamedTuple):
     """The line number of each top, if the tops come from a file."""
     errors: Mapping[int, str] = {}
     """Messages of the errors found so far, by row."""
-
-    def blocks(self, size: int) -> Iterator[Tops]:
-        """Yield all tops of a file, `size` at a time."""
-        for first in range(0, self.size, size):
-            rows = slice(first, first + size)
-            lines = (self.lines or ())[rows]
-            errors = {i - first: x for i, x in self.errors.items() if first <= i < first + size}
-            inputs = {name: np.asarray(x)[rows] for name, x in self.inputs.items()}
-            yield Tops(len(lines), inputs, [x[rows] for x in self.carried], lines, errors)
-
-    def arrays(self, shared: Mapping[str, float]) -> Tops:
-        """Return the tops with `shared` inputs as the defaults of rows without error."""
-        inputs = dict(self.inputs)
-        for name, value in shared.items():
-            is_open = np.ones(self.size, dtype=np.bool_)
-            is_open[[*self.errors]] = False
-            for other, values in self.inputs.items():
-                if SAME.get(other, other) == SAME.get(name, name):
-                    is_open &= np.isnan(values)
-            inputs[name] = np.where(is_open, value, self.inputs.get(name, np.nan))
-        return self._replace(inputs=inputs)
 
 
 class Product(NamedTuple):
@@ -100,7 +79,7 @@ class Product(NamedTuple):
 
 
 class TopsFile(NamedTuple):
-    """A file of tops whose numbers have not been read yet."""
+    """A file of tops, or a block of its rows, whose numbers have not been read yet."""
 
     columns: Sequence[str]
     """The keys of inputs, and the other headings as they are written."""
@@ -127,50 +106,35 @@ class TopsFile(NamedTuple):
         factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
         return found, self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
-    def tops(self) -> Tops:
-        """Return the tops; a row that cannot be read has an error."""
-        errors = dict[int, str]()
-        rows = list[Sequence[Any]]()
-        for row, found in enumerate(self.table.rows):
-            cells = found if isinstance(found, list) else []
-            rows.append([*cells, *[None] * len(self.columns)][: len(self.columns)])
+    @property
+    def size(self) -> int:
+        """The number of tops."""
+        return len(self.table.rows)
+
+    def blocks(self, size: int) -> Iterator[TopsFile]:
+        """Yield the file in blocks of `size` rows, which any process can read."""
+        for first in range(0, self.size, size):
+            yield self._replace(table=self.table.part(slice(first, first + size)))
+
+    def arrays(self, shared: Mapping[str, float]) -> Tops:
+        """Return the inputs of the tops; `shared` inputs are the defaults of rows without error."""
+        found, carried, errors = list[dict[str, float]](), list[list[Any]](), dict[int, str]()
+        for row in range(self.size):
+            values, inputs = dict[str, Any](), dict[str, float]()
             try:
-                self.table.cells(row)
+                cells = self.table.cells(row, whole=False)
+                values = dict(zip(self.columns, cells, strict=False))
+                self.table.check(cells)
+                named = [name for name in INPUTS if values.get(name) is not None]
+                given = {name: self._double(name, values[name]) for name in named}
+                one_of_each(given)
+                inputs = overridden(shared, given)
             except LagtopError as error:
                 errors[row] = str(error)
-        columns = dict(zip(self.columns, zip(*rows, strict=True) if rows else (), strict=False))
-        inputs = {
-            x: self._doubles(x, columns.get(x, ()), errors) for x in INPUTS if x in self.columns
-        }
-        try:
-            one_of_each(inputs)
-        except LagtopError:
-            for row in range(len(rows)):
-                try:
-                    one_of_each(name for name, x in inputs.items() if not np.isnan(x[row]))
-                except LagtopError as error:
-                    errors[row] = str(error)
-                    for values in inputs.values():
-                        values[row] = np.nan
-        carried = [columns.get(name, ()) for name in self.carried]
-        return Tops(len(rows), inputs, carried, self.table.lines, errors)
-
-    def _doubles(self, name: str, cells: Sequence[Any], errors: dict[int, str]) -> Array:
-        """Return the numbers in a column, NaN for an empty or a bad cell and in rows with errors.
-
-        A bad cell is added to the errors.
-        """
-        values: Array | None = None if name in self.factors else self.table.doubles(cells)
-        if values is None or not np.isfinite(values).all() or not values.all():
-            values = np.full(len(cells), np.nan)
-            for row, cell in enumerate(cells):
-                try:
-                    if cell is not None and row not in errors:
-                        values[row] = self._double(name, cell)
-                except LagtopError as error:
-                    errors[row] = str(error)
-        values[[*errors]] = np.nan
-        return values
+            found.append(inputs)
+            carried.append([values.get(name) for name in self.carried])
+        arrays = {name: np.array([x.get(name, np.nan) for x in found]) for name in INPUTS}
+        return Tops(self.size, arrays, [*zip(*carried, strict=True)], self.table.lines, errors)
 
     def _double(self, name: str, cell: Any) -> float:
         """Return the input in a cell.  Raises LagtopError."""

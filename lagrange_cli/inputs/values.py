@@ -151,28 +151,18 @@ def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -
         return given
     unit = ""
     if hasattr(given, "m_as"):  # a quantity of pint
-        unit, given = _of_pint(name, given)
+        from .units import si_unit  # start-up
+
+        unit = si_unit(name)
+        try:
+            given = given.m_as(unit)
+        except Exception as error:  # pint has errors of many kinds
+            raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
     number, std = getattr(given, "nominal_value", given), getattr(given, "std_dev", None)
     if unit and not getattr(number, "shape", ()):
         number = exact_number(name, number)
     spread = None if std is None else exact_number(name, std, "the uncertainty of ")
     return Value(number, unit, spread)
-
-
-def _of_pint(name: str, given: Any) -> tuple[str, Any]:
-    """Return the unit and the magnitude of a quantity, in SI if lagtop does not know its unit."""
-    from .units import si_unit, unit_of_text  # start-up
-
-    unit = f"{given.units:~C}"
-    try:
-        unit_of_text(unit)
-        return unit, given.magnitude
-    except LagtopError:
-        unit = si_unit(name)
-    try:
-        return unit, given.m_as(unit)
-    except Exception as error:  # pint has errors of many kinds
-        raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
 
 
 def values_of(inputs: Mapping[str, Any]) -> dict[str, Value]:
@@ -302,20 +292,20 @@ def parse_multiples(text: str) -> Multiple:
     Raises LagtopError as `parse_range` does, and if only one end is in units of K.
     """
     ends = [parse_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
-    wanted = f"must have both ends in units of K or none, got {quoted(text)}"
-    in_quarters = _in_quarters(ends, LagtopError(wanted))
-    return Multiple(parse_range(text, lambda end: parse_multiple(end).factor), in_quarters)
+    points = parse_range(text, lambda end: parse_multiple(end).factor)
+    mixed = f"must have both ends in units of K or none, got {quoted(text)}"
+    return Multiple(points, _in_quarters(ends, mixed))
 
 
 def listed_multiples(single: Sequence[Multiple]) -> Multiple:
     """Return a list of multiples as one object.  Raises LagtopError for a mixture of both kinds."""
-    mixed = LagtopError("u must be in units of K every time or never, got both", "u")
+    mixed = "u must be in units of K every time or never, got both"
     return Multiple(ListedPoints([x.factor for x in single]), _in_quarters(single, mixed))
 
 
-def _in_quarters(multiples: Sequence[Multiple], mixed: LagtopError) -> bool:
-    """Return whether numbers are in units of K; 0 fits both kinds.  Raises `mixed` for both."""
-    kinds = {multiple.in_quarters for multiple in multiples if multiple.factor}
+def _in_quarters(multiples: Sequence[Multiple], mixed: str) -> bool:
+    """Return whether numbers are in units of K; 0 fits both kinds.  Raises LagtopError for both."""
+    kinds = {x.in_quarters for x in multiples if x.factor}
     if len(kinds) > 1:
-        raise mixed
+        raise LagtopError(mixed, "u")
     return True in kinds

@@ -19,7 +19,7 @@ from ..errors import LagtopError, SomeFailedError
 from ..inputs.files import digest_of
 from ..inputs.given import Given, gather
 from ..inputs.input_keys import checked_double, overridden
-from ..inputs.tops_file import Product, Tops, read_tops
+from ..inputs.tops_file import Product, TopsFile, read_tops
 from ..inputs.values import Value, steady_refused
 from ..output.formats import Columns, block_text
 from .records import BLOCK_ROWS, check_keys, column_keys, records
@@ -29,7 +29,7 @@ from .top_arrays import top_arrays
 if TYPE_CHECKING:
     from ..inputs.units import System
 
-NumberedBlock = tuple[int, Product | Tops]
+NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
 
 
@@ -123,7 +123,7 @@ def plan(
     shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     sweep = Sweep([*source.carried, *with_error], shared, with_error, radians, fmt, found.system)
-    of_file = enumerate(source.tops().blocks(BLOCK_ROWS))
+    of_file = enumerate(source.blocks(BLOCK_ROWS))
     return Plan(sweep, of_file, 0, _described(sweep, shared, digest), found)
 
 

@@ -65,8 +65,8 @@ def read_by_all(path: str) -> None:
     """Read a file in every way; a LagtopError must be one line."""
 
     def tops() -> None:
-        for block in read_tops(path, {"error"}).tops().blocks(5):
-            assert "\n" not in "".join(block.errors.values())
+        for block in read_tops(path, {"error"}).blocks(5):
+            assert "\n" not in "".join(block.arrays({}).errors.values())
 
     def trajectory(columns: list[str] | None) -> None:
         file = read_trajectory(path, columns)

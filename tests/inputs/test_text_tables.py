@@ -29,7 +29,7 @@ def of_a_trajectory(path: Path, decimal: str) -> list[float]:
 
 def of_tops(path: Path, decimal: str) -> list[float]:
     """Return the spins of tops; an error of a row is an error here."""
-    tops = read_tops(str(path), set(), decimal).tops()
+    tops = read_tops(str(path), set(), decimal).arrays({})
     for error in tops.errors.values():
         raise DataError(error)
     found: list[float] = np.asarray(tops.inputs["r0"]).tolist()
