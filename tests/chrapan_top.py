@@ -218,7 +218,7 @@ def tops() -> Iterator[tuple[Motion]]:
     return ((motion,) for motion in MOTIONS)
 
 
-def spoil(patch: pytest.MonkeyPatch, module: str) -> None:
-    """Put tops in place, here and in a module, whose record and angles are slightly wrong."""
-    for name in (__name__, module):
+def spoil(patch: pytest.MonkeyPatch, *modules: str) -> None:
+    """Put tops in place, here and in some modules, whose record and angles are slightly wrong."""
+    for name in (__name__, *modules):
         patch.setattr(sys.modules[name], "MOTIONS", SPOILED)

@@ -16,8 +16,8 @@ Sides = Iterator[tuple[Any, Any]]
 """Pairs of a left and a right side: one by our functions, the other independent of them."""
 
 Equation = Callable[[], Sides]
-Pair = Callable[..., tuple[Any, Any]]
-"""Both sides of an equation in one case."""
+Pair = Callable[..., Any]
+"""Both sides of an equation in one case, or a list of such pairs."""
 Cases = Callable[[], Iterable[tuple[Any, ...]]]
 
 
@@ -51,7 +51,7 @@ class Register:
         return _entry(self.fails, number)
 
     def each(self, cases: Cases, holds: Mapping[str, Pair]) -> None:
-        """Register equations with one pair of sides in each case, such as a top and a time."""
+        """Register equations with pairs of sides in each case, such as a top and a time."""
         for number, sides in holds.items():
             self.equation(number)(partial(_pairs, sides, cases))
 
@@ -61,7 +61,7 @@ class Register:
             self.equation(number)(partial(_all_pairs, pairs, cases))
 
     def each_as_printed(self, cases: Cases, fails: Mapping[str, Pair]) -> None:
-        """Register misprints with one pair of sides in each case."""
+        """Register misprints with pairs of sides in each case."""
         for number, sides in fails.items():
             self.as_printed(number)(partial(_pairs, sides, cases))
 
@@ -71,8 +71,10 @@ class Register:
 
 
 def _pairs(sides: Pair, cases: Cases) -> Sides:
-    """Yield the pair of sides of each case."""
-    return (sides(*case) for case in cases())
+    """Yield the pairs of sides of each case."""
+    for case in cases():
+        found = sides(*case)
+        yield from found if isinstance(found, list) else [found]
 
 
 def _all_pairs(pairs: Callable[..., Iterable[Any]], cases: Cases) -> Sides:
