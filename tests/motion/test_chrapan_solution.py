@@ -14,7 +14,6 @@ from typing import Any, ClassVar
 import pytest
 from chrapan_top import (
     LEFT,
-    MOTIONS,
     PARTS,
     RIGHT,
     SLOW,
@@ -28,148 +27,196 @@ from chrapan_top import (
     spoil,
     tops,
 )
-from equations import EquationTests, Register, Sides
+from equations import EquationTests, Pair, Register
 from errata import misprints
 from ours import Ours
 
 chrapan = Register()
-equation, as_printed = chrapan.equation, chrapan.as_printed
 pi_function = Ours(ar).pi_function
+Pairs = list[tuple[Any, Any]]
+few = partial(moments, *PARTS[:2])
 
 
-def rotation(motion: Motion, t: Any) -> Any:
+def pairs(left: Any, right: Any) -> Pairs:
+    """Return pairs of sides."""
+    return list(zip(left, right, strict=True))
+
+
+def rotation(top: Motion, t: Any) -> Any:
     """Return the matrix from body to space: turns about z, the line of nodes, and z'."""
 
     def about_z(angle: Any) -> Any:
         c, s = ar.cos(angle), ar.sin(angle)
         return ar.matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
 
-    theta, phi, psi = motion.angles(t)
+    theta, phi, psi = top.angles(t)
     c, s = ar.cos(theta), ar.sin(theta)
     return about_z(psi) * ar.matrix([[1, 0, 0], [0, c, -s], [0, s, c]]) * about_z(phi)
 
 
-def _nodes(angle: Any) -> list[Any]:
+def change(top: Motion, t: Any) -> Any:
+    """Return the derivative of the rotation."""
+    return (rotation(top, t + STEP) - rotation(top, t - STEP)) / (2 * STEP)
+
+
+def spin(top: Motion, t: Any) -> list[Any]:
+    """Return p, q and r from the derivative of the rotation."""
+    found = rotation(top, t).T * change(top, t)
+    return [found[2, 1], found[0, 2], found[1, 0]]
+
+
+def turning(top: Motion, t: Any) -> list[Any]:
+    """Return omega in space, from the derivative of the rotation."""
+    found = change(top, t) * rotation(top, t).T
+    return [found[2, 1], found[0, 2], found[1, 0]]
+
+
+def nodes(angle: Any) -> list[Any]:
     """Return i cos + j sin, the coordinates of a direction in the plane (x, y)."""
     return [ar.cos(angle), ar.sin(angle), ar.mpf(0)]
 
 
-def _moment(motion: Motion, t: Any) -> list[Any]:
+def moment(top: Motion, t: Any) -> list[Any]:
     """Return the derivative of the angular momentum in space, over that of the weight's size."""
 
     def momentum(i: int, at: Any) -> Any:
-        p, q = motion.body_rates(at)
-        own = ar.matrix([motion.A * p, motion.A * q, motion.C * motion.r0])
-        return (rotation(motion, at) * own)[i]
+        p, q = top.body_rates(at)
+        return (rotation(top, at) * ar.matrix([top.A * p, top.A * q, top.C * top.r0]))[i]
 
-    size = motion.mgs * ar.sin(motion.angles(t)[0])
+    size = top.mgs * ar.sin(top.angles(t)[0])
     return [slope(partial(momentum, i), t) / size for i in range(3)]
 
 
-@equation("section 4 a: the line of nodes")
-def _() -> Sides:
-    for motion, t in moments(*PARTS[:2]):
-        _, phi, psi = motion.angles(t)
-        nodes = rotation(motion, t) * ar.matrix([ar.cos(phi), -ar.sin(phi), 0])
-        yield from zip(nodes, _nodes(psi), strict=True)
-        yield from zip(_moment(motion, t), _nodes(psi), strict=True)
-
-
-@as_printed("section 4 a: the line of nodes")
-def _() -> Sides:
-    t = RIGHT.T * PARTS[0]
-    yield from zip(_moment(RIGHT, t)[:2], _nodes(RIGHT.angles(t)[1])[:2], strict=True)
-
-
-def _velocity(motion: Motion, t: Any, precession: int) -> list[Any]:
+def velocity(top: Motion, t: Any, precession: int) -> list[Any]:
     """Return omega of section 4 b in space, with the angle that stands for the precession."""
-    angles, rates = motion.angles(t), motion.rates(t)
-    axis = rotation(motion, t)[:, 2]
-    nodes, around = _nodes(angles[precession]), [0, 0, rates[precession]]
-    return [rates[0] * nodes[i] + around[i] + rates[1] * axis[i] for i in range(3)]
+    angles, rates = top.angles(t), top.rates(t)
+    axis, along = rotation(top, t)[:, 2], nodes(angles[precession])
+    around = [0, 0, rates[precession]]
+    return [rates[0] * along[i] + around[i] + rates[1] * axis[i] for i in range(3)]
 
 
-def _turning(motion: Motion, t: Any) -> list[Any]:
-    """Return omega in space, from the derivative of the rotation."""
-    change = (rotation(motion, t + STEP) - rotation(motion, t - STEP)) / (2 * STEP)
-    spin = change * rotation(motion, t).T
-    return [spin[2, 1], spin[0, 2], spin[1, 0]]
+def line_of_nodes(top: Motion, t: Any) -> Pairs:
+    """Return the line of nodes, and the direction of the moment, with i cos psi + j sin psi."""
+    _, phi, psi = top.angles(t)
+    found = rotation(top, t) * ar.matrix([ar.cos(phi), -ar.sin(phi), 0])
+    return pairs(found, nodes(psi)) + pairs(moment(top, t), nodes(psi))
 
 
-@equation("section 4 b: the angular velocity")
-def _() -> Sides:
-    for motion, t in moments():
-        velocity = _velocity(motion, t, 2)
-        yield from zip(_turning(motion, t), velocity, strict=True)
-        yield (
-            sum(x * y for x, y in zip(velocity, rotation(motion, t)[:, 2], strict=True)),
-            motion.r0,
-        )
+def around_axis(top: Motion, t: Any) -> Any:
+    """Return p sin phi + q cos phi."""
+    (p, q), phi = top.body_rates(t), top.angles(t)[1]
+    return p * ar.sin(phi) + q * ar.cos(phi)
 
 
-@as_printed("section 4 b: the angular velocity")
-def _() -> Sides:
-    t = RIGHT.T / 3
-    yield from zip(_turning(RIGHT, t), _velocity(RIGHT, t, 1), strict=True)
+def solved_rates(top: Motion, t: Any) -> Pairs:
+    """Return the rates of precession, spin and nutation with (4,1) solved for them."""
+    theta, phi, _ = top.angles(t)
+    p, q, _ = spin(top, t)
+    around, (nutation, own, precession) = p * ar.sin(phi) + q * ar.cos(phi), top.rates(t)
+    return [
+        (precession, around / ar.sin(theta)),
+        (own, top.r0 - around * ar.cot(theta)),
+        (nutation, p * ar.cos(phi) - q * ar.sin(phi)),
+    ]
 
 
-@equation("(4,1)")
-def _() -> Sides:
-    for motion, t in moments():
-        turning = (rotation(motion, t + STEP) - rotation(motion, t - STEP)) / (2 * STEP)
-        spin = rotation(motion, t).T * turning
-        p, q = motion.body_rates(t)
-        yield p, spin[2, 1]
-        yield q, spin[0, 2]
-        yield motion.r0, spin[1, 0]
+def euler(top: Motion, t: Any) -> Pairs:
+    """Return both sides of Euler's equations."""
+    (theta, phi, _), (p, q) = top.angles(t), top.body_rates(t)
+    p_rate, q_rate = (slope(partial(nth_value, top.body_rates, i), t) for i in (0, 1))
+    pull, gyro = top.mgs * ar.sin(theta), (top.C - top.A) * top.r0
+    return [
+        (top.A * p_rate + gyro * q, pull * ar.cos(phi)),
+        (top.A * q_rate - gyro * p, -pull * ar.sin(phi)),
+    ]
 
 
-@as_printed("(4,1)")
-def _() -> Sides:
-    motion, t = RIGHT, PARTS[0] * RIGHT.T
-    theta, phi, _ = motion.angles(t)
-    nutation, spin, _ = motion.rates(t)
-    p, _ = motion.body_rates(t)
-    yield p, spin * ar.sin(theta) * ar.sin(phi) + nutation * ar.cos(phi)
+def power(top: Motion, t: Any) -> tuple[Any, Any]:
+    """Return the change of the energy of rotation, and the power of the weight."""
+    rates = (slope(partial(nth_value, top.body_rates, i), t) for i in (0, 1))
+    change = sum(x * rate for x, rate in zip(top.body_rates(t), rates, strict=True))
+    return top.A * change, top.mgs * ar.sin(top.angles(t)[0]) * top.rates(t)[0]
 
 
-@equation("(4,1) solved for the rates")
-def _() -> Sides:
-    for motion, t in moments():
-        theta, phi, _ = motion.angles(t)
-        turning = (rotation(motion, t + STEP) - rotation(motion, t - STEP)) / (2 * STEP)
-        spin = rotation(motion, t).T * turning
-        p, q = spin[2, 1], spin[0, 2]
-        around = p * ar.sin(phi) + q * ar.cos(phi)
-        nutation, own, precession = motion.rates(t)
-        yield precession, around / ar.sin(theta)
-        yield own, motion.r0 - around * ar.cot(theta)
-        yield nutation, p * ar.cos(phi) - q * ar.sin(phi)
+def squares(top: Motion, t: Any, precession: int) -> Pairs:
+    """Return section 4 d's p and q by the rates, with the angle that stands for the precession."""
+    (p, q), rates, u = top.body_rates(t), top.rates(t), top.u(t)
+    return [
+        (p**2 + q**2, rates[0] ** 2 + (1 - u**2) * rates[precession] ** 2),
+        (around_axis(top, t), ar.sin(top.angles(t)[0]) * rates[precession]),
+    ]
 
 
-@as_printed("(4,1) solved for the rates")
-def _() -> Sides:
-    theta, phi, _ = RIGHT.angles(RIGHT.T / 3)
-    p, q = RIGHT.body_rates(RIGHT.T / 3)
-    yield RIGHT.rates(RIGHT.T / 3)[1], (p * ar.sin(phi) + q * ar.cos(phi)) / ar.sin(theta)
+def fallen(top: Motion, t: Any) -> tuple[Any, Any]:
+    """Return the energy that the weight has given, and that of rotation by the rates."""
+    return 2 * top.mgs * (top.u1 - top.u(t)) / top.A, squares(top, t, 2)[0][1]
 
 
-@equation("section 4 c: Euler's equations")
-def _() -> Sides:
-    for motion, t in moments(*PARTS[:2]):
-        theta, phi, _ = motion.angles(t)
-        p, q = motion.body_rates(t)
-        p_rate, q_rate = (slope(partial(nth_value, motion.body_rates, i), t) for i in (0, 1))
-        pull = motion.mgs * ar.sin(theta)
-        gyro = (motion.C - motion.A) * motion.r0
-        yield motion.A * p_rate + gyro * q, pull * ar.cos(phi)
-        yield motion.A * q_rate - gyro * p, -pull * ar.sin(phi)
+MECHANICS: dict[str, Pair] = {
+    "section 4 b: the angular velocity": lambda top, t: [
+        *pairs(turning(top, t), velocity(top, t, 2)),
+        (ar.fdot(zip(velocity(top, t, 2), rotation(top, t)[:, 2], strict=True)), top.r0),
+    ],
+    "(4,1)": lambda top, t: pairs([*top.body_rates(t), top.r0], spin(top, t)),
+    "(4,1) solved for the rates": solved_rates,
+    "section 4 d: c1 and c2": lambda top, t: [
+        (
+            top.A / 2 * sum(x**2 for x in top.body_rates(t)) + top.mgs * top.u(t),
+            top.mgs * top.u1,
+        ),
+        (
+            top.A * ar.sin(top.angles(t)[0]) * around_axis(top, t) + top.C * top.r0 * top.u(t),
+            top.C * top.r0 * top.u1,
+        ),
+    ],
+    "section 4 d: p and q by the rates": lambda top, t: [*squares(top, t, 2), fallen(top, t)],
+}
+chrapan.each(moments, MECHANICS)
+chrapan.each(
+    few,
+    {
+        "section 4 a: the line of nodes": line_of_nodes,
+        "section 4 c: Euler's equations": euler,
+        "section 4 d: power of the weight": power,
+    },
+)
+
+
+def printed_p(top: Motion, t: Any) -> tuple[Any, Any]:
+    """Return p and (4,1) as printed."""
+    (theta, phi, _), (nutation, own, _) = top.angles(t), top.rates(t)
+    right = own * ar.sin(theta) * ar.sin(phi) + nutation * ar.cos(phi)
+    return top.body_rates(t)[0], right
+
+
+chrapan.each_as_printed(
+    lambda: [(RIGHT, PARTS[0] * RIGHT.T)],
+    {
+        "section 4 a: the line of nodes": lambda top, t: pairs(
+            moment(top, t)[:2], nodes(top.angles(t)[1])[:2]
+        ),
+        "(4,1)": printed_p,
+    },
+)
+chrapan.each_as_printed(
+    lambda: [(RIGHT, RIGHT.T / 3)],
+    {
+        "section 4 b: the angular velocity": lambda top, t: pairs(
+            turning(top, t), velocity(top, t, 1)
+        ),
+        "(4,1) solved for the rates": lambda top, t: (
+            top.rates(t)[1],
+            around_axis(top, t) / ar.sin(top.angles(t)[0]),
+        ),
+        "section 4 d: p and q by the rates": lambda top, t: squares(top, t, 1),
+    },
+)
 
 
 def with_rate(rate: int, *only: Any) -> Iterator[tuple[Motion, Any, Any]]:
     """Yield each top and time, or one of each, with a rate."""
-    for motion, t in [only] if only else moments():
-        yield motion, t, motion.rates(t)[rate]
+    for top, t in [only] if only else moments():
+        yield top, t, top.rates(t)[rate]
 
 
 RATES: dict[str, tuple[Callable[[Motion, Any, Any], tuple[Any, Any]], int, int]] = {
@@ -208,116 +255,50 @@ for _name, (_sides, _right, _printed) in RATES.items():
     )
 
 
-@equation("section 4 d: power of the weight")
-def _() -> Sides:
-    for motion, t in moments(*PARTS[:2]):
-        p, q = motion.body_rates(t)
-        p_rate, q_rate = (slope(partial(nth_value, motion.body_rates, i), t) for i in (0, 1))
-        theta, nutation = motion.angles(t)[0], motion.rates(t)[0]
-        yield motion.A * (p * p_rate + q * q_rate), motion.mgs * ar.sin(theta) * nutation
-
-
-@equation("section 4 d: c1 and c2")
-def _() -> Sides:
-    for motion, t in moments():
-        u, (p, q) = motion.u(t), motion.body_rates(t)
-        theta, phi, _ = motion.angles(t)
-        around = motion.A * ar.sin(theta) * (p * ar.sin(phi) + q * ar.cos(phi))
-        yield motion.A / 2 * (p**2 + q**2) + motion.mgs * u, motion.mgs * motion.u1
-        yield around + motion.C * motion.r0 * u, motion.C * motion.r0 * motion.u1
-
-
-def _squares(motion: Motion, t: Any, precession: int) -> tuple[Any, Any]:
-    """Return p^2 + q^2 and section 4 d's sum, with the angle that stands for the precession."""
-    (p, q), rates = motion.body_rates(t), motion.rates(t)
-    return p**2 + q**2, rates[0] ** 2 + (1 - motion.u(t) ** 2) * rates[precession] ** 2
-
-
-def _around(motion: Motion, t: Any, precession: int) -> tuple[Any, Any]:
-    """Return p sin + q cos and the sine times the rate that stands for the precession."""
-    (p, q), (theta, phi, _) = motion.body_rates(t), motion.angles(t)
-    around = p * ar.sin(phi) + q * ar.cos(phi)
-    return around, ar.sin(theta) * motion.rates(t)[precession]
-
-
-@equation("section 4 d: p and q by the rates")
-def _() -> Sides:
-    for motion, t in moments():
-        yield _squares(motion, t, 2)
-        yield _around(motion, t, 2)
-        fallen = 2 * motion.mgs * (motion.u1 - motion.u(t)) / motion.A
-        yield fallen, _squares(motion, t, 2)[1]
-
-
-@as_printed("section 4 d: p and q by the rates")
-def _() -> Sides:
-    yield _squares(RIGHT, RIGHT.T / 3, 1)
-    yield _around(RIGHT, RIGHT.T / 3, 1)
-
-
-@equation("(4,6)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        yield motion.u1, motion.u(ar.mpf(0))
-        yield motion.u2, motion.u(motion.T / 2)
-
-
-def _cubic(motion: Motion, u: Any) -> Any:
+def cubic(top: Motion, u: Any) -> Any:
     """Return f(u) of (4,9)."""
-    a, b, u1 = motion.a, motion.b, motion.u1
+    a, b, u1 = top.a, top.b, top.u1
     return (1 - u * u) * (a * u1 - a * u) - (b * u1 - b * u) ** 2
 
 
-@equation("(4,10)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        a, b, u1 = motion.a, motion.b, motion.u1
-        root = ar.sqrt(b**4 - 4 * a * b**2 * u1 + 4 * a**2)
-        for u, ours in zip(
-            ((b**2 - root) / (2 * a), (b**2 + root) / (2 * a)), motion.roots[1:], strict=True
-        ):
-            yield ours, u
-            yield -a * ours**2 + b**2 * ours - (b**2 * u1 - a), ar.mpf(0)
-
-
-@equation("section 4 e: the discriminant")
-def _() -> Sides:
-    for motion in MOTIONS:
-        a, b, u1 = motion.a, motion.b, ar.cos(ar.radians(motion.top.theta0_deg))
-        discriminant = b**4 - 4 * a * b**2 * u1 + 4 * a**2
-        yield (2 * a * (motion.u3 - motion.u2) / 2) ** 2, discriminant
-        yield ar.sign(discriminant - (b**2 - 2 * a) ** 2), 1
-
-
-@equation("section 4 e: f and its slope at 1, -1 and u1")
-def _() -> Sides:
-    for motion in MOTIONS:
-        factored = partial(_factored_cubic, motion)
-        u1 = ar.cos(ar.radians(motion.top.theta0_deg))
-        for pole in (1, -1):
-            yield factored(ar.mpf(pole)), -((motion.b * (u1 - pole)) ** 2)
-        yield slope(factored, u1), -motion.a * (1 - u1**2)
-
-
-def _factored_cubic(motion: Motion, u: Any) -> Any:
+def factored(top: Motion, u: Any) -> Any:
     """Return f(u) from the roots of the record."""
-    u1, u2, u3 = motion.roots
-    return motion.a * (u1 - u) * (u - u2) * (u3 - u)
+    u1, u2, u3 = top.roots
+    return top.a * (u1 - u) * (u - u2) * (u3 - u)
 
 
-@equation("section 4 e: sign of u2")
-def _() -> Sides:
-    for motion in [*MOTIONS, SLOW]:
-        lowest = motion.u(motion.T / 2)
-        yield motion.a * motion.u3 * lowest, motion.b**2 * motion.u1 - motion.a
-        yield ar.sign(motion.u3 - 1), 1
+def discriminant(top: Motion) -> Any:
+    """Return b^4 - 4 a b^2 u1 + 4 a^2 with u1 of the start."""
+    a, b, u1 = top.a, top.b, ar.cos(ar.radians(top.top.theta0_deg))
+    return b**4 - 4 * a * b**2 * u1 + 4 * a**2
 
 
-CONSTANTS: dict[str, Callable[[Motion], tuple[Any, Any]]] = {
+def roots(top: Motion) -> Pairs:
+    """Return u2 and u3 by (4,10), and the quadratic equation at both."""
+    a, b2, root = top.a, top.b**2, ar.sqrt(discriminant(top))
+    found = pairs(top.roots[1:], [(b2 - root) / (2 * a), (b2 + root) / (2 * a)])
+    return found + [(-a * u**2 + b2 * u - (b2 * top.u1 - a), 0) for u in top.roots[1:]]
+
+
+def slopes_of_f(top: Motion) -> Pairs:
+    """Return f at both poles, and its slope at u1."""
+    u1 = ar.cos(ar.radians(top.top.theta0_deg))
+    found = [(factored(top, ar.mpf(x)), -((top.b * (u1 - x)) ** 2)) for x in (1, -1)]
+    return [*found, (slope(partial(factored, top), u1), -top.a * (1 - u1**2))]
+
+
+CONSTANTS: dict[str, Pair] = {
     "(4,4)": lambda top: (top.a, 2 * top.mgs / top.A),
     "(4,5)": lambda top: (top.b, top.C * top.r0 / top.A),
+    "(4,6)": lambda top: pairs([top.u1, top.u2], [top.u(ar.mpf(0)), top.u(top.T / 2)]),
+    "(4,10)": roots,
     "(4,19)": lambda top: (top.k, ar.sqrt((top.u1 - top.u2) / (top.u3 - top.u2))),
     "(4,21)": lambda top: (top.k_prime, ar.sqrt((top.u3 - top.u1) / (top.u3 - top.u2))),
+    "section 4 e: the discriminant": lambda top: [
+        ((2 * top.a * (top.u3 - top.u2) / 2) ** 2, discriminant(top)),
+        (ar.sign(discriminant(top) - (top.b**2 - 2 * top.a) ** 2), 1),
+    ],
+    "section 4 e: f and its slope at 1, -1 and u1": slopes_of_f,
     "section 4 j: product of the two sn": lambda top: (
         top.kappa2 * top.at_parameter(1)[0] ** 2 * top.at_parameter(2)[0] ** 2,
         1,
@@ -326,6 +307,15 @@ CONSTANTS: dict[str, Callable[[Motion], tuple[Any, Any]]] = {
 """Sides without time."""
 
 chrapan.each(tops, CONSTANTS)
+chrapan.each(
+    lambda: [*tops(), (SLOW,)],
+    {
+        "section 4 e: sign of u2": lambda top: [
+            (top.a * top.u3 * top.u(top.T / 2), top.b**2 * top.u1 - top.a),
+            (ar.sign(top.u3 - 1), 1),
+        ]
+    },
+)
 
 
 ROOTS: dict[str, Callable[..., Any]] = {
@@ -344,177 +334,132 @@ ROOTS: dict[str, Callable[..., Any]] = {
 }
 """Identities between the roots and b^2/a."""
 
-chrapan.each(lambda: ((*top.roots, top.b**2 / top.a) for top in MOTIONS), ROOTS)
+chrapan.each(lambda: ((*top.roots, top.b**2 / top.a) for (top,) in tops()), ROOTS)
 
 
-@equation("(4,20)")
-def _() -> Sides:
-    for motion, t in moments():
-        u1, u2, u3 = motion.roots
-        sn, _, dn = motion.jacobi(t)
-        yield motion.u(t), u3 - (u3 - u1) / dn**2
-        yield motion.u(t), u1 - (u1 - u2) * (u3 - u1) / (u3 - u2) * (sn / dn) ** 2
+def states() -> Iterator[tuple[Any, ...]]:
+    """Yield each top and time with u, xi^2 and the three roots."""
+    for top, t in moments():
+        yield top, t, top.u(t), top.xi(t) ** 2, *top.roots
 
 
-def states() -> Iterator[tuple[Motion, Any, Any, Any]]:
-    """Yield each top and time with u and xi^2."""
-    for motion, t in moments():
-        yield motion, t, motion.u(t), motion.xi(t) ** 2
-
-
-STATES: dict[str, Callable[[Motion, Any, Any, Any], tuple[Any, Any]]] = {
-    "(4,9)": lambda top, t, u, _: (slope(top.u, t) ** 2, _cubic(top, u)),
-    "(4,22)": lambda top, t, u, _: (top.jacobi(t)[2] ** 2, (top.u3 - top.u1) / (top.u3 - u)),
-    "(4,23)": lambda top, t, u, _: (
+STATES: dict[str, Pair] = {
+    "(4,9)": lambda top, t, u, xi2, u1, u2, u3: (slope(top.u, t) ** 2, cubic(top, u)),
+    "(4,20)": lambda top, t, u, xi2, u1, u2, u3: [
+        (u, u3 - (u3 - u1) / top.jacobi(t)[2] ** 2),
+        (u, u1 - (u1 - u2) * (u3 - u1) / (u3 - u2) * (top.jacobi(t)[0] / top.jacobi(t)[2]) ** 2),
+    ],
+    "(4,22)": lambda top, t, u, xi2, u1, u2, u3: (top.jacobi(t)[2] ** 2, (u3 - u1) / (u3 - u)),
+    "(4,23)": lambda top, t, u, xi2, u1, u2, u3: (
         top.jacobi(t)[0] ** 2,
-        (top.u1 - u) * (top.u3 - top.u2) / ((top.u3 - u) * (top.u1 - top.u2)),
+        (u1 - u) * (u3 - u2) / ((u3 - u) * (u1 - u2)),
     ),
-    "(4,24)": lambda top, t, u, _: (
+    "(4,24)": lambda top, t, u, xi2, u1, u2, u3: (
         top.jacobi(t)[1] ** 2,
-        (top.u3 - top.u1) * (u - top.u2) / ((top.u3 - u) * (top.u1 - top.u2)),
+        (u3 - u1) * (u - u2) / ((u3 - u) * (u1 - u2)),
     ),
-    "(4,25)": lambda top, t, u, xi2: (
-        1 + u,
-        (1 + top.u1) * (1 - (top.u1 - top.u2) / (1 + top.u1) * xi2),
+    "(4,25)": lambda top, t, u, xi2, u1, u2, u3: (
+        *(1 + u, (1 + u1) * (1 - (u1 - u2) / (1 + u1) * xi2)),
     ),
-    "(4,26)": lambda top, t, u, xi2: (
-        1 - u,
-        (1 - top.u1) * (1 + (top.u1 - top.u2) / (1 - top.u1) * xi2),
+    "(4,26)": lambda top, t, u, xi2, u1, u2, u3: (
+        *(1 - u, (1 - u1) * (1 + (u1 - u2) / (1 - u1) * xi2)),
+    ),
+    "section 4 g: u by the imaginary modulus": lambda top, t, u, xi2, u1, u2, u3: pairs(
+        [u1 - u, u - u2, u3 - u],
+        [(u1 - u2) * xi2, (u1 - u2) * (1 - xi2), (u3 - u1) * (1 - top.kappa2 * xi2)],
     ),
 }
-"""Sides at a time, with u and xi^2."""
+"""Sides at a time, with u, xi^2 and the roots."""
 
 chrapan.each(states, STATES)
 
 
-@equation("section 4 g: u by the imaginary modulus")
-def _() -> Sides:
-    for motion, t in moments():
-        u1, u2, u3 = motion.roots
-        u, xi2 = motion.u(t), motion.xi(t) ** 2
-        yield u1 - u, (u1 - u2) * xi2
-        yield u - u2, (u1 - u2) * (1 - xi2)
-        yield u3 - u, (u3 - u1) * (1 - motion.kappa2 * xi2)
+def at_poles(top: Motion, t: Any) -> list[Any]:
+    """Return kappa^2 sn^2 xi^2 at both parameters."""
+    return [top.kappa2 * top.at_parameter(i)[0] ** 2 * top.xi(t) ** 2 for i in (1, 2)]
 
 
-def _precession_rate(motion: Motion, t: Any, power: int) -> Any:
+def precession_rate(top: Motion, t: Any, power: int) -> Any:
     """Return the rate of section 4 ch, with the power of kappa in its first numerator."""
-    xi2, kappa = motion.xi(t) ** 2, ar.sqrt(motion.kappa2)
-    first, second = (motion.kappa2 * motion.at_parameter(i)[0] ** 2 * xi2 for i in (1, 2))
-    return motion.b / 2 * (kappa ** (power - 2) * first / (1 - first) - second / (1 - second))
+    first, second = at_poles(top, t)
+    kappa = ar.sqrt(top.kappa2)
+    return top.b / 2 * (kappa ** (power - 2) * first / (1 - first) - second / (1 - second))
 
 
-@equation("section 4 k: rate of spin")
-def _() -> Sides:
-    for motion, t in moments():
-        xi2 = motion.xi(t) ** 2
-        first, second = (motion.kappa2 * motion.at_parameter(i)[0] ** 2 * xi2 for i in (1, 2))
-        waves = first / (1 - first) + second / (1 - second)
-        yield motion.rates(t)[1], motion.r0 + motion.b / 2 * waves
+def spin_rate(top: Motion, t: Any) -> tuple[Any, Any]:
+    """Return the spin rate and section 4 k."""
+    waves = sum(x / (1 - x) for x in at_poles(top, t))
+    return top.rates(t)[1], top.r0 + top.b / 2 * waves
 
 
-def _printed_at_parameters(motion: Motion) -> list[Any]:
+def printed_at_parameters(top: Motion) -> list[Any]:
     """Return sn, cn, dn of alpha1, then of alpha2, as section 4 i prints them."""
-    u1, u2, u3 = motion.roots
+    u1, u2, u3 = top.roots
     south = [J * ar.sqrt(u3 - u1), ar.sqrt(u3 + 1), ar.sqrt(1 + u2)]
     north = [ar.sqrt(u3 - u1), J * ar.sqrt(u3 - 1), ar.sqrt(1 - u2)]
     return [x / ar.sqrt(1 + u1) for x in south] + [x / ar.sqrt(1 - u1) for x in north]
 
 
-@equation("section 4 i: sn, cn, dn of the parameters")
-def _() -> Sides:
-    for motion in MOTIONS:
-        ours = motion.at_parameter(1) + motion.at_parameter(2)
-        printed = _printed_at_parameters(motion)
-        yield from zip([x**2 for x in ours], [x**2 for x in printed], strict=True)
-        signs = (1, 1, 1, -1, 1, -1)
-        yield from zip(
-            ours, [sign * x for sign, x in zip(signs, printed, strict=True)], strict=True
-        )
+def at_parameters(top: Motion, signs: tuple[int, ...]) -> Pairs:
+    """Return sn, cn, dn of both parameters with their squares, and with signs, as printed."""
+    ours, printed = top.at_parameter(1) + top.at_parameter(2), printed_at_parameters(top)
+    signed = [sign * x for sign, x in zip(signs, printed, strict=True)]
+    return pairs([x**2 for x in ours], [x**2 for x in printed]) + pairs(ours, signed)
 
 
-@as_printed("section 4 i: sn, cn, dn of the parameters")
-def _() -> Sides:
-    for motion in MOTIONS:
-        sn, _, dn = motion.at_parameter(2)
-        _, _, _, printed_sn, _, printed_dn = _printed_at_parameters(motion)
-        yield sn, printed_sn
-        yield dn, printed_dn
-
-
-def _quotient(motion: Motion, v: Any) -> Any:
+def quotient(top: Motion, v: Any) -> Any:
     """Return sn/(cn dn) for the imaginary modulus, v already stretched to the real one."""
-    sn, cn, dn = (ar.ellipfun(name, v, m=motion.k**2) for name in ("sn", "cn", "dn"))
-    return motion.k_prime * sn * dn / cn
+    sn, cn, dn = (ar.ellipfun(name, v, m=top.k**2) for name in ("sn", "cn", "dn"))
+    return top.k_prime * sn * dn / cn
 
 
-@equation("line before (4,27)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        u1, u2, u3 = motion.roots
-        right = J * ar.sqrt((u3 - u1) * (1 + u1) / ((u3 + 1) * (1 + u2)))
-        sn, cn, dn = motion.at_parameter(1)
-        yield sn / (cn * dn), right
+def before_4_27(top: Motion, sign: int) -> Pairs:
+    """Return the line before (4,27) with u3 - u1, or with a sign of 1 u3 + u1, by both values."""
+    u1, u2, u3 = top.roots
+    right = J * ar.sqrt((u3 + sign * u1) * (1 + u1) / ((u3 + 1) * (1 + u2)))
+    sn, cn, dn = top.at_parameter(1)
+    return [(sn / (cn * dn), right), (quotient(top, J * top.alpha), right)]
 
 
-@as_printed("line before (4,27)")
-def _() -> Sides:
-    for motion in MOTIONS:
-        u1, u2, u3 = motion.roots
-        right = J * ar.sqrt((u3 + u1) * (1 + u1) / ((u3 + 1) * (1 + u2)))
-        yield _quotient(motion, J * motion.alpha), right
-
-
-def _pi(motion: Motion, t: Any) -> tuple[Any, Any]:
+def pi(top: Motion, t: Any) -> tuple[Any, Any]:
     """Return Pi00 and Pi11 of section 4 j."""
-    place = motion.w(t), J * motion.alpha, motion.k
+    place = top.w(t), J * top.alpha, top.k
     return pi_function("00", *place), pi_function("11", *place)
 
 
-def _precession(motion: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
+def precession(top: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
     """Return the precession and (4,29) for a direction of spin."""
-    even, odd = _pi(motion, t)
-    return motion.angles(t)[2], sigma * J * (even + odd + J * ar.pi / 2)
+    even, odd = pi(top, t)
+    return top.angles(t)[2], sigma * J * (even + odd + J * ar.pi / 2)
 
 
-def _spin(motion: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
+def own_spin(top: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
     """Return the spin and (4,34) for a direction of spin."""
-    even, odd = _pi(motion, t)
-    return motion.angles(t)[1], motion.r0 * t + sigma * J * (even - odd - J * ar.pi / 2)
+    even, odd = pi(top, t)
+    return top.angles(t)[1], top.r0 * t + sigma * J * (even - odd - J * ar.pi / 2)
 
 
-def _argument(motion: Motion, t: Any, stretch: Any) -> tuple[Any, Any]:
+def argument(top: Motion, t: Any, stretch: Any) -> tuple[Any, Any]:
     """Return w of (4,30), and eta times a factor that should be sqrt(1 + k_bar^2)."""
-    eta = ar.sqrt(motion.a * (motion.u3 - motion.u1)) * t / 2
-    return 2 * motion.K * t / motion.T, eta * stretch
+    return 2 * top.K * t / top.T, ar.sqrt(top.a * (top.u3 - top.u1)) * t / 2 * stretch
 
 
-def _of_w(motion: Motion, t: Any, part: int) -> tuple[Any, Any]:
+def of_w(top: Motion, t: Any, part: int) -> tuple[Any, Any]:
     """Return dn^2 w and its value by section 4 l, where w has the factor 1/part."""
-    w = ar.sqrt(motion.a * (motion.u3 - motion.u2)) * t / part
-    value = (motion.u3 - motion.u1) / (motion.u3 - motion.u(t))
-    return ar.ellipfun("dn", w, m=motion.k**2) ** 2, value
+    w = ar.sqrt(top.a * (top.u3 - top.u2)) * t / part
+    return ar.ellipfun("dn", w, m=top.k**2) ** 2, (top.u3 - top.u1) / (top.u3 - top.u(t))
 
 
-def _at_parameter(motion: Motion, sign: int, b: Any) -> tuple[Any, Any]:
+def at_alpha(top: Motion, sign: int, b: Any) -> tuple[Any, Any]:
     """Return both sides of (4,27), or with sign = -1 of (4,28)."""
-    v = J * motion.alpha + (0 if sign == 1 else J * motion.K_prime + motion.K)
-    return _quotient(motion, v), sign * J * ar.sqrt(motion.a * (motion.u3 - motion.u1)) / b
+    v = J * top.alpha + (0 if sign == 1 else J * top.K_prime + top.K)
+    return quotient(top, v), sign * J * ar.sqrt(top.a * (top.u3 - top.u1)) / b
 
 
-def _at_alpha(motion: Motion, name: str, numerator: Any) -> tuple[Any, Any]:
+def of_alpha(top: Motion, name: str, numerator: Any) -> tuple[Any, Any]:
     """Return a function of alpha for k', and its value by the roots."""
-    value = ar.ellipfun(name, motion.alpha, m=1 - motion.k**2)
-    return value, ar.sqrt(numerator / (motion.u3 + 1))
-
-
-@equation("(4,30)")
-def _() -> Sides:
-    for motion, t in moments():
-        u1, u2, u3 = motion.roots
-        yield _argument(motion, t, ar.sqrt((u3 - u2) / (u3 - u1)))
-        yield _argument(motion, t, ar.sqrt(1 - motion.kappa2))
-        yield 2 * motion.K * t / motion.T, motion.w(t)
+    value = ar.ellipfun(name, top.alpha, m=1 - top.k**2)
+    return value, ar.sqrt(numerator / (top.u3 + 1))
 
 
 chrapan.each(
@@ -522,21 +467,38 @@ chrapan.each(
     {
         "section 4 ch: rate of precession": lambda top, t: (
             top.rates(t)[2],
-            _precession_rate(top, t, 2),
+            precession_rate(top, t, 2),
         ),
-        "(4,29)": lambda top, t: _precession(top, t, top.sigma),
-        "section 4 l: w": lambda top, t: _of_w(top, t, 2),
-        "(4,34)": lambda top, t: _spin(top, t, top.sigma),
+        "section 4 k: rate of spin": spin_rate,
+        "(4,29)": lambda top, t: precession(top, t, top.sigma),
+        "(4,30)": lambda top, t: [
+            argument(top, t, ar.sqrt((top.u3 - top.u2) / (top.u3 - top.u1))),
+            argument(top, t, ar.sqrt(1 - top.kappa2)),
+            (2 * top.K * t / top.T, top.w(t)),
+        ],
+        "section 4 l: w": lambda top, t: of_w(top, t, 2),
+        "(4,34)": lambda top, t: own_spin(top, t, top.sigma),
     },
 )
 chrapan.each(
     tops,
     {
-        "(4,27)": lambda top: _at_parameter(top, 1, abs(top.b)),
-        "(4,28)": lambda top: _at_parameter(top, -1, abs(top.b)),
-        "(4,31)": lambda top: _at_alpha(top, "cn", 1 + top.u2),
-        "(4,32)": lambda top: _at_alpha(top, "sn", top.u3 - top.u2),
-        "(4,33)": lambda top: _at_alpha(top, "dn", 1 + top.u1),
+        "section 4 i: sn, cn, dn of the parameters": lambda top: at_parameters(
+            top, (1, 1, 1, -1, 1, -1)
+        ),
+        "line before (4,27)": lambda top: before_4_27(top, -1),
+        "(4,27)": lambda top: at_alpha(top, 1, abs(top.b)),
+        "(4,28)": lambda top: at_alpha(top, -1, abs(top.b)),
+        "(4,31)": lambda top: of_alpha(top, "cn", 1 + top.u2),
+        "(4,32)": lambda top: of_alpha(top, "sn", top.u3 - top.u2),
+        "(4,33)": lambda top: of_alpha(top, "dn", 1 + top.u1),
+    },
+)
+chrapan.each_as_printed(
+    tops,
+    {
+        "section 4 i: sn, cn, dn of the parameters": lambda top: at_parameters(top, (1,) * 6)[9::2],
+        "line before (4,27)": lambda top: before_4_27(top, 1),
     },
 )
 chrapan.each_as_printed(
@@ -544,26 +506,26 @@ chrapan.each_as_printed(
     {
         "section 4 ch: rate of precession as printed, the power": lambda top, t: (
             top.rates(t)[2],
-            _precession_rate(top, t, 3),
+            precession_rate(top, t, 3),
         ),
         "section 4 ch: rate of precession as printed, the left side": lambda top, t: (
             top.rates(t)[1],
-            _precession_rate(top, t, 2),
+            precession_rate(top, t, 2),
         ),
-        "(4,30) as printed, the roots": lambda top, t: _argument(
+        "(4,30) as printed, the roots": lambda top, t: argument(
             top, t, ar.sqrt((top.u3 + top.u2) / (top.u3 - top.u2))
         ),
-        "(4,30) as printed, the modulus": lambda top, t: _argument(top, t, ar.sqrt(1 + top.k**2)),
-        "section 4 l: w": lambda top, t: _of_w(top, t, 3),
+        "(4,30) as printed, the modulus": lambda top, t: argument(top, t, ar.sqrt(1 + top.k**2)),
+        "section 4 l: w": lambda top, t: of_w(top, t, 3),
     },
 )
 chrapan.each_as_printed(
     lambda: [(LEFT, LEFT.T / 3)],
     {
-        "(4,27)": lambda top, _: _at_parameter(top, 1, top.b),
-        "(4,28)": lambda top, _: _at_parameter(top, -1, top.b),
-        "(4,29)": lambda top, t: _precession(top, t, 1),
-        "(4,34)": lambda top, t: _spin(top, t, 1),
+        "(4,27)": lambda top, _: at_alpha(top, 1, top.b),
+        "(4,28)": lambda top, _: at_alpha(top, -1, top.b),
+        "(4,29)": lambda top, t: precession(top, t, 1),
+        "(4,34)": lambda top, t: own_spin(top, t, 1),
     },
 )
 
@@ -576,4 +538,4 @@ class TestChrapan(EquationTests):
 
     def spoil(self, patch: pytest.MonkeyPatch) -> None:
         """Put tops in place whose record and angles are wrong."""
-        spoil(patch, __name__)
+        spoil(patch)
