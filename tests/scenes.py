@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import random
 from typing import Any
 
 from conftest import ROOT
-from hard_scenes import Scene, from_rest, tiny_tilt
 from lagtop import Motion
 
 EPS = 2.0**-52
@@ -32,19 +30,6 @@ NAMED: dict[str, dict[str, float]] = {
     "nearly upright, stable": {"theta0_deg": 0.01, "r0": 60},
     "at the sleeping threshold": {"A": 1, "C": 1, "m": 1, "s": 1, "g": 1, "r0": 2, "theta0_deg": 1},
 }
-
-
-def random_scene(rng: random.Random) -> Scene:
-    """Return a release from rest, of any body and spin, a part of them next to the vertical."""
-    scene = rng.choice([from_rest, tiny_tilt])(rng)
-    return {name: x for name, x in scene.items() if name not in {"thetadot0", "psidot0"}}
-
-
-def random_times(rng: random.Random, period: float) -> list[float]:
-    """Return times from 1e-9 to 1e12 periods, and near turning points far away."""
-    spread = [rng.uniform(-1, 1) * 10.0 ** rng.choice([-9, -3, 0, 0, 3, 6, 12]) for _ in range(4)]
-    near_turn = rng.randrange(1000) + rng.choice([0, 0.5]) + 10 ** rng.uniform(-12, -1)
-    return [period * x for x in [*spread, near_turn]]
 
 
 def period(motion: Motion) -> float:

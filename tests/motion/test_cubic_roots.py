@@ -14,7 +14,7 @@ from lagrange_cli.motion.any_start import largest_root
 def test_the_largest_root_is_enclosed_or_too_few_digits_are_said() -> None:
     """Cubics with known roots and coefficients of any accuracy, often nearly double."""
     rng, found, refused = random.Random("largest root"), 0, 0
-    for _ in range(1500):
+    for _ in range(400):
         ar = balls(rng.choice([8, 12, 20]))
         top = Fraction(rng.randrange(-9, 10), 10)
         middle = top - Fraction(10) ** rng.randrange(-9, 1)
@@ -35,7 +35,7 @@ def test_the_largest_root_is_enclosed_or_too_few_digits_are_said() -> None:
         found += 1
         low, high = map(Fraction, root.ends())
         assert low <= top <= high, roots
-    assert min(found, refused) > 250
+    assert min(found, refused) > 60
 
 
 @pytest.mark.parametrize(("above", "proved"), [(100, True), (5.0001, True), (2, False), (1, False)])

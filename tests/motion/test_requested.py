@@ -1,6 +1,6 @@
 """Keys on request: where they are accepted, and the worked example.
 
-`test_proved_numbers` and `test_cancellation` judge them as the nearest doubles.
+`test_digits` judges them as the nearest doubles.
 """
 
 from __future__ import annotations

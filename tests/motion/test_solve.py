@@ -1,4 +1,4 @@
-"""Regimes, remarks, and inputs that are refused; `test_proved_numbers` judges the numbers."""
+"""Regimes, remarks, and inputs that are refused; `test_digits` judges the numbers."""
 
 from __future__ import annotations
 
