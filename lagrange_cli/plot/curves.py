@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,10 +14,8 @@ from ..motion.solve import Motion
 
 MOST_PERIODS = 1000
 """Most nutation periods in one picture; more would be a blot and not a curve."""
-SAMPLES = 64
-"""Samples per nutation period, before `sampled` adds more where a curve is steep."""
-LONGEST, STRAIGHT, VISIBLE = 0.02, math.cos(math.radians(10)), 5e-4
-"""Limits of a polygon: longest step, sharpest corner, least step that shows (shares of a range)."""
+SAMPLES = 200
+"""Samples per nutation period."""
 
 
 def tilt_period(motion: Motion) -> float | None:
@@ -41,13 +38,11 @@ def span(motion: Motion, periods: float) -> float:
 
 
 def turn_span(motion: Motion) -> float:
-    """Return the time of one turn of the precession, limited to 1 to 40 nutation periods."""
+    """Return the time of one turn of the precession, limited to 3 to 40 nutation periods."""
     nutation, turn = tilt_period(motion), motion.T_precession
-    if not nutation:
+    if not nutation or motion.exact.facts.plane:  # in a plane the axis returns along the same arc
         return span(motion, 1)
-    if motion.exact.facts.plane:
-        return nutation  # the axis returns along the same arc
-    return min(max(turn / nutation if turn else 3.0, 3.0), 40.0) * nutation
+    return min(max(turn or 0.0, 3 * nutation), 40 * nutation)
 
 
 def checked_span(motion: Motion, t_max: Number | None) -> float | None:
@@ -69,25 +64,16 @@ def checked_span(motion: Motion, t_max: Number | None) -> float | None:
 def sampled(motion: Motion, t_max: float, names: Sequence[str]) -> dict[str, Array]:
     """Return columns of `lagtop table` from 0 to t_max, in radians, and their times under `t`.
 
-    A step is halved if it exceeds 2 % of the range of a column, or turns by more than 10 degrees
-    and is visible.  This stops at eight times the samples, because a jump would go on for ever.
+    The samples are even in the sum of time and length of the curve, each as a share of the whole:
+    so they are dense where the curve is steep.
     """
-    count = round(SAMPLES * t_max / (tilt_period(motion) or t_max / 6)) + 1
-    t = np.linspace(0.0, t_max, max(count, 2 * SAMPLES))
-    enough = 8 * t.size
-    while t.size < enough:
-        points = np.stack([*motion.table(t, names).values()], axis=1)
-        extent = np.ptp(points, axis=0)
-        steps = np.diff(points, axis=0) / np.where(extent > 0.0, extent, np.inf)
-        wide = abs(steps).max(axis=1) > LONGEST
-        size = np.linalg.norm(steps, axis=1)
-        sharp = np.sum(steps[1:] * steps[:-1], axis=1) < STRAIGHT * size[1:] * size[:-1]
-        sharp &= np.minimum(size[1:], size[:-1]) > VISIBLE
-        wide[1:] |= sharp
-        wide[:-1] |= sharp
-        middle = (t[1:] + t[:-1]) / 2
-        wide &= (middle > t[:-1]) & (middle < t[1:])
-        if not wide.any():
-            break
-        t = np.sort(np.append(t, middle[wide]))
+    count = round(SAMPLES * max(t_max / (tilt_period(motion) or t_max), 2.0))
+    t = np.linspace(0.0, t_max, count + 1)
+    for _ in range(2):
+        points = np.stack([*motion.table(t, names).values()])
+        extent = np.ptp(points, axis=1, keepdims=True)
+        steps = np.diff(points) / np.where(extent > 0, extent, np.inf)
+        length = np.append(0.0, np.cumsum(np.hypot.reduce(steps)))
+        even = t / t_max + length / (length[-1] or 1.0)
+        t = np.interp(np.linspace(0.0, even[-1], count + 1), even, t)
     return motion.table(t, ["t", *names])

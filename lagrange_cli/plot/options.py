@@ -64,8 +64,7 @@ class Options(NamedTuple):
     @property
     def time_label(self) -> str:
         """The label of an axis of time."""
-        unit = self.unit("time")
-        return f"t ({'input units' if unit == 'time' else unit})"
+        return f"t ({self.unit('time').replace('time', 'input units')})"
 
 
 def mark_start(ax: Axes, x: Any, y: Any, look: Look, label: str = "start") -> None:

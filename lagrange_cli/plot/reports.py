@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .style import LIGHT, check_picture, figure_bytes, plain, require_matplotlib, scale, styled
+from .style import LIGHT, figure_bytes, plain, require_matplotlib, scale, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ..arithmetic.types import Array
+    from ..fit.outcome import Curve
 
-FORMATS = "svg", "png"
-"""File types of the pictures of reports."""
 MOST_RECORDINGS = 3
 """Most recordings on one sheet."""
-
-
-def check_plot(path: str | None, output: str) -> None:
-    """Raise the errors of `check_picture` for the picture of a report, if there is one."""
-    if path is not None:
-        check_picture(path, FORMATS, output)
 
 
 def report_picture(
@@ -58,15 +50,10 @@ class ErrorCurve(NamedTuple):
     compared: float | None = None
     """Error used in the convergence plot."""
 
-    @property
-    def has_step(self) -> bool:
-        """Whether there is a positive error at a positive step, as a logarithmic plot needs."""
-        return bool(self.step and self.compared and math.isfinite(self.compared))
-
 
 def draw_errors(curves: Sequence[ErrorCurve], limit: float, path: str) -> bytes:
     """Return the picture of errors in the format given by its file name."""
-    size = 10 if any(curve.has_step for curve in curves) else 7.5, 4.6
+    size = (10.0 if any(curve.step for curve in curves) else 7.5), 4.6
     title = "lagtop compare: error (rad) over time"
     return report_picture(path, size, title, lambda x: draw_error_panels(x, curves, limit))
 
@@ -78,82 +65,51 @@ def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float
     """
     import numpy as np
 
-    stepped = [curve for curve in curves if curve.has_step]
-    over_time, *over_step = figure.subplots(1, 2 if stepped else 1, squeeze=False)[0]
-    shades = scale(LIGHT)([i / max(len(curves) - 1, 1) for i in range(len(curves))])
+    steps = [(x.step, x.compared) for x in curves if x.step and x.compared and x.compared < np.inf]
+    over_time, *over_step = figure.subplots(1, 2 if steps else 1, squeeze=False)[0]
+    shades = scale(LIGHT)(np.linspace(0, 1, len(curves)))
     for curve, colour, dashes in zip(curves, shades, cycle(("-", "--", "-.", ":"))):
         positive = np.where(curve.error > 0, curve.error, np.nan)  # 0 and NaN have no logarithm
-        style = {"lw": 1.2, "color": colour, "ls": dashes, "label": plain(curve.name)}
-        over_time.plot(curve.t, positive, **style)
+        name = plain(curve.name)
+        over_time.plot(curve.t, positive, lw=1.2, color=colour, ls=dashes, label=name)
     over_time.axhline(limit, color=LIGHT.quiet, lw=0.8, ls=":", label="--max-error")
     over_time.set(yscale="log", xlabel="t (units of the trajectory)", ylabel="error (rad)")
     over_time.set_title("Error over time")
     over_time.legend(loc="upper left", bbox_to_anchor=(0, -0.14), ncols=2)
     for axes in over_step:
-        draw_convergence(axes, stepped)
+        draw_convergence(axes, sorted(steps))
 
 
-def draw_convergence(axes: Axes, curves: Sequence[ErrorCurve]) -> None:
+def draw_convergence(axes: Axes, points: Sequence[tuple[float, float]]) -> None:
     """Draw error over step, with the slopes of orders 1, 2 and 4 from the coarsest step."""
-    points = sorted((curve.step or 0.0, curve.compared or 0.0) for curve in curves)
-    axes.plot(*zip(*points, strict=True), "o-", color=LIGHT.lines[0], ms=7)
-    (finest, _), (step, error) = points[0], points[-1]
+    steps, errors = zip(*points, strict=True)
+    axes.plot(steps, errors, "o-", color=LIGHT.lines[0], ms=7)
+    quiet: dict[str, Any] = {"color": LIGHT.quiet}
     for order in (1, 2, 4):
-        end = error * (finest / step) ** order
-        axes.plot([step, finest], [error, end], color=LIGHT.quiet, lw=0.7, ls=":")
-        how: dict[str, Any] = {"textcoords": "offset points", "size": 8, "color": LIGHT.quiet}
-        axes.annotate(f"order {order}", (finest, end), (2, -9), **how)
-    axes.set(xscale="log", yscale="log", xlabel="step", ylabel="error (rad)")
-    axes.set_xticks([x for x, _ in points], [f"{x:g}" for x, _ in points], rotation=30)
+        end = errors[-1] * (steps[0] / steps[-1]) ** order
+        axes.plot([steps[-1], steps[0]], [errors[-1], end], lw=0.7, ls=":", **quiet)
+        axes.annotate(
+            f"order {order}", (steps[0], end), (2, -9), textcoords="offset points", size=8, **quiet
+        )
+    axes.set(xscale="log", yscale="log", xlabel="step (units of the trajectory)")
+    axes.set(ylabel="error (rad)", title="Convergence")
+    axes.set_xticks(steps, [f"{x:g}" for x in steps], rotation=30)
     axes.set_xticks([], minor=True)
-    axes.set_title("Convergence")
 
 
-class FittedCurve(Protocol):
-    """One channel of a recording, with the fitted motion."""
+def draw_fit(curves: Sequence[Curve], unit: str, path: str, title: str = "") -> bytes:
+    """Return the picture of the fits of at most three recordings, in the format of the file name.
 
-    @property
-    def name(self) -> str:
-        """The recording and the angle, such as `run 1: theta`, or the angle alone."""
-
-    @property
-    def t(self) -> Array:
-        """The times of the data."""
-
-    @property
-    def data(self) -> Array:
-        """The data, in the unit of the picture; the residuals and the curve are so too."""
-
-    @property
-    def residual(self) -> Array:
-        """Data minus fitted motion."""
-
-    @property
-    def fine_t(self) -> Array:
-        """Times of the fitted motion."""
-
-    @property
-    def curve(self) -> Array:
-        """The fitted motion."""
-
-
-def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str, title: str = "") -> bytes:
-    """Return the picture of a fit in the format given by its file name."""
-    kept = kept_curves(curves)
-    size = 8.0, 1.0 + 2.8 * len(kept)
+    `unit` is that of the angles.
+    """
+    names = list(dict.fromkeys(curve.name.rpartition(": ")[0] for curve in curves))
+    kept = [x for x in curves if x.name.rpartition(": ")[0] in names[:MOST_RECORDINGS]]
     return report_picture(
         path,
-        size,
+        (8.0, 1.0 + 2.8 * len(kept)),
         "lagtop fit: data, fitted motion and residuals",
         lambda figure: draw_fit_panels(figure, kept, unit, title),
     )
-
-
-def kept_curves(curves: Sequence[FittedCurve]) -> list[FittedCurve]:
-    """Return the curves of the first recordings, as many as fit on one sheet."""
-    names = list(dict.fromkeys(curve.name.rpartition(": ")[0] for curve in curves))
-    kept = names[:MOST_RECORDINGS]
-    return [curve for curve in curves if curve.name.rpartition(": ")[0] in kept]
 
 
 def draw_outcome(outcome: Any, figure: Figure | None = None) -> Figure:
@@ -168,13 +124,11 @@ def draw_outcome(outcome: Any, figure: Figure | None = None) -> Figure:
     4
     """
     figure = figure or new_figure()
-    draw_fit_panels(figure, list(outcome.curves()), outcome.angle)
+    draw_fit_panels(figure, outcome.curves(), outcome.angle)
     return figure
 
 
-def draw_fit_panels(
-    figure: Figure, curves: Sequence[FittedCurve], unit: str, title: str = "", time: str = ""
-) -> None:
+def draw_fit_panels(figure: Figure, curves: Sequence[Curve], unit: str, title: str = "") -> None:
     """Draw two panels for each channel: the data with the curve, and the residuals below."""
     panels = figure.subplots(
         2 * len(curves), 1, squeeze=False, sharex="col", height_ratios=[3, 1] * len(curves)
@@ -190,6 +144,6 @@ def draw_fit_panels(
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
         below.set(ylabel=f"residual ({unit})")
-    panels[-1].set(xlabel=f"t ({time or 'units of the recording'})")
+    panels[-1].set(xlabel="t (units of the recording)")
     if title:
         figure.suptitle(plain(title), x=0.012, ha="left")

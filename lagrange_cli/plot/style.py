@@ -56,12 +56,12 @@ def styled(look: Look) -> Iterator[None]:
     """Draw with our style sheet, whatever the user's own matplotlibrc contains."""
     from matplotlib import rc_context, style
 
-    colours = {
-        **dict.fromkeys(["axes.facecolor", "figure.facecolor", "savefig.facecolor"], look.paper),
-        **dict.fromkeys(["axes.labelcolor", "text.color"], look.ink),
-        **dict.fromkeys(["xtick.labelcolor", "ytick.labelcolor"], look.ink),
-        **dict.fromkeys(["axes.edgecolor", "xtick.color", "ytick.color"], look.quiet),
+    settings = {
+        look.paper: "axes.facecolor figure.facecolor savefig.facecolor",
+        look.ink: "axes.labelcolor text.color xtick.labelcolor ytick.labelcolor",
+        look.quiet: "axes.edgecolor xtick.color ytick.color",
     }
+    colours = {name: colour for colour, names in settings.items() for name in names.split()}
     with rc_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # a font of the user has it or not
         style.use(["default", Path(__file__).with_name("lagtop.mplstyle"), colours])
@@ -86,8 +86,7 @@ def number_text(value: float, digits: int = 6) -> str:
     """Return a number to a few digits; if that rounds it to 1 or -1, by its distance from there."""
     shown = f"{value:.{digits}g}"
     if shown in {"1", "-1"} and abs(value) != 1:
-        beyond = abs(value) - 1
-        shown = f"{shown} {'+' if (beyond > 0) == (value > 0) else '-'} {abs(beyond):.2g}"
+        shown = f"{shown} {value - round(value):+.2g}".replace("+", "+ ").replace(" -", " - ")
     return shown.replace("-", "−")
 
 
