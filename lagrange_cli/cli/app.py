@@ -120,6 +120,11 @@ def _naming_option(error: LagtopError, params: list[click.Parameter]) -> str:
 
 def _usage_message(error: click.ClickException) -> str:
     """Return the message of click as the end of a sentence, with a reference to the help."""
+    from difflib import get_close_matches
+
+    if isinstance(error, click.NoSuchOption):  # click suggests --rad for --format
+        alike = get_close_matches(error.option_name, error.possibilities or (), cutoff=0.7)
+        error = click.NoSuchOption(error.option_name, possibilities=alike, ctx=error.ctx)
     text = error.format_message().replace(". (", " (").rstrip(".")
     path = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "lagtop"
     return f"{text[:1].lower()}{text[1:]}: see {path} --help"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import ExitStack
+from contextlib import nullcontext
 from functools import partial, wraps
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
 
@@ -50,21 +50,14 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
             raise LagtopError(f"{name} {error}".lstrip()) from None
 
 
-class Words(click.ParamType):  # type: ignore[type-arg]
-    """Words among which may be a scene: a shell completes the shipped scenes, and files."""
+def _scenes_or_files(_: Any, __: Any, begun: str) -> list[CompletionItem]:
+    """Return the shipped scenes that begin with a word, or a request for files."""
+    from click.shell_completion import CompletionItem
 
-    name = "words"
+    from ..inputs.scenes import scene_names
 
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        """Return the scenes that begin with a word, or files."""
-        from click.shell_completion import CompletionItem
-
-        from ..inputs.scenes import scene_names
-
-        scenes = [CompletionItem(x) for x in scene_names() if x.startswith(incomplete)]
-        return scenes or [CompletionItem(incomplete, type="file")]
+    scenes = [CompletionItem(x) for x in scene_names() if x.startswith(begun)]
+    return scenes or [CompletionItem(begun, type="file")]
 
 
 def count(most: float = 1e9) -> Parsed:
@@ -95,10 +88,9 @@ def parse_numbers(text: str) -> list[float]:
 
 
 def _parse_mark(text: str) -> str:
-    marks = {"": "", "point": ".", "comma": ",", ".": ".", ",": ","}
-    if text not in marks:
+    if text not in {"point", "comma", ".", ",", ""}:
         raise LagtopError(f"must be point, comma or the character, got {quoted(text)}")
-    return marks[text]
+    return {"point": ".", "comma": ","}.get(text, text)
 
 
 def _parse_value(text: str, **allowed: Any) -> Value:
@@ -113,6 +105,7 @@ LIST = Parsed("NAME,...", split_names)
 NUMBERS = Parsed("X,...", parse_numbers)
 VALUE = Parsed("X", partial(_parse_value, uncertain=True))
 """An input of one top: a number, which may have a unit and an uncertainty."""
+STEADY = Parsed("X", partial(_parse_value, uncertain=True, steady=True))
 TIME = Parsed("X", _parse_value)
 
 option = click.option
@@ -152,7 +145,7 @@ euler_sequence = option(
 )
 
 
-scenes = click.argument("scenes", nargs=-1, metavar="[SCENE]...", type=Words())
+scenes = click.argument("scenes", nargs=-1, metavar="[SCENE]...", shell_complete=_scenes_or_files)
 
 
 def extension(path: str) -> str:
@@ -238,33 +231,27 @@ def top(
     def decorate(function: F) -> F:
         @wraps(function)
         def run(rad: bool, words: Any, **others: Any) -> None:
-            tilt = "theta0_rad" if rad else "theta0_deg"
             given = {x: others.pop(x) for x in [*others] if x in names}  # as on the command line
-            inputs = {
-                tilt if x == "theta0" and not y.unit else x: y
-                for x, y in given.items()
-                if y is not None
-            }
-            scene = words
+            inputs = {x: value for x, value in given.items() if value is not None}
+            tilt = "theta0_rad" if rad else "theta0_deg"
+            inputs = {x if x != "theta0" or y.unit else tilt: y for x, y in inputs.items()}
             if several:
                 scenes = [word for word in words if is_scene and is_scene(word)]
                 if len(scenes) > 1:
                     raise LagtopError(f"use one scene, not {' and '.join(scenes)}")
-                scene = scenes[0] if scenes else None
                 others["words"] = [word for word in words if word not in scenes]
-            function(top=TopOptions(inputs, rad, scene), **others)
+                words = scenes[0] if scenes else None
+            function(top=TopOptions(inputs, rad, words), **others)
 
         found: Any = rad(run)
         for name in reversed(names):
-            is_rate = whole and kind is VALUE and name == "psidot0"
-            steady = Parsed("X", partial(_parse_value, uncertain=True, steady=True))
-            text = _help_of(name, shows_default=whole)
-            flag = f"--{name.replace('_', '-')}"
-            found = option(flag, name, type=steady if is_rate else kind, help=text)(found)
-        nargs = -1 if several else 1
-        return click.argument(  # type: ignore[no-any-return]
-            "words", nargs=nargs, required=required, metavar=argument, type=Words()
-        )(found)
+            of_one = whole and kind is VALUE
+            parameter = STEADY if of_one and name == "psidot0" else kind
+            flag, text = f"--{name.replace('_', '-')}", _help_of(name, shows_default=whole)
+            found = option(flag, name, type=parameter, help=text)(found)
+        words: Any = {"nargs": -1 if several else 1, "required": required, "metavar": argument}
+        found = click.argument("words", shell_complete=_scenes_or_files, **words)(found)
+        return cast(F, found)
 
     return decorate
 
@@ -322,38 +309,31 @@ def output(
     default = f"{formats[0]}, on a terminal {on_terminal}" if on_terminal else formats[0]
     text = f"{', '.join(formats)}.  [default: extension of FILE, or {default}]"
 
-    def chosen(path: str, fmt: str | None) -> str:
-        ending = extension(path)
-        if fmt is None and ending in {"", "txt", *extensions}:
-            return on_terminal if on_terminal and is_screen(path) else formats[0]
-        if fmt is None and (ending == "table" or ending not in formats):
-            raise LagtopError(
-                f"{click.get_current_context().command.name} cannot write {ending or path}: use "
-                f"{', '.join(formats)} as extension of {quoted(path)}, or add --format"
-            )
-        if (fmt or ending) == "parquet" and is_screen(path):
-            raise LagtopError("--format parquet is not for a terminal: use -o FILE.parquet")
-        return fmt or ending
-
     def decorate(function: F) -> F:
         @wraps(function)
         def run(output: str, fmt: str | None, **others: Any) -> None:
-            out = Output(output, chosen(output, fmt), fmt is not None)
-            if out.fmt == "parquet":
+            ending = extension(output)
+            chosen = fmt or ending
+            if fmt is None and ending in {"", "txt", *extensions}:
+                chosen = on_terminal if on_terminal and is_screen(output) else formats[0]
+            elif fmt is None and (ending == "table" or ending not in formats):
+                name = click.get_current_context().command.name
+                raise LagtopError(
+                    f"{name} cannot write {ending or output}: use {', '.join(formats)} as "
+                    f"extension of {quoted(output)}, or add --format"
+                )
+            if chosen == "parquet":
                 from ..output.formats import check_parquet
 
+                if is_screen(output):
+                    raise LagtopError("--format parquet is not for a terminal: use -o FILE.parquet")
                 check_parquet()
-            function(out=out, **others)
+            function(out=Output(output, chosen, fmt is not None), **others)
 
-        found: Any = option(
-            "--format", "fmt", metavar="FORMAT", type=click.Choice(formats), help=text
-        )(run)
-        return option(  # type: ignore[no-any-return]
-            *("-o", "--output"),
-            metavar="FILE",
-            default="-",
-            help="Output file (replaced only on success).",
-        )(found)
+        kind, help_ = click.Choice(formats), "Output file (replaced only on success)."
+        found: Any = option("--format", "fmt", metavar="FORMAT", type=kind, help=text)(run)
+        found = option("-o", "--output", metavar="FILE", default="-", help=help_)(found)
+        return cast(F, found)
 
     return decorate
 
@@ -377,9 +357,7 @@ def write_report(
     Both destinations are opened first, and replaced only if everything is written.  CSV holds only
     the rows: its conditions go to standard error.
     """
-    with ExitStack() as stack:
-        picture = stack.enter_context(opened(plot)) if plot and draw else None
-        stream = stack.enter_context(opened(out.path))
+    with opened(plot) if plot else nullcontext() as picture, opened(out.path) as stream:
         report = find()
         if picture and draw:
             picture.write(draw(report))

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import closing
-from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +19,6 @@ from .app import complain
 if TYPE_CHECKING:
     from ..inputs.units import System
     from ..inputs.values import Value
-    from ..motion.solve import Motion
     from ..output.destination import Output
     from ..sweep.plan import NumberedBlock
 
@@ -28,12 +26,15 @@ FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
 
 
-def _parse_input(text: str, *, read: str) -> Value:
-    """Return the value of an input; `read` names the reader of its numbers."""
-    from ..inputs import values
+def _input(read: str) -> opt.Parsed:
+    """Return the type of an input; `read` names the reader of its numbers."""
 
-    parse: Callable[[str], Any] = getattr(values, read)
-    return values.parse_value(text, parse)
+    def parse(text: str) -> Value:
+        from ..inputs import values
+
+        return values.parse_value(text, getattr(values, read))
+
+    return opt.Parsed("X", parse)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -58,7 +59,7 @@ def _parse_jobs(text: str) -> int:
 )
 @opt.top(
     "[SCENE] [TOPS.csv|.ndjson|-]",
-    kind=opt.Parsed("X", partial(_parse_input, read="parse_values")),
+    kind=_input("parse_values"),
     is_scene=is_scene_file,
 )
 @opt.keys
@@ -108,16 +109,8 @@ def sweep_command(
     if len(words) > 1:
         raise LagtopError(f"a sweep has one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
-    todo = plan(
-        path,
-        top.inputs,
-        top.scene,
-        keys=keys,
-        radians=top.radians,
-        fmt=out.fmt,
-        described=parts is not None,
-        decimal=decimal,
-    )
+    how: dict[str, Any] = {"radians": top.radians, "fmt": out.fmt, "decimal": decimal, "keys": keys}
+    todo = plan(path, top.inputs, top.scene, described=parts is not None, **how)
     opt.warn_missing(todo.given)
     opt.warn_unused(todo.given)
     sweep = todo.sweep
@@ -165,7 +158,7 @@ def _headings(
 )
 @opt.top(
     "[SCENE] CONDITION...",
-    kind=opt.Parsed("X", partial(_parse_input, read="parse_number_or_span")),
+    kind=_input("parse_number_or_span"),
 )
 @opt.option("--scan", type=opt.count(), help="Values of each unknown.  [default: 4000, 60 or 20]")
 @opt.keys
@@ -189,6 +182,7 @@ def find_command(
     """
     from ..find import find_tops, search_of
     from ..inputs.names import check_names
+    from ..motion.numbers import record_in_range
     from ..motion.record import all_keys, record_keys
 
     chosen = record_keys(radians=top.radians)
@@ -199,19 +193,8 @@ def find_command(
     opt.warn_missing(given)
     opt.warn_unused(given)
     complain(f"{len(motions)} found; {looked}")
-    _write_found(motions, given.system, chosen, top.radians, out)
-
-
-def _write_found(
-    motions: list[Motion], system: System | None, keys: list[str], radians: bool, out: Output
-) -> None:
-    """Write the records as `lagtop sweep` does, a row for each motion."""
-    from ..motion.numbers import record_in_range
-
-    records: list[dict[str, Any]] = [
-        record_in_range(motion, radians=radians, keys=keys)[0] for motion in motions
-    ]
+    records = [record_in_range(motion, radians=top.radians, keys=chosen)[0] for motion in motions]
     for record in records:
-        if system is not None and record.get("remark"):
-            record["remark"] = system.in_words(record["remark"])
-    out.rows(records, keys, _headings(keys, system, out.fmt, radians=radians))
+        if given.system is not None and record.get("remark"):
+            record["remark"] = given.system.in_words(record["remark"])
+    out.rows(records, chosen, _headings(chosen, given.system, out.fmt, radians=top.radians))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import DataError, LagtopError
@@ -12,7 +11,6 @@ from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Points
     from ..inputs.given import Given
     from ..inputs.values import Value
     from ..motion.solve import Motion
@@ -61,9 +59,10 @@ def table_command(
     max(1 rad, |angle|), or more if the axis passes near the vertical.  If inputs are uncertain, the
     last columns are the uncertainties of the angles.
     """
+    from ..inputs.files import shown_path
     from ..inputs.trajectory import read_times
     from ..motion.over_time.columns import DEFAULT_COLUMNS
-    from ..motion.over_time.tables import grid
+    from ..motion.over_time.tables import ProvedTable, grid, rows
 
     opt.exclude(n=n, dt=dt)
     for name, value in {"t_max": t_max, "t_min": t_min, "n": n, "dt": dt}.items():
@@ -78,30 +77,24 @@ def table_command(
         raise LagtopError("--digits and --certify take inputs without uncertainties")
     motion = opt.motion_of(found, exact=digits is not None)
     names = DEFAULT_COLUMNS if columns is None else columns
-    with _blaming(times):
+    how = {"radians": top.radians, "wrap": wrap}
+    parts: Iterable[Any]
+    try:
         at = read_times(times, decimal) if times else grid(motion, n=n, **found.others)
         if out.fmt == "table" and at.count > MAX_DRAWN_ROWS:
             raise LagtopError(f"--format table shows at most {MAX_DRAWN_ROWS} rows, got {at.count}")
         if digits is None and not certify:
-            header, parts = _rows(motion, at, names, found, top.radians, wrap)
+            stds = angle_stds(found, motion)
+            header, parts = rows(motion, at, names, stds=stds.at if stds else None, **how)
         else:
-            from ..motion.over_time.tables import ProvedTable
-
-            proved = ProvedTable(motion, names, digits, radians=top.radians, wrap=wrap)
-            header, parts = proved.rows(at, radii=certify)
+            header, parts = ProvedTable(motion, names, digits, **how).rows(at, radii=certify)
         if out.fmt == "table":
             header = _with_units(header, names, found)
         out.table(header, with_progress(parts, "rows", at.count or None, len))
-
-
-def _rows(
-    motion: Motion, times: Points, names: Sequence[str], found: Given, radians: bool, wrap: bool
-) -> tuple[Sequence[str], Iterable[Any]]:
-    """Return the header and the rows of a table in doubles."""
-    from ..motion.over_time.tables import rows
-
-    stds = angle_stds(found, motion)
-    return rows(motion, times, names, radians=radians, wrap=wrap, stds=stds.at if stds else None)
+    except LagtopError as error:
+        if times is None or error.key != "t":
+            raise
+        raise DataError(f"{shown_path(times)}: {error}") from None
 
 
 def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
@@ -130,16 +123,3 @@ def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> li
     units = ["" if column.unit == "angle" else named(column.unit) for column in chosen]
     texts = [with_unit(x, unit) for x, unit in zip(header, units, strict=False)]
     return [*texts, *header[len(texts) :]]
-
-
-@contextmanager
-def _blaming(times: str | None) -> Iterator[None]:
-    """Raise DataError for a time out of reach in a file of times."""
-    try:
-        yield
-    except LagtopError as error:
-        if times is None or error.key != "t":
-            raise
-        from ..inputs.files import shown_path
-
-        raise DataError(f"{shown_path(times)}: {error}") from None
