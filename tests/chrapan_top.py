@@ -17,12 +17,6 @@ from lagrange_cli.motion.over_time.tables import ProvedTable
 from lagrange_cli.motion.solve import solve
 
 
-def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
-    """Return the record of a top with `digits` digits."""
-    record: dict[str, Any] = solve(top).record(digits=digits, radians=radians)
-    return record
-
-
 def rows_of(
     top: Top, times: Sequence[Any], digits: int, *, wrap: bool = False, radians: bool = False
 ) -> list[list[Any]]:
@@ -51,7 +45,7 @@ class Motion:
     @cached_property
     def numbers(self) -> dict[str, Any]:
         """Numbers of the record, in all the digits."""
-        texts = record_of(self.top, DIGITS)
+        texts = solve(self.top).record(digits=DIGITS)
         return {key: ar.mpf(text) for key, text in texts.items() if _is_number(text)}
 
     def __getattr__(self, key: str) -> Any:
@@ -202,8 +196,6 @@ PARTS = [ar.mpf(x) for x in ("0.13", "0.31", "0.62", "0.87", "1.7", "-0.4")]
 HALF = PARTS[:2]
 FIRST = PARTS[:4]
 FAR = [ar.mpf(x) for x in ("-7.6", "10.3", "1000.8")]
-TURNS = [ar.mpf(i) / 4 for i in range(5)]
-"""Times in periods: anywhere, in the first half, in the first period, far from it, at quarters."""
 
 
 def moments(*parts: Any) -> Iterator[tuple[Motion, Any]]:

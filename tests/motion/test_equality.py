@@ -106,63 +106,41 @@ def test_a_mean_rate_of_0_has_no_period() -> None:
 
 
 HALF = {"m": 2, "A": 1, "C": 1, "s": 1, "g": 1, "theta0_deg": 90, "thetadot0": 2}
+"""By hand u3 = 2 and u(T/2) = 1/2."""
+HALF_RATES: list[tuple[Inputs, float, float, float]] = [
+    (HALF | {"r0": 1, "psidot0": 2}, 2.0, 0.0, 2.0),
+    (HALF | {"r0": -1, "psidot0": -2}, 2.0, 0.0, -2.0),
+    (HALF | {"r0": 2, "psidot0": 1}, 2.0, 2.0, 0.0),
+    (HALF | {"A": 2, "C": 2, "g": 2, "r0": 2, "psidot0": 1}, 2.0, 2.0, 0.0),
+    # (4,9) over u - u0 is 4 u^2 - 7 u + 3/2 with the roots 1/4, 3/2
+    ({"A": 0.5, "C": 0.5, "r0": 0.5, "theta0_deg": 120, "psidot0": 3}, 1.5, 0.0, 2.0),
+    # and 2 u^2 - 4 u - 4 with 1 -+ sqrt(3)
+    ({"C": 0.5, "r0": 2, "theta0_deg": 120, "psidot0": -2}, 1 + SQRT3, 0.0, -1 - SQRT3),
+]
 
 
-@pytest.mark.parametrize(
-    ("inputs", "key", "other"),
-    [
-        ({"r0": 1, "psidot0": 2}, "spin_rate_half", 2.0),
-        ({"r0": -1, "psidot0": -2}, "spin_rate_half", -2.0),
-        ({"r0": 2, "psidot0": 1}, "precession_rate_half", 2.0),
-        ({"A": 2, "C": 2, "g": 2, "r0": 2, "psidot0": 1}, "precession_rate_half", 2.0),
-    ],
-)
-def test_rates_that_vanish_half_a_period_after_a_start_with_rates(
-    inputs: Inputs, key: str, other: float
+@pytest.mark.parametrize(("inputs", "u3", "spin", "precession"), HALF_RATES)
+def test_rates_that_vanish_after_half_a_period(
+    inputs: Inputs, u3: float, spin: float, precession: float
 ) -> None:
-    """By hand u3 = 2 and u(T/2) = 1/2."""
-    motion = solve(Top(**HALF | inputs))
-    rates = {name: getattr(motion, name) for name in ("spin_rate_half", "precession_rate_half")}
-    assert motion.u3 == 2
-    assert rates.pop(key) == 0
-    assert [*rates.values()] == [other]
-    moved = solve(Top(**HALF | inputs | {"thetadot0": 2 + TINY}))
+    motion = of(inputs)
+    found = (motion.u3, motion.spin_rate_half, motion.precession_rate_half)
+    assert found == (u3, spin, precession)
+    moved = of(inputs | {"thetadot0": Fraction(inputs.get("thetadot0", 0)) + TINY})
+    key = "precession_rate_half" if spin else "spin_rate_half"
     assert abs(Decimal(moved.record(digits=3)[key])) > 0
 
 
 @pytest.mark.parametrize(
-    ("inputs", "u3", "rate"),
-    [
-        ({"A": 0.5, "C": 0.5, "r0": 0.5, "psidot0": 3}, 1.5, 2.0),
-        ({"A": 1, "C": 0.5, "r0": 2, "psidot0": -2}, 1 + SQRT3, -1 - SQRT3),
-    ],
-)
-def test_the_spin_vanishes_half_a_period_after_a_start_at_120_degrees(
-    inputs: Inputs, u3: float, rate: float
-) -> None:
-    """By hand, the cubics (4,9) divided by u - u0.
-
-    They are 4 u^2 - 7 u + 3/2 with the roots 1/4, 3/2, and 2 u^2 - 4 u - 4 with 1 -+ sqrt(3).
-    """
-    motion = of(inputs | {"theta0_deg": 120})
-    assert motion.u3 == u3
-    assert (motion.spin_rate_half, motion.precession_rate_half) == (0, rate)
-
-
-@pytest.mark.parametrize(
-    ("inputs", "key", "value"),
-    [
-        ({"r0": 1, "psidot0": 2, "thetadot0": 1}, "precession_rate_half", 1.8660254037844386),
-        ({"r0": 2, "psidot0": 1, "thetadot0": 1}, "spin_rate_half", 1.8660254037844386),
-    ],
+    ("r0", "turn", "key"), [(1, 2, "precession_rate_half"), (2, 1, "spin_rate_half")]
 )
 def test_a_rate_that_would_vanish_with_another_root_for_u3_does_not(
-    inputs: Inputs, key: str, value: float
+    r0: float, turn: float, key: str
 ) -> None:
     """Here u1 = 1/2 in the place of u3 makes the rate 0; by hand the rate is 1 + sqrt(3)/2."""
-    motion = solve(Top(**HALF | inputs))
+    motion = of(HALF | {"r0": r0, "psidot0": turn, "thetadot0": 1})
     assert motion.u1 == 0.5
-    assert getattr(motion, key) == value
+    assert getattr(motion, key) == 1.8660254037844386
 
 
 TIES: list[tuple[dict[str, Any], str, float]] = [
