@@ -151,18 +151,28 @@ def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -
         return given
     unit = ""
     if hasattr(given, "m_as"):  # a quantity of pint
-        from .units import si_unit  # start-up
-
-        unit = si_unit(name)
-        try:
-            given = given.m_as(unit)
-        except Exception as error:  # pint has errors of many kinds
-            raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
+        unit, given = _of_pint(name, given)
     number, std = getattr(given, "nominal_value", given), getattr(given, "std_dev", None)
     if unit and not getattr(number, "shape", ()):
         number = exact_number(name, number)
     spread = None if std is None else exact_number(name, std, "the uncertainty of ")
     return Value(number, unit, spread)
+
+
+def _of_pint(name: str, given: Any) -> tuple[str, Any]:
+    """Return the unit and the magnitude of a quantity, in SI if lagtop does not know its unit."""
+    from .units import si_unit, unit_of_text  # start-up
+
+    unit = f"{given.units:~C}"
+    try:
+        unit_of_text(unit)
+        return unit, given.magnitude  # which is then converted exactly
+    except LagtopError:
+        unit = si_unit(name)
+    try:
+        return unit, given.m_as(unit)
+    except Exception as error:  # pint has errors of many kinds
+        raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
 
 
 def values_of(inputs: Mapping[str, Any]) -> dict[str, Value]:

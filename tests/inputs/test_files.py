@@ -47,34 +47,19 @@ def test_errors_name_the_scene_file_or_the_argument(tmp_path: Path) -> None:
         read_scene(str(tmp_path / "nowhere.toml"))
 
 
-def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -> None:
-    path = scene(tmp_path, "A = 1\n")
-    assert lagtop("solve", path).exit_code == lagtop("sweep", path).exit_code == 65
-    assert lagtop("solve", path, "--C", "1").exit_code == 0
-    assert lagtop("sweep", path, "--C", "1").exit_code == 0
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("mm = 1", "unknown key 'mm' (did you mean 'm'?) (known: m, A, C"),
         ("theta0 = 1", "theta0 must have a unit, such as '30 deg', or be called theta0_deg"),
-        (f"{'x' * 5000} = 1", "unknown key 'xxx"),
-        ("r0 = true", "line 1: r0 must be a finite number, got True"),
-        ("m = [1.5, 2]", "line 1: m must be a finite number, got ['1.5', 2]"),
         ('r0 = "3"', "r0 must have a unit between quotes, got '3': leave out the quotes"),
         (f"m = 1.{'0' * 5000}", "m must have at most 2000 characters"),
-        (f"m = {'9' * 5000}", "not a TOML file"),
         ("g = 9.81\nm = 1,5\n", "(at line 2, column 6) (write a decimal point, not a comma)\n"),
         ("[" * 9000, "not a TOML file"),
         ("r0 = 1\n" + "#" * 20_000, "must have at most 16384 bytes, has more"),
         ("r0 = 1\n\udcff\udcfe\x00", "line 2: the text must be UTF-8 or UTF-16"),
-        ("m = 1\n[top]\nr0 = 3\n", "line 2: unknown key 'top'"),
         ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
-        ("m = nan\n", "line 1: m must be a finite decimal number, got 'nan'"),
-        ("m = 1e400\n", "line 1: m must be at most 1.8e308 in size"),
         ("\nr0 = 'fast'\n", "line 2: r0 must be a finite decimal number, got 'fast'"),
-        ("m = 1\nm = 2\n", "Cannot overwrite a value (at line 2"),
         ("A = 1\nC = 3\n", "line 2: C must be <= 2 A = 2.0, got 3.0"),
         ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_rad and theta0_deg are both given"),
     ],
@@ -141,11 +126,6 @@ def test_extra_columns_are_copied_with_any_delimiter(
     assert lagtop("sweep", path, "--keys", "r0,theta0_deg").stdout == (
         'id,r0,theta0_deg,error\n"x, y; z",40.0,30.0,\nw,50.0,60.0,\n'
     )
-
-
-def test_a_heading_below_a_time_is_no_time(lagtop: Lagtop) -> None:
-    said = "standard input, line 2: the time must be a finite decimal number, got 't'"
-    assert_one_line(lagtop("table", "--times", "-", input="0\nt\n"), 65, said)
 
 
 # Tops

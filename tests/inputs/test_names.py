@@ -26,9 +26,7 @@ def test_names_that_are_fine() -> None:
         (["T_nutatoin"], "got 'T_nutatoin' (did you mean 'T_nutation'?)"),
         (["alpha", "alpha"], "keys must not repeat a name, got 'alpha' twice"),
         ([], "keys must be among alpha, beta, T_nutation, got an empty list"),
-        (["x" * 5000], f"got '{'x' * 77}...'"),
         ("alpha", "keys must be a list of names, got 'alpha'"),
-        (None, "keys must be a list of names, got None"),
     ],
 )
 def test_names_that_are_not(names: Any, message: str) -> None:
@@ -61,7 +59,6 @@ def test_commands_name_the_option_of_a_wrong_list(words: str, lagtop: Lagtop) ->
     ("wrong", "meant"),
     [
         ("period", "'T_nutation', 'T_spin' or 'T_precession'"),
-        ("T", "'T_nutation', 'T_spin' or 'T_precession'"),
         ("precession", "'T_precession', 'mean_precession_rate' or 'precession_rate_start'"),
         ("theta_max", "'theta_max_deg'"),
     ],

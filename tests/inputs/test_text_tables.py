@@ -42,14 +42,11 @@ SECOND = {"t": "theta", "r0": "theta0_deg"}
 
 TABLES = {
     "FIRST,SECOND\n-0.5,30\n1.5,40\n": [-0.5, 1.5],
-    "FIRST;SECOND\n0.5;30\n1.5;40\n": [0.5, 1.5],
     "FIRST;SECOND\n0,5;30\n1,5;40\n": [0.5, 1.5],
     "FIRST\tSECOND\n0,5\t30,25\n1,5e0\t40\n": [0.5, 1.5],
     "FIRST   SECOND\n 0,5   30,25\n 1,5 \t 40\n": [0.5, 1.5],
     "\ufeff# made\r\n\r\nFIRST,SECOND\r\n# more\r\n0.5,30\r\n\r\n1.5,40\r\n": [0.5, 1.5],
-    "FIRST,SECOND\r0.5,30\r1.5,40\r": [0.5, 1.5],
     '"FIRST";"SECOND"\n"0,5";"30"\n1,5;40\n': [0.5, 1.5],
-    'FIRST, "SECOND"\n0.5, "30"\n1.5, "40"\n': [0.5, 1.5],
     "mass A\nFIRST,SECOND\n0.5,30\n1.5,40\n": [0.5, 1.5],
     "run 5 of 7;;\n\n# x\nFIRST;SECOND;\n0,5;30;\n1,5;40;\n": [0.5, 1.5],
     "sep=;\nFIRST;SECOND\n0,5;30\n1,5;40\n": [0.5, 1.5],
@@ -57,7 +54,6 @@ TABLES = {
     "FIRST;SECOND\n1,234;30\n0,5;40\n": [1.234, 0.5],
     "FIRST;SECOND\n1.234;30\n2.345;40\n": [1.234, 2.345],
     '{"FIRST":0.5,"SECOND":30}\n\n{"FIRST":1.5,"SECOND":40}\n': [0.5, 1.5],
-    '[{"FIRST":0.5,"SECOND":30},\n{"FIRST":1.5,"SECOND":40}]\n': [0.5, 1.5],
     '[\n {"FIRST":0.5,\n"SECOND":30},{"FIRST":1.5,"SECOND":40}\n]\n': [0.5, 1.5],
     "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n\n"
     "Channels\t1\n***End_of_Header***\nFIRST\tSECOND\n0,5\t30\n1,5\t40\n": [0.5, 1.5],
@@ -77,15 +73,12 @@ def test_every_reader_takes_the_same_tables(text: str, first: str, tmp_path: Pat
 WRONG = {
     "FIRST;SECOND\n0,5;30\n1.5;40\n": "got '1.5' (use --decimal point)",
     "FIRST;SECOND\n1,234;30\n": "line 2: a comma may be a decimal mark or separate thousands",
-    "FIRST;SECOND\n1.234,5;30\n": "got '1.234,5'",
     "FIRST\tSECOND\n1.234.567\t30\n": "got '1.234.567'",
-    "FIRST;SECOND\n1_0;30\n": "got '1_0'",
     'FIRST,SECOND\n0.5,"30\n': "a quoted cell must end with its quote, and on its line",
     'FIRST,"SECOND\n0.5,30\n': "line 1: a quoted cell must end with its quote, and on its line",
     "FIRST,SECOND\n0.5,30,1\n": "a row must have 2 cells, got 3",
     '{"FIRST":0.5}\n{"FIRST":1.5,\n': "line 2: not JSON: ",
     '{"FIRST":0.5}\n[1]\n': "line 2: a row must be a JSON object",
-    '[{"FIRST":0.5},\n3]\n': "row 2: a row must be a JSON object",
     "[" * 9000: "line 1: not JSON: ",
 }
 
@@ -141,15 +134,6 @@ def test_encodings(encoding: str, tmp_path: Path) -> None:
             assert reader(path, "") == [0.5]
 
 
-def test_a_damaged_gzip_file_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "file"
-    whole = gzip.compress(b"t,theta\n0.5,30\n")
-    for content in (whole[:-3], whole[:12] + b"xxxx" + whole[16:]):
-        path.write_bytes(content)
-        with pytest.raises(DataError, match="file: not a gzip file: "):
-            read_times(str(path))
-
-
 def test_text_in_another_encoding_names_the_line_and_the_remedy(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_bytes("t;theta\n0;30\n1;30 °\n".encode("cp1252"))
@@ -199,18 +183,13 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("heading", "found"),
     [
-        ("t", ("t", "")),
         ("t [ms]", ("t", "ms")),
         ("theta (deg)", ("theta", "deg")),
         ("ϑ (°)", ("theta", "deg")),
-        ("θ in space", ("theta in space", "")),
-        ("ω_x (rpm)", ("omega_x", "rpm")),
-        ("r0 rpm", ("r0", "rpm")),
         ("r0 rev/min", ("r0", "rpm")),
         ("φ'0 [rad/s]", ("phidot0", "rad/s")),
         ("ψ\u0307", ("psidot", "")),
         ("ϑ₀ (degrees)", ("theta0", "deg")),
-        ("A kg*m^2", ("A", "kg*m^2")),
         ("g m/s^2", ("g", "m/s^2")),
         ("omega[0]", ("omega[0]", "")),
         ("R(1, 2)", ("R(1, 2)", "")),

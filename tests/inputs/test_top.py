@@ -25,9 +25,6 @@ from lagrange_cli.inputs.values import parse_values
     [
         ({"m": True}, "m must be a real number, got True"),
         ({"r0": np.True_}, "r0 must be a real number, got "),
-        ({"m": "1587"}, "m must be a real number, got '1587'"),
-        ({"m": 1j}, "m must be a real number, got 1j"),
-        ({"m": np.array([1.0])}, "m must be a real number, got array([1.])"),
         ({"m": np.ma.masked}, "m must be a real number"),
         ({"m": Decimal("sNaN")}, "m must be a real number"),
         ({"r0": Decimal("1e-999999999")}, "r0 must be 0 or at least 5e-324 in size, got 1E-99"),
@@ -37,7 +34,6 @@ from lagrange_cli.inputs.values import parse_values
         ({"m": Fraction(1, 10**400)}, "m must be >= 1e-100, got 1e-400"),
         ({"A": Fraction(1, 3)}, "C must be <= 2 A = 0.6666666666666666666666666666666666"),
         ({"theta0_deg": 180 + Fraction(1, 10**20)}, "got 180.00000000000000000001"),
-        ({"theta0_deg": 30, "theta0_rad": 1}, "are both given"),
     ],
 )
 def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
@@ -53,7 +49,6 @@ def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
     [
         ("theta0", "a top has no input 'theta0' (did you mean 'theta0_deg' or 'theta0_rad'?)"),
         ("phidot", "a top has no input 'phidot' (did you mean 'phidot0'?)"),
-        ("mass", "a top has no input 'mass'"),
     ],
 )
 def test_an_unknown_input_is_named(name: str, message: str) -> None:
@@ -86,8 +81,6 @@ def test_no_way_around_the_guards() -> None:
     top = Top(theta0_deg=40)
     with pytest.raises(LagtopError, match="m must be > 0"):
         top.replace(m=-1)
-    with pytest.raises(LagtopError, match=r"theta0_deg must be in \[0, 180\]"):
-        top.replace(theta0_deg=500)
     with pytest.raises(AttributeError):
         top.m = -1  # type: ignore[misc]
     assert not hasattr(top, "__dict__")
@@ -98,9 +91,6 @@ def test_replace() -> None:
     top = Top(theta0_deg=40, r0=7)
     assert top.replace(r0=60) == Top(theta0_deg=40, r0=60)
     assert top.replace(theta0_rad=1) == Top(theta0_rad=1, r0=7)
-    assert top.replace(theta0_rad=1).replace(theta0_deg=2) == Top(theta0_deg=2, r0=7)
-    assert top.replace() == top
-    assert top == Top(theta0_deg=40, r0=7)
 
 
 def test_nothing_depends_on_the_decimal_context_of_the_host() -> None:

@@ -56,11 +56,6 @@ def json_lines(path: Path) -> None:
     path.write_text("\n".join(rows))
 
 
-def json_array(path: Path) -> None:
-    rows = [json.dumps(dict(zip(NAMES, row, strict=True))) for row in DATA.tolist()]
-    path.write_text("[" + ",\n".join(rows) + "]\n")
-
-
 def structured(path: Path) -> None:
     np.save(path, np.rec.fromarrays(DATA.T, names=NAMES))  # type: ignore[call-overload]
 
@@ -78,45 +73,26 @@ def columns_of_parquet(path: Path) -> None:
 
 FORMS: dict[str, Callable[[Path], object]] = {
     "csv": lambda path: path.write_bytes(text(",")),
-    "white space": lambda path: path.write_bytes(text("   ")),
     "header in a comment": lambda path: path.write_bytes(text(" ", "# made by\n# t qw qx qy qz")),
-    "comments and blank lines": lambda path: path.write_bytes(
-        b"# one\n\n" + text(",").replace(b"\n", b"\n\n# more\r\n")
-    ),
     "ndjson": json_lines,
-    "json": json_array,
     "npy": structured,
     "npz": several_arrays,
     "parquet": columns_of_parquet,
 }
 
 
-@pytest.fixture
-def made(tmp_path: Path) -> Callable[[str], Path]:
-    """Return a function that writes the data in a form."""
-
-    def make(form: str) -> Path:
-        ending = form if form in {"npy", "npz"} else "file"
-        path = tmp_path / f"trajectory.{ending}"
-        FORMS[form](path)
-        return path
-
-    return make
-
-
 @pytest.mark.parametrize("form", FORMS)
-def test_every_form_holds_the_same_numbers(form: str, made: Callable[[str], Path]) -> None:
-    found = read(made(form))
+def test_every_form_holds_the_same_numbers(form: str, tmp_path: Path) -> None:
+    path = tmp_path / (f"a.{form}" if form in {"npy", "npz"} else "a")
+    FORMS[form](path)
+    found = read(path)
     assert np.array_equal(found["t"][:, 0], DATA[:, 0])
     assert np.array_equal(found["quaternion"], DATA[:, 1:])
 
 
-@pytest.mark.parametrize("form", ["csv", "npz"])
-def test_a_pipe_that_does_not_wait_is_read_whole(
-    form: str, made: Callable[[str], Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_pipe_that_does_not_wait_is_read_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     """The second half comes later; a read would return None, which looks like the end."""
-    content = made(form).read_bytes()
+    content = text(",")
     receiver, sender = os.pipe()
     os.set_blocking(receiver, False)
 
@@ -156,8 +132,6 @@ def test_missing_numbers_are_nan(tmp_path: Path) -> None:
         ("t p q r w x y z", {"quaternion": [4, 5, 6, 7], "rates": [1, 2, 3]}),
         ("time u0 u1 u2 u3 u4 u5 u6", {"quaternion": [4, 5, 6, 7]}),
         ("t R11 R12 R13 R21 R22 R23 R31 R32 R33", {"matrix": [*range(1, 10)]}),
-        ("t q.x q.y q.z q.w omega[0] omega[1] omega[2]", {"quaternion": [4, 1, 2, 3]}),
-        ("theta_deg phi_deg psi_deg t", {"theta": [0], "phi": [1], "psi": [2]}),
         ("t qpos_0 qpos_1 qpos_2 qpos_3 qvel_0 qvel_1 qvel_2", {"quaternion": [1, 2, 3, 4]}),
         ("t " + " ".join(f"qpos{i}" for i in range(7)), {"quaternion": [4, 5, 6, 7]}),
         ("t roll pitch yaw", {"euler": [1, 2, 3]}),
@@ -181,19 +155,13 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
     ("content", "message"),
     [
         (b"", "must hold a trajectory, got no row"),
-        (b"# only\n", "must hold a trajectory, got no row"),
         (b"t,theta\n0,1\n\n# c\n1,1_0\n", "line 5, column 2: theta must be a number, got '1_0'"),
-        (b"t,theta\n0,1\n1\n", "line 3: a row must have 2 cells, got 1"),
         (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
         (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),
         (b"0 1\n", "has no header: name its 2 columns with --columns, such as t,quaternion"),
         (b"a,b\n0,1\n", "must have columns among the time (t, time, timestamp) and"),
-        (b"t,qx,qy\n0,1,2\n", "must have columns among"),
         (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column 2: theta must be a num"),
-        (b'[{"t":0,"theta":1},{"t":1,"theta":true}]', "row 2, column 2: theta must be a num"),
         (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
-        (b"t,theta\n0,1\n1,\0\n", "line 3, column 2: theta must be a number, got"),
-        (b"t,tilt,theta\n0,1,2\n", "must name each quantity once, got 'theta' and 'tilt'"),
         (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
         (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
         (b"\x93NUMPY\x01\x00\xff\xff", "not an npy file"),
@@ -211,14 +179,6 @@ def test_bad_files_get_one_line(content: bytes, message: str, tmp_path: Path) ->
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("form", ["npy", "npz", "parquet"])
-def test_truncated_files(form: str, made: Callable[[str], Path]) -> None:
-    path = made(form)
-    path.write_bytes(path.read_bytes()[:-100])
-    with pytest.raises(DataError, match="not a"):
-        read(path)
-
-
 def saved(save: Callable[..., object], **arrays: Any) -> bytes:
     """Return the bytes that a function of NumPy writes."""
     stream = io.BytesIO()
@@ -226,23 +186,13 @@ def saved(save: Callable[..., object], **arrays: Any) -> bytes:
     return stream.getvalue()
 
 
-def npy_with_header(header: str) -> bytes:
-    """Return an npy file without numbers."""
-    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header) + 1) + header.encode() + b"\n"
-
-
-HUGE = "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000, 2)}"
+HUGE = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000, 2)}"
 HOSTILE = {
     "a pickle": saved(np.save, arr=np.array([{"t": 0}], dtype=object)),
-    "texts": saved(np.save, arr=np.array(["0", "1"])),
     "three dimensions": saved(np.save, arr=np.zeros((2, 2, 2))),
-    "no dimension": saved(np.save, arr=np.float64(1)),
-    "complex numbers": saved(np.save, arr=np.zeros((2, 2), complex)),
-    "1e12 rows": npy_with_header(HUGE),
-    "a call in the header": npy_with_header("exit()"),
+    "1e12 rows": b"\x93NUMPY\x01\x00" + struct.pack("<H", len(HUGE) + 1) + HUGE + b"\n",
     "an archive without time": saved(np.savez, theta=np.zeros(3), x=np.zeros(2)),
     "an archive of pickles": saved(np.savez, t=np.array([None]), theta=np.array([None])),
-    "an archive of text": saved(np.savez, t=np.zeros(2)).replace(b"NUMPY", b"numpy"),
 }
 
 
@@ -267,19 +217,12 @@ def test_an_archive_beyond_the_limit_is_refused(
     monkeypatch.setattr(trajectory, "LARGEST_FILE", 160_000)
     with pytest.raises(DataError, match="must have at most 160000 bytes of numbers, has 160256"):
         read(path)
-    table = pa.table({"t": np.arange(1e4), "theta": np.zeros(10_000), "x": np.zeros(10_000)})
-    parquet.write_table(table, path)
-    with pytest.raises(DataError, match="must have at most 160000 bytes of numbers, has 240000"):
-        read(path)
 
 
 def test_times_may_run_backwards(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("t,theta\n0,1\n-1,2\n-2,4\n")
     assert read(path)["t"][:, 0].tolist() == [0, -1, -2]
-    path.write_text("t,theta\n0,1\n-1,2\n-0.5,3\n")
-    with pytest.raises(DataError, match=r"line 4: t must not turn back, got -0\.5 after -1\.0"):
-        read(path)
     path.write_text("t,theta\n0,1\n-1,2\n-1,3\n")
     with pytest.raises(DataError, match=r"line 4: t must not repeat, got -1\.0 twice"):
         read(path)
@@ -303,9 +246,7 @@ def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
     [
         ("t,theta_rad", 1, 1),
         ("t [ms],ϑ [°]", 1e3, 180 / math.pi),
-        ("t ms,tilt deg", 1e3, 180 / math.pi),
         ("Time (min),Tilt (mrad)", 1 / 60, 1e3),
-        ("t (us),theta [turn]", 1e6, 0.5 / math.pi),
     ],
 )
 def test_units_in_headings(header: str, t: float, tilt: float, tmp_path: Path) -> None:
@@ -338,19 +279,9 @@ def test_an_elevation_is_the_complement_of_the_tilt(tmp_path: Path) -> None:
         assert theta == pytest.approx([math.pi / 6], rel=1e-15)
 
 
-def test_a_time_in_milliseconds_is_rounded_once(tmp_path: Path) -> None:
-    """1.1e-3 is not 1.1 times the double 0.001."""
-    path = tmp_path / "file"
-    cells = [f"{i}.1" for i in range(1000)]
-    path.write_text("t [ms],theta\n" + "".join(f"{x},30\n" for x in cells))
-    assert read(path)["t"][:, 0].tolist() == [float(x) / 1000 for x in cells]
-
-
 @pytest.mark.parametrize(
     ("header", "message"),
     [
-        ("t [kg],theta", ": t must have a unit as in 2s, got the unit 'kg'"),
-        ("t,theta [ms]", ": theta must have a unit as in 30deg or 0.5rad, got the unit 'ms'"),
         ("t,theta (furlongs)", ": theta must have a unit as in 30deg or 0.5rad, got the unit"),
         ("t,x [m],y [m],z [cm]", ": the parts of position must have one unit, got 'x [m]' and"),
         ("t,q_w (m),q_x (m),q_y (m),q_z (m)", ": quaternion must have no unit, got 'm'"),
@@ -369,8 +300,6 @@ def test_wrong_units(header: str, message: str, tmp_path: Path) -> None:
     [
         (["t", "quaternion"], "columns must name all 2 columns of .* got 5 names"),
         (["t", "thta"], r"columns must be among .* got 'thta' \(did you mean 'theta'\?\)"),
-        (["t", "qw"], "columns must be among .* got 'qw'"),
-        (["t", "tilt", "theta"], "columns must name each quantity once, got 'theta' and 'tilt'"),
     ],
 )
 def test_bad_names_of_columns(columns: list[str], message: str, tmp_path: Path) -> None:

@@ -30,18 +30,13 @@ def read(inputs: dict[str, str]) -> dict[str, Value]:
 @pytest.mark.parametrize(
     ("key", "unit", "size"),
     [
-        ("m", "lb", Fraction(45359237, 10**8)),
         ("m", "slug", Fraction(45359237, 10**8) * Fraction(980665, 10**5) / Fraction("0.3048")),
-        ("s", "in", Fraction(254, 10**4)),
         ("A", "lb*in^2", Fraction(45359237, 10**8) * Fraction(254, 10**4) ** 2),
         ("A", "N·m·s²", Fraction(1)),
         ("A_cm", "kg m2", Fraction(1)),
         ("g", "g_0", Fraction(980665, 10**5)),
-        ("g", "m/s/s", Fraction(1)),
         ("g", "ft s⁻²", Fraction(3048, 10**4)),
-        ("r0", "1/min", Fraction(1, 60)),
         ("r0", "/s", Fraction(1)),
-        ("t_max", "ms", Fraction(1, 1000)),
     ],
 )
 def test_definitions_are_exact(key: str, unit: str, size: Fraction) -> None:
@@ -65,7 +60,7 @@ REGISTRY: Any = pint.UnitRegistry(non_int_type=Fraction)
 
 @pytest.mark.parametrize(
     "text",
-    [*UNITS, "kg*m^2", "oz*in**2", "N*m*s^2", "in/min/s", "turn/min", "arcmin/s", "1/ms", "1 / s"],
+    [*UNITS, "kg*m^2", "oz*in**2", "N*m*s^2", "turn/min", "1 / ms"],
 )
 def test_units_have_the_dimensions_and_sizes_of_pint(text: str) -> None:
     known = REGISTRY.parse_units(text.replace("rev", "turn")) * Fraction(1)
@@ -82,10 +77,7 @@ def test_units_have_the_dimensions_and_sizes_of_pint(text: str) -> None:
     [
         ("30deg", "theta0_deg", Fraction(30)),
         ("0.5 rad", "theta0_rad", Fraction(1, 2)),
-        ("250mrad", "theta0_rad", Fraction(1, 4)),
-        ("90 arcmin", "theta0_deg", Fraction(3, 2)),
         ("0.25turn", "theta0_deg", Fraction(90)),
-        ("50 gon", "theta0_deg", Fraction(45)),
     ],
 )
 def test_a_tilt_stays_exact_in_degrees_or_in_radians(text: str, key: str, value: Fraction) -> None:
@@ -124,13 +116,6 @@ def test_units_are_named_in_tables_and_remarks(lagtop: Lagtop) -> None:
     assert all(unit in table.stdout for unit in ("t [s]", "r [rad/s]", "Lz [kg m²/s]"))
     assert "0.0156 s;" in lagtop("solve", *PAPER, "--r0", "900rad/s", "--get", "remark").stdout
     assert "0.0156 time;" in lagtop("solve", "--r0", "900", "--get", "remark").stdout
-
-
-def test_digits_go_on_as_far_as_one_likes(lagtop: Lagtop) -> None:
-    ask = ["solve", *WORDS, "--r0", "12000 rpm", "--digits", "200", "--get"]
-    with mpmath.workdps(210):
-        assert lagtop(*ask, "r0").stdout == mpmath.nstr(400 * mpmath.pi, 200) + "\n"
-    assert lagtop(*ask, "A").stdout == "0.00085\n"
 
 
 def test_r0_from_phidot0_with_units_is_rounded_once(lagtop: Lagtop) -> None:
@@ -187,14 +172,12 @@ def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     ("header", "options", "message"),
     [
         ("m,r0 [rpm]", WORDS, "standard input, heading m: m must have a unit such as 350g, as"),
-        ("m [g],r0", WORDS, "standard input, heading r0: r0 must have a unit"),
         ("m [g]", ["--r0", "50"], "--r0 must have a unit"),
         ("m [rpm]", WORDS, "standard input, heading m [rpm]: m must have a unit as in 350g"),
         ("m [g],m", WORDS, "standard input must name each column once"),
         ("theta0", [], "standard input: the column theta0 must be spelt theta0_deg"),
         ('{"R0": 1}', [], "standard input: the column R0 must be spelt r0"),
         ("theta0_deg [rad]", [], "standard input: the column theta0_deg must be called theta0 [r"),
-        ('{"m": 1}', WORDS, "standard input, heading m: m must have a unit such as 350g"),
     ],
 )
 def test_wrong_headings(header: str, options: list[str], message: str, lagtop: Lagtop) -> None:
@@ -210,18 +193,11 @@ def test_wrong_headings(header: str, options: list[str], message: str, lagtop: L
         ("--m 3fathom", "got the unit 'fathom' (no such unit; known: mg, g, kg, oz, lb, slug, um"),
         ("--r0 480RPM", "got the unit 'RPM' (no such unit (did you mean 'rpm'?); known: "),
         ("--m 1.8Kg", "got the unit 'Kg' (no such unit (did you mean 'kg'?); known: "),
-        ("--r0 480rpms", "(no such unit (did you mean 'rpm'?); known: "),
         ("--m 9kg^99999999", "--m must have a unit as in 350g, got the unit 'kg^99999999'"),
-        ("--m 9kg**9**9**9", "--m must have a unit"),
-        ("--m 9(kg)", "--m must be a number, or an uncertain one as 1587(2)"),
-        ("--m 1e400g", "--m must be at most 1.8e308"),
-        ("--m 1e307slug", "--m must be within 1e100 in size"),
         ("--r0 3Hz", "'Hz' (turns or radians per second? write rpm, turn/s or rad/s)"),
         ("--m 1800gr", "got the unit 'gr' (grain or gram? write g)"),
-        ("--A 1kg*m^2*turn", "--A must have a unit"),
         ("--theta0 1m", "--theta0 must have a unit as in 30deg or 0.5rad, got the unit 'm'"),
         ("--m 350g --r0 50", "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
-        ("--m 1kg --g 9.81", "--g must have a unit such as '9.81 m/s^2', as m has, got none"),
     ],
 )
 def test_bad_units(options: str, message: str, lagtop: Lagtop) -> None:
