@@ -13,55 +13,34 @@ import numpy as np
 from lagtop import Top, solve
 
 SAMPLES = Path(__file__).parents[2] / "sample_inputs"
-TOP = Top(
-    m=1.587,
-    A=3.9032e-3,
-    C=1.7458e-3,
-    s=0.04,
-    g=9.81,
-    r0=50,
-    theta0_deg=41,
-    thetadot0=1.3,
-    psidot0=2.5,
-)
 FIRST, PSI_ZERO, PHI_ZERO = 3.25, 137.0, 62.0
 """The time on the clock of the camera, and where its zeros are, in degrees."""
 DROPPED = 0.05
 """Share of the frames that are lost."""
+BODY = {"m": 1.587, "A": 3.9032e-3, "C": 1.7458e-3, "s": 0.04, "g": 9.81}
+TOP = Top(**BODY, r0=50, theta0_deg=41, thetadot0=1.3, psidot0=2.5)
 
 
 class Camera(NamedTuple):
-    """A recording: the top, the frames, and the noise in degrees."""
+    """A recording: the top, the frames, and the noise of theta, psi and phi in degrees."""
 
     name: str
     top: Top
     rate: int
     seconds: float
-    theta_noise: float
-    psi_noise: float
-    phi_noise: float
+    noise: tuple[float, float, float]
     comment: str
 
 
 SMALL_TOP = Camera(
-    "recording.csv",
-    TOP,
-    rate=120,
-    seconds=2.0,
-    theta_noise=0.3,
-    psi_noise=0.5,
-    phi_noise=1.0,
-    comment="# A top of 1.587 kg, its mass centre 0.04 m from the pivot; 120 frames a second.",
+    *("recording.csv", TOP, 120, 2.0, (0.3, 0.5, 1.0)),
+    "# A top of 1.587 kg, its mass centre 0.04 m from the pivot; 120 frames a second.",
 )
 WHEEL = Camera(
     "tutorials/wheel.csv",
     Top(m=2.04, A=0.1313, C=0.1562, s=0.152, g=9.81, r0=23.7, theta0_deg=82, psidot0=0.35),
-    rate=60,
-    seconds=6.0,
-    theta_noise=0.15,
-    psi_noise=0.2,
-    phi_noise=1.0,
-    comment="# A bicycle wheel of 2.04 kg on a handle, seen from above; 60 frames a second.",
+    *(60, 6.0, (0.15, 0.2, 1.0)),
+    "# A bicycle wheel of 2.04 kg on a handle, seen from above; 60 frames a second.",
 )
 
 
@@ -77,14 +56,16 @@ def text(camera: Camera = SMALL_TOP, seed: int = 1952) -> str:
     kept = rng.random(t.size) > DROPPED
     kept[0] = True
     t = t[kept]
-    theta, phi, psi = (np.degrees(x) for x in solve(camera.top).angles(t))
-    theta += rng.normal(scale=camera.theta_noise, size=t.size)
-    psi = wrapped(psi + PSI_ZERO + rng.normal(scale=camera.psi_noise, size=t.size))
-    phi = wrapped(phi + PHI_ZERO + rng.normal(scale=camera.phi_noise, size=t.size))
+    exact = dict(zip(("theta", "phi", "psi"), solve(camera.top).angles(t), strict=True))
+    theta, psi, phi = (
+        np.degrees(exact[name]) + rng.normal(scale=noise, size=t.size)
+        for name, noise in zip(("theta", "psi", "phi"), camera.noise, strict=True)
+    )
+    psi, phi = wrapped(psi + PSI_ZERO), wrapped(phi + PHI_ZERO)
     lines = [
         camera.comment,
-        f"# Noise: theta {camera.theta_noise}, psi {camera.psi_noise}, phi {camera.phi_noise} "
-        "degrees; phi is of a mark seen in front only.",
+        "# Noise: theta {}, psi {}, phi {} ".format(*camera.noise)
+        + "degrees; phi is of a mark seen in front only.",
         "t,theta_deg,psi_deg,phi_deg",
     ]
     for at, *angles in zip(t + FIRST, theta, psi, phi, strict=True):
