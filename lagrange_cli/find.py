@@ -23,7 +23,7 @@ from .arithmetic.types import Array
 from .errors import AbsentError, LagtopError, check_type
 from .inputs.given import Given, gather
 from .inputs.input_keys import checked_double, overridden, warn_of
-from .inputs.names import check_names
+from .inputs.names import check_names, repeated
 from .inputs.top import INPUTS, Top
 from .inputs.units import UNITS, factor_of
 from .inputs.values import (
@@ -45,7 +45,6 @@ from .sweep.records import sweep
 
 COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
-_MOST_TOPS = 10_000_000
 _WORDS = {"regime": [x.value for x in Regime], "path": ["cusped", "looping", "wavy"]}
 """Keys that hold a word, and the words."""
 _RELATIONS: Any = {"=": eq, "<": lt, "<=": le, ">": gt, ">=": ge}
@@ -131,7 +130,9 @@ def search_of(
     angles = {name for name, unit in UNITS.items() if not any(unit.dimensions[:3])}
     has_units = bool(units - angles - {"", "degree", "radian"})
     given = gather(values_of(inputs), scene, units=has_units)
-    found = _read_conditions(conditions, given, radians=radians)
+    found = [_read_condition(text, radians=radians) for text in conditions]
+    if key := repeated(x.key for x in found if x.relation == "="):
+        raise LagtopError(f"a condition must name each key once, got {key} twice")
     targets = {x.key: x.value for x in found if x.relation == "=" and not isinstance(x.value, str)}
     others = [x for x in found if x.relation != "=" or isinstance(x.value, str)]
     spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
@@ -161,35 +162,27 @@ def _known(given: Given, spans: Mapping[str, Span]) -> dict[str, float]:
     return {name: x for name, x in inputs.items() if name not in spans}
 
 
-def _read_conditions(texts: Sequence[str], given: Given, *, radians: bool) -> list[Condition]:
-    """Parse conditions `KEY=VALUE` and `KEY<VALUE`; the key of an angle may omit its unit."""
-    found: list[Condition] = []
-    for text in texts:
-        match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
-        if not match:
-            raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
-        name, relation, word = match.groups()
-        key, known = unit_name(f"{name}_deg", radians=radians), all_keys(radians=radians)
-        if key not in known:
-            (key,) = check_names("a condition", [name], known)
-        if any(x.key == key and x.relation == "=" for x in found):
-            raise LagtopError(f"a condition must name each key once, got {key} twice")
-        if key in _WORDS and (relation != "=" or word not in _WORDS[key]):
+def _read_condition(text: str, *, radians: bool) -> Condition:
+    """Parse `KEY=VALUE` or `KEY<VALUE`; the key of an angle may omit its unit."""
+    match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
+    if not match:
+        raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
+    name, relation, word = match.groups()
+    key, known = unit_name(f"{name}_deg", radians=radians), all_keys(radians=radians)
+    if key not in known:
+        (key,) = check_names("a condition", [name], known)
+    if key in _WORDS:
+        if relation != "=" or word not in _WORDS[key]:
             wanted, got = ", ".join(_WORDS[key]), f"{'' if relation == '=' else relation}{word}"
             raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
-        number = word if key in _WORDS else _number(key, word, radians=radians)
-        found.append(Condition(key, relation, number))
-    return found
-
-
-def _number(key: str, text: str, *, radians: bool) -> float:
+        return Condition(key, relation, word)
     try:
-        value = parse_value(text)
+        value = parse_value(word)
     except LagtopError as error:
         raise LagtopError(f"the value of {key} {error}") from None
     unit = shown_keys(radians=radians, requested=True)[key].unit
     factor = factor_of(key, value.unit, unit) if value.unit else 1
-    return float(value.number * factor)
+    return Condition(key, relation, float(value.number * factor))
 
 
 def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], str]:
@@ -197,36 +190,35 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
 
     Raises AbsentError if there is none; its message has the nearest point of the scan.
     """
-    each = COUNTS[len(search.spans)] if count is None else count
-    if each < 3 or each ** len(search.spans) > _MOST_TOPS:
-        raise LagtopError(
-            f"scan must be 3 or more values of each unknown, and at most 1e7 tops, got {each}",
-            "scan",
-        )
+    each, names = COUNTS[len(search.spans)] if count is None else count, search.spans
+    if each < 3 or each ** len(names) > 1e7:
+        text = f"scan must be 3 or more values of each unknown, and at most 1e7 tops, got {each}"
+        raise LagtopError(text, "scan")
     axes = [
         (np.geomspace if x.logarithmic else np.linspace)(float(x.first), float(x.last), each)
-        for x in search.spans.values()
+        for x in names.values()
     ]
     values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
     off = search.swept(values)
-    solutions = _roots if len(axes) == 1 else _minima
-    points = solutions(search, values, off)
+    points = (_roots if len(axes) == 1 else _minima)(search, values, off)
     motions, broken = [], None
-    for point in points:
-        motion = solve(search.top(point))
+    for motion in [solve(search.top(point)) for point in points]:
         keys = [x.key for x in search.others] or ["r0"]
         record = motion.record(radians=search.radians, keys=keys)
         fault = next((x for x in search.others if not x.holds(record)), None)
         broken = broken or fault
         motions += [motion] if fault is None else []
-    ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
-    caution = "solutions closer together may be missed"
-    if len(axes) > 1:
-        caution = "only the best points were followed"
-    looked = f"scanned {ranges} at {each} values{' each' * (len(axes) > 1)}: {caution}"
+    several = len(axes) > 1
+    caution = (
+        "only the best points were followed"
+        if several
+        else "solutions closer together may be missed"
+    )
+    ranges = " and ".join(f"{name} from {span}" for name, span in names.items())
+    looked = f"scanned {ranges} at {each} values{' each' * several}: {caution}"
     if not motions:
-        why = f"of {len(points)} with {search.target_text} none has {broken}"
-        why = why if broken else _nearest(search, values, off)
+        none = f"of {len(points)} with {search.target_text} none has {broken}"
+        why = none if broken else _nearest(search, values, off)
         raise AbsentError(f"no top found: {why}; {looked}")
     return motions, looked
 
@@ -235,11 +227,12 @@ def _nearest(search: Search, values: Array, off: Array) -> str:
     """Return where the scan comes nearest to the targets, or why it has no numbers."""
     known = np.isfinite(off).all(axis=1)
     if not known.any():
+        text = f"no top of the scan has {search.target_text}"
         try:
             solve(search.top(values[0]))
         except LagtopError as error:
-            return f"no top of the scan has {search.target_text} ({error})"
-        return f"no top of the scan has {search.target_text}"
+            return f"{text} ({error})"
+        return text
     size = np.maximum(np.abs([*search.targets.values()]), np.ptp(off[known], axis=0))
     distance = np.linalg.norm(off / np.where(size > 0, size, 1.0), axis=1)
     i = int(np.nanargmin(np.where(known, distance, np.nan)))

@@ -85,7 +85,7 @@ def fit_command(
     last line then says why, and what to try.  With -o FILE.toml a good fit is written as a scene.
     """
     from ..fit.fit import best_fit, fit_windows
-    from ..fit.recording import Reading, known_inputs, read_recordings
+    from ..fit.recording import known_inputs, read_recordings
     from ..inputs.files import shown_path
     from ..inputs.observed import Conventions
 
@@ -103,8 +103,9 @@ def fit_command(
         if isinstance(sigma, dict)
         else sigma and sigma * unit
     )
-    reading = Reading(columns, conventions, by, spread, decimal, up=align)
-    recordings = read_recordings(words[0], reading)
+    recordings = read_recordings(
+        words[0], columns, decimal, by, conventions=conventions, sigma=spread, up=align
+    )
     given = top.given()
     known, source = known_inputs(given.inputs, given.stds), shown_path(words[0])
     units = " (in kg, m and s)" if given.system else ""

@@ -61,17 +61,16 @@ def best_fit(
         if recording.angles.keys() == {alone} and needed not in known:
             flag = f"--{needed}" + (" 0 if the top is released from rest" * (alone == "theta"))
             raise DataError(f"{alone} alone does not determine a top: give {flag}")
-    oscillation = oscillation_in(signals_in(recording))
-    frequency = oscillation.frequency
+    frequency, visible = oscillation_in(signals_in(recording))
     lasts = frequency * recording.t[-1] >= 1
     outcome = None
-    if oscillation.is_visible and lasts:
+    if visible and lasts:
         outcome = _nutation(recording, known, frequency, radians=radians)
-    outcome = outcome or steady_outcome(recording, known, oscillation, radians=radians)
+    outcome = outcome or steady_outcome(recording, known, oscillates=visible, radians=radians)
     outcome.chance = chance
     if helpful and outcome.failures():
         near = all(rest.rms < 1 for rest in outcome.residuals.values())
-        if oscillation.is_visible and not lasts and near:
+        if visible and not lasts and near:
             outcome.hints.append("a recording must last for a period of the nutation")
         outcome.hints += _hints(recording, known, frequency)
     return outcome

@@ -41,20 +41,17 @@ _DERIVED = (
     *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
     *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
 )
-_IN_DEGREES = ("theta0", "psi_zero", "phi_zero")
 _DEPENDENT = 1e-7
 """Ratio of singular values of the slopes below which parameters are not determined."""
 _SHARE = 0.05
 """Share of a parameter in a direction that is not determined, from which it is not either."""
-_APART = 4.0
-"""Standard deviations between different tops, and between numbers that differ for sure."""
-_LEAST, _FASTEST = 2.0, 1e6
-"""Standard deviations by which a > 0, and the largest b^2/a at which a is determined."""
+_APART, _LEAST, _FASTEST = 4.0, 2.0, 1e6
+"""Standard deviations between different tops, those by which a > 0, and the largest b^2/a at which
+a is determined."""
 _STEP, _SHORT_STEP, _LEAST_STEP = 1e-6, 1e-7, 1e-3
 """Steps of central and of forward differences, over the size of a parameter, and its least size."""
-_POLE = 1e-9
-_FAR = 1e3
-"""Weighted residual of a motion that does not exist."""
+_POLE, _FAR = 1e-9, 1e3
+"""Least distance from a pole, and weighted residual of a motion that does not exist."""
 
 
 class Problem:
@@ -95,13 +92,12 @@ class Problem:
         """Return the quantities of the motion from parameters, shape (tops, parameters)."""
         found: dict[str, Any] = {"psi_zero": 0.0, "phi_zero": 0.0, **self.known}
         found |= dict(zip(self.names, x.T, strict=True))
+        weight = 2 * math.prod(found.get(x, math.nan) for x in ("m", "g", "s"))
         if self.has_torque:
-            found["a"] = 2 * found["m"] * found["g"] * found["s"] / found["A"]
+            found["a"] = weight / found["A"]
         if self.is_tied:
-            inertia = found.get("A")
-            if inertia is None:
-                inertia = 2 * found["m"] * found["g"] * found["s"] / found["a"]
-            found["b"] = found["C"] / inertia * found["r0"]
+            moment = found["A"] if "A" in found else weight / found["a"]
+            found["b"] = found["C"] / moment * found["r0"]
         found.setdefault("r0", found["b"])
         return {name: np.broadcast_to(value, len(x)) for name, value in found.items()}
 
@@ -167,8 +163,7 @@ class Problem:
         """Return the parameters of states, with the best zeros and spin rate of each."""
         known, seen, t = self.known, self.recording.angles, self.recording.t
         value: dict[str, Any] = {**known, **dict(zip(STATE, states.T, strict=True))}
-        value |= {name: np.full(len(states), known[name]) for name in known.keys() & {*STATE}}
-        theta, phi, psi = angles(np.stack([value[x] for x in STATE], axis=-1), t)
+        theta, phi, psi = angles(states, t)
         if spin is not None:
             around = t - t.mean()
             shown = np.interp(t, spin.t, spin.y) + spin.rate * t
@@ -267,7 +262,7 @@ def nutating_outcome(
     present = zip(recording.channels, rows, recording.present, strict=True)
     values, names = found.values, problem.names
     numbers = _numbers(found, radians=radians)
-    notes, faults = recording.notes, []
+    notes, faults = [*recording.notes], []
     if problem.is_even:
         notes.append("the sign of b is not determined: theta alone does not show the direction")
     if rival:
@@ -326,7 +321,9 @@ def _numbers(found: Minimum, *, radians: bool) -> dict[str, tuple[float, float]]
     for key, y in computed.items():
         slopes = (y[1 : steps.size + 1] - y[steps.size + 1 :]) / (2 * steps)
         std = float(np.linalg.norm(slopes @ spread))
-        scale, ending = (per_radian, f"_{unit}") if key in _IN_DEGREES else (1.0, "")
+        scale, ending = (
+            (per_radian, f"_{unit}") if key in {"theta0", "psi_zero", "phi_zero"} else (1.0, "")
+        )
         if np.isfinite([y[0], std]).all():
             numbers[f"{key}{ending}"] = float(y[0]) * scale, std * scale
     return numbers

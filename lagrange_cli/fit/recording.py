@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,10 +37,8 @@ CHANNELS = {
 """Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
 about the axis."""
 LEAST_ROWS = 12
-_LEAST_NUMBERS = 4
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
-_SHORTEST, _LONGEST = 1e-60, 1e60
 
 
 @dataclass(frozen=True)
@@ -59,8 +58,8 @@ class Recording:
     """Standard deviations in radians by channel; empty if they are not given."""
     position: Array | None = None
     """The marker in space, shape (n, 3), if the axis is known from its position."""
-    is_mirrored: bool = False
-    """Whether psi is counted in the direction opposite to that of the data."""
+    notes: tuple[str, ...] = ()
+    """How the data were interpreted."""
 
     @property
     def channels(self) -> list[str]:
@@ -89,16 +88,11 @@ class Recording:
         return f"{self.name}: {text}" if self.name else text
 
     @property
-    def notes(self) -> list[str]:
-        """How the recording was interpreted."""
-        mirrored = "psi counts in the other direction: its sign was changed"
-        return [mirrored] * self.is_mirrored
-
-    @property
     def mirrored(self) -> Recording:
         """The recording with psi counted in the other direction."""
         angles = {name: -x if name == "psi" else x for name, x in self.angles.items()}
-        return replace(self, angles=angles, is_mirrored=not self.is_mirrored)
+        note = "psi counts in the other direction: its sign was changed"
+        return replace(self, angles=angles, notes=(note,))
 
     def part(self, rows: Any, name: str = "") -> Recording:
         """Return some rows, in this order, with times since the first of them."""
@@ -114,37 +108,28 @@ class Recording:
         number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
         rows = [np.flatnonzero(number == i) for i in range(count)]
         if (least := min(x.size for x in rows)) < LEAST_ROWS:
-            raise LagtopError(
-                f"window must hold {LEAST_ROWS} rows or more, got {least}: use fewer windows",
-                "window",
-            )
+            text = f"window must hold {LEAST_ROWS} rows or more, got {least}: use fewer windows"
+            raise LagtopError(text, "window")
         return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]
 
 
-class Reading(NamedTuple):
-    """Options of reading a recording."""
+def read_recordings(
+    path: str,
+    columns: Sequence[str] | None = None,
+    decimal: str = "",
+    by: str | None = None,
+    **reading: Any,
+) -> list[Recording]:
+    """Return the recordings of a file, by the words of the column `by`, as they begin.
 
-    columns: Sequence[str] | None = None
-    conventions: Conventions = Conventions()
-    by: str | None = None
-    """A column whose words separate recordings."""
-    sigma: Mapping[str, float] | float | None = None
-    """Standard deviations in radians: one for all channels, or by channel."""
-    decimal: str = ""
-    """The decimal mark, or empty if the file decides."""
-    up: str = "z"
-    """The upward axis of space in the file."""
-
-
-def read_recordings(path: str, reading: Reading) -> list[Recording]:
-    """Return the recordings of a file, in the order in which they begin.
-
+    The decimal mark may be left to the file.  `reading` are the other arguments of `recording_of`.
     Raises LagtopError for a file that cannot be read, DataError for one that holds no recording.
     """
-    trajectory = read_trajectory(path, reading.columns, reading.decimal)
-    name, by, given = trajectory.name, reading.by, trajectory.values()
+    trajectory = read_trajectory(path, columns, decimal)
+    name, given = trajectory.name, trajectory.values()
+    reading["named"] = trajectory.quantities
     if by is None:
-        return [_recording_of(name, given, reading, trajectory.quantities)]
+        return [recording_of(name, given, **reading)]
     if by not in trajectory.names:
         shown = ", ".join(trajectory.names)[:100]
         raise LagtopError(f"by must name a column of {name} ({shown}), got {quoted(by)}", "by")
@@ -152,7 +137,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
     found = []
     for word in dict.fromkeys(words.tolist()):
         rows = rows_of(given, np.flatnonzero(words == word))
-        one = _recording_of(f"{name}, {by} {word}", rows, reading, trajectory.quantities)
+        one = recording_of(f"{name}, {by} {word}", rows, **reading)
         found.append(replace(one, name=word))
     return found
 
@@ -168,18 +153,27 @@ def recording_from(
     if len(given) != max(sum(name in ANGLES for name in given), 1):
         shown = ", ".join(given) or "nothing"
         raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
-    reading = Reading(conventions=Conventions("wxyz", radians=True), sigma=sigma)
-    return _recording_of("the recording", quantities_of(t, given), reading, {})
+    conventions = Conventions("wxyz", radians=True)
+    return recording_of("the recording", quantities_of(t, given), conventions, sigma=sigma)
 
 
-def _recording_of(where: str, given: Quantities, reading: Reading, named: Named) -> Recording:
+def recording_of(
+    where: str,
+    given: Quantities,
+    conventions: Conventions,
+    *,
+    sigma: Mapping[str, float] | float | None = None,
+    up: str = "z",
+    named: Named = MappingProxyType({}),
+) -> Recording:
     """Return the recording in some columns, without rows that have no number.
 
-    Raises LagtopError, DataError for a bad recording.
+    `sigma` are standard deviations in radians: one for all channels, or by channel.  The axis `up`
+    of space points upwards in the file.  Raises LagtopError, DataError for a bad recording.
     """
     t = given["t"][:, 0]
     _check_times(where, t)
-    kind, found = _angles(given, reading, named)
+    kind, found = _angles(given, conventions, up, named)
     position = given["position"] if kind == "axis" and "axis" not in given else None
     if not found:
         shown = ", ".join(x for x in given if x != "t")
@@ -190,10 +184,8 @@ def _recording_of(where: str, given: Quantities, reading: Reading, named: Named)
     angles = {}
     for name, values in found.items():
         known = np.isfinite(values)
-        if 0 < known.sum() < _LEAST_NUMBERS:
-            raise DataError(
-                f"{where}: {name} must have {_LEAST_NUMBERS} numbers or more, got {known.sum()}"
-            )
+        if 0 < known.sum() < 4:
+            raise DataError(f"{where}: {name} must have 4 numbers or more, got {known.sum()}")
         if known.any():
             kept = np.where(known, values, np.nan)
             angles[name] = kept if name == "theta" else rotations.within_half_turn(kept)
@@ -211,11 +203,10 @@ def _recording_of(where: str, given: Quantities, reading: Reading, named: Named)
             " deg"
         )
     order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
-    span = float(t[order[-1]] - t[order[0]])
-    if not _SHORTEST < span < _LONGEST:
-        raise DataError(f"{where}: t must span {_SHORTEST:g} to {_LONGEST:g}, got {span:g}")
+    if not 1e-60 < (span := float(t[order[-1]] - t[order[0]])) < 1e60:
+        raise DataError(f"{where}: t must span 1e-60 to 1e+60, got {span:g}")
     raw = Recording("", t, 0.0, kind, angles, {}, position)
-    return replace(raw, sigma=_sigma(raw, reading.sigma)).part(order)
+    return replace(raw, sigma=_sigma(raw, sigma)).part(order)
 
 
 def _check_times(where: str, t: Array) -> None:
@@ -230,16 +221,18 @@ def _check_times(where: str, t: Array) -> None:
         )
 
 
-def _angles(given: Quantities, reading: Reading, named: Named) -> tuple[str, dict[str, Array]]:
+def _angles(
+    given: Quantities, conventions: Conventions, up: str, named: Named
+) -> tuple[str, dict[str, Array]]:
     """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
-    alone = angles_in(given, reading.conventions, named)
+    alone = angles_in(given, conventions, named)
     if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
-        if reading.up != "z":
+        if up != "z":
             raise LagtopError("align needs an axis or an attitude, got angles", "align")
         return "angles", alone
-    seen = observe(given, reading.conventions, named)
-    if reading.up != "z":
-        seen = seen.turned(rotations.to_z(reading.up), rotations.IDENTITY)
+    seen = observe(given, conventions, named)
+    if up != "z":
+        seen = seen.turned(rotations.to_z(up), rotations.IDENTITY)
     if seen.quaternion is not None:
         return "attitude", rotations.angles_of(seen.quaternion)
     if seen.axis is not None:
@@ -263,8 +256,7 @@ def turned_up(recording: Recording, axis: str) -> Recording:
     """Return a recording of an axis or attitude in a frame whose z axis is another one of space."""
     theta, psi, turn = recording.angles["theta"], recording.angles["psi"], rotations.to_z(axis)
     phi = recording.angles.get("phi", np.zeros_like(theta))
-    whole = rotations.product(turn, rotations.of_angles(theta, phi, psi))
-    found = rotations.angles_of(whole)
+    found = rotations.angles_of(rotations.product(turn, rotations.of_angles(theta, phi, psi)))
     return replace(recording, angles={name: found[name] for name in recording.angles})
 
 
@@ -280,15 +272,13 @@ def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3)
     distance = np.linalg.norm(recording.position, axis=1)
     direction = recording.position / distance[:, np.newaxis]
     basis = np.column_stack([np.ones(distance.size), direction - direction.mean(axis=0)])
-    factors = np.linalg.lstsq(basis, distance, rcond=1e-3)[0]
-    explained = basis[:, 1:] @ factors[1:]
+    offset: Array = np.linalg.lstsq(basis, distance, rcond=1e-3)[0][1:]
+    explained = basis[:, 1:] @ offset
     rest = distance - distance.mean() - explained
     noise = float(rest @ rest) / max(distance.size - 4, 1)
     gain = float(explained @ explained) / (noise + 1e-30)
-    if gain < sure**2 + 3 or np.ptp(explained) < least * distance.mean():
-        return None
-    offset: Array = factors[1:]
-    return offset
+    hidden = gain < sure**2 + 3 or np.ptp(explained) < least * distance.mean()
+    return None if hidden else offset
 
 
 class Known(dict[str, float]):

@@ -17,22 +17,18 @@ from ..arithmetic.types import Array
 from .motions import nutating
 from .recording import Recording
 
-_SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 _HEIGHTS = np.concatenate([[1e-6], 10.0 ** np.linspace(-4, 8, 73)])
 """Values of (u3 - 1)/(1 - u2) between which a mean precession rate is searched for."""
 _NEAR_POLE = np.array([0.01, 0.03, 0.06, 0.1, 0.17, 0.27, 0.4])
 _TILTS = np.concatenate([_NEAR_POLE, np.linspace(0.55, np.pi - 0.55, 15), np.pi - _NEAR_POLE[::-1]])
-"""Turning points to try if the tilt is not recorded."""
 _SWINGS = (0.01, 0.04, 0.15)
-"""Small nutations to try, over their distance from a pole."""
 _PHASES = np.sin(np.linspace(0, np.pi / 2, 9)) ** 2
-"""Places of the start between the turning points to try if the tilt is not recorded."""
+"""If the tilt is not recorded: turning points to try, small nutations over their distance from a
+pole, and places of the start between the turning points."""
 _POLE = 1e-4
 """Least distance of a start from a pole, in radians."""
-_MOST_ROWS = 600
-_STEP = 0.12
-"""Step of the search for a frequency, over the inverse duration."""
-_ROWS_PER_PERIOD = 2.2
+_MOST_ROWS, _STEP, _ROWS_PER_PERIOD = 600, 0.12, 2.2
+"""Rows of the search for a frequency, its step over the inverse duration, and its end."""
 _UNEVEN = 0.05
 """Mean deviation of steps in time from whole frames, from which frequencies beyond half a period
 per frame are visible."""
@@ -41,8 +37,6 @@ _CLEAR = (9.0, 5.5)
 
 Noise exceeds it at the best of all frequencies about once in 370 times.
 """
-_RIDGE = 1e-10
-_BLOCK = 64
 _TIED = 0.3
 """Loss of the log of the noise, per angle, up to which a higher frequency is preferred."""
 
@@ -72,11 +66,11 @@ class Signal(NamedTuple):
         """Return the noise that harmonics of many frequencies leave, by normal equations."""
         wave = np.exp(2j * np.pi * frequencies[:, np.newaxis] * self.t)
         powers = wave[:, np.newaxis] ** np.arange(1, order + 1)[:, np.newaxis]
-        shape = (frequencies.size, 1, self.t.size)
-        trend = [np.ones(shape), np.broadcast_to(self.t / self.t[-1], shape)][: 1 + self.grows]
-        basis = np.concatenate([*trend, powers.real, powers.imag], axis=1)
+        trend = np.stack([np.ones(self.t.size), self.t / self.t[-1]])[: 1 + self.grows]
+        trends = np.broadcast_to(trend, (frequencies.size, *trend.shape))
+        basis = np.concatenate([trends, powers.real, powers.imag], axis=1)
         y = self.y - self.y.mean()
-        gram = basis @ basis.transpose(0, 2, 1) + _RIDGE * y.size * np.eye(basis.shape[1])
+        gram = basis @ basis.transpose(0, 2, 1) + 1e-10 * y.size * np.eye(basis.shape[1])
         right = basis @ y
         factors = np.linalg.solve(gram, right[..., np.newaxis])[..., 0]
         rest = np.maximum(y @ y - np.sum(factors * right, axis=1), 0)
@@ -106,23 +100,11 @@ def signals_in(recording: Recording) -> dict[str, Signal]:
     return found
 
 
-class Oscillation(NamedTuple):
-    """The frequency at which harmonics describe a recording best."""
+def oscillation_in(signals: dict[str, Signal]) -> tuple[float, bool]:
+    """Return the frequency of the nutation, up to half a period per row, and if it is visible.
 
-    frequency: float
-    gain: float
-    """Gain of the log-likelihood over constant tilt and rates."""
-    angles: int
-    """Number of angles in which it was looked for."""
-
-    @property
-    def is_visible(self) -> bool:
-        """Whether noise hardly ever has this gain."""
-        return self.gain > _CLEAR[0] + _CLEAR[1] * self.angles
-
-
-def oscillation_in(signals: dict[str, Signal]) -> Oscillation:
-    """Return the frequency of the nutation, up to half a period per row, and how clear it is."""
+    It is the frequency at which harmonics describe the signals best.
+    """
     used = [x._replace(t=x.t[:_MOST_ROWS], y=x.y[:_MOST_ROWS]) for x in signals.values()]
     span, count = max(x.t[-1] for x in used), min(x.t.size for x in used)
     steps = np.diff(used[0].t)
@@ -131,31 +113,29 @@ def oscillation_in(signals: dict[str, Signal]) -> Oscillation:
     most = frames.sum() / _ROWS_PER_PERIOD if even else count * 1.0
     orders = min(4, max((count - 3) // 4, 1))
 
-    def noise(frequencies: Array, order: int) -> Array:
-        found: Array = np.log([x.noises(frequencies, order) for x in used]).sum(axis=0)
+    def noise(frequencies: Array | float, order: int) -> Array:
+        tried = np.atleast_1d(frequencies)
+        found: Array = np.log([x.noises(tried, order) for x in used]).sum(axis=0)
         return found
-
-    def alone(frequency: float, order: int) -> float:
-        return float(noise(np.array([frequency]), order)[0])
 
     def order_at(frequency: float) -> int:
         return min(orders, max(int(most / (frequency * span)), 1))
 
     tried = np.arange(0.8, max(most, 2.0), _STEP) / span
-    blocks = np.array_split(tried, tried.size // _BLOCK + 1)
+    blocks = np.array_split(tried, tried.size // 64 + 1)
     found = np.concatenate([noise(x, order_at(float(x[-1]))) for x in blocks])
     dips = np.flatnonzero((found[1:-1] <= found[:-2]) & (found[1:-1] <= found[2:])) + 1
     refined = []
     for i in dips[np.argsort(found[dips])][:4].tolist():
-        order = order_at(float(tried[i + 1]))
-        bounds = tried[i - 1], tried[i + 1]
-        refined.append(minimize_scalar(alone, bounds=bounds, args=(order,), method="bounded"))
+        how = {"bounds": (tried[i - 1], tried[i + 1]), "args": (order_at(float(tried[i + 1])),)}
+        refined.append(minimize_scalar(lambda *at: noise(*at)[0], method="bounded", **how))
     if not refined:
-        return Oscillation(1 / span, 0.0, len(used))
+        return 1 / span, False
     least = min(float(x.fun) for x in refined)
     # half of the frequency, or a third of it, leaves as little noise
     best = max(float(x.x) for x in refined if x.fun < least + _TIED * len(used))
-    return Oscillation(best, (alone(1 / span, 0) - least) * count, len(used))
+    gain = (float(noise(1 / span, 0)[0]) - least) * count  # over constant tilt and rates
+    return best, gain > _CLEAR[0] + _CLEAR[1] * len(used)
 
 
 def noise_of(
@@ -184,7 +164,7 @@ def starts(signals: dict[str, Signal], frequency: float, tilt: float | None) -> 
         rates = [mean + i * 2 * math.pi * frequency for i in turns]
     found: list[Array] = []
     pair = least[:, np.newaxis], greatest[:, np.newaxis]
-    for signs in _SIGNS:
+    for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         tops = nutating(*pair, period, _HEIGHTS, signs)
         for rate in rates:
             off = tops[3] - rate
@@ -197,23 +177,20 @@ def starts(signals: dict[str, Signal], frequency: float, tilt: float | None) -> 
             found.append(np.stack(np.broadcast_arrays(*pair, *tops[:3])).reshape(5, -1))
     low, high, a, b, beta = np.concatenate(found, axis=1)
     u1, u2 = np.cos(low), np.cos(high)
+    u = (u2 + (u1 - u2) * _PHASES[:, np.newaxis]) if at_start is None else np.clip(at_start, u2, u1)
     if tilt is not None:
         near = (u1 + 0.02 > math.cos(tilt)) & (math.cos(tilt) > u2 - 0.02)
-        u = np.where(near, math.cos(tilt), np.nan)[np.newaxis]
-    elif at_start is not None:
-        u = np.clip(at_start, u2, u1)[np.newaxis]
-    else:
-        u = u2 + (u1 - u2) * _PHASES[:, np.newaxis]
+        u = np.where(near, math.cos(tilt), np.nan)
     square = np.maximum(1 - u * u, _POLE**2)
     psi_rate = (beta - b * u) / square
     energy = (beta - b * u2) ** 2 / np.maximum(1 - u2 * u2, _POLE**2) + a * u2
     theta_rate = np.sqrt(np.maximum(energy - a * u - psi_rate**2 * square, 0))
     theta = np.clip(np.arccos(np.clip(u, -1, 1)), _POLE, math.pi - _POLE)
     states = [
-        np.stack(np.broadcast_arrays(a, b, theta, way * theta_rate, psi_rate), axis=-1)
-        for way in (1, -1)
+        np.stack(np.broadcast_arrays(a, b, theta, rate, psi_rate), axis=-1).reshape(-1, 5)
+        for rate in (theta_rate, -theta_rate)
     ]
-    both: Array = np.concatenate(states).reshape(-1, 5)
+    both: Array = np.concatenate(states)
     return np.asarray(both[np.isfinite(both).all(axis=1)])
 
 

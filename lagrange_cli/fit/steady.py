@@ -17,7 +17,7 @@ from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from .outcome import Outcome, Residuals
 from .recording import Known, Recording
-from .starts import Oscillation, signals_in
+from .starts import signals_in
 
 _MOST_TILT, _LEAST_ROWS = 0.04, 30
 """Largest scatter of the tilt in radians that counts as noise, and the least number of rows that
@@ -64,7 +64,7 @@ def _lines(recording: Recording) -> dict[str, _Line]:
 
 
 def steady_outcome(
-    recording: Recording, known: Known, oscillation: Oscillation, *, radians: bool
+    recording: Recording, known: Known, *, oscillates: bool, radians: bool
 ) -> Outcome:
     """Return the result of a fit of a constant tilt and constant rates."""
     scale, unit = angle_unit(radians=radians)
@@ -126,7 +126,7 @@ def steady_outcome(
         chi2 / dof,
         1 / float(recording.t[-1]),
         motion,
-        [*_faults(recording, residuals, numbers, oscillation)],
+        [*_faults(recording, residuals, numbers, oscillates=oscillates)],
         notes,
     )
 
@@ -135,11 +135,12 @@ def _faults(
     recording: Recording,
     residuals: Mapping[str, Residuals],
     numbers: _Numbers,
-    oscillation: Oscillation,
+    *,
+    oscillates: bool,
 ) -> Iterator[str]:
     """Yield why the motion is no steady precession, besides the residuals."""
     rate, std = numbers.get("mean_precession_rate", (0.0, 0.0))
-    if oscillation.is_visible:
+    if oscillates:
         yield "the motion is no steady precession: the angles oscillate"
     if "psi" not in recording.angles:
         yield "no nutation is visible, and without psi no precession rate"

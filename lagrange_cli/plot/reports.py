@@ -124,7 +124,7 @@ def draw_outcome(outcome: Any, figure: Figure | None = None) -> Figure:
     4
     """
     figure = figure or new_figure()
-    draw_fit_panels(figure, outcome.curves(), outcome.angle)
+    draw_fit_panels(figure, list(outcome.curves()), outcome.angle)
     return figure
 
 

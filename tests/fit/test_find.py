@@ -237,16 +237,10 @@ def test_quantities_of_pint() -> None:
     assert (found.top.r0, found.top.m) == pytest.approx((plain.top.r0, 1.587), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("words", "code", "message"),
-    [
-        ("T_nutation=1", 2, "no input is unknown: give a range, such as --r0 10:200"),
-        ("--r0 1:2 T_nutation=1 --scan 2", 2, "--scan must be 3 or more values"),
-        ("none.toml --r0 1:2 T_nutation=1", 65, "none.toml: No such file"),
-    ],
-)
-def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:
-    assert_one_line(lagtop("find", *words.split()), code, message)
+def test_bad_commands(lagtop: Lagtop) -> None:
+    words = "--r0 1:2 T_nutation=1".split()
+    assert_one_line(lagtop("find", *words, "--scan", 2), 2, "--scan must be 3 or more values")
+    assert_one_line(lagtop("find", "none.toml", *words), 65, "none.toml: No such file")
 
 
 def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:

@@ -51,11 +51,6 @@ def recorded(
     return t, {x: y if x == "theta" else np.angle(np.exp(1j * y)) for x, y in found.items()}
 
 
-def angles_of(t: Array, *names: str) -> dict[str, Array]:
-    """Return some exact angles of TOP."""
-    return {name: motion_of(TOP, t)[name] for name in names}
-
-
 def axis_of(theta: Array, psi: Array) -> Array:
     """Return the figure axis, shape (n, 3)."""
     flat = np.sin(theta)
