@@ -110,8 +110,7 @@ def bench(
     found = [measure(*run) for run in progress(runs, "methods")]
     each = len(found) // len(tasks)
     rows = [row for i in range(0, len(found), each) for row in marked(found[i : i + each])]
-    lines = growth(rows) if len(spans) > 1 else rivals(rows)
-    return Report(conditions(tasks), FIELDS, rows, [*lines, *missing(rows)])
+    return Report(conditions(tasks), FIELDS, rows, [*conclusions(rows, len(spans) > 1)])
 
 
 def exact_motion(motion: Motion) -> Reference:
@@ -206,27 +205,22 @@ def order_between(before: Row, row: Row) -> float | None:
     return math.log(large / small) / math.log(float(row.setting) / float(before.setting))
 
 
-def rivals(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield which methods are both faster and more accurate than lagtop, scene by scene."""
-    for row in rows:
+def conclusions(rows: Sequence[Row], is_long: bool) -> Iterator[str]:
+    """Yield the rivals of lagtop, or the growth of errors with the span; and the missing methods.
+
+    Rivals are faster and more accurate.  The exponent of the growth is by least squares.
+    """
+    for row in rows if not is_long else ():
         if row.method == "lagtop" and row.error_rad is not None:
             others = [x for x in rows if x.scene == row.scene and x.method != "lagtop"]
             names = [f"{x.method} at {x.setting}" for x in others if beats(x, row)]
             said = f"{row.scene}: faster and more accurate than lagtop's {row.setting}"
             yield f"{said}: {', '.join(names) or 'no other method'}."
-
-
-def growth(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield the exponent p of each method whose error grows as span^p, by least squares."""
     for scene, name in dict.fromkeys((row.scene, row.method) for row in rows):
         mine = [x for x in rows if (x.scene, x.method) == (scene, name) and 0 < costs(x)[0] < LOST]
-        if len(mine) > 1:
-            x, y = np.log([x.periods for x in mine]), np.log([costs(x)[0] for x in mine])
+        if is_long and len(mine) > 1:
+            x, y = np.log([(x.periods, costs(x)[0]) for x in mine]).T
             yield f"{scene}: the error of {name} grows as span^{np.polyfit(x, y, 1)[0]:.1f}."
-
-
-def missing(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a line with the methods that have no result, each with its first reason."""
     done = {row.method for row in rows if row.error_rad is not None}
     reasons = {row.method: row.remark for row in reversed(rows) if row.method not in done}
     if reasons:

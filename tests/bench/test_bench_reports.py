@@ -19,8 +19,8 @@ from lagrange_cli.bench.reference import inputs_of, rotation_angle
 from lagrange_cli.bench.work_precision import (
     Row,
     bench,
+    conclusions,
     exact_motion,
-    growth,
     marked,
     methods_figure,
 )
@@ -55,7 +55,7 @@ def test_the_front_holds_what_no_row_beats() -> None:
 
 def test_growth_is_the_slope_over_the_spans() -> None:
     rows = [row("RK4", 800, 1e-9 * span**2, 1, periods=span) for span in (1.0, 10.0, 100.0)]
-    assert list(growth(rows)) == ["scene: the error of RK4 grows as span^2.0."]
+    assert list(conclusions(rows, True)) == ["scene: the error of RK4 grows as span^2.0."]
 
 
 def test_spans_use_the_tightest_setting() -> None:

@@ -33,13 +33,6 @@ function halves([, , w, x, y, z], last) {
   };
 }
 
-/** K from the complementary modulus, by the arithmetic-geometric mean. */
-function completeK(kPrime) {
-  let [x, y] = [1, kPrime];
-  while (Math.abs(x - y) > 1e-15 * x) [x, y] = [(x + y) / 2, Math.sqrt(x * y)];
-  return Math.PI / (x + y);
-}
-
 /** Carlson's integral R_F by duplication. */
 function carlsonF(x, y, z) {
   const mean = (x + y + z) / 3;
@@ -67,7 +60,7 @@ function cubicOf({ a, b, alpha, beta, u0, above, rise }) {
     const middle = (b * beta) / wide || 0;
     const spread = Math.sqrt(Math.max((b * beta) ** 2 - wide * (beta * beta - alpha), 0)) / wide || 0;
     const [u1, u2] = wide ? [middle + spread, middle - spread] : [u0, u0];
-    return { u1, u2, gap: Math.max(1 - u1, 0), toTop: Math.max(u1 - u0, 0), wide };
+    return { u1, u2, gap: Math.max(1 - u1, 0), toTop: Math.max(u1 - u0, 0), fromLow: Math.max(u0 - u2, 0), wide };
   }
   const [c2, c1, c0] = [-(alpha + b * b) / a, (2 * b * beta) / a - 1, (alpha - beta * beta) / a];
   const [shift, p] = [c2 / 3, Math.min(c1 - (c2 * c2) / 3, -1e-300)];
@@ -113,12 +106,12 @@ export function motionOf(scene) {
   const [alpha, beta] = [swing + a * u0, psidot0 * sin * sin + b * u0];
   const rise = (thetadot0 * sin) ** 2;
   const isVertical = !sin && !thetadot0;
-  const cubic = cubicOf({ a, b, alpha, beta, u0, above: 2 * Math.sin(half) ** 2, rise });
-  const { u1, u2, u3, gap, toTop, fromLow, far, wide, isTop } = cubic;
+  const above = 2 * Math.sin(half) ** 2;
+  const { u1, u2, u3, gap, toTop, fromLow, far, wide, isTop } = cubicOf({ a, b, alpha, beta, u0, above, rise });
   const usual = (2 * Math.PI) / (Math.sqrt(a) + Math.abs(b) + Math.sqrt(swing) || Math.abs(r0) || 1);
   const kPrime = a ? Math.sqrt((a * far) / wide) : 1;
   const isPeriodic = !isVertical && wide > 0 && kPrime > 1e-8;
-  const period = isPeriodic ? (4 * completeK(kPrime)) / Math.sqrt(wide) : null;
+  const period = isPeriodic ? (4 * carlsonF(0, kPrime ** 2, 1)) / Math.sqrt(wide) : null;
   const span = period ?? 20 * usual;
   const count = Math.min(Math.max(STEPS, Math.ceil((100 * span) / usual)), 100000);
   const h = span / 2 / count;
@@ -147,10 +140,8 @@ export function motionOf(scene) {
   const gain = { plus: before.plus + after.plus, minus: before.minus + after.minus };
   let since = 0;
   if (period && rise) {
-    const X = a ? carlsonF(fromLow * far, (far + toTop) * (u1 - u2), (u1 - u2) * far) / Math.sqrt(a) : 0;
-    since = a
-      ? 2 * Math.sqrt(toTop) * X
-      : (2 * Math.asin(Math.sqrt(Math.min(toTop / (u1 - u2), 1)))) / Math.sqrt(wide);
+    const [band, x, y] = a ? [u1 - u2, far, far + toTop] : [u1 - u2, 1, 1];
+    since = (2 * Math.sqrt(toTop) * carlsonF(fromLow * x, band * y, band * x)) / Math.sqrt(a || wide);
     since = Math.min(since || 0, period / 2);
   } else if (period && toTop > (u1 - u2) / 2) since = period / 2;
   if (thetadot0 < 0) since = -since;
@@ -160,11 +151,7 @@ export function motionOf(scene) {
     const rest = t + since - turns * period;
     const { theta, plus, minus } = fromTop(Math.abs(rest));
     const sign = rest < 0 ? -1 : 1;
-    return {
-      theta,
-      plus: sign * plus + turns * gain.plus,
-      minus: sign * minus + turns * gain.minus,
-    };
+    return { theta, plus: sign * plus + turns * gain.plus, minus: sign * minus + turns * gain.minus };
   }
   const zero = period ? place(0) : places[0];
   if (period && tilt === 0) zero.minus = (Math.sign(first) * Math.PI) / 2;  // limits after the start

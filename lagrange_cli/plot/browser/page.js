@@ -11,8 +11,7 @@ const CURVES = {
 const text = (x, digits = 7) => String(Number(x.toPrecision(digits))).replace(/-/g, "−");
 const number = (word) => (word.trim() ? Number(word.replace("−", "-").replace(",", ".")) : NaN);
 const clamped = (x, least, most) => Math.min(Math.max(x, least), most);
-const even = (from, to, count) =>
-  Array.from({ length: count + 1 }, (_, i) => from + ((to - from) * i) / (count || 1));
+const even = (from, to, n) => Array.from({ length: n + 1 }, (_, i) => from + ((to - from) * i) / (n || 1));
 const circle = even(0, 2 * Math.PI, 120);
 const timeUnit = DATA.time === "time" ? "time unit" : DATA.time;
 const style = getComputedStyle(document.documentElement);  // follows the dark mode
@@ -59,8 +58,9 @@ function area(pen, points, tint) {
   pen.fill();
 }
 
-const disc = (pen, [x, y], radius, tint) =>
+function disc(pen, [x, y], radius, tint) {
   area(pen, circle.map((k) => [x + radius * Math.cos(k), y + radius * Math.sin(k)]), tint);
+}
 
 function word(pen, letters, [x, y], tint, textAlign = "center") {
   Object.assign(pen, { fillStyle: colour(tint), textAlign });
@@ -70,7 +70,7 @@ function word(pen, letters, [x, y], tint, textAlign = "center") {
 /** Steps of 1, 2 or 5 times a power of ten between two numbers. */
 function ticks(low, high, most) {
   const power = 10 ** Math.floor(Math.log10((high - low) / most));
-  const size = [1, 2, 5, 10].map((n) => n * power).find((x) => (high - low) / x <= most + 1);
+  const size = power * [1, 2, 5, 10].find((n) => (high - low) / (n * power) <= most + 1);
   const [first, last] = [Math.ceil(low / size), Math.floor(high / size)];
   return last < first ? [] : even(first, last, last - first).map((n) => n * size);
 }
@@ -225,13 +225,8 @@ function drawCubic() {
   const x = (u) => left + ((u - u2 + room) / (last - u2 + 2 * room)) * (right - left);
   const y = (f) => (top + bottom) / 2 - (f / (1.3 * most)) * ((bottom - top) / 2);
   const place = ([u, f]) => [x(u), y(f)];
-  pen.save();
-  pen.beginPath();
-  pen.rect(left, top - 8, right - left, bottom - top + 16);
-  pen.clip();
   area(pen, [[u2, 0], ...hump, [u1, 0]].map(place), "faint");
-  line(pen, points.map(place), "blue", { width: 1.8 });
-  pen.restore();
+  line(pen, points.map((point) => (Math.abs(point[1]) < 1.4 * most ? place(point) : null)), "blue", { width: 1.8 });
   line(pen, [[left, y(0)], [right, y(0)]], "quiet");
   scales(pen, letters, left, bottom, { up: ticks(-most, most, 3).map((tick) => [tick, y(tick)]) }, 3);
   scales(pen, letters, left, bottom, { across: ticks(u2 - room, last + room, 4).map((tick) => [tick, x(tick)]) }, 4);
@@ -313,14 +308,12 @@ function complaint(given) {
 function change(changes, anew = false) {
   const given = { ...scene, ...changes };
   at.error.textContent = complaint(given);
-  document.body.classList.toggle("bad", Boolean(at.error.textContent));
-  if (at.error.textContent) return;
+  if (document.body.classList.toggle("bad", Boolean(at.error.textContent))) return;
   scene = given;
   motion = motionOf(scene);
   for (const [name, { field, slider }] of Object.entries(fields)) {
     if (anew) [slider.min, slider.max] = rangeOf(name, scene[name]);
-    field.value = scene[name];
-    slider.value = scene[name];
+    [field.value, slider.value] = [scene[name], scene[name]];
   }
   if (anew) pace = motion.span / 2.5;
   at.words.textContent = sentence(motion, timeUnit);
@@ -344,9 +337,7 @@ function stale() {
   fresh = false;
 }
 
-function setTime(time) {
-  if (Number.isFinite(time)) t = Math.max(time, 0);
-}
+const setTime = (time) => { t = Number.isFinite(time) ? Math.max(time, 0) : t; };
 
 function play(isOn) {
   playing = isOn;
@@ -396,10 +387,10 @@ on(at.time, "change", () => setTime(number(at.time.value)));
 on(at.scrub, "input", () => setTime((Number(at.scrub.value) * motion.span) / 10));
 on(at.plots, "pointermove", (event) => event.buttons && setTime(curves.timeAt(event.offsetX)));
 on(at.space, "pointerdown", (event) => at.space.setPointerCapture(event.pointerId));
-on(at.space, "pointermove", (event) => {
-  if (!event.buttons) return;
-  camera.azimuth -= event.movementX * 0.5;
-  camera.elevation = clamped(camera.elevation + event.movementY * 0.5, -90, 90);
+on(at.space, "pointermove", ({ buttons, movementX, movementY }) => {
+  if (!buttons) return;
+  camera.azimuth -= movementX * 0.5;
+  camera.elevation = clamped(camera.elevation + movementY * 0.5, -90, 90);
 });
 on(at.space, "wheel", (event) => {
   event.preventDefault();
