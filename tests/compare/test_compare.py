@@ -192,6 +192,9 @@ def test_the_error_of_another_top_does_not_fall() -> None:
     other = Body.of(TOP.replace(A=39032 * 1.03))
     rows = with_steps([rk4(other, h, 1) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
     assert {(row.verdict, row.cause) for row in rows} == {("another top", None)}
+    other = Body.of(TOP.replace(psidot0=-3))
+    rows = with_steps([rk4(other, h, 0.5) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
+    assert {row.cause for row in rows} == {"psidot0 has the wrong sign"}
     rounded = with_steps([(T, np.round(STATES, 6))] * 2, [1e-3, 1e-4])
     assert {row.verdict for row in rounded} == {"fine"}
 
