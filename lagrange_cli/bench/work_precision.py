@@ -157,8 +157,8 @@ def measure(
         return row._replace(remark=f"not installed: pip install {failure.name}")
     except (LagtopError, ArithmeticError, ValueError) as failure:
         return row._replace(remark=f"failed: {failure}")
-    judged = found if method.has_fixed_steps else found[checked]
-    error = max(map(rotation_angle, judged.tolist(), task.exact.values()))
+    at_checked = found if method.has_fixed_steps else found[checked]
+    error = max(map(rotation_angle, at_checked.tolist(), task.exact.values()))
     if not math.isfinite(error):
         return row._replace(remark="failed: numbers are not finite")
     return row._replace(

@@ -26,7 +26,6 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from pathlib import Path
@@ -65,21 +64,18 @@ CHUNK, MOST_SHOWN = 50, 40
 T = TypeVar("T")
 
 
-@dataclass
 class Tally:
-    """Results of the scenes of one kind."""
+    """Results of some scenes of one kind."""
 
-    scenes: int = 0
-    times: int = 0
-    worst: dict[str, float] = field(default_factory=dict)
-    counts: Counter[str] = field(default_factory=Counter)
-    violations: list[str] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+        self.worst: dict[str, float] = {}
+        self.violations: list[str] = []
 
     def note(self, name: str, error: float, bound: float, show: str) -> None:
         """Keep an error, and how to see it where it exceeds its bound."""
         self.worst[name] = max(self.worst.get(name, 0.0), error)
         if not error <= bound:
-            self.counts[name] += 1
             self.violations.append(f"{name} {error:.3g}: {show}")
 
     def both(self, key: str, value: T | None, exact: arb | None, show: str) -> tuple[T, arb] | None:
@@ -87,14 +83,11 @@ class Tally:
         if value is not None and exact is not None:
             return value, exact
         if value is not None or exact is not None:
-            self.counts[f"absent {key}"] += 1
             self.violations.append(f"{key} is {value!r}, the judge has {exact}: {show}")
         return None
 
     def add(self, other: Tally) -> None:
         """Take in the tally of more scenes."""
-        self.scenes += other.scenes
-        self.times += other.times
         self.counts += other.counts
         self.violations += other.violations
         for name, error in other.worst.items():
@@ -131,7 +124,7 @@ def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[flo
     computed = np.concatenate(list(blocks)).tolist()
     wrapped = zip(*(angle.tolist() for angle in motion.angles(times, wrap=True)[1:]), strict=True)
     for t, values, short in zip(times, computed, wrapped, strict=True):
-        tally.times += 1
+        tally.counts["times"] += 1
         try:
             errors = judge.errors(t, tuple(values[:7]))
             remainders = judge.remainder_errors(t, tuple(values[7:]))
@@ -278,39 +271,18 @@ def judge_path(tally: Tally, judge: Judge, motion: Motion) -> None:
 
 def typed(top: Top) -> str:
     """Return the command that solves a top, with all digits of its inputs."""
-    words = [
-        f"--{_TYPED.get(name, name)} {decimal_text(Fraction(x))}"
-        for name, x in top.as_dict().items()
-        if x is not None
-    ]
+    names = {"theta0_deg": "theta0", "theta0_rad": "rad --theta0"}
+    given = [(names.get(x, x), Fraction(y)) for x, y in top.as_dict().items() if y is not None]
+    with localcontext() as context:
+        context.prec = 2000
+        words = [f"--{x} {(Decimal(y.numerator) / y.denominator).normalize():g}" for x, y in given]
     return f"lagtop solve {' '.join(words)}"
 
 
-_TYPED = {"theta0_deg": "theta0", "theta0_rad": "rad --theta0"}
-
-
-def decimal_text(x: Fraction) -> str:
-    """Return all digits of a fraction whose denominator is a product of twos and fives."""
-    with localcontext() as context:
-        context.prec = 2000
-        return f"{(Decimal(x.numerator) / Decimal(x.denominator)).normalize():g}"
-
-
-def inputs_of(judges: Sequence[tuple[Scene, Judge]]) -> dict[str, list[float]]:
-    """Return scenes, all with tilts in degrees or all in radians, as inputs of many tops."""
-    inputs: dict[str, list[float]] = {
-        key: [float(scene[key]) for scene, _ in judges]
-        for key in ("m", "A", "C", "s", "g", "r0", "theta0_deg", "theta0_rad")
-        if key in judges[0][0]
-    }
-    for key in ("thetadot0", "psidot0"):
-        inputs[key] = [float(scene.get(key, 0)) for scene, _ in judges]
-    return inputs
-
-
-def judge_sweep(tally: Tally, judges: Sequence[tuple[Scene, Judge]]) -> None:
-    """Judge every number of a sweep of scenes."""
-    inputs: dict[str, Any] = inputs_of(judges)
+def judge_sweep(tally: Tally, tilt: str, judges: Sequence[tuple[Scene, Judge]]) -> None:
+    """Judge every number of a sweep of scenes, all with tilts in degrees or all in radians."""
+    names = (*"m A C s g r0 thetadot0 psidot0".split(), tilt)
+    inputs: Any = {x: [float(scene.get(x, 0)) for scene, _ in judges] for x in names}
     columns = sweep(keys=[*NUMBER_KEYS, "error"], **inputs)
     for i, (scene, judge) in enumerate(judges):
         if columns["error"][i] is not None:
@@ -348,7 +320,7 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
         scene, digits = KINDS[kind](rng), 0
         if rng.random() < 1 / 3 or any(isinstance(x, Fraction) for x in scene.values()):
             scene, digits = as_decimals(rng, scene), rng.randrange(5, 40)
-        tally.scenes += 1
+        tally.counts["scenes"] += 1
         try:
             motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
             judge.record, judge.requested  # noqa: B018 - made here, so that what is undecided is counted once
@@ -374,37 +346,21 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
         judges.append((scene, judge))
     for tilt in ("theta0_deg", "theta0_rad") if what == "sweep" else ():
         if some := [(scene, judge) for scene, judge in judges if tilt in scene]:
-            judge_sweep(tally, some)
+            judge_sweep(tally, tilt, some)
     return kind, tally
-
-
-def run(
-    kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, what: str, mpmath_share: int
-) -> Any:
-    """Yield the tally of each chunk, as they come."""
-    share = -(-scenes // len(kinds))
-    tasks = [
-        (kind, seed, first, min(CHUNK, share - first), what, mpmath_share)
-        for first in range(0, share, CHUNK)
-        for kind in kinds
-    ]
-    with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(run_chunk, tasks)
 
 
 def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
     """Yield the report, a line per kind and then what exceeds its bound."""
-    heads = "theta    phi    psi   quat   dphi   dpsi   wrap    key digits  sweep mpmath attit."
-    yield f"{'kind':24} scenes  times  {heads}  beyond"
+    columns = (*NAMES, "key", "digits", "sweep", "mpmath", "attitude")
+    heads = " ".join(f"{name[:6]:>6}" for name in columns)
+    yield f"{'kind':24} scenes  times {heads}  beyond"
     for kind, tally in tallies.items():
-        names = (*NAMES, "key", "digits", "sweep", "mpmath", "attitude")
-        worst = [tally.worst.get(name, 0.0) for name in names]
-        shown = " ".join(f"{error:6.3g}" for error in worst)
-        beyond = len(tally.violations)
-        yield f"{kind:24} {tally.scenes:6} {tally.times:6} {shown}  {beyond}"
+        counts = " ".join(f"{tally.counts[name]:6}" for name in ("scenes", "times"))
+        shown = " ".join(f"{tally.worst.get(name, 0.0):6.3g}" for name in columns)
+        yield f"{kind:24} {counts} {shown}  {len(tally.violations)}"
     for kind, tally in tallies.items():
-        if tally.counts:
-            yield f"\n{kind}: " + ", ".join(f"{name} {n}" for name, n in tally.counts.items())
+        yield f"\n{kind}: " + ", ".join(f"{name} {n}" for name, n in tally.counts.items())
         yield from tally.violations[:MOST_SHOWN]
 
 
@@ -424,11 +380,17 @@ def main() -> int:
         parser.error(f"kinds must be among {', '.join(KINDS)}, got {min(unknown)!r}")
     tallies, begun = {kind: Tally() for kind in kinds}, time.monotonic()
     what = "numbers" if options.numbers else "sweep" if options.sweep else ""
-    how: dict[str, Any] = {"jobs": options.jobs, "what": what, "mpmath_share": options.mpmath}
-    for kind, tally in run(kinds, options.scenes, options.seed, **how):
-        tallies[kind].add(tally)
+    share = -(-options.scenes // len(kinds))
+    tasks = [
+        (kind, options.seed, first, min(CHUNK, share - first), what, options.mpmath)
+        for first in range(0, share, CHUNK)
+        for kind in kinds
+    ]
+    with ProcessPoolExecutor(options.jobs) as pool:
+        for kind, tally in pool.map(run_chunk, tasks):
+            tallies[kind].add(tally)
     print("\n".join(lines_of(tallies)))
-    done = sum(tally.scenes for tally in tallies.values())
+    done = sum(tally.counts["scenes"] for tally in tallies.values())
     seconds = time.monotonic() - begun
     print(
         f"\n{done} scenes, seed {options.seed}, in {seconds:.0f} s: {done / seconds:.0f} a second"
