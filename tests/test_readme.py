@@ -135,7 +135,7 @@ def inputs_table() -> list[str]:
     return lines
 
 
-KINDS_OF_KEYS = {"record": "key", "on request": "key on request", "column": "column"}
+KINDS_OF_KEYS = {"record": "key", "on request": "further key", "column": "column"}
 """The headings of the tables of keys and columns."""
 TABLES: list[tuple[Callable[[], list[str]], str]] = [
     (inputs_table, "sample_inputs"),

@@ -139,7 +139,7 @@ class Numbers:
         return f"defined only {key.only}"
 
     def _on_request(self, digits: int) -> Any:
-        """Return the keys on request in balls of `digits` digits."""
+        """Return the further keys in balls of `digits` digits."""
         from .paper.requested import Requested  # start-up
 
         if digits not in self._requested:

@@ -46,7 +46,7 @@ def number_key(name: str) -> Key | None:
 
 
 def requested_keys() -> dict[str, Key]:
-    """Return the keys on request and their declarations."""
+    """Return the further keys and their declarations."""
     from .paper.requested import REQUESTED  # start-up: not for a record
 
     return REQUESTED

@@ -2,7 +2,7 @@
 
 Tops released from rest go through the formulas of `motion` as arrays of doubles, others as arrays
 of pairs of doubles.  `solve` computes a top by itself if its sizes are beyond 1e+-30, or if a
-cancellation costs too many digits.  It also computes all keys on request.  An invalid top gets an
+cancellation costs too many digits.  It also computes all further keys.  An invalid top gets an
 `error` and no numbers.
 """
 
@@ -60,7 +60,7 @@ def sweep(
 
     Inputs are those of `Top`, as numbers, arrays or pandas Series: pass a DataFrame of inputs as
     `sweep(**df)`.  Quantities of pint are converted to SI.  Only `keys` are computed; angles are in
-    degrees or `radians`.  A key on request costs as much as a key of the record if it is a formula
+    degrees or `radians`.  A further key costs as much as a key of the record if it is a formula
     of the inputs (such as `stability_factor` or `Lz`), and about a millisecond per top otherwise.
     If a regime has no value for a key, its number is NaN and its text None.  An invalid top has an
     `error` and no values.  If a number is beyond the range of doubles, it is NaN, and `error` says

@@ -97,7 +97,7 @@ STEADY_KEYS = frozenset({"steady_rate_slow", "steady_rate_fast"})
 WITH_RATIO = frozenset({"r0_sleeping", "r0_steady_min"})
 """The keys that have the factor A/C."""
 REQUESTED = keys_of(Requested)
-"""The keys on request and their declarations."""
+"""The further keys and their declarations."""
 
 
 def ratio_of(exact: Exact) -> Fraction:
