@@ -37,9 +37,12 @@ NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?")
 
 
 def sessions(text: str) -> Iterator[tuple[str, str]]:
-    """Yield each command of the console blocks with the output shown below it."""
+    """Yield each command of the console blocks with the output shown below it.
+
+    A line of `#` above a command is a comment.
+    """
     for block in re.findall(r"```console\n(.*?)```", text, re.DOTALL):
-        for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
+        for part in re.split(r"^(?:# .*\n)?\$ ", block, flags=re.MULTILINE)[1:]:
             command, _, output = part.partition("\n")
             yield command, output
 
@@ -73,8 +76,14 @@ SESSIONS = [
 @pytest.mark.slow
 @pytest.mark.parametrize(("command", "shown"), SESSIONS)
 def test_session(command: str, shown: str) -> None:
-    """Text to the letter, numbers to 1e-13 (the last bit of sin and atan is the platform's)."""
+    """Text to the letter, numbers to 1e-13 (the last bit of sin and atan is the platform's).
+
+    Three dots at the end of the text shown stand for more lines.
+    """
     real = run(command)
+    if shown.endswith("\n...\n"):
+        shown = shown.removesuffix("...\n")
+        real = "".join(real.splitlines(keepends=True)[: shown.count("\n")])
     assert NUMBER.sub("#", real) == NUMBER.sub("#", shown)
     pairs = zip(NUMBER.findall(real), NUMBER.findall(shown), strict=True)
     assert all(float(a) == pytest.approx(float(b), rel=1e-13, abs=1e-13) for a, b in pairs)
@@ -182,7 +191,8 @@ def rewrite() -> None:
     for path in PAGES:
         text = path.read_text()
         for command, shown in sessions(text):
-            text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
+            if not shown.endswith("\n...\n"):
+                text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
         for table, folder in TABLES:
             if path.parent == ROOT / folder:
                 text = with_table(text, table())
