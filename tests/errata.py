@@ -14,7 +14,7 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import mpmath
-from ball_judge import Judge
+from ball_reference import BallReference
 from lagtop import Top
 
 
@@ -59,8 +59,8 @@ def errata_table() -> list[str]:
 class Figure(NamedTuple):
     """A number of section 8.
 
-    `text` is printed, `true` computes it from the judge's values, and `own` from other figures as
-    printed, which it may read from its argument by name; without `own` it stands alone.
+    `text` is printed, `true` computes it from exact values, and `own` from other printed figures,
+    which it may read from its argument by name; without `own` it stands alone.
     """
 
     name: str
@@ -158,9 +158,9 @@ def interpolated(integral: Callable[[Any], Any], degrees: Any) -> Any:
 
 
 def true_values() -> Any:
-    """Return the judge's numbers of the worked example, with A and C."""
+    """Return the reference's numbers of the worked example, with A and C."""
     top = Top()
-    numbers = Judge(top.as_dict()).numbers()
+    numbers = BallReference(top.as_dict()).numbers()
     return SimpleNamespace(**numbers, A=mpmath.mpf(top.A), C=mpmath.mpf(top.C))
 
 

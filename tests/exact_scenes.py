@@ -1,7 +1,7 @@
 """Scenes of exact kinds for tests, beside the random ones of `lagtop stability`.
 
 An exact separatrix, precession or pass uses tilts whose cosine is rational and numbers with few
-bits.  Named scenes, which tests share, stand in `scenes.py`.
+bits.  Named scenes, which tests share, are in `scenes.py`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable
 from fractions import Fraction
 
-from hard_scenes import STRATA, Scene, generic, signed, ten_to
+from hard_scenes import HARD_KINDS, Scene, generic, signed, ten_to
 
 TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
 """Degrees whose cosine is rational."""
@@ -104,7 +104,7 @@ def as_decimals(rng: random.Random, scene: Scene) -> Scene:
     return longer_scene
 
 
-KINDS: dict[str, Callable[[random.Random], Scene]] = STRATA | {
+KINDS: dict[str, Callable[[random.Random], Scene]] = HARD_KINDS | {
     function.__name__.replace("_", " "): function
     for function in (separatrix, steady, over_a_pole, from_a_pole, no_torque, nice_numbers)
 }

@@ -253,7 +253,7 @@ def half_periods(rng: random.Random) -> Scene:
 
 
 def far_times(rng: random.Random) -> Scene:
-    """Return a start as in other strata, 1e11 to 1e14 periods away."""
+    """Return a start as in other kinds, 1e11 to 1e14 periods away."""
     return rng.choice([ordinary, stiff, slow, tiny_tilt, near_a_pole, near_steady])(rng)
 
 
@@ -277,7 +277,7 @@ _FUNCTIONS = (
     half_periods,
     far_times,
 )
-STRATA: dict[str, Callable[[random.Random], Scene]] = {
+HARD_KINDS: dict[str, Callable[[random.Random], Scene]] = {
     "stiff (fast spin)" if x is stiff else x.__name__.replace("_", " "): x for x in _FUNCTIONS
 }
 """The kinds by name."""
@@ -288,10 +288,10 @@ def in_doubles(scene: Scene) -> Scene:
     return {name: float(value) for name, value in scene.items()}
 
 
-def nutating(stratum: str, rng: random.Random) -> Scene:
-    """Return the inputs, as doubles, of a scene of a stratum that nutates under a torque."""
+def nutating(kind: str, rng: random.Random) -> Scene:
+    """Return the inputs, as doubles, of a scene of a kind that nutates under a torque."""
     while True:
-        scene = in_doubles(STRATA[stratum](rng))
+        scene = in_doubles(HARD_KINDS[kind](rng))
         with suppress(LagtopError):
             exact_motion(solve(Top(**scene)))
             return scene

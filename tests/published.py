@@ -1,7 +1,7 @@
 """Numbers that others have printed, checked: a table of tests/README.md is made from here.
 
-The exact values are those of `lagtop` in many digits; `exact_by_the_judge` has them from the proved
-enclosures of `ball_judge`, which share no formula with it.
+The exact values are those of `lagtop` in many digits; `exact_by_the_reference` has them from the
+proved enclosures of `ball_reference`, which share no formula with it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import mpmath
-from ball_judge import Judge
+from ball_reference import BallReference
 from conftest import ROOT
 from lagtop import Motion, read_scene, solve
 from ours import ManyDigits, Ours
@@ -156,19 +156,19 @@ def exact(x: Printed) -> Many:
 
 
 @cache
-def _judge(scene: str) -> Judge:
+def _balls(scene: str) -> BallReference:
     top = motion(scene).top
-    return Judge({key: getattr(top, key) for key in top.fields})
+    return BallReference({key: getattr(top, key) for key in top.fields})
 
 
-def exact_by_the_judge(x: Printed) -> Many:
+def exact_by_the_reference(x: Printed) -> Many:
     """Return the exact value of a printed number, by ball arithmetic; of cn by mpmath."""
     with mpmath.workdps(DIGITS):
         if x.scene == ELLIPJ:
             return mpmath.ellipfun("cn", 50, k=mpmath.mpf(_K))
         if not x.t:
-            return _middle(_judge(x.scene).exact(x.quantity))
-        return _value(x, State(*(_middle(ball) for ball in _judge(x.scene).at(Fraction(x.t))[:6])))
+            return _middle(_balls(x.scene).exact(x.quantity))
+        return _value(x, State(*(_middle(ball) for ball in _balls(x.scene).at(Fraction(x.t))[:6])))
 
 
 def _middle(ball: Any) -> Many:

@@ -1,1 +1,1 @@
-"""Error against run time, hard scenes and the reference that judges them."""
+"""Error against run time, hard scenes and their reference."""

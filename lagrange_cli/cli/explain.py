@@ -27,9 +27,9 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     """Explain keys and columns, with formulas and numbers.
 
     A key is the name of a result.  Each formula is shown in symbols and with the numbers of the
-    top.  Without KEY, all keys and columns are listed.  The record of solve has most keys; others
-    are computed on request.  Keys go to solve --get, sweep --keys, find --keys and plot --key;
-    columns go to table --columns.
+    top.  Without KEY, all keys and columns are listed.  The record of solve has most keys; the
+    others are computed if you name them.  Keys go to solve --get, sweep --keys, find --keys and
+    plot --key; columns go to table --columns.
     """
     from ..motion.explanation import explanations, listed
 

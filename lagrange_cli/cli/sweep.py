@@ -90,8 +90,8 @@ def sweep_command(
     unit: m [g].  If a top cannot be solved, the exit code is 1 and the column error gives the
     reason; with --keys, list error to see it.
 
-    A top takes about 1 us.  Keys on request that are formulas of the inputs, such as
-    stability_factor, Lz and the steady rates, cost no more; others take about 1 ms per top.
+    A top takes about 1 us.  Keys outside the record that are formulas of the inputs,
+    such as stability_factor, Lz and the steady rates, cost no more; others take about 1 ms.
 
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.

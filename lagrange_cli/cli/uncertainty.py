@@ -45,7 +45,7 @@ def with_stds(
     lost = [key for key in record if record[key] is not None and f"{key}_std" in stds]
     if lost := [key for key in lost if stds[f"{key}_std"] is None]:
         known = any(degree_name(key) in DIFFERENTIABLE for key in lost)
-        reason = NO_DERIVATIVE if known else "keys on request have none"
+        reason = NO_DERIVATIVE if known else "keys outside the record have none"
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
     if not shown:
         return dict(record) | stds

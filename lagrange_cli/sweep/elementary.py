@@ -1,4 +1,4 @@
-"""Keys on request that are formulas of the inputs, for many tops at once in pairs of doubles.
+"""Further keys that are formulas of the inputs, for many tops at once in pairs of doubles.
 
 `motion` declares the same keys with their meanings; `solve` computes a key of a top by itself if
 its terms cancel here.  Equation numbers are Chrapan's.

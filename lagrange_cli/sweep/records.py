@@ -37,7 +37,7 @@ OF_MODULI: dict[str, Callable[[Any], Array]] = {
     "k_squared": lambda motion: motion.m,
     "comodular_angle_deg": lambda motion: np.degrees(np.arctan2(motion.k_prime, motion.k)),
 }
-"""Keys on request that a nutation after release from rest has, from its moduli."""
+"""Further keys that a nutation after release from rest has, from its moduli."""
 BLOCK_ROWS = 1 << 12
 """Number of tops computed together, so that their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512

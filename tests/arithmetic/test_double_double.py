@@ -1,4 +1,4 @@
-"""Whole periods of a time, judged by fractions, and arrays in the order of a parity."""
+"""Whole periods of a time, checked by fractions, and arrays in the order of a parity."""
 
 from __future__ import annotations
 

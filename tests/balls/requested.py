@@ -1,4 +1,4 @@
-"""The keys on request of one motion, in balls: sections 4 to 8 by formulas of the judge's own."""
+"""The further keys of one motion, in balls: sections 4 to 8 by the reference's own formulas."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Requested(Motion):
         self.A, self.C = A, C
 
     def requested(self) -> dict[str, arb | None]:
-        """Return every key on request."""
+        """Return every further key."""
         found: dict[str, arb | None] = self._constants() | self._textbook()
         nutates = not (self.facts.steady or self.facts.separatrix)
         if nutates:

@@ -1,9 +1,9 @@
-"""The formulas of the judge in ball arithmetic, at one precision, by Arb (python-flint).
+"""The formulas of the reference in ball arithmetic, at one precision, by Arb (python-flint).
 
 Every result is a ball that is proved to hold the exact value.  The formulas are this module's own:
 the cubic of (4,9) with the roots that are known exactly split off, Legendre's integrals of the
 first and the third kind about the lowest point by Arb's own routines, and sn, cn, dn from Arb's
-theta functions.  Nothing is imported from the program that is judged.
+theta functions.  Nothing is imported from the program that is checked.
 
     f(u) = (1 - u^2)(alpha - a u) - (beta - b u)^2 = 0 at u2 <= u1 <= 1 <= u3
     u = u2 + (u1 - u2) sn^2 w,    w = w0 + sqrt(a (u3 - u2)) t/2

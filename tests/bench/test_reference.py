@@ -8,21 +8,21 @@ import random
 import mpmath
 import pytest
 from arb_balls import many_digits
-from ball_judge import Judge
-from hard_scenes import STRATA, nutating
+from ball_reference import BallReference
+from hard_scenes import HARD_KINDS, nutating
 from lagtop import Top, solve
 
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle, viete_roots
 
 
-@pytest.mark.parametrize("stratum", STRATA)
-def test_attitudes_agree_with_the_judge(stratum: str) -> None:
+@pytest.mark.parametrize("kind", HARD_KINDS)
+def test_attitudes_agree_with_the_reference(kind: str) -> None:
     """Legendre's third integral from the lowest point, by mpmath and by Arb."""
-    top = Top(**nutating(stratum, random.Random(2)))
-    reference, judge = Reference(inputs_of(top)), Judge(top.as_dict())
+    top = Top(**nutating(kind, random.Random(2)))
+    reference, balls = Reference(inputs_of(top)), BallReference(top.as_dict())
     t = 3.7 * float(reference.T)
     with mpmath.workdps(50):
-        theta, phi, psi = map(many_digits, judge.at(t)[:3])
+        theta, phi, psi = map(many_digits, balls.at(t)[:3])
         cos, sin = mpmath.cos(theta / 2), mpmath.sin(theta / 2)
         plus, minus = (psi + phi) / 2, (psi - phi) / 2
         attitude = (

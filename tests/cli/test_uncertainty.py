@@ -1,4 +1,4 @@
-"""Uncertain inputs on the command line: `uncertainties` judges notation and rounding."""
+"""Uncertain inputs on the command line: `uncertainties` checks notation and rounding."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
         std = abs(value) * 10 ** rng.uniform(-13, 2)
         text = uncertain_text(value, std)
         assert text == f"{uncertainties.ufloat(value, std):S}", text
-        read, judge = parse_value(text, uncertain=True), uncertainties.ufloat_fromstr(text)
-        assert float(read.number) == pytest.approx(judge.n, rel=1e-15)
-        assert float(read.std or 0) == pytest.approx(judge.s, rel=1e-12)
+        read, other = parse_value(text, uncertain=True), uncertainties.ufloat_fromstr(text)
+        assert float(read.number) == pytest.approx(other.n, rel=1e-15)
+        assert float(read.std or 0) == pytest.approx(other.s, rel=1e-12)
 
 
 def test_an_uncertainty_on_request_is_in_every_format(lagtop: Lagtop) -> None:

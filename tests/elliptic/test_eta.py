@@ -71,7 +71,7 @@ PARTS = [1e-6, 0.21, 0.4999, 0.62, 3.3, -7.7]
 def test_chain(name: str) -> None:
     """Every column by mpmath and (3.2.2), with the constants (3.2.5) and (3.2.8) from the roots.
 
-    The differential equation of eta judges the formulas in each layout.
+    The differential equation of eta checks the formulas in each layout.
     """
     of = ORBITS[name]
     with mpmath.workdps(60):
@@ -221,7 +221,7 @@ def test_numbers_beyond_the_doubles_are_refused(lagtop: Lagtop) -> None:
 def test_zeros_of_the_constants_are_exact(of: Quadrature, zeros: str) -> None:
     """A constant is printed as 0 just where it is 0, in doubles and in digits.
 
-    The judge is (3.2.3) and (3.2.12) in fractions, m' and m'' by their squares.
+    The reference is (3.2.3) and (3.2.12) in fractions, m' and m'' by their squares.
     """
     in_digits, in_doubles = eta_record(of, 20), eta_record(of)
     assert {key for key, text in in_digits.items() if text == "0.0"} == set(zeros.split())

@@ -1,6 +1,6 @@
 """Symmetries, shapes and blocks of the angles over time; columns on request; threads.
 
-`test_columns` compares the numbers with the judge.
+`test_columns` compares the numbers with the reference.
 """
 
 from __future__ import annotations

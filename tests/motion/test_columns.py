@@ -1,7 +1,7 @@
-"""Every column of `lagtop table`, in doubles and proved, against the judge in balls.
+"""Every column of `lagtop table`, in doubles and proved, against the reference in balls.
 
-The judge (`ball_judge`) has formulas of its own, by Legendre's integrals.  Errors are in units of
-eps (max(1, |value|) + |tau rate|), where tau is the time since the nearest whole period.
+The reference (`ball_reference`) has formulas of its own, by Legendre's integrals.  Errors are in
+units of eps (max(1, |value|) + |tau rate|), where tau is the time since the nearest whole period.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arb_balls import exact_arb
-from ball_judge import Judge
+from ball_reference import BallReference
 from balls.scene import arb_bits
 from lagtop import Motion, Top, solve
 from scenes import EVERY_KIND, UNIT, period
@@ -26,7 +26,7 @@ from lagrange_cli.motion.over_time.tables import ProvedTable
 TIMES = [0.375, -7.25, 2.0**-40, -(2.0**-40), 1e3, -1e6, 1e12]
 
 
-def errors(motion: Motion, judge: Judge, times: Iterable[float]) -> Iterator[float]:
+def errors(motion: Motion, balls: BallReference, times: Iterable[float]) -> Iterator[float]:
     """Yield the errors of angles and quaternion, wrapped angles and remainders at times."""
     listed = list(times)
     attitude = motion.table(listed, ["theta", "phi", "psi", "quaternion"])
@@ -39,23 +39,23 @@ def errors(motion: Motion, judge: Judge, times: Iterable[float]) -> Iterator[flo
             tuple(float(x[i]) for x in columns)
             for columns in (attitude.values(), waves.values(), wrapped)
         )
-        yield from judge.errors(t, found)
-        yield from judge.remainder_errors(t, (rest[0], rest[1]))
-        yield from judge.wrapped_errors(t, (within[0], within[1]))
+        yield from balls.errors(t, found)
+        yield from balls.remainder_errors(t, (rest[0], rest[1]))
+        yield from balls.wrapped_errors(t, (within[0], within[1]))
 
 
 def worst(scene: dict[str, Any], times: Iterable[float]) -> float:
     """Return the largest error of a scene."""
-    return max(errors(solve(Top(**scene)), Judge(Top(**scene).as_dict()), times))
+    return max(errors(solve(Top(**scene)), BallReference(Top(**scene).as_dict()), times))
 
 
 @pytest.mark.parametrize("name", EVERY_KIND)
-def test_columns_are_those_of_the_judge(name: str) -> None:
+def test_columns_are_those_of_the_reference(name: str) -> None:
     """Worst seen: 1.1 units, and 0.5 ulp of the size of a rate, a moment or an energy."""
     top = Top(**EVERY_KIND[name])
-    motion, judge = solve(top), Judge(top.as_dict())
+    motion, balls = solve(top), BallReference(top.as_dict())
     times = TIMES[:4] if "separatrix" in name else TIMES
-    assert max(errors(motion, judge, times)) <= 1.5
+    assert max(errors(motion, balls, times)) <= 1.5
     theta, phi, psi = motion.angles([0.0])
     assert (theta[0], phi[0], psi[0]) == (motion.sampler().tilt, 0, 0)
     waves = ProvedTable(motion, ["dphi", "dpsi"], radians=True).row(Fraction(times[1]))
@@ -65,11 +65,11 @@ def test_columns_are_those_of_the_judge(name: str) -> None:
     proved = ProvedTable(motion, columns, radians=True)
     doubles = motion.table(times, columns)
     rates = (top.r0, top.thetadot0, top.psidot0)
-    speed = 1 + float(judge.scene.a) ** 0.5 + sum(abs(float(x)) for x in rates)
+    speed = 1 + float(balls.scene.a) ** 0.5 + sum(abs(float(x)) for x in rates)
     inertia = float(top.A) + float(top.C)
     sizes = {"moment": inertia * speed**2, "energy": inertia * speed**2, "Lz": inertia * speed}
     for i, t in enumerate(times):
-        exact = judge.columns(t)
+        exact = balls.columns(t)
         for column, found in zip(proved.chosen, proved.row(Fraction(t)), strict=True):
             with arb_bits(400):
                 true, radius = exact[column], exact_arb(found.radius)

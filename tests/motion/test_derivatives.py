@@ -1,4 +1,4 @@
-"""Derivatives against differences of the judge's numbers, and uncertainties.
+"""Derivatives against differences of the reference's numbers, and uncertainties.
 
 `test_frozen` compares all derivatives of fifteen records.
 """
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arb_balls import exact_arb
-from ball_judge import Judge
+from ball_reference import BallReference
 from balls.scene import arb_bits
 from flint import arb
 from lagtop import LagtopError, Top, sensitivities, solve
@@ -42,10 +42,10 @@ SCENES: dict[str, dict[str, float]] = {
 QUICK = [
     pytest.param(x, marks=() if x in ("any start", "steady") else pytest.mark.slow) for x in SCENES
 ]
-judge_of = cache(lambda top: Judge(top.as_dict()))
+balls_of = cache(lambda top: BallReference(top.as_dict()))
 
 
-def slope(top: Top, name: str, value: Callable[[Judge], arb], step: Fraction) -> float:
+def slope(top: Top, name: str, value: Callable[[BallReference], arb], step: Fraction) -> float:
     """Return the difference quotient of a number by an input, one-sided on an edge."""
     x = Fraction(getattr(top, name))
     values, places = [], []
@@ -55,7 +55,7 @@ def slope(top: Top, name: str, value: Callable[[Judge], arb], step: Fraction) ->
             solve(beside)
         except LagtopError:
             continue
-        values.append(value(judge_of(beside)))
+        values.append(value(balls_of(beside)))
         places.append(place)
     with arb_bits(600):
         return float((values[-1] - values[0]) / exact_arb(places[-1] - places[0]))
@@ -63,7 +63,7 @@ def slope(top: Top, name: str, value: Callable[[Judge], arb], step: Fraction) ->
 
 def angle_slope(top: Top, name: str, angle: str, t: float) -> float:
     """Return the derivative of an angle at a time."""
-    return slope(top, name, lambda judge: getattr(judge.at(t, 90), angle), Fraction(1, 10**36))
+    return slope(top, name, lambda balls: getattr(balls.at(t, 90), angle), Fraction(1, 10**36))
 
 
 def test_derivatives_of_a_record_in_radians() -> None:
@@ -71,7 +71,7 @@ def test_derivatives_of_a_record_in_radians() -> None:
     keys = ["T_nutation", "theta_max_deg", "mean_spin_rate", "mean_precession_rate", "K"]
     for key, row in sensitivities(top, keys).derivatives.items():
         for name, found in row.items():
-            true = slope(top, name, lambda judge, key=key: judge.exact(key), Fraction(1, 10**9))  # type: ignore[misc]
+            true = slope(top, name, lambda balls, key=key: balls.exact(key), Fraction(1, 10**9))  # type: ignore[misc]
             assert found == pytest.approx(true, rel=1e-8, abs=1e-12), (key, name)
 
 

@@ -1,4 +1,4 @@
-"""Numbers and angles with any digits against the judge, zeros, and the range of doubles."""
+"""Numbers and angles with any digits against the reference, zeros, and the range of doubles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import pytest
 from arb_balls import exact_arb
-from ball_judge import Judge
+from ball_reference import BallReference
 from balls.scene import arb_bits
 from chrapan_top import rows_of
 from conftest import Lagtop
@@ -29,19 +29,19 @@ HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_number_is_the_nearest_double_and_its_radius_holds(name: str) -> None:
     top = Top(**SCENES[name])
-    motion, judge = solve(top), Judge(top.as_dict())
+    motion, balls = solve(top), BallReference(top.as_dict())
     record = motion.record(radii=True, keys=all_keys())
     plain = motion.record()
     assert {key: record[key] for key in plain} == plain
     with arb_bits(400):
         for key in (*NUMBER_KEYS, *requested_keys()):
-            exact, value = judge.exact(key), record[key]
+            exact, value = balls.exact(key), record[key]
             assert (value is None) == (exact is None) == (record[f"{key}_radius"] is None), key
             if exact is not None:
                 away, radius = abs(exact - exact_arb(value)), exact_arb(record[f"{key}_radius"])
                 assert not away > radius, key
                 assert radius <= abs(exact) * 2.0**-52 or away.contains(0), key
-                assert judge.ulps(key, value) <= 0.5 + 1e-9, key
+                assert balls.ulps(key, value) <= 0.5 + 1e-9, key
                 assert str(value) != "-0.0", key
 
 
@@ -53,13 +53,13 @@ def test_every_number_is_the_nearest_double_and_its_radius_holds(name: str) -> N
         {"r0": Fraction("50.1"), "theta0_deg": Fraction("30.1"), "psidot0": -3},
     ],
 )
-def test_digits_are_those_of_the_judge(digits: int, inputs: dict[str, Any]) -> None:
+def test_digits_are_those_of_the_reference(digits: int, inputs: dict[str, Any]) -> None:
     top = Top(**inputs)
-    record, judge = solve(top).record(digits=digits, radii=True), Judge(top.as_dict())
+    record, balls = solve(top).record(digits=digits, radii=True), BallReference(top.as_dict())
     for key in NUMBER_KEYS:
         if (text := record[key]) is not None:
             unit = Fraction(10) ** (Decimal(text).adjusted() + 1 - digits)
-            away = judge.away(key, Fraction(text), digits)
+            away = balls.away(key, Fraction(text), digits)
             assert away <= exact_arb(unit) / 2, key
             assert not away > exact_arb(record[f"{key}_radius"]), key
 
@@ -81,14 +81,14 @@ DEEP += ["from the upper pole", "torque-free"]
 
 @pytest.mark.parametrize("wrap", [False, True])
 @pytest.mark.parametrize("name", DEEP)
-def test_angles_have_the_digits_of_the_judge(name: str, wrap: bool) -> None:
-    """Forty digits; the angles of the judge are unwrapped."""
+def test_angles_have_the_digits_of_the_reference(name: str, wrap: bool) -> None:
+    """Forty digits; the angles of the reference are unwrapped."""
     top, times = Top(**EVERY_KIND[name]), [0.375, -7.25, 2.0**-40, 1e3, -1e6, 1e12]
-    judge = Judge(top.as_dict())
+    balls = BallReference(top.as_dict())
     times = times[:3] if name == "separatrix" else times
     for row in rows_of(top, times, 40, wrap=wrap, radians=True):
         with arb_bits(600):
-            state, turn = judge.at(Fraction(row[0]), 40), 2 * arb.pi()
+            state, turn = balls.at(Fraction(row[0]), 40), 2 * arb.pi()
             for text, exact in zip(row[1:], state[:3], strict=True):
                 away = exact - exact_arb(text)
                 if wrap:

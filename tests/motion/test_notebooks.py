@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from ball_judge import Judge
+from ball_reference import BallReference
 from lagtop import LagtopError, Top, compare, fit, solve
 from matplotlib.figure import Figure
 from scenes import EVERY_KIND
@@ -40,7 +40,7 @@ def test_the_axis_is_the_body_axis_in_space() -> None:
 @pytest.mark.parametrize("tilt", [31.0, 60.0, 73.0])
 def test_the_phase_counts_periods_from_the_highest_point(fall: float, tilt: float) -> None:
     top = Top(theta0_deg=tilt, psidot0=10.0, thetadot0=fall)
-    assert solve(top).phase == pytest.approx(Judge(top.as_dict()).phase, rel=1e-15, abs=0)
+    assert solve(top).phase == pytest.approx(BallReference(top.as_dict()).phase, rel=1e-15, abs=0)
 
 
 def test_the_phase_at_turning_points_is_exact() -> None:
@@ -78,8 +78,8 @@ def test_without_matplotlib_a_plot_names_the_remedy(monkeypatch: pytest.MonkeyPa
     for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
         monkeypatch.setitem(sys.modules, name, None)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    judgement = compare(MOTION, TIMES, theta=MOTION.angles(TIMES).theta)
-    for plot in (MOTION.plot, judgement.plot):
+    comparison = compare(MOTION, TIMES, theta=MOTION.angles(TIMES).theta)
+    for plot in (MOTION.plot, comparison.plot):
         with pytest.raises(UnavailableError) as refused:
             plot()
         assert str(refused.value) == "pictures need matplotlib: pip install 'lagtop[plot]'"
@@ -103,8 +103,8 @@ def test_a_fit_and_a_judgement_show_themselves() -> None:
     theta, phi, psi = MOTION.angles(t)
     noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, t.size))
     outcome = fit(t, theta=theta + noise[0], phi=phi + noise[1], psi=psi + noise[2])
-    judgement = compare(MOTION, t, theta=theta + 1e-6, phi=phi, psi=psi)
-    for shown in (outcome, judgement):
+    comparison = compare(MOTION, t, theta=theta + 1e-6, phi=phi, psi=psi)
+    for shown in (outcome, comparison):
         assert shown.to_dict() == shown.record()
         figure = shown.plot(Figure())
         assert len(figure.axes) == (6 if shown is outcome else 1)

@@ -1,4 +1,4 @@
-"""Proved columns that are rational, and radii in the commands; `test_columns` judges the others."""
+"""Proved columns that are rational, and radii in the commands; `test_columns` checks the others."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""Published numbers: the exact values beside them, by a judge that shares no formula."""
+"""Published numbers: the exact values beside them, by a reference that shares no formula."""
 
 from __future__ import annotations
 
 import mpmath
 import pytest
-from published import PRINTED, Printed, State, error, exact, exact_by_the_judge, quaternion
+from published import PRINTED, Printed, State, error, exact, exact_by_the_reference, quaternion
 
 
 def name(x: Printed) -> str:
@@ -14,8 +14,8 @@ def name(x: Printed) -> str:
 @pytest.mark.parametrize("x", PRINTED, ids=name)
 def test_exact_value(x: Printed) -> None:
     """All digits of the table, and three more, are those of the balls."""
-    ours, judged = exact(x), exact_by_the_judge(x)
-    assert abs(ours - judged) <= 1e-21 * abs(judged)
+    ours, checked = exact(x), exact_by_the_reference(x)
+    assert abs(ours - checked) <= 1e-21 * abs(checked)
 
 
 def test_the_frame_of_the_prints_is_still_at_the_start() -> None:

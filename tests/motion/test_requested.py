@@ -1,6 +1,6 @@
-"""Keys on request: where they are accepted, and the worked example.
+"""Further keys: where they are accepted, and the worked example.
 
-`test_digits` judges them as the nearest doubles.
+`test_digits` checks them as the nearest doubles.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Regimes, remarks, and inputs that are refused; `test_digits` judges the numbers."""
+"""Regimes, remarks, and inputs that are refused; `test_digits` checks the numbers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from ball_judge import Judge, assert_nearest
+from ball_reference import BallReference, assert_nearest
 from lagtop import LagtopError, Top, solve
 from scenes import UNIT
 
@@ -133,11 +133,11 @@ def test_numbers_out_of_range() -> None:
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("tilt", [1.0, 30.0, 90.0, 179.0])
 def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
-    """The threshold is (C r0)^2 = 100 A m g s, to the last bit; the numbers are the judge's."""
+    """The threshold is (C r0)^2 = 100 A m g s, to the last bit; the numbers are the reference's."""
     unit = UNIT | {"theta0_deg": tilt}
     assert solve(Top(**unit, r0=sign * math.nextafter(10.0, 0.0))).remark is None
     for r0 in (10.0, 400.0):
-        numbers = Judge(Top(**unit, r0=sign * r0).as_dict()).numbers()
+        numbers = BallReference(Top(**unit, r0=sign * r0).as_dict()).numbers()
         u2, mean, period = (numbers[key] for key in ("u2", "mean_precession_rate", "T_nutation"))
         with mpmath.workdps(40):
             nods = mpmath.degrees(mpmath.acos(u2)) - tilt

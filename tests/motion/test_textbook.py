@@ -1,4 +1,4 @@
-"""Steady precession and elementary theory: keys on request, and rates of steady precession."""
+"""Steady precession and elementary theory: further keys, and rates of steady precession."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT, Lagtop
-from hard_scenes import STRATA, in_doubles
+from hard_scenes import HARD_KINDS, in_doubles
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
 
 from lagrange_cli.inputs.scenes import scene_names
@@ -37,7 +37,7 @@ def random_motions(kinds: Sequence[str], count: int, seed: int) -> list[Motion]:
     for kind in kinds:
         rng, many = Random(f"{seed} {kind}"), len(found) + count
         while len(found) < many:
-            scene = in_doubles(STRATA[kind](rng))
+            scene = in_doubles(HARD_KINDS[kind](rng))
             usual = all(1e-6 <= abs(x) <= 1e6 for x in scene.values() if x)
             tilt = scene.get("theta0_deg", 1.0)
             if not usual and not (kind.startswith("tiny") and tilt):

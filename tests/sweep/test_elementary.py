@@ -1,4 +1,4 @@
-"""Keys on request that are formulas of the inputs: the numbers of `solve`, without solving."""
+"""Further keys that are formulas of the inputs: the numbers of `solve`, without solving."""
 
 from __future__ import annotations
 

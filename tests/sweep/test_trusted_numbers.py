@@ -1,4 +1,4 @@
-"""A sweep computes in arrays only what they can be trusted with: the judge is ball arithmetic."""
+"""Every number of a sweep against the reference in ball arithmetic."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ball_judge import Judge
+from ball_reference import BallReference
 from exact_scenes import KINDS
 from hard_scenes import in_doubles, nutating
 from lagtop import Top, solve, sweep
@@ -22,13 +22,13 @@ from lagrange_cli.sweep.top_arrays import top_arrays
 COSINES = {"u1", "u2", "u_quarter"}
 
 
-def allowed(key: str, judge: Judge, scene: dict[str, float]) -> float | None:
+def allowed(key: str, balls: BallReference, scene: dict[str, float]) -> float | None:
     """Return the size to which the error of a key is compared, where it is not its own."""
     if key in COSINES:
         return 1.0
     if not key.endswith("rate_half"):
         return None
-    parts = judge.half_parts
+    parts = balls.half_parts
     sizes = [] if parts is None else [float(abs(part)) for part in parts]
     return max([abs(scene["r0"]), *sizes])
 
@@ -53,15 +53,15 @@ def assert_trusted(scenes: list[dict[str, Any]], least: int) -> None:
         scene = scenes[i]
         motion = solve(Top(**scene))
         assert (records["regime"][i], records["path"][i]) == (motion.regime, motion.path), scene
-        judge = Judge({name: Fraction(value) for name, value in scene.items()})
+        balls = BallReference({name: Fraction(value) for name, value in scene.items()})
         for key in NUMBER_KEYS:
-            value, exact = float(records[key][i]), judge.record.get(key)
+            value, exact = float(records[key][i]), balls.record.get(key)
             if exact is None:
                 assert math.isnan(value), (key, scene)
             else:
-                error = judge.relative(key, value, allowed(key, judge, scene))
+                error = balls.relative(key, value, allowed(key, balls, scene))
                 most = 10 if key in MEANS else 4
-                assert error <= most or judge.ulps(key, value) <= 1, (key, error, scene)
+                assert error <= most or balls.ulps(key, value) <= 1, (key, error, scene)
 
 
 @pytest.mark.parametrize("count", [8, pytest.param(40, marks=pytest.mark.slow)])

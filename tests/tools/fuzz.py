@@ -1,18 +1,18 @@
-"""Fresh random scenes of the worst kinds, judged in ball arithmetic; not collected by pytest.
+"""Fresh random scenes of the worst kinds, checked in ball arithmetic; not collected by pytest.
 
     python tests/tools/fuzz.py --scenes 20000 --seed 1
     python tests/tools/fuzz.py --scenes 2000 --kinds 'over a pole,cusp' --sweep
     python tests/tools/fuzz.py --scenes 100000 --numbers
 
-Each scene is judged at twenty times: fifteen next to a whole, half or quarter number of periods
+Each scene is checked at twenty times: fifteen next to a whole, half or quarter number of periods
 (the double and both its neighbours), five anywhere, from 1 to 1e14 periods on both sides of the
-start.  The report is the worst error of every kind, in units of `Judge.errors`; every key of
-`solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep` beyond
-10 eps.  What exceeds the bounds is listed with a command that shows it, and the exit code is 1.
-With --mpmath N, one scene in N is also judged by the formulas of `bench.reference` in mpmath, which
-share neither formulas nor arithmetic with lagtop: the roots, the moduli, the period, the mean rates
+start.  The report is the worst error of every kind, in the units of `BallReference.errors`; every
+key of `solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep`
+beyond 10 eps.  What exceeds the bounds is listed with a command that shows it, and the exit code is
+1.  With --mpmath N, one scene in N is checked by the formulas of `bench.reference`, which share
+neither formulas nor arithmetic with lagtop: the roots, the moduli, the period, the mean rates
 and, in doubles, the attitude, if the top nutates under a torque and passes over no pole.
-A third of the scenes are judged as decimals of twenty to sixty digits, and printed in 5 to 40.
+A third of the scenes are checked as decimals of twenty to sixty digits, and printed in 5 to 40.
 About 20 to 40 scenes a second and core; with --numbers, without times, more.
 """
 
@@ -37,7 +37,7 @@ import numpy as np
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
 
 from arb_balls import exact_arb
-from ball_judge import Judge
+from ball_reference import BallReference
 from balls.requested import Requested
 from balls.scene import Undecided
 from balls.scene import arb_bits as precision
@@ -83,7 +83,7 @@ class Tally:
         if value is not None and exact is not None:
             return value, exact
         if value is not None or exact is not None:
-            self.violations.append(f"{key} is {value!r}, the judge has {exact}: {show}")
+            self.violations.append(f"{key} is {value!r}, the reference has {exact}: {show}")
         return None
 
     def add(self, other: Tally) -> None:
@@ -105,19 +105,21 @@ def times_of(rng: random.Random, period: Fraction, decades: int = 14) -> list[fl
     return HardTimes(periods, quarters).times(period)
 
 
-def period_of(judge: Judge) -> Fraction:
+def period_of(balls: BallReference) -> Fraction:
     """Return the nutation period; where there is none, about a unit of the motion."""
-    ball = judge.record.get("T_nutation")
+    ball = balls.record.get("T_nutation")
     if ball is not None:
         mantissa, exponent = ball.mid().man_exp()
         return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    scene = judge.scene
+    scene = balls.scene
     sizes = (scene.b, scene.r0, scene.theta_rate, scene.psi_rate, math.sqrt(scene.a))
     return 1 / Fraction(max(abs(float(size)) for size in sizes) or 1.0) / 4
 
 
-def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[float]) -> None:
-    """Judge the angles and the quaternion of one motion."""
+def check_angles(
+    tally: Tally, balls: BallReference, motion: Motion, times: Sequence[float]
+) -> None:
+    """Check the angles and the quaternion of one motion."""
     points = ListedPoints([Fraction(t) for t in times])
     columns = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi")
     _, blocks = rows(motion, points, columns, radians=True)
@@ -126,9 +128,9 @@ def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[flo
     for t, values, short in zip(times, computed, wrapped, strict=True):
         tally.counts["times"] += 1
         try:
-            errors = judge.errors(t, tuple(values[:7]))
-            remainders = judge.remainder_errors(t, tuple(values[7:]))
-            turned = max(judge.wrapped_errors(t, short))
+            errors = balls.errors(t, tuple(values[:7]))
+            remainders = balls.remainder_errors(t, tuple(values[7:]))
+            turned = max(balls.wrapped_errors(t, short))
         except Undecided:
             tally.counts["undecided times"] += 1
             continue
@@ -149,30 +151,30 @@ def number_of(motion: Motion, key: str) -> float | None:
         return 0.0 if "5e-324" in str(error) else math.inf
 
 
-def judge_record(tally: Tally, judge: Judge, motion: Motion) -> None:
-    """Judge every number of a record and on request: the nearest double, or rightly none."""
+def check_record(tally: Tally, balls: BallReference, motion: Motion) -> None:
+    """Check every number of a motion: the nearest double, or rightly none."""
     for key in (*NUMBER_KEYS, *requested_keys()):
         show = f"lagtop solve {motion.top.options()} --get {key}"
         tally.counts["numbers"] += 1
-        if pair := tally.both(key, number_of(motion, key), judge.exact(key), show):
+        if pair := tally.both(key, number_of(motion, key), balls.exact(key), show):
             value, exact = pair
             is_beyond = value == math.inf and bool(abs(exact) > arb(sys.float_info.max))
             if not is_beyond:
-                tally.note("key", judge.ulps(key, value), HALF_ULP, f"{show}  # {key} {value!r}")
+                tally.note("key", balls.ulps(key, value), HALF_ULP, f"{show}  # {key} {value!r}")
 
 
-def judge_digits(tally: Tally, judge: Judge, motion: Motion, digits: int) -> None:
-    """Judge every number of a record and on request with `digits` digits."""
+def check_digits(tally: Tally, balls: BallReference, motion: Motion, digits: int) -> None:
+    """Check every number of a motion with `digits` digits."""
     found = motion.record(digits=digits, keys=[*NUMBER_KEYS, *requested_keys()])
     for key, text in found.items():
         show = f"{typed(motion.top)} --digits {digits} --get {key}  # {text}"
         tally.counts["numbers in digits"] += 1
-        if not (pair := tally.both(key, text, judge.exact(key), show)):
+        if not (pair := tally.both(key, text, balls.exact(key), show)):
             continue
         value, exact = pair
         if Decimal(value):
             last = Decimal(value).adjusted() + 1 - digits
-            away = judge.away(key, Fraction(value), digits) / arb(10) ** last
+            away = balls.away(key, Fraction(value), digits) / arb(10) ** last
             tally.note("digits", float(away.abs_upper()), HALF_ULP, show)
         elif not exact.contains(0):
             tally.violations.append(f"{key} is no zero: {show}")
@@ -197,8 +199,8 @@ def by_mpmath(top: Top, digits: int) -> tuple[dict[str, Any], Reference]:
         }, of
 
 
-def judge_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[float]) -> None:
-    """Judge numbers and attitudes by `Reference`, which shares no formula with lagtop.
+def check_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[float]) -> None:
+    """Check numbers and attitudes by `Reference`, which shares no formula with lagtop.
 
     Numbers that differ in 80 and in 240 digits, and zeros, are left out.  So are tops that pass so
     close to the vertical that the parts of Legendre's third integral cancel in all these digits.
@@ -242,11 +244,11 @@ def _last_digit(text: str, digits: int) -> Any:
     return mpmath.mpf(10) ** (Decimal(text).adjusted() + 1 - digits)
 
 
-def judge_path(tally: Tally, judge: Judge, motion: Motion) -> None:
-    """Judge the path by the signs of b (beta - b u) at both turning points, where these tell."""
-    if judge.facts.steady or motion.path is None:
+def check_path(tally: Tally, balls: BallReference, motion: Motion) -> None:
+    """Check the path by the signs of b (beta - b u) at both turning points, where these tell."""
+    if balls.facts.steady or motion.path is None:
         return
-    scene = judge.scene
+    scene = balls.scene
     for bits in (160, 640, 4000):
         with precision(bits):
             inner = Requested(scene, Fraction(1), Fraction(1))
@@ -279,12 +281,12 @@ def typed(top: Top) -> str:
     return f"lagtop solve {' '.join(words)}"
 
 
-def judge_sweep(tally: Tally, tilt: str, judges: Sequence[tuple[Scene, Judge]]) -> None:
-    """Judge every number of a sweep of scenes, all with tilts in degrees or all in radians."""
+def check_sweep(tally: Tally, tilt: str, checks: Sequence[tuple[Scene, BallReference]]) -> None:
+    """Check every number of a sweep of scenes, all with tilts in degrees or all in radians."""
     names = (*"m A C s g r0 thetadot0 psidot0".split(), tilt)
-    inputs: Any = {x: [float(scene.get(x, 0)) for scene, _ in judges] for x in names}
+    inputs: Any = {x: [float(scene.get(x, 0)) for scene, _ in checks] for x in names}
     columns = sweep(keys=[*NUMBER_KEYS, "error"], **inputs)
-    for i, (scene, judge) in enumerate(judges):
+    for i, (scene, balls) in enumerate(checks):
         if columns["error"][i] is not None:
             tally.counts["sweep refused"] += 1
             continue
@@ -292,29 +294,29 @@ def judge_sweep(tally: Tally, tilt: str, judges: Sequence[tuple[Scene, Judge]]) 
         for key in NUMBER_KEYS:
             value = float(columns[key][i])
             show, known = f"lagtop sweep {options} --keys {key}  # {value!r}", not math.isnan(value)
-            if tally.both(f"sweep {key}", value if known else None, judge.record.get(key), show):
-                tally.note("sweep", sweep_error(judge, key, value), SWEEP_EPS, show)
+            if tally.both(f"sweep {key}", value if known else None, balls.record.get(key), show):
+                tally.note("sweep", sweep_error(balls, key, value), SWEEP_EPS, show)
 
 
-def sweep_error(judge: Judge, key: str, value: float) -> float:
+def sweep_error(balls: BallReference, key: str, value: float) -> float:
     """Return the error of a key of a sweep in eps of what its promise is measured by."""
     if key in COSINES:
-        return judge.relative(key, value, absolute=1.0)
-    if key.endswith("_half") and judge.half_parts is not None:
-        parts = [abs(float(part)) for part in judge.half_parts]
-        return judge.relative(key, value, absolute=max(abs(float(judge.scene.r0)), *parts))
-    return judge.relative(key, value)
+        return balls.relative(key, value, absolute=1.0)
+    if key.endswith("_half") and balls.half_parts is not None:
+        parts = [abs(float(part)) for part in balls.half_parts]
+        return balls.relative(key, value, absolute=max(abs(float(balls.scene.r0)), *parts))
+    return balls.relative(key, value)
 
 
 Task = tuple[str, int, int, int, str, int]
-"""A kind, a seed, the first scene, how many, what is judged besides numbers and angles, and N: one
-scene in N is judged by mpmath too."""
+"""A kind, a seed, the first scene, how many, what is checked besides numbers and angles, and N: one
+scene in N is checked by mpmath too."""
 
 
 def run_chunk(task: Task) -> tuple[str, Tally]:
-    """Judge some scenes of one kind."""
+    """Check some scenes of one kind."""
     kind, seed, first, count, what, share = task
-    tally, judges = Tally(), []
+    tally, checks = Tally(), []
     for i in range(first, first + count):
         rng = random.Random(f"{seed} {kind} {i}")
         scene, digits = KINDS[kind](rng), 0
@@ -322,20 +324,20 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
             scene, digits = as_decimals(rng, scene), rng.randrange(5, 40)
         tally.counts["scenes"] += 1
         try:
-            motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
-            judge.record, judge.requested  # noqa: B018 - made here, so that what is undecided is counted once
-            judge_path(tally, judge, motion)
+            motion, balls = solve(Top(**scene)), BallReference(Top(**scene).as_dict())
+            balls.record, balls.requested  # noqa: B018 - made here, so that what is undecided is counted once
+            check_path(tally, balls, motion)
             if share and i % share == 0:
                 asks = not digits and what != "numbers"
-                times = times_of(rng, period_of(judge)) if asks else []
-                judge_by_mpmath(tally, motion, digits, times)
+                times = times_of(rng, period_of(balls)) if asks else []
+                check_by_mpmath(tally, motion, digits, times)
             if digits:
-                judge_digits(tally, judge, motion, digits)
+                check_digits(tally, balls, motion, digits)
                 continue
-            judge_record(tally, judge, motion)
+            check_record(tally, balls, motion)
             if what == "numbers":
                 continue
-            judge_angles(tally, judge, motion, times_of(rng, period_of(judge)))
+            check_angles(tally, balls, motion, times_of(rng, period_of(balls)))
         except LagtopError as error:
             tally.counts["refused"] += 1
             tally.counts[f"refused: {str(error)[:60]}"] += 1
@@ -343,10 +345,10 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
         except Undecided:
             tally.counts["undecided scenes"] += 1
             continue
-        judges.append((scene, judge))
+        checks.append((scene, balls))
     for tilt in ("theta0_deg", "theta0_rad") if what == "sweep" else ():
-        if some := [(scene, judge) for scene, judge in judges if tilt in scene]:
-            judge_sweep(tally, tilt, some)
+        if some := [(scene, balls) for scene, balls in checks if tilt in scene]:
+            check_sweep(tally, tilt, some)
     return kind, tally
 
 
@@ -370,9 +372,9 @@ def main() -> int:
     parser.add_argument("--scenes", type=int, default=1000, help="how many, over all kinds")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kinds", help="only these, with commas between: " + ", ".join(KINDS))
-    parser.add_argument("--sweep", action="store_true", help="judge `sweep` too")
-    parser.add_argument("--numbers", action="store_true", help="judge the keys of `solve` alone")
-    parser.add_argument("--mpmath", type=int, default=0, help="judge one scene in N by mpmath too")
+    parser.add_argument("--sweep", action="store_true", help="check `sweep` too")
+    parser.add_argument("--numbers", action="store_true", help="check the keys of `solve` alone")
+    parser.add_argument("--mpmath", type=int, default=0, help="check one scene in N by mpmath too")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     options = parser.parse_args()
     kinds = [kind.strip() for kind in options.kinds.split(",")] if options.kinds else list(KINDS)

@@ -1,4 +1,4 @@
-"""Random recordings for `fit`, made by an integrator and judged by the truth; not collected.
+"""Random recordings for `fit`, made by an integrator and checked by the truth; not collected.
 
     python tests/tools/fuzz_fits.py --recordings 500 --seed 1
     python tests/tools/fuzz_fits.py --recordings 1 --seed 317 --show
@@ -163,7 +163,7 @@ class Verdict(NamedTuple):
     pulls: Mapping[str, float]
 
 
-def judged(seed: int) -> Verdict:
+def checked(seed: int) -> Verdict:
     """Return what `fit` makes of the recording of a seed."""
     case = drawn(seed)
     names = tuple(case.angles)
@@ -178,7 +178,7 @@ def judged(seed: int) -> Verdict:
 
 
 def main() -> int:
-    """Judge some recordings, write the counts, and return the exit code."""
+    """Check some recordings, write the counts, and return the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     for name, default in {"recordings": 500, "jobs": 2, "seed": 1}.items():
         parser.add_argument(f"--{name}", type=int, default=default, help=f"[default: {default}]")
@@ -189,7 +189,7 @@ def main() -> int:
     counts: Counter[tuple[str, str]] = Counter()
     bad, errors = 0, defaultdict[str, list[float]](list)
     with ProcessPoolExecutor(given.jobs) as pool:
-        for one in pool.map(judged, seeds):
+        for one in pool.map(checked, seeds):
             fate = f"{'right' if one.is_right else 'wrong'}, {one.word}"
             counts["+".join(one.names), fate] += 1
             worst = not one.is_right and one.word not in {"failed", "refused"}

@@ -157,7 +157,7 @@ def first_failure(clone: Path, tests: list[str]) -> str:
     return {0: "", 5: ""}.get(done.returncode, "hangs or ends")
 
 
-def judged(clone: Path, folder: str, mutation: Mutation) -> tuple[str, str]:
+def checked(clone: Path, folder: str, mutation: Mutation) -> tuple[str, str]:
     """Return what became of a mutation in a clone, which is left as it was."""
     path, tests = clone / mutation.path, [f"tests/{x}" for x in TESTS.get(folder, [folder])]
     text = path.read_bytes()
@@ -196,7 +196,7 @@ def main() -> None:
                 if options.list and mutation:
                     print(folder, mutation)
                 elif mutation and (folder, str(number)) not in done:
-                    result = [folder, number, mutation, *judged(clone, folder, mutation)]
+                    result = [folder, number, mutation, *checked(clone, folder, mutation)]
                     print(*result, flush=True)
                     with options.out.open("a", newline="") as file:
                         csv.writer(file).writerow(result)

@@ -1,1 +1,1 @@
-"""Keys on request and what else the paper computes."""
+"""Further keys and what else the paper computes."""

@@ -1,4 +1,4 @@
-"""Keys on request: numbers of a motion that are not part of its record.
+"""Further keys: numbers of a motion that are not part of its record.
 
 Each key is declared with its formula, like the keys of the record.  The keys of elementary theory
 are here, and those of sections 4 to 8 in `sections`.  Both modules are imported only when one of

@@ -1,4 +1,4 @@
-"""The judge in ball arithmetic against the frozen numbers, an integrator and known values.
+"""The reference in ball arithmetic against the frozen numbers, an integrator and known values.
 
 The integrator (DOP853 on a quaternion) knows no Euler angle and no pole.
 """
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ball_judge import Judge
+from ball_reference import BallReference
 from mpmath import mpf
 from scenes import EVERY_KIND
 from scipy.integrate import solve_ivp
@@ -23,7 +23,7 @@ GENERIC = UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.7, "psidot0": 0.4}
 @pytest.mark.parametrize("entry", FROZEN["records"][::13], ids=lambda entry: str(entry["top"]))
 def test_records_are_those_of_another_arithmetic(entry: dict[str, Any]) -> None:
     """The frozen numbers have 30 digits, and were proved in decimals by lagtop's formulas."""
-    record = Judge(top_of(entry["top"]).as_dict()).record
+    record = BallReference(top_of(entry["top"]).as_dict()).record
     known = [(text, record.get(key)) for key, text in numbers_of(entry).items() if text]
     both = [(mpf(text), mpf(ball.mid().str(60, radius=False))) for text, ball in known if ball]
     for true, value in both:
@@ -65,16 +65,16 @@ def integrated(scene: dict[str, float], times: list[float]) -> np.ndarray[Any, A
 @pytest.mark.parametrize("name", SINGULAR)
 def test_singular_motions_are_those_of_the_integrator(name: str) -> None:
     scene = UNIT | EVERY_KIND[name]
-    judge = Judge(scene)
+    balls = BallReference(scene)
     times = [0.3, 1.1, 2.7, 4.9]  # separatrices are left by 5
     for t, wanted in zip(times, integrated(scene, times), strict=True):
-        parts = [float(part) for part in judge.at(t).quaternion]
+        parts = [float(part) for part in balls.at(t).quaternion]
         assert parts == pytest.approx(wanted.tolist(), abs=3e-9), (name, t)
 
 
 def test_degenerate_starts_are_decided_exactly() -> None:
     def facts(**inputs: float) -> Any:
-        return Judge(UNIT | {"r0": 1} | inputs).facts
+        return BallReference(UNIT | {"r0": 1} | inputs).facts
 
     assert facts(theta0_deg=60, psidot0=1, r0=1.5).steady
     assert not facts(theta0_deg=60, psidot0=1, r0=math.nextafter(1.5, 3)).steady
@@ -88,22 +88,22 @@ def test_degenerate_starts_are_decided_exactly() -> None:
 
 def test_a_key_one_double_off_is_told() -> None:
     scene = GENERIC
-    judge = Judge(scene)
-    for key, ball in judge.record.items():
+    balls = BallReference(scene)
+    for key, ball in balls.record.items():
         if ball is not None and not ball.is_exact():
             nearest = float(ball.mid())
-            assert judge.ulps(key, nearest) <= 0.5
-            assert judge.ulps(key, math.nextafter(nearest, math.inf)) > 0.5
-            assert judge.ulps(key, math.nextafter(nearest, -math.inf)) > 0.5
+            assert balls.ulps(key, nearest) <= 0.5
+            assert balls.ulps(key, math.nextafter(nearest, math.inf)) > 0.5
+            assert balls.ulps(key, math.nextafter(nearest, -math.inf)) > 0.5
 
 
 def test_a_turn_is_told() -> None:
-    judge = Judge(GENERIC)
-    state = judge.at(1e9)
+    balls = BallReference(GENERIC)
+    state = balls.at(1e9)
     exact = [float(value) for value in (*state[:3], *state.quaternion)]
-    assert max(judge.errors(1e9, tuple(exact))) < 1
+    assert max(balls.errors(1e9, tuple(exact))) < 1
     for i in (1, 2):
         wrong = [x + (2 * math.pi if j == i else 0) for j, x in enumerate(exact)]
-        assert judge.errors(1e9, tuple(wrong))[i] > 1e5
-    assert min(judge.errors(1e9, tuple(-x for x in exact))[3:]) > 1e4
-    assert judge.errors(1e9, (math.nan,) * 7) == [math.inf] * 7
+        assert balls.errors(1e9, tuple(wrong))[i] > 1e5
+    assert min(balls.errors(1e9, tuple(-x for x in exact))[3:]) > 1e4
+    assert balls.errors(1e9, (math.nan,) * 7) == [math.inf] * 7

@@ -1,7 +1,7 @@
-"""The judge in ball arithmetic: proved enclosures of every number of a motion, as sharp as needed.
+"""The reference in ball arithmetic: proved enclosures of every number of a motion.
 
-`Judge` raises the precision of the formulas in `balls` until an answer tells a double from its
-neighbours, or an angle is known to a small part of its unit.  What no precision decides raises
+`BallReference` raises the precision of the formulas in `balls` until an answer tells a double from
+its neighbours, or an angle is known to a small part of its unit.  What no precision decides raises
 `Undecided`.
 """
 
@@ -31,7 +31,7 @@ GOOD_BITS = 90
 T = TypeVar("T")
 
 
-class Judge:
+class BallReference:
     """Enclosures of one motion, at whatever precision they take."""
 
     def __init__(self, inputs: Mapping[str, Number | None]) -> None:
@@ -242,17 +242,17 @@ class Judge:
 
 def assert_nearest(scene: dict[str, Any]) -> None:
     """Check that every key of a record is the double nearest to its value, and 0 where that is."""
-    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
+    motion, balls = solve(Top(**scene)), BallReference(Top(**scene).as_dict())
     for key in (*NUMBER_KEYS, *requested_keys()):
         computed = getattr(motion, key)
         if computed is None:
-            assert judge.exact(key) is None, key
+            assert balls.exact(key) is None, key
         else:
-            assert judge.ulps(key, computed) <= 0.5 + 1e-9, (key, scene)
+            assert balls.ulps(key, computed) <= 0.5 + 1e-9, (key, scene)
 
 
 def _with_units(state: State, *, wrapped: bool = False) -> list[tuple[arb, arb]]:
-    """Return each judged value and eps (max(1, |value|) + |tau rate|).
+    """Return each checked value and eps (max(1, |value|) + |tau rate|).
 
     For `wrapped` angles, whose whole turns do not count, it is eps (1 + |tau rate|).
     """
