@@ -143,7 +143,7 @@ def draw_fit_panels(figure: Figure, curves: Sequence[Curve], unit: str, title: s
         above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
-        below.set(ylabel=f"residual ({unit})")
+        below.set(ylabel=f"residual\n({unit})")
     panels[-1].set(xlabel="t (units of the recording)")
     if title:
         figure.suptitle(plain(title), x=0.012, ha="left")

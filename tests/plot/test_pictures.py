@@ -185,7 +185,7 @@ def test_the_picture_of_a_fit_has_units_and_a_legend_beside_the_data() -> None:
     curves: Any = [SimpleNamespace(**one)]
     draw_fit_panels(figure, curves, "deg", "good, χ² 58.2")
     above, below = figure.axes[:2]
-    assert (above.get_ylabel(), below.get_ylabel()) == ("ϑ (deg)", "residual (deg)")
+    assert (above.get_ylabel(), below.get_ylabel()) == ("ϑ (deg)", "residual\n(deg)")
     assert figure.get_suptitle() == "good, χ² 58.2"
     figure.canvas.draw()
     legend = above.get_legend()
