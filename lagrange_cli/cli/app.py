@@ -120,12 +120,10 @@ def _naming_option(error: LagtopError, params: list[click.Parameter]) -> str:
 
 def _usage_message(error: click.ClickException) -> str:
     """Return the message of click as the end of a sentence, with a reference to the help."""
-    from difflib import get_close_matches
-
-    if isinstance(error, click.NoSuchOption):  # click suggests --rad for --format
-        alike = get_close_matches(error.option_name, error.possibilities or (), cutoff=0.7)
-        error = click.NoSuchOption(error.option_name, possibilities=alike, ctx=error.ctx)
     text = error.format_message().replace(". (", " (").rstrip(".")
+    if isinstance(error, click.NoSuchOption):  # click suggests --rad for --format
+        known = {x for x in error.possibilities or () if x.startswith(error.option_name[:3])}
+        text = f"no such option {error.option_name}{suggestion(error.option_name, sorted(known))}"
     path = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "lagtop"
     return f"{text[:1].lower()}{text[1:]}: see {path} --help"
 

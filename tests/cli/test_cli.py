@@ -224,7 +224,7 @@ BAD = {
     "--theta0 181": "--theta0 must be in [0, 180], got 181.0",
     "--theta0 3.15 --rad": "--theta0 must be in [0, pi rad], got 3.15",
     "--theta0 30rad": "--theta0 must be in [0, pi rad], got 30.0",
-    "--theta 3": "no such option '--theta'",
+    "--theta 3": "no such option --theta (did you mean '--theta0'?): see lagtop",
     "--format xml": "'xml' is not one of ",
     "a.toml b.toml": "unexpected extra argument (b.toml): see lagtop",
 }
