@@ -215,7 +215,7 @@ class BallReference:
 
         def good(exact: arb | None) -> bool:
             return exact is not None and (
-                exact.rel_accuracy_bits() >= 4 * digits or bool(exact == 0)
+                exact.rel_accuracy_bits() >= 4 * digits + 20 or bool(exact == 0)
             )
 
         def number(motion: Requested) -> arb | None:
