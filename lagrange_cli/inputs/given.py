@@ -14,6 +14,7 @@ from ..arithmetic.points import Points
 from ..errors import LagtopError, check_type
 from .input_keys import (
     BODY,
+    BODY_UNITS,
     EXAMPLE,
     TILT,
     checked_double,
@@ -112,11 +113,12 @@ def gather(
     try:
         one_of_each(inputs)
         if units or any(x.unit for x in (*inputs.values(), *others.values())):
-            from .units import worked_example  # start-up
+            from .units import factor_of  # start-up
 
             system = system_of(overridden(inputs, others), asked=units)
             inputs, others = converted(inputs), converted(others)
-            body = worked_example() if system else BODY
+            if system:
+                body = {x: Fraction(y) * factor_of(x, BODY_UNITS[x]) for x, y in BODY.items()}
     except LagtopError as error:
         raise _of_file(file, error, given) from None
     stds = {name: float(x.std) for name, x in inputs.items() if x.std is not None}
@@ -191,7 +193,7 @@ def _needs_unit(key: str, value: Value) -> bool:
     from .units import UNIT_OF  # start-up
 
     number = value.number
-    if value.unit or isinstance(number, str) or key not in UNIT_OF or key == TILT:
+    if value.unit or isinstance(number, str) or key not in UNIT_OF or key.startswith(TILT):
         return False
     is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
     return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array

@@ -46,11 +46,11 @@ class Table:
         self,
         name: str,
         headings: Sequence[str] | None,
-        rows: Sequence[Any],
+        rows: Any,
         lines: Sequence[int],
         delimiter: str = ",",
     ) -> None:
-        """Take the name of the file and its rows: lines of text, or lists of values of JSON.
+        """Take the name of a file and its rows: lines of text, lists of JSON, or one array.
 
         `headings` are None if the file has none.  `lines` are the numbers of the rows in messages.
         """
@@ -58,22 +58,16 @@ class Table:
         self.delimiter = delimiter
         self.decimal = "." if delimiter == "," else ""
         """The decimal mark, a point or a comma; empty if it is not decided."""
-        self.width = len(headings or (self.at(0, whole=False) if rows else ()))
+        self.width = len(headings or (self.at(0, whole=False) if len(rows) else ()))
 
     def where(self, row: int) -> str:
         """Return the name of the file and the place of a row."""
         return f"{self.name}, {self.place} {self.lines[row]}"
 
-    def cells(self, row: int, *, whole: bool = True) -> list[Any]:
-        """Return the cells of a row.
-
-        Raises LagtopError for a wrong quote and, if `whole`, for another number of cells.
-        """
+    def cells(self, row: int) -> list[Any]:
+        """Return the cells of a row.  Raises LagtopError for a wrong quote."""
         text = self.rows[row]
-        cells = split_row(text, self.delimiter) if isinstance(text, str) else text
-        if whole:
-            self.check(cells)
-        return cells
+        return split_row(text, self.delimiter) if isinstance(text, str) else text
 
     def check(self, cells: Sequence[Any]) -> None:
         """Raise LagtopError for a row with another number of cells."""
@@ -90,11 +84,14 @@ class Table:
         return table
 
     def at(self, row: int, *, whole: bool = True) -> list[Any]:
-        """Return the cells of a row.  Raises DataError with the place in place of LagtopError."""
+        """Return the cells of a row, as many as columns if `whole`.  Raises DataError."""
         try:
-            return self.cells(row, whole=whole)
+            cells = self.cells(row)
+            if whole:
+                self.check(cells)
         except LagtopError as error:
             raise DataError(f"{self.where(row)}: {error}") from None
+        return cells
 
     def decide(self, columns: Iterable[int]) -> None:
         """Set the decimal mark from the first rows of some columns, unless it is set.
@@ -138,6 +135,8 @@ class Table:
         """Return all columns, or None if NumPy cannot read the lines as numbers."""
         import numpy as np
 
+        if isinstance(self.rows, np.ndarray):
+            return self.rows
         text = "\n".join(self.rows) if self.rows and isinstance(self.rows[0], str) else '"'
         if not text.isascii() or '"' in text or "\0" in text:
             return None
@@ -223,10 +222,7 @@ def read_table(
 
 
 def _layout(texts: Sequence[str], known: Known, decimal: str, width: int | None) -> tuple[int, str]:
-    """Return the index of the row with the headings, -1 if there is none, and the delimiter.
-
-    The row with most known headings has them, or else the row above the first number.
-    """
+    """Return the index of the row of headings (the most known ones), or -1, and the delimiter."""
     if not texts:
         return -1, " "
     best, found = 0, (0, _delimiters(texts[0], decimal)[0])
@@ -283,10 +279,7 @@ def split_row(text: str, delimiter: str) -> list[str]:
 
 
 def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
-    """Return JSON objects, one per line or in one array; a list in them becomes several columns.
-
-    Raises DataError.
-    """
+    """Return JSON objects, one per line or in one array; a list in them becomes several columns."""
     import orjson
 
     def parsed(text: str, first: int) -> Any:

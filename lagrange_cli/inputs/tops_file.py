@@ -122,7 +122,7 @@ class TopsFile(NamedTuple):
         for row in range(self.size):
             values, inputs = dict[str, Any](), dict[str, float]()
             try:
-                cells = self.table.cells(row, whole=False)
+                cells = self.table.cells(row)
                 values = dict(zip(self.columns, cells, strict=False))
                 self.table.check(cells)
                 named = [name for name in INPUTS if values.get(name) is not None]

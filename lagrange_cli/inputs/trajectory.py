@@ -6,7 +6,6 @@ The first bytes of a file determine its format, not its name: Parquet, npy, npz,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
@@ -61,10 +60,7 @@ class Trajectory:
             raise DataError(f"{self.name}: {error}") from None
 
     def _in_known_unit(self, key: str, quantity: FoundQuantity) -> FoundQuantity:
-        """Return a quantity in radians, degrees or no unit, with the factor that converts it.
-
-        Times are then in seconds, and rates in radians per second.  Raises LagtopError.
-        """
+        """Return a quantity with the factor that converts it, to s, rad/s, rad or degrees."""
         named = [self.names[i] for i in quantity.columns]
         if len({plain_name(part)[1] for part in named}) > 1:
             shown = " and ".join(map(repr, named[:2]))
@@ -149,32 +145,10 @@ def read_trajectory(
     return Trajectory(table, names)
 
 
-class ArrayTable(Table):
-    """Columns of numbers from an npy, npz or Parquet file."""
+def _read_arrays(content: bytes, name: str, kind: str) -> Table:
+    """Return the columns of real numbers that are as long as the column of times, no pickles."""
+    import numpy as np
 
-    place = "row"
-
-    def __init__(self, name: str, names: Sequence[str] | None, columns: Sequence[Array]) -> None:
-        super().__init__(name, names, (), range(1, len(columns[0]) + 1))
-        self.columns, self.width = columns, len(columns)
-
-    def column(self, index: int) -> list[float]:
-        """Return one column as a list."""
-        numbers: list[float] = self.columns[index].tolist()
-        return numbers
-
-    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
-        """Return columns as doubles, shape (rows, columns)."""
-        import numpy as np
-
-        return np.stack([self.columns[i] for i in columns], axis=1).astype(np.float64)
-
-
-def _read_arrays(content: bytes, name: str, kind: str) -> ArrayTable:
-    """Return the columns of real numbers that are as long as the column of times.
-
-    Raises DataError for a broken file; pickles are never loaded.
-    """
     try:
         found = (_parquet if kind == "Parquet" else _numpy)(content)
     except ImportError:
@@ -195,15 +169,14 @@ def _read_arrays(content: bytes, name: str, kind: str) -> ArrayTable:
     ]
     if (twice := repeated(names)) is not None:
         raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
-    columns = [column for table in tables.values() for column in table]
-    return ArrayTable(name, None if [*tables] == [""] else names, columns)
+    rows = np.concatenate([*tables.values()]).T.astype(np.float64)
+    table = Table(name, None if [*tables] == [""] else names, rows, range(1, len(rows) + 1))
+    table.place, table.width = "row", len(names)
+    return table
 
 
 def _numpy(content: bytes) -> Mapping[str, Any]:
-    """Return the arrays of an npz file, the fields of an npy file, or its array without a name.
-
-    Raises ValueError if the arrays are too large.
-    """
+    """Return the arrays of an npz file, the fields of an npy file, or its array without a name."""
     import numpy as np
 
     if content.startswith(b"PK"):
@@ -249,33 +222,27 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     cannot be read, and for a row without a time.
     """
     table = read_table(read_bytes(path), shown_path(path), known_quantities, decimal)
-    column, factor = _time_column(table)
+    if table.headings is None and table.width > 1:
+        wanted = f"{table.width} columns must have headings, t among them"
+        raise DataError(f"{table.where(0)}: {wanted}, got none")
+    names = ["t"] if table.headings is None else table.headings
+    found = quantities_in(names)
+    if "t" not in found:
+        shown = shortened(", ".join(map(repr, names)))
+        wanted = "the time must be a number below the heading t or time"
+        raise DataError(f"{table.name}: {wanted}, got {shown}")
+    column = found["t"].columns[0]
+    try:
+        _, factor = in_known_unit("t", found["t"].unit)
+    except LagtopError as error:
+        raise DataError(f"{table.name}: {error}") from None
     table.decide([column])
     times = []
     for row, cell in enumerate(table.column(column)):
         try:
-            times.append(factor * table.number(cell))
+            times.append((factor or 1) * table.number(cell))
         except LagtopError as error:
             raise DataError(f"{table.where(row)}: the time {error}") from None
     if not times:
         raise DataError(f"{table.name} must hold at least one time, got none")
     return ListedPoints(times)
-
-
-def _time_column(table: Table) -> tuple[int, Fraction]:
-    """Return the index of the column of times, and the size of its unit in seconds."""
-    if table.headings is None:
-        if table.width > 1:
-            wanted = f"{table.width} columns must have headings, t among them"
-            raise DataError(f"{table.where(0)}: {wanted}, got none")
-        return 0, Fraction(1)
-    found = quantities_in(table.headings)
-    if "t" not in found:
-        shown = shortened(", ".join(map(repr, table.headings)))
-        wanted = "the time must be a number below the heading t or time"
-        raise DataError(f"{table.name}: {wanted}, got {shown}")
-    try:
-        _, factor = in_known_unit("t", found["t"].unit)
-    except LagtopError as error:
-        raise DataError(f"{table.name}: {error}") from None
-    return found["t"].columns[0], factor or Fraction(1)

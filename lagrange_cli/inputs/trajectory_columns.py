@@ -84,10 +84,7 @@ rates | rad/time | angular velocity in radians per unit of time
 angle_rates | rad/time | rates of tilt, spin and precession in radians per unit of time
     | thetadot phidot psidot
 """
-"""The name of each quantity, its unit, its meaning, and examples of columns.
-
-They are in the order of preference for the attitude.
-"""
+"""The name of each quantity, its unit, its meaning, and examples of columns."""
 
 _SPELLINGS = """
 t | t time timestamp times simtime xvalue | |
@@ -97,10 +94,9 @@ quaternion | quaternion quat q orientation attitude | 0 1 2 3 |
 quaternion | qpos u | 3 4 5 6 | wxyz
 quaternion | bodyq | 3 4 5 6 | xyzw
 quaternion | qpos xquat ep eulerparameters | 0 1 2 3 | wxyz
-matrix | matrix rotationmatrix rotation xmat rot r m | 0 1 2 3 4 5 6 7 8 |
-matrix | matrix rotationmatrix rotation xmat rot r m | 11 12 13 21 22 23 31 32 33 |
-matrix | matrix rotationmatrix rotation xmat rot r m | 00 01 02 10 11 12 20 21 22 |
-matrix | matrix rotationmatrix rotation xmat rot r m | xx xy xz yx yy yz zx zy zz |
+matrix | matrix rotationmatrix rotation xmat rot r m
+    | 0 1 2 3 4 5 6 7 8; 11 12 13 21 22 23 31 32 33; 00 01 02 10 11 12 20 21 22;
+    xx xy xz yx yy yz zx zy zz |
 theta | theta tilt | |
 theta | elevation | | elevation
 phi | phi spin | |
@@ -108,38 +104,32 @@ psi | psi precession | |
 euler | euler rpy | 0 1 2 |
 euler | | roll pitch yaw | xyz
 euler | rotxyz | 0 1 2 | XYZ
-rotvec | rotvec rotationvector rv | x y z |
-rotvec | rotvec rotationvector rv | 0 1 2 |
-axis | axis figureaxis director | x y z |
-axis | axis figureaxis director | 0 1 2 |
-position | position com pos p t | x y z |
-position | position com pos p t | 0 1 2 |
+rotvec | rotvec rotationvector rv | x y z; 0 1 2 |
+axis | axis figureaxis director | x y z; 0 1 2 |
+position | position com pos p t | x y z; 0 1 2 |
 position | | x y z |
 rates | | p q r | body
-rates | omega w angularvelocity gyro rates | x y z |
-rates | omegabody omegalocal angularvelocitylocal wbody qvel | x y z | body
-rates | omegaspace omegaworld omegaglobal wspace | x y z | space
-rates | omega w angularvelocity gyro rates | 0 1 2 |
-rates | omegabody omegalocal angularvelocitylocal wbody qvel | 0 1 2 | body
-rates | omegaspace omegaworld omegaglobal wspace | 0 1 2 | space
+rates | omega w angularvelocity gyro rates | x y z; 0 1 2 |
+rates | omegabody omegalocal angularvelocitylocal wbody qvel | x y z; 0 1 2 | body
+rates | omegaspace omegaworld omegaglobal wspace | x y z; 0 1 2 | space
 angle_rates | | thetadot phidot psidot |
 angle_rates | | dtheta dphi dpsi |
 angle_rates | anglerates | 0 1 2 |
 """
-"""The quantity of some columns, their possible prefixes, their endings, and the convention.
+"""The quantity of some columns, possible prefixes and endings, and the convention they imply.
 
-The plain name of a column is a prefix followed by an ending: `qw` for the prefix q and the ending
-w.  The names imply the convention, if the last cell has one.
+The plain name of a column is a prefix followed by an ending: `qw` for the prefix q, the ending w.
 """
 
 
 def _spellings_of(key: str) -> list[tuple[Sequence[str], str]]:
-    """Return the declared spellings of a quantity, one for each prefix."""
+    """Return the declared spellings of a quantity, one for each prefix and set of endings."""
     return [
-        ([prefix + ending for ending in endings.split() or [""]], says)
+        ([prefix + ending for ending in some.split() or [""]], says)
         for quantity, prefixes, endings, says in declared(_SPELLINGS)
-        for prefix in prefixes.split() or [""]
         if quantity == key
+        for some in endings.split(";")
+        for prefix in prefixes.split() or [""]
     ]
 
 

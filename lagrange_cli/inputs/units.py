@@ -10,10 +10,9 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..arithmetic.ball import pi_to
-from ..arithmetic.numbers import Number
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from .input_keys import BODY, BODY_UNITS, DECLARED, TILT
+from .input_keys import DECLARED, TILT
 from .names import suggestion
 
 Dimensions = tuple[int, int, int, int]
@@ -65,6 +64,7 @@ def _table() -> dict[str, Unit]:
 UNITS = _table()
 """The known units by name."""
 UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
+UNIT_OF |= {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}
 EXAMPLES = {"mass": "350g", "mass len²": "'3.9e-3 kg*m^2'", "len": "4cm", "m": "4cm", "time": "2s"}
 EXAMPLES |= {"len/time²": "'9.81 m/s^2'", "rad/time": "'50 rad/s' or 480rpm"}
 EXAMPLES |= dict.fromkeys(("deg", "rad"), "30deg or 0.5rad")
@@ -141,14 +141,3 @@ class System:
 
 
 SI = System()
-
-
-def si_unit(key: str) -> str:
-    """Return the SI unit of an input, such as `kg m²`; of a tilt, that in its key."""
-    unit = {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}.get(key) or UNIT_OF.get(key, "time")
-    return SI.named(unit)
-
-
-def worked_example() -> dict[str, Number]:
-    """Return the body of the worked example in SI."""
-    return {x: Fraction(y) * factor_of(x, BODY_UNITS[x]) for x, y in BODY.items()}

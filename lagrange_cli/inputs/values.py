@@ -89,10 +89,7 @@ def parse_value(
 
 
 def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
-    """Return the number in a text, as text, and its standard uncertainty, or None if it has none.
-
-    Raises LagtopError for a text in no known form, and for a negative uncertainty.
-    """
+    """Return the number in a text, as text, and its standard uncertainty, or None."""
     if not re.search(r"[(±%]|\+/?-", text) or re.fullmatch(f"{_DECIMAL}{_EXPONENT}?", text):
         return text, None
     found = next((x for form in _UNCERTAIN if (x := re.fullmatch(form, text))), None)
@@ -161,14 +158,14 @@ def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -
 
 def _of_pint(name: str, given: Any) -> tuple[str, Any]:
     """Return the unit and the magnitude of a quantity, in SI if lagtop does not know its unit."""
-    from .units import si_unit, unit_of_text  # start-up
+    from .units import SI, UNIT_OF, unit_of_text  # start-up
 
     unit = f"{given.units:~C}"
     try:
         unit_of_text(unit)
         return unit, given.magnitude  # which is then converted exactly
     except LagtopError:
-        unit = si_unit(name)
+        unit = SI.named(UNIT_OF.get(name, "time"))
     try:
         return unit, given.m_as(unit)
     except Exception as error:  # pint has errors of many kinds

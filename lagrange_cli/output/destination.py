@@ -89,12 +89,6 @@ class Output(NamedTuple):
         return report
 
 
-def write_bytes(path: str, make: Callable[[], bytes]) -> None:
-    """Write bytes that are made only when the destination is open."""
-    with opened(path) as stream:
-        stream.write(make())
-
-
 def _json_value(value: Any) -> str:
     """Return a value as orjson would write it, with numbers that are written out already."""
     if isinstance(value, Mapping):

@@ -60,10 +60,11 @@ def _is_list(column: Any) -> bool:
     return isinstance(column, Sequence)
 
 
-def _array_lines(rows: Array) -> bytes:
+def _array_lines(column: Array) -> bytes:
     """Return an array of numbers as CSV, a line per row and an empty cell for NaN."""
     import numpy as np
 
+    rows = column.reshape(len(column), -1)
     text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
     if b"n" in text:
         text = text.replace(b"null", b"")
@@ -82,13 +83,7 @@ def _csv_cells(column: Any) -> Sequence[bytes]:
             return [csv_text(x).encode() for x in column]
         cells = {x: csv_text(x).encode() for x in {*column}}  # a sweep repeats few texts
         return [cells[x] for x in column]
-    import numpy as np
-
-    rows = np.ascontiguousarray(column.reshape(len(column), -1))
-    text = orjson.dumps(rows, option=orjson.OPT_SERIALIZE_NUMPY)
-    if b"n" in text:
-        text = text.replace(b"null", b"")
-    return text[2:-2].split(b"],[")
+    return _array_lines(column).split(b"\n")[:-1]
 
 
 def _json_rows(columns: Columns, names: Names) -> list[bytes]:
@@ -97,15 +92,12 @@ def _json_rows(columns: Columns, names: Names) -> list[bytes]:
         [x] if _is_list(x) else x.reshape(len(x), -1).T.tolist() for x in columns
     )
     rows = (dict(zip(names, row, strict=True)) for row in zip(*lists, strict=True))
-    return [_json(row) for row in rows]
-
-
-def _json(value: Any) -> bytes:
-    """Return a JSON value; numbers that are written out already keep their digits."""
-    return orjson.dumps(value, default=_fragment, option=orjson.OPT_PASSTHROUGH_SUBCLASS)
+    as_written = orjson.OPT_PASSTHROUGH_SUBCLASS
+    return [orjson.dumps(row, default=_fragment, option=as_written) for row in rows]
 
 
 def _fragment(value: Any) -> Any:
+    """Return a number that is written out already with its digits, or a plain value."""
     if isinstance(value, NumberText):
         return orjson.Fragment(str(value) or "null")
     return str(value) if isinstance(value, str) else float(value)

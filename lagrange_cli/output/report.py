@@ -75,10 +75,8 @@ class Report(NamedTuple):
 
         if fmt == "ndjson":
             return b"".join(orjson.dumps(row) + b"\n" for row in self.values())
-        whole = self._asdict() | {"rows": self.values(), "units": dict(self.units)}
-        del whole["fields"]
-        if not self.units:
-            del whole["units"]
+        whole = {"conditions": self.conditions, "rows": self.values()}
+        whole |= {"conclusions": self.conclusions} | ({"units": self.units} if self.units else {})
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
     def _drawn(self, width: int | None) -> str:
@@ -190,14 +188,8 @@ def uncertain_text(value: float, std: float) -> str:
         last = leading - 1 if int(exact.scaleb(2 - leading)) <= 354 else leading
         number, spread = (Decimal(repr(x)).quantize(Decimal(1).scaleb(last)) for x in (value, std))
         leading = max(x.adjusted() for x in (number, spread) if x)
-        if leading >= _LEAST_EXPONENT and last <= 0:
-            return _in_brackets(number, spread, last)
-        number, spread = number.scaleb(-leading), spread.scaleb(-leading)
-        return f"{_in_brackets(number, spread, last - leading)}e{leading:+03d}"
-
-
-def _in_brackets(number: Decimal, spread: Decimal, last: int) -> str:
-    """Return value and uncertainty with digits down to a place, as in 0.4293(48)."""
-    places = max(-last, 0)
-    inside = f"{spread:.{places}f}" if spread >= 1 else f"{spread.scaleb(places):.0f}"
-    return f"{number:.{places}f}({inside})"
+        shift = 0 if leading >= _LEAST_EXPONENT and last <= 0 else leading
+        places = max(shift - last, 0)
+        number, spread = number.scaleb(-shift), spread.scaleb(-shift)
+        inside = f"{spread:.{places}f}" if spread >= 1 else f"{spread.scaleb(places):.0f}"
+        return f"{number:.{places}f}({inside})" + (f"e{shift:+03d}" if shift else "")
