@@ -30,8 +30,6 @@ Arrays hold numbers, with one or several columns each and NaN for missing values
 and JSON values.
 """
 Names = Sequence[str]
-_CELLS_AT_ONCE = 1 << 15
-"""Cells that are written as CSV together, because they fit in the cache."""
 
 
 def text_columns(rows: Texts) -> list[list[NumberText]]:
@@ -50,9 +48,7 @@ def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
         return b",\n".join(rows) if fmt == "json" else b"".join(row + b"\n" for row in rows)
     if len(columns) == 1 and len(names) > 1 and not _is_list(columns[0]):
         return _array_lines(columns[0])
-    step = _CELLS_AT_ONCE // len(names) + 1
-    slices = ([x[i : i + step] for x in columns] for i in range(0, len(columns[0]), step))
-    lines = chain.from_iterable(zip(*map(_csv_cells, some), strict=True) for some in slices)
+    lines = zip(*map(_csv_cells, columns), strict=True)
     return b"".join((b",".join(line) or b'""') + b"\n" for line in lines)  # no line is empty
 
 

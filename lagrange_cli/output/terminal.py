@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from typing import TextIO
@@ -58,41 +58,26 @@ def width_of(path: str) -> int | None:
     return get_terminal_size().columns
 
 
-def one(_: Any) -> int:
-    """Return 1, the size of a part that counts as one item."""
-    return 1
+Progress = Callable[..., Iterator[Any]]
+"""A function with the arguments of `with_progress`, which shows the progress of some work."""
 
 
-class Progress(Protocol):
-    """A function that shows the progress of some work during iteration over its parts."""
-
-    def __call__(
-        self,
-        parts: Iterable[Item],
-        label: str,
-        total: int | None = None,
-        size: Callable[[Item], int] = one,
-    ) -> Iterator[Item]:
-        """Yield the parts as they arrive.
-
-        `size` gives the items of a part, and `total` the items of all parts.  Without a total it is
-        summed over the parts if these are a sequence, and unknown otherwise.
-        """
-
-
-def silent(
-    parts: Iterable[Item], label: str, total: int | None = None, size: Callable[[Item], int] = one
-) -> Iterator[Item]:
+def silent(parts: Iterable[Item], *_: Any, **__: Any) -> Iterator[Item]:
     """Yield the parts and show nothing."""
     return iter(parts)
 
 
 def with_progress(
-    parts: Iterable[Item], label: str, total: int | None = None, size: Callable[[Item], int] = one
+    parts: Iterable[Item],
+    label: str,
+    total: int | None = None,
+    size: Callable[[Item], int] = lambda _: 1,
 ) -> Iterator[Item]:
     """Yield the parts as they arrive, with a line on standard error if it is a terminal.
 
-    The line appears after a second, is removed while a part is written, and vanishes at the end.
+    `size` gives the items of a part, and `total` the items of all parts; without a total it is
+    summed over the parts if these are a sequence, and unknown otherwise.  The line appears after a
+    second, is removed while a part is written, and vanishes at the end.
     """
     if not is_terminal(sys.stderr):
         yield from parts

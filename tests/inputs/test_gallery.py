@@ -1,4 +1,4 @@
-"""The files in sample_inputs/files, as other programs write them, read by every command that may.
+"""The files in sample_inputs/files, as other programs write them, read by compare and sweep.
 
 Each shows the worked example at 26 times, rounded as its program rounds, or has tops.
 """
@@ -25,9 +25,6 @@ COLUMNS = {"matlab.txt": "t,theta,psi,phi"}
 RUNS = sorted({x.name for x in FILES.iterdir()} - TOPS.keys())
 ROUNDED = 2e-4
 """Radians that two decimals of degrees in three angles may be off."""
-TIMES = [i / 50 for i in range(26)]
-A, B = 2 * 1587 * 981 * 4 / 39032, 17458 * 50 / 39032
-"""a = 2mgs/A and b = C r0/A of the worked example."""
 
 
 def words(path: Path) -> list[str]:
@@ -47,23 +44,6 @@ def test_compare_reads_it(name: str, lagtop: Lagtop) -> None:
     row = json.loads(result.stdout)["rows"][0]
     assert (row["verdict"], row["rows"]) == ("fine", 26)
     assert row["error_max"] < ROUNDED
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", RUNS)
-def test_fit_reads_it(name: str, lagtop: Lagtop) -> None:
-    result = lagtop("fit", *words(FILES / name), "--format", "json")
-    record = json.loads(result.stdout)
-    assert record["rows"] == 26
-    assert record["a"] == pytest.approx(A, rel=2e-3)
-    assert record["b"] == pytest.approx(B, rel=2e-3)
-    assert record["theta0_deg"] == pytest.approx(30, abs=0.02)
-
-
-@pytest.mark.parametrize("name", sorted({*RUNS} - COLUMNS.keys()))
-def test_its_times_are_read(name: str, lagtop: Lagtop) -> None:
-    result = lagtop("table", "--times", FILES / name, "--columns", "t")
-    assert [float(x) for x in result.stdout.split()[1:]] == TIMES
 
 
 @pytest.mark.parametrize("name", TOPS)
