@@ -52,16 +52,11 @@ _TABLE = """
 _RATE = (0, 0, -1, 1)
 
 
-def _table() -> dict[str, Unit]:
-    found = {}
-    for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().split("\n")):
-        dimensions: Any = tuple(map(int, powers.split()))
-        for name, size in (pair.split("=") for pair in pairs.split()):
-            found[name] = Unit(Fraction(size), int(pi), dimensions)
-    return found
-
-
-UNITS = _table()
+UNITS: dict[str, Unit] = {
+    name: Unit(Fraction(size), int(pi), tuple(map(int, powers.split())))  # type: ignore[arg-type]
+    for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().split("\n"))
+    for name, size in (pair.split("=") for pair in pairs.split())
+}
 """The known units by name."""
 UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
 UNIT_OF |= {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}

@@ -34,6 +34,10 @@ from lagrange_cli.inputs.values import parse_values
         ({"m": Fraction(1, 10**400)}, "m must be >= 1e-100, got 1e-400"),
         ({"A": Fraction(1, 3)}, "C must be <= 2 A = 0.6666666666666666666666666666666666"),
         ({"theta0_deg": 180 + Fraction(1, 10**20)}, "got 180.00000000000000000001"),
+        ({"A_cm": -1}, "A_cm must be >= 0, got -1.0"),
+        ({"A_cm": 0, "s": 0}, "A must be > 0, got 0.0"),
+        ({"phidot0": 1e99, "psidot0": 1e101}, "must be within 1e100"),
+        ({"phidot0": 1, "psidot0": 1, "theta0_deg": 1e99}, "theta0_deg must be in [0, 180]"),
     ],
 )
 def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
@@ -41,7 +45,7 @@ def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
         Top(**inputs)
     assert message in str(refused.value)
     assert len(str(refused.value)) < 200
-    assert refused.value.key in (*inputs, "C")
+    assert refused.value.key in (*inputs, "A", "C")
 
 
 @pytest.mark.parametrize(
