@@ -178,7 +178,8 @@ def system_of(inputs: Mapping[str, Value], *, asked: bool = False) -> System | N
     from . import units  # start-up
 
     united = [key for key, x in inputs.items() if x.unit and key != TILT]
-    bare = [key for key, x in inputs.items() if _needs_unit(key, x)]
+    named = [x for x in inputs if x in units.UNIT_OF and not x.startswith(TILT)]
+    bare = [x for x in named if not (inputs[x].unit or _is_zero(inputs[x].number))]
     if bare and (united or asked):
         why = f"as {united[0]} has" if united else "as a time or a condition has"
         number, example = inputs[bare[0]].number, units.EXAMPLES[units.UNIT_OF[bare[0]]]
@@ -188,12 +189,8 @@ def system_of(inputs: Mapping[str, Value], *, asked: bool = False) -> System | N
     return units.SI if united or asked else None
 
 
-def _needs_unit(key: str, value: Value) -> bool:
-    """Return whether an input needs a unit but has none."""
-    from .units import UNIT_OF  # start-up
-
-    number = value.number
-    if value.unit or isinstance(number, str) or key not in UNIT_OF or key.startswith(TILT):
-        return False
-    is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
-    return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array
+def _is_zero(number: Any) -> bool:
+    """Return whether a number, all points or all elements of an array are 0; a word is, too."""
+    if isinstance(number, str | Points):
+        return isinstance(number, str) or number.bounds() == [0.0, 0.0]
+    return bool(getattr(number == 0, "all", lambda: number == 0)())

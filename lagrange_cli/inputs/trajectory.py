@@ -41,7 +41,15 @@ class Trajectory:
         Raises DataError without a time or a quantity besides, LagtopError for wrong `columns`.
         """
         self.name, self.table = table.name, table
-        self.names = list(_column_names(table, columns))
+        if columns is not None and len(columns) != table.width:
+            wanted = f"all {table.width} columns of {table.name} (_ leaves one out)"
+            wrong = f"columns must name {wanted}, got {len(columns)} names"
+            raise LagtopError(wrong, "columns")
+        names = table.headings if columns is None else columns
+        if names is None:
+            remedy = f"name its {table.width} columns with --columns, such as t,quaternion"
+            raise DataError(f"{table.name} has no header: {remedy}")
+        self.names = list(names)
         found = quantities_in(self.names)
         if "t" not in found or len(found) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
@@ -108,22 +116,6 @@ class Trajectory:
                 i = int(found[0])
                 place = self.table.where(i if rows is None else rows[i])
                 raise DataError(f"{place}: {wanted.format(float(t[i - 1]), float(t[i]))}")
-
-
-def _column_names(table: Table, columns: Sequence[str] | None) -> Sequence[str]:
-    if columns is not None and len(columns) != table.width:
-        raise LagtopError(
-            f"columns must name all {table.width} columns of {table.name} "
-            f"(_ leaves one out), got {len(columns)} names",
-            "columns",
-        )
-    names = table.headings if columns is None else columns
-    if names is None:
-        raise DataError(
-            f"{table.name} has no header: name its {table.width} columns with --columns, "
-            "such as t,quaternion"
-        )
-    return names
 
 
 def read_trajectory(
