@@ -46,14 +46,10 @@ def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
     if fmt in {"json", "ndjson"}:
         rows = _json_rows(columns, names)
         return b",\n".join(rows) if fmt == "json" else b"".join(row + b"\n" for row in rows)
-    if len(columns) == 1 and len(names) > 1 and not _is_list(columns[0]):
+    if len(columns) == 1 and len(names) > 1 and not isinstance(columns[0], Sequence):
         return _array_lines(columns[0])
     lines = zip(*map(_csv_cells, columns), strict=True)
     return b"".join((b",".join(line) or b'""') + b"\n" for line in lines)  # no line is empty
-
-
-def _is_list(column: Any) -> bool:
-    return isinstance(column, Sequence)
 
 
 def _array_lines(column: Array) -> bytes:
@@ -74,7 +70,7 @@ def _array_lines(column: Array) -> bytes:
 
 def _csv_cells(column: Any) -> Sequence[bytes]:
     """Return the cells of columns, a text per row."""
-    if _is_list(column):
+    if isinstance(column, Sequence):
         if not {*map(type, column)} <= {str, NoneType}:
             return [csv_text(x).encode() for x in column]
         cells = {x: csv_text(x).encode() for x in {*column}}  # a sweep repeats few texts
@@ -85,7 +81,7 @@ def _csv_cells(column: Any) -> Sequence[bytes]:
 def _json_rows(columns: Columns, names: Names) -> list[bytes]:
     """Return a JSON object per row."""
     lists = chain.from_iterable(
-        [x] if _is_list(x) else x.reshape(len(x), -1).T.tolist() for x in columns
+        [x] if isinstance(x, Sequence) else x.reshape(len(x), -1).T.tolist() for x in columns
     )
     rows = (dict(zip(names, row, strict=True)) for row in zip(*lists, strict=True))
     as_written = orjson.OPT_PASSTHROUGH_SUBCLASS
@@ -155,7 +151,7 @@ def _arrow(columns: Columns, names: Names) -> bytes:
 
     arrays = []
     for column in columns:
-        if _is_list(column):
+        if isinstance(column, Sequence):
             texts = [x if x is None or type(x) is str else json_text(x) for x in column]
             arrays.append(pa.array(texts, pa.string()))
         else:
