@@ -87,6 +87,8 @@ def test_drift_is_separated_from_oscillation(rate: float) -> None:
     wobble = 1e-3 * np.sin(7 * T)
     found = compare(TOP, T, phi=PHI + rate * T + wobble, theta=THETA)
     assert found.phi_drift == pytest.approx(rate + np.polyfit(T, wobble, 1)[0], rel=1e-6)
+    last = math.remainder(rate * T[-1] + wobble[-1], 2 * math.pi)
+    assert found.error_final == pytest.approx(abs(last), rel=1e-6)
     assert found.psi_drift is None
     assert (compare(TOP, T, phi=PHI + 2.1 * (T > 1)).phi_drift, found.rows) == (None, 201)
 

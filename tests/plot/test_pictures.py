@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,41 +20,14 @@ from lagrange_cli.plot.film import cone
 from lagrange_cli.plot.map import checked_axis
 from lagrange_cli.plot.options import MapOptions, Options
 from lagrange_cli.plot.pictures import PICTURES, camera_at, camera_of, figure_of, project
-from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels, draw_fit_panels
-from lagrange_cli.plot.style import DARK, LIGHT, figure_bytes, number_text, plain, styled
-
-SCENES = {
-    "regular": "looping-top",
-    "no spin": "spherical-pendulum",
-    "plane": "plane-pendulum",
-    "separatrix": None,
-    "steady precession": "steady-top",
-    "sleeping": "sleeping-top",
-    "hanging": "hanging-still",
-    "torque-free": "torque-free",
-}
-SEPARATRIX = Top(m=1, A=1, C=1, s=1, g=1, r0=1.5, theta0_deg=60, thetadot0=0.5, psidot0=1)
-
-
-def motion_of(name: str) -> Motion:
-    """Return a motion of a regime."""
-    scene = SCENES[name]
-    return solve(read_scene(scene) if scene else SEPARATRIX)
+from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels
+from lagrange_cli.plot.style import LIGHT, figure_bytes, number_text, plain, styled
 
 
 def drawn(kind: str, motion: Motion, **options: Any) -> Figure:
     """Return the figure of one picture."""
     with styled(LIGHT):
         return figure_of({"": motion}, [kind], Options(**options))
-
-
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("kind", ["sphere", "angles", "cubic", "phase"])
-def test_every_regime_is_drawn_without_a_warning(name: str, kind: str) -> None:
-    figure = drawn(kind, motion_of(name))  # a warning is an error in these tests
-    with styled(LIGHT):
-        figure.canvas.draw()
-    assert figure.get_tightbbox().x0 >= -0.05
 
 
 def test_the_path_is_that_of_the_axis() -> None:
@@ -149,24 +121,6 @@ def test_a_map_shows_the_number_of_each_top(key: str) -> None:
     assert drawn("map", solve(Top()), map=chart).axes[0].get_ylabel().endswith("(deg)")
 
 
-def test_a_map_of_words_has_a_legend() -> None:
-    x = checked_axis("--x", "psidot0", np.linspace(-4, 4, 9))
-    figure = drawn("map", solve(Top()), map=MapOptions("path", x))
-    legend = figure.axes[0].get_legend()
-    assert legend
-    texts = {text.get_text() for text in legend.get_texts()}
-    assert {"looping", "wavy", "cusped"} <= texts
-
-
-def test_several_scenes_stand_side_by_side() -> None:
-    motions = {name: motion_of(name) for name in ("regular", "steady precession")}
-    with styled(DARK):
-        figure = figure_of(motions, ["cubic", "phase"], Options(look=DARK))
-    titles = [panel.get_suptitle() for panel in figure.subfigs]
-    assert [x.partition(":")[0] for x in titles] == ["regular", "steady precession"] * 2
-    assert figure.get_facecolor()[:3] == pytest.approx((0x14 / 255, 0x18 / 255, 0x1D / 255))
-
-
 def test_names_from_outside_are_plain_text() -> None:
     assert plain("a$b\x1b[31m\n") == r"a\$b [31m "
     curve = ErrorCurve("$x_1$", np.arange(3.0), np.array([1e-3, 1e-2, np.nan]))
@@ -176,21 +130,6 @@ def test_names_from_outside_are_plain_text() -> None:
     legend = figure.axes[0].get_legend()
     assert legend
     assert legend.get_texts()[0].get_text() == r"\$x_1\$"
-
-
-def test_the_picture_of_a_fit_has_units_and_a_legend_beside_the_data() -> None:
-    t = np.linspace(0, 1, 60)
-    one = {"name": "theta", "t": t, "data": t, "residual": 0 * t, "fine_t": t, "curve": t}
-    figure = Figure(layout="constrained")
-    curves: Any = [SimpleNamespace(**one)]
-    draw_fit_panels(figure, curves, "deg", "good, χ² 58.2")
-    above, below = figure.axes[:2]
-    assert (above.get_ylabel(), below.get_ylabel()) == ("ϑ (deg)", "residual\n(deg)")
-    assert figure.get_suptitle() == "good, χ² 58.2"
-    figure.canvas.draw()
-    legend = above.get_legend()
-    assert legend
-    assert legend.get_window_extent().x0 >= above.get_window_extent().x1
 
 
 def test_numbers_next_to_one_are_shown_by_their_distance() -> None:
