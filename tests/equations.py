@@ -46,7 +46,7 @@ class Register:
     def as_printed(self, number: str) -> Callable[[Equation], Equation]:
         """Register an equation as the text at hand prints it, whose sides do not agree.
 
-        Where one equation has several slips, its number is followed by ", ..." after " as printed".
+        If one equation has several errors, its number is followed by ", ..." after " as printed".
         """
         return _entry(self.fails, number)
 

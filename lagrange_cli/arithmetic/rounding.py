@@ -38,7 +38,7 @@ _A_HAIR_MORE = Decimal("1.000000000001")
 DecimalOrFraction = Decimal | Fraction
 
 
-class Settled(NamedTuple):
+class Rounded(NamedTuple):
     """A number as it is printed, and the ball or the fraction that it is rounded from."""
 
     value: Any
@@ -112,7 +112,7 @@ def settled(
     digits: int = 0,
     more: int = 0,
     most: int = MOST_DIGITS,
-) -> Settled | None:
+) -> Rounded | None:
     """Return the rounding of a number from balls with more and more digits; None for None.
 
     `digits` is the number of digits of the output, 0 for doubles.
@@ -121,22 +121,22 @@ def settled(
     simplest fraction in it.  Raises LagtopError for a ball that is wide even then.
     """
 
-    def attempt(working: int) -> Settled | None:
+    def attempt(working: int) -> Rounded | None:
         ball = enclosure(working)
         if ball is None:
             return None
         try:
             nearest = 0.0 if digits else float(ball)
             if nearest and math.isfinite(nearest):
-                return Settled(nearest, ball)
-            return Settled(_alike(ball, rounding), ball)
+                return Rounded(nearest, ball)
+            return Rounded(_alike(ball, rounding), ball)
         except TooFewDigitsError:
             if working < most + more:
                 raise
             value = ball.simplest()
             if not ball.x.rel_one_accuracy_bits() > most:
                 raise
-            return Settled(rounding(value), value)
+            return Rounded(rounding(value), value)
 
     return decided(what, attempt, digits, more, most)
 

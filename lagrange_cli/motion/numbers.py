@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arithmetic.ball import Ball, TooFewDigitsError, balls
 from ..arithmetic.numbers import R
-from ..arithmetic.rounding import FIRST_DIGITS, Settled, decided, rounding_of, settled, sign_of
+from ..arithmetic.rounding import FIRST_DIGITS, Rounded, decided, rounding_of, settled, sign_of
 from ..errors import OutOfRangeError
 from ..inputs.top import Top
 from .gaps import Gaps, State, are_told_apart, gaps_from_rest, state
@@ -61,7 +61,7 @@ class Numbers:
         self.kind_class = kind_of(scene.facts)
         self._kinds: dict[int, Kind[Ball]] = {}
         self._requested: dict[int, Any] = {}
-        self._doubles: dict[str, Settled | None] = {}
+        self._doubles: dict[str, Rounded | None] = {}
         self._zeros: dict[str, bool] = {}
         self._sampler: Sampler | None = None
 
@@ -87,7 +87,7 @@ class Numbers:
 
     def number(
         self, name: str, digits: int | None = None, *, radians: bool = False
-    ) -> Settled | None:
+    ) -> Rounded | None:
         """Return a number correctly rounded to a double or to `digits`; None if it does not exist.
 
         Raises LagtopError if no precision distinguishes it from 0 or from a tie.
@@ -228,14 +228,14 @@ def record_in_range(
     return record, beyond
 
 
-def _inputs(exact: Exact, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
+def _inputs(exact: Exact, digits: int | None, *, radians: bool) -> dict[str, Rounded | None]:
     """Return the inputs as they are printed; None for a word."""
     top = exact.top
 
-    def shown(name: str, value: Any) -> Settled | None:
+    def shown(name: str, value: Any) -> Rounded | None:
         rounding = rounding_of(name, digits)
         if not isinstance(value, Ball):
-            return Settled(rounding(Fraction(value)), Fraction(value))
+            return Rounded(rounding(Fraction(value)), Fraction(value))
         return settled(
             name,
             lambda working: top.inputs(radians=radians, ar=balls(working))[name],

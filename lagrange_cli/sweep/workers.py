@@ -197,7 +197,7 @@ def _cluster(address: str) -> Iterator[tuple[Submit, int]]:
     except (TypeError, ValueError) as error:
         why = f"dask must be the address of a scheduler, got {address!r}: {error}"
         raise LagtopError(why, "dask") from None
-    except Exception as error:  # of any kind: the peer may be no scheduler
+    except Exception as error:  # of any kind: it may be no scheduler
         raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
     try:
         threads = _threads(client)

@@ -13,7 +13,7 @@ import pytest
 
 from lagrange_cli.arithmetic.ball import Ball, TooFewDigitsError, balls
 from lagrange_cli.arithmetic.rounding import (
-    Settled,
+    Rounded,
     decided,
     nearest_double,
     precisions,
@@ -44,7 +44,7 @@ def hidden(digits: int) -> Ball:
     return ar.between(-ar.eps, 2 * ar.eps)
 
 
-def value_of(found: Settled | None) -> float:
+def value_of(found: Rounded | None) -> float:
     assert found is not None
     value: float = found.value
     return value
@@ -149,7 +149,7 @@ def test_the_exact_value_is_within_the_radius(value: str, digits: int | None) ->
     assert found is not None
     away, size = abs(Fraction(value) - Fraction(found.value)), abs(Fraction(value))
     assert away <= Fraction(float(found.radius)) <= size * Fraction(10) ** -((digits or 16) - 1)
-    assert Settled(0.5, Fraction(1, 2)).radius == "0.0"
+    assert Rounded(0.5, Fraction(1, 2)).radius == "0.0"
 
 
 def test_digits_are_those_of_mpmath() -> None:

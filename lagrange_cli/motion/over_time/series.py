@@ -293,7 +293,7 @@ def swing_of(motion: Separatrix[Any]) -> Swing[Any]:
         return Swing(rate, -separatrix_constants(motion)[0] / rate)
 
 
-class Pose(NamedTuple, Generic[R]):
+class ExactAttitude(NamedTuple, Generic[R]):
     """The attitude at one time."""
 
     x: R
@@ -308,20 +308,20 @@ class Pose(NamedTuple, Generic[R]):
     """A number with the sign of the nutation rate; on the separatrix the argument -h."""
 
 
-def pose_of(motion: Kind[R]) -> Callable[[R], Pose[R]]:
+def exact_attitude(motion: Kind[R]) -> Callable[[R], ExactAttitude[R]]:
     """Return the attitude of a motion as a function of time, in its arithmetic."""
     ar: Any = motion.ar
     with ar.working():
         if isinstance(motion, Nutating):
-            pose = _nutating_pose(motion)
+            attitude = _nutating(motion)
         elif isinstance(motion, Separatrix):
-            pose = _separatrix_pose(motion)
+            attitude = _on_separatrix(motion)
         else:
-            pose = _constant_pose(motion)
+            attitude = _constant(motion)
 
-    def at(t: R) -> Pose[R]:
+    def at(t: R) -> ExactAttitude[R]:
         with ar.working():
-            found = pose(t)
+            found = attitude(t)
             if not motion.facts.plane:
                 return found
             # in a plane an angle changes only at the poles, by half turns
@@ -331,7 +331,7 @@ def pose_of(motion: Kind[R]) -> Callable[[R], Pose[R]]:
     return at
 
 
-def _nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
+def _nutating(motion: Nutating[R]) -> Callable[[R], ExactAttitude[R]]:
     """Return the attitude of a nutating top by its theta series, with the terms for all digits.
 
     The nome is exp(-pi r), where r is the larger of K'/K and K/K'. The exponent of the last term is
@@ -345,7 +345,7 @@ def _nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
     series, rises = theta_series(motion, terms), direction(motion)
     _, first_x, _, first_y = evaluate(ar, series, 0, series.offset, rises)
 
-    def pose(t: R) -> Pose[R]:
+    def attitude(t: R) -> ExactAttitude[R]:
         passed = t / motion.T_nutation * 2 + series.offset
         step = ar.nint(passed)
         phase = passed - step
@@ -355,34 +355,34 @@ def _nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
         phi = t * motion.mean_spin_rate + (plus - minus)
         psi = t * motion.mean_precession_rate + (plus + minus)
         about_u2 = (step + series.first) % 2
-        return Pose(x, y, phi, psi, -phase if about_u2 else phase)
+        return ExactAttitude(x, y, phi, psi, -phase if about_u2 else phase)
 
-    return pose
+    return attitude
 
 
-def _constant_pose(motion: Constant[R]) -> Callable[[R], Pose[R]]:
+def _constant(motion: Constant[R]) -> Callable[[R], ExactAttitude[R]]:
     """Return the attitude for a constant tilt and constant rates."""
     state = motion.state
 
-    def pose(t: R) -> Pose[R]:
+    def attitude(t: R) -> ExactAttitude[R]:
         phi, psi = motion.mean_spin_rate * t, state.psi_rate * t
-        return Pose(state.cos_half, state.sin_half, phi, psi, 0 * t)
+        return ExactAttitude(state.cos_half, state.sin_half, phi, psi, 0 * t)
 
-    return pose
+    return attitude
 
 
-def _separatrix_pose(motion: Separatrix[R]) -> Callable[[R], Pose[R]]:
+def _on_separatrix(motion: Separatrix[R]) -> Callable[[R], ExactAttitude[R]]:
     """Return the attitude on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset."""
     ar: Any = motion.ar
     offset, real, y, start = separatrix_constants(motion)
 
-    def pose(t: R) -> Pose[R]:
+    def attitude(t: R) -> ExactAttitude[R]:
         h = motion.argument_rate * t + offset
         imag = y * ar.tanh(h)
         turned = ar.atan2(imag, real) - start if t else 0 * t
         half_b = motion.b * t / 2
         phi, psi = motion.r0 * t - half_b + turned, half_b + turned
         x = ar.sqrt(real * real + imag * imag)
-        return Pose(x, abs(y) * ar.sech(h), phi, psi, -h)
+        return ExactAttitude(x, abs(y) * ar.sech(h), phi, psi, -h)
 
-    return pose
+    return attitude

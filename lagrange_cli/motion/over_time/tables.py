@@ -19,7 +19,7 @@ from ...arithmetic.arrays import ARRAYS, doubles_of
 from ...arithmetic.ball import Ball, balls
 from ...arithmetic.numbers import Number
 from ...arithmetic.points import EvenPoints, Points
-from ...arithmetic.rounding import Settled, equal_digits, rounding_of, settled
+from ...arithmetic.rounding import Rounded, equal_digits, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
 from ...arithmetic.types import Array
 from ...errors import LagtopError
@@ -36,7 +36,7 @@ from .columns import (
     headings,
 )
 from .sampling import Attitude, near
-from .series import Pose, pose_of
+from .series import ExactAttitude, exact_attitude
 
 DEFAULT_ROWS = 101
 _ROWS_AT_ONCE = 64
@@ -212,7 +212,12 @@ class BallSample(Parts[Ball]):
     ar: Any
 
     def __init__(
-        self, motion: Numbers, digits: int, top: ColumnConstants[Ball], t: Ball, at: Pose[Ball]
+        self,
+        motion: Numbers,
+        digits: int,
+        top: ColumnConstants[Ball],
+        t: Ball,
+        at: ExactAttitude[Ball],
     ) -> None:
         self.motion, self.kind, self.ar = motion, motion.kind(digits), balls(digits)
         self.top, self.t, self.tilting = top, t, at.tilting
@@ -281,10 +286,10 @@ class ProvedTable:
         psi_rate = Fraction(scene.top.psidot0) if scene.psi_rate is None else scene.psi_rate
         rates = (scene.b, scene.r0, scene.theta_rate, psi_rate)
         self._speed = sum(map(abs, rates)) + scene.a + 1
-        self._pose = cache(lambda digits: pose_of(motion.kind(digits)))
+        self._attitude = cache(lambda digits: exact_attitude(motion.kind(digits)))
         self._constants = cache(lambda digits: column_constants(motion.kind(digits), scene))
 
-    def row(self, time: Fraction) -> list[Settled]:
+    def row(self, time: Fraction) -> list[Rounded]:
         """Return the numbers of the columns at an exact time.
 
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
@@ -298,16 +303,16 @@ class ProvedTable:
         Raises TooFewDigitsError if they do not separate the roots or the half periods.
         """
         t, state = balls(digits).convert(time), self.motion.kind(digits).state
-        start = Pose(state.cos_half, state.sin_half, t, t, state.theta_rate)
-        at = self._pose(digits)(t) if time else start
+        start = ExactAttitude(state.cos_half, state.sin_half, t, t, state.theta_rate)
+        at = self._attitude(digits)(t) if time else start
         return BallSample(self.motion, digits, self._constants(digits), t, at)
 
-    def _number(self, name: str, time: Fraction, sample: Callable[[int], BallSample]) -> Settled:
+    def _number(self, name: str, time: Fraction, sample: Callable[[int], BallSample]) -> Rounded:
         """Return a column at a time; `sample` returns the motion there in a number of digits."""
         what = f"{name} at t = {float(time)}"
         rounding = rounding_of(what, self.digits)
         if name == "t":
-            return Settled(rounding(time), time)
+            return Rounded(rounding(time), time)
         turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
         number = settled(
             what,

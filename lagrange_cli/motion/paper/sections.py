@@ -229,9 +229,9 @@ class Sections(Generic[R]):
         turning = not (gaps.u1_u > 0 and gaps.u_u2 > 0)
         if turning and not self.facts.meets_a_pole:
             return Turned(kind.mean_spin_rate * half, kind.mean_precession_rate * half)
-        from ..over_time.series import pose_of  # start-up: not for a record
+        from ..over_time.series import exact_attitude  # start-up: not for a record
 
-        at = pose_of(kind)(half)
+        at = exact_attitude(kind)(half)
         return Turned(at.phi, at.psi)
 
     @quantity
@@ -242,9 +242,9 @@ class Sections(Generic[R]):
             return None
         from ..over_time import series  # start-up: not for a record
 
-        pose, since_top = series.pose_of(kind), -series.periods_since_top(kind)
+        attitude, since_top = series.exact_attitude(kind), -series.periods_since_top(kind)
         first, last = (
-            pose(kind.T_nutation * passed) for passed in (since_top, (4 * since_top + 1) / 4)
+            attitude(kind.T_nutation * passed) for passed in (since_top, (4 * since_top + 1) / 4)
         )
         increments = last.phi - first.phi, last.psi - first.psi
         return Turned(*(4 * increment / kind.T_nutation for increment in increments))
