@@ -202,11 +202,11 @@ class Motion(Numbers):
         return Rotation.from_quat(quaternion, scalar_first=True)
 
     def plot(self, kind: str = "sphere", ax: Any = None, **options: Any) -> list[Axes]:
-        """Draw a picture of the motion: sphere, angles, remainders, cubic, phase or map.
+        """Draw a picture of the motion: sphere, angles, cubic, phase or map; return its axes.
 
         `ax` is an `Axes` of matplotlib, or a list of them if the kind has several; by default a new
-        figure is made.  `options` are passed to `lagrange_cli.plot.draw_sphere` or its siblings.
-        Returns the axes.  Raises LagtopError for an unknown kind, or if there is nothing to draw.
+        figure is made.  `options` are those of `lagtop.draw`.  Raises LagtopError for an unknown
+        kind, or if there is nothing to draw.
         """
         from .. import draw  # the face of the package: pictures are drawn by a subpackage above
 
