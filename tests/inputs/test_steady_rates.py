@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -36,6 +37,8 @@ def test_the_tilt_of_a_steady_precession_stays_exactly(inputs: Any, word: str) -
     assert motion.regime is (Regime.TORQUE_FREE if inputs.get("g") == 0 else Regime.STEADY)
     assert (motion.mean_precession_rate, float(top.psidot0)) == (rate, rate)
     assert motion.theta_min_deg == motion.theta_max_deg
+    a, b, cos = motion.a or 0, motion.b or 0, math.cos(math.radians(motion.theta_min_deg or 0))
+    assert cos * rate**2 + a / 2 == pytest.approx(b * rate, rel=1e-12)
     record = motion.record(keys=all_keys(), digits=30, radii=True)
     assert record["psidot0"] == word
     assert len(record["mean_precession_rate"].replace("-", "").replace(".", "").lstrip("0")) <= 30
