@@ -39,6 +39,10 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
     def __init__(self, metavar: str, parse: Callable[[str], Any]) -> None:
         self.name, self.parse = metavar, parse
 
+    def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str:
+        """Return the placeholder of the value as it is; click would write it in capitals."""
+        return self.name
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the value; click may pass it a second time, when it is already converted."""
         if not isinstance(value, str):
@@ -115,7 +119,7 @@ certify = option(
     "--certify", is_flag=True, help="Also print KEY_radius, a proven bound on the error."
 )
 keys = option("--keys", type=LIST, help="Compute and print only these keys (see lagtop explain).")
-plot = option("--plot", metavar="FILE", help="Also draw the report: FILE.svg or FILE.png.")
+plot = option("--plot", metavar="FILE", help="Also draw the report: FILE.png, .svg or .pdf.")
 decimal = option(
     "--decimal",
     metavar="MARK",
@@ -339,11 +343,11 @@ def output(
 
 
 def check_plot(path: str | None, output: str) -> None:
-    """Raise LagtopError for a picture of another type than SVG and PNG, or one over the report."""
+    """Raise LagtopError for a picture of an unknown type, or one over the report."""
     if path is not None:
-        from ..plot.style import check_picture
+        from ..plot.style import FORMATS, check_picture
 
-        check_picture(path, ("svg", "png"), output)
+        check_picture(path, FORMATS, output)
 
 
 def write_report(

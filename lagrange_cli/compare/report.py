@@ -78,7 +78,8 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
         words = "Most likely cause" if x.cause_error <= limit else "Partly explained"
         yield f"{words}: {x.cause}. With that corrected, the error is at most {x.cause_error:.1e}."
     elif x.verdict not in {"fine", "lost"} and not (found and found.falls):
-        yield "None of the known causes explains the error."
+        hint = ": check the step with --step-sizes" if x.verdict == "drifts" and not found else ""
+        yield f"None of the known causes explains the error{hint}."
 
 
 def sentence(x: Comparison) -> str:
@@ -87,7 +88,7 @@ def sentence(x: Comparison) -> str:
     unit = "of the rates" if x.compared == "rates" else "rad"
     errors = [] if x.error_max is None else [f"at most {x.error_max:.1e} {unit} off"]
     if x.rates_error_max is not None and x.compared != "rates":
-        errors.append(f"its rates {x.rates_error_max:.1e} of their size")
+        errors.append(f"its rates by {x.rates_error_max:.1e} (relative)")
     return ", ".join([f"{one_line(shown_path(x.file or ''))}: {verdict}", *errors])
 
 

@@ -146,6 +146,9 @@ def _hints(recording: Recording, known: Known, frequency: float) -> list[str]:
     for axis in ("y", "x") if recording.kind != "angles" else ():
         if best_fit(turned_up(recording, axis), known, helpful=False).verdict == GOOD:
             return [f"the {axis} axis of the data points up: use --align up={axis}"]
+    both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
+    if both and best_fit(recording.exchanged, known, helpful=False).verdict == GOOD:
+        return ["phi and psi are exchanged: here phi is the spin and psi the precession"]
     body = known.only({"m", "g", "s", "A", "C"})
     for count in _WINDOWS:
         enough = count * _ROWS_PER_WINDOW < recording.t.size

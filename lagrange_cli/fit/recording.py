@@ -94,6 +94,14 @@ class Recording:
         note = "psi counts in the other direction: its sign was changed"
         return replace(self, angles=angles, notes=(note,))
 
+    @property
+    def exchanged(self) -> Recording:
+        """The recording with phi and psi exchanged, as most books name them."""
+        names = {"theta": "theta", "phi": "psi", "psi": "phi"}
+        angles = {name: self.angles[old] for name, old in names.items() if old in self.angles}
+        sigma = {name: self.sigma[old] for name, old in names.items() if old in self.sigma}
+        return replace(self, angles=angles, sigma=sigma)
+
     def part(self, rows: Any, name: str = "") -> Recording:
         """Return some rows, in this order, with times since the first of them."""
         position = None if self.position is None else self.position[rows]

@@ -64,7 +64,7 @@ class SceneFile:
         except DataError as error:
             hint = suggestion(path, scene_names())
             if not hint and path.replace("-", "").isalnum():
-                hint = f" (the shipped scenes are {', '.join(scene_names())})"
+                hint = f" (the built-in scenes are {', '.join(scene_names())})"
             raise SceneError(f"{error}{hint}") from None
         except (ValueError, RecursionError) as error:  # broken TOML, or too many digits
             at = re.search(r"at line (\d+)", str(error))

@@ -111,7 +111,8 @@ def check_picture(path: str, formats: tuple[str, ...], report: str = "-") -> str
     """
     suffix = Path(path).suffix.lower()[1:]
     if suffix not in formats:
-        wanted = " or ".join(f".{each}" for each in formats)
+        *others, last = (f".{each}" for each in formats)
+        wanted = f"{', '.join(others)} or {last}"
         raise LagtopError(f"the name of a picture must end in {wanted}, got {path!r}")
     if Path(path).resolve() == Path(report).resolve():
         raise LagtopError(f"the picture must not be the file of the report, got {path!r}")

@@ -46,7 +46,7 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     strict = lagtop("compare", right, *OPTIONS, "--max-error", "1e-9")
     assert (strict.exit_code, "none of the known" in strict.stdout.lower()) == (1, True)
     assert "file verdict rows max error at the end energy ─" in " ".join(strict.stdout.split())
-    assert "rad off, its rates 2.1e-07 of their size." in strict.stdout
+    assert "rad off, its rates by 2.1e-07 (relative)." in strict.stdout
 
 
 @pytest.mark.slow

@@ -282,6 +282,14 @@ def slowed(time: float, t: Array) -> dict[str, Array]:
 
 
 @pytest.mark.slow
+def test_exchanged_spin_and_precession_are_noticed() -> None:
+    t, seen = recorded("theta", "phi", "psi", seed=24)
+    outcome = fitted(t, seen | {"phi": seen["psi"], "psi": seen["phi"]})
+    assert outcome.verdict == "failed"
+    assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
+
+
+@pytest.mark.slow
 def test_friction_fails_and_windows_give_the_decay() -> None:
     rng, t = np.random.default_rng(11), np.linspace(0, 12, 361)
     seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=361) for x, y in slowed(60, t).items()}

@@ -71,6 +71,6 @@ def test_keys_are_suggested_by_symbols_and_words(wrong: str, meant: str, lagtop:
 
 def test_an_unknown_scene_names_the_shipped_ones(lagtop: Lagtop) -> None:
     unknown = lagtop("solve", "nosuch")
-    assert_one_line(unknown, 65, "nosuch: No such file or directory (the shipped scenes are ")
+    assert_one_line(unknown, 65, "nosuch: No such file or directory (the built-in scenes are ")
     assert "simo-wong-1991" in unknown.stderr
     assert "(did you mean 'hanging-still'?)" in lagtop("solve", "hanging").stderr

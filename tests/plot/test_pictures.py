@@ -189,7 +189,7 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
     ("args", "said"),
     [
         (["sphere"], "nothing to do"),
-        (["-o", "x.bmp"], "must end in .png or .svg or .pdf"),
+        (["-o", "x.bmp"], "must end in .png, .svg or .pdf"),
         (["-o", "none/x.png"], "no such directory"),
         (["sphere", "nosuch", "-o", "x.png"], "nosuch"),
         (["sphere", "-o", "x.png", "--key", "a"], "need map"),
