@@ -22,25 +22,16 @@ from .arithmetic.text import double_text, quoted, shortened
 from .arithmetic.types import Array
 from .errors import AbsentError, LagtopError, check_type
 from .inputs.given import Given, gather
-from .inputs.input_keys import checked_double, overridden, warn_of
+from .inputs.input_keys import overridden, warn_of
 from .inputs.names import check_names, repeated
 from .inputs.top import INPUTS, Top
-from .inputs.units import UNITS, factor_of
-from .inputs.values import (
-    Span,
-    Value,
-    exact_number,
-    parse_span,
-    parse_value,
-    split_unit,
-    steady_refused,
-    value_of,
-    values_of,
-)
+from .inputs.units import factor_of
+from .inputs.values import Span, Value, exact_number, parse_span, parse_value, value_of, values_of
 from .motion.quantity import unit_name
 from .motion.record import all_keys, shown_keys
 from .motion.regime import Regime
 from .motion.solve import Motion, solve
+from .sweep.plan import shared_inputs
 from .sweep.records import sweep
 
 COUNTS = {1: 4000, 2: 60, 3: 20}
@@ -57,9 +48,8 @@ _LEAP = 1e-6
 _STARTS, _CLOSE, _APART = 16, 1e-10, 1e-7
 """Starts for several unknowns; the largest residual of a solution, over the spread of the scanned
 numbers; the difference, over the range, below which two solutions count as one."""
-_FLAT, _CURVE = 1e-7, 3
-"""Ratio of singular values of the slopes below which a solution is not isolated, and the number of
-such solutions from which the conditions count as insufficient."""
+_FLAT = 1e-7
+"""Ratio of singular values of the slopes below which a solution is not isolated."""
 
 
 class Condition(NamedTuple):
@@ -68,10 +58,12 @@ class Condition(NamedTuple):
     key: str
     relation: str
     value: float | str
+    has_unit: bool = False
+    """Whether the value has a unit other than that of an angle, so that inputs need units too."""
 
-    def holds(self, record: Mapping[str, Any]) -> bool:
-        """Return whether a record meets the condition; a missing number does not."""
-        found = record[self.key]
+    def holds(self, motion: Motion, radians: bool) -> bool:
+        """Return whether a motion meets the condition; a missing number does not."""
+        found = motion.record(radians=radians, keys=[self.key])[self.key]
         return found is not None and _RELATIONS[self.relation](found, self.value)
 
     def __str__(self) -> str:
@@ -126,11 +118,8 @@ def search_of(
     An unknown input is a `Span`, or a `Value` of one.  Raises LagtopError for bad options, and for
     conditions that cannot have isolated solutions.
     """
-    units = {split_unit(re.split("[<>=]+", text)[-1])[1] for text in conditions}
-    angles = {name for name, unit in UNITS.items() if not any(unit.dimensions[:3])}
-    has_units = bool(units - angles - {"", "degree", "radian"})
-    given = gather(values_of(inputs), scene, units=has_units)
     found = [_read_condition(text, radians=radians) for text in conditions]
+    given = gather(values_of(inputs), scene, units=any(x.has_unit for x in found))
     if key := repeated(x.key for x in found if x.relation == "="):
         raise LagtopError(f"a condition must name each key once, got {key} twice")
     targets = {x.key: x.value for x in found if x.relation == "=" and not isinstance(x.value, str)}
@@ -145,21 +134,9 @@ def search_of(
             f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(targets)} for "
             f"{len(spans)}: {', '.join(spans)}"
         )
-    return Search(_known(given, spans), spans, targets, others, radians), given
-
-
-def _known(given: Given, spans: Mapping[str, Span]) -> dict[str, float]:
-    """Return the known inputs as doubles.  Raises LagtopError for an impossible one."""
     known = {name: x for name, x in given.inputs.items() if name not in spans}
-    if isinstance(word := known.get("psidot0"), str):
-        raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
-    loose = set(spans)
-    if loose & {"A", "A_cm", "C"} or ("A_cm" in known and loose & {"m", "s"}):
-        loose |= {"A", "A_cm", "C"}  # because of C <= 2A
-    top = given._replace(inputs=known).top(without=loose).as_dict()
-    inputs = {name: float(x) for name, x in top.items() if x is not None}
-    inputs = overridden(inputs, {name: checked_double(name, x) for name, x in known.items()})
-    return {name: x for name, x in inputs.items() if name not in spans}
+    fixed = shared_inputs(given._replace(inputs=known), varying=spans)
+    return Search(fixed, spans, targets, others, radians), given
 
 
 def _read_condition(text: str, *, radians: bool) -> Condition:
@@ -182,7 +159,8 @@ def _read_condition(text: str, *, radians: bool) -> Condition:
         raise LagtopError(f"the value of {key} {error}") from None
     unit = shown_keys(radians=radians, requested=True)[key].unit
     factor = factor_of(key, value.unit, unit) if value.unit else 1
-    return Condition(key, relation, float(value.number * factor))
+    has_unit = bool(value.unit) and unit not in {"deg", "rad"}
+    return Condition(key, relation, float(value.number * factor), has_unit)
 
 
 def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], str]:
@@ -190,55 +168,60 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
 
     Raises AbsentError if there is none; its message has the nearest point of the scan.
     """
-    each, names = COUNTS[len(search.spans)] if count is None else count, search.spans
-    if each < 3 or each ** len(names) > 1e7:
+    each = COUNTS[len(search.spans)] if count is None else count
+    if each < 3 or each ** len(search.spans) > 1e7:
         text = f"scan must be 3 or more values of each unknown, and at most 1e7 tops, got {each}"
         raise LagtopError(text, "scan")
     axes = [
         (np.geomspace if x.logarithmic else np.linspace)(float(x.first), float(x.last), each)
-        for x in names.values()
+        for x in search.spans.values()
     ]
     values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
     off = search.swept(values)
     points = (_roots if len(axes) == 1 else _minima)(search, values, off)
-    motions, broken = [], None
-    for motion in [solve(search.top(point)) for point in points]:
-        keys = [x.key for x in search.others] or ["r0"]
-        record = motion.record(radians=search.radians, keys=keys)
-        fault = next((x for x in search.others if not x.holds(record)), None)
-        broken = broken or fault
-        motions += [motion] if fault is None else []
+    motions = [solve(search.top(point)) for point in points]
+    kept = [x for x in motions if all(c.holds(x, search.radians) for c in search.others)]
     several = len(axes) > 1
-    caution = (
-        "only the best points were followed"
-        if several
-        else "solutions closer together may be missed"
-    )
-    ranges = " and ".join(f"{name} from {span}" for name, span in names.items())
+    caution = "solutions closer together may be missed"
+    if several:
+        caution = "only the best points were followed"
+    ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
     looked = f"scanned {ranges} at {each} values{' each' * several}: {caution}"
-    if not motions:
-        none = f"of {len(points)} with {search.target_text} none has {broken}"
-        why = none if broken else _nearest(search, values, off)
+    if not kept:
+        others = ", ".join(map(str, search.others))
+        why = f"of {len(motions)} with {search.target_text} none has {others}"
+        if not motions:
+            why = _nearest(search, values, off)
         raise AbsentError(f"no top found: {why}; {looked}")
-    return motions, looked
+    return kept, looked
 
 
-def _nearest(search: Search, values: Array, off: Array) -> str:
+def _distances(search: Search, residuals: Array) -> tuple[Array, Array]:
+    """Return the spread of each number in the scan, and the distance of each top from the targets.
+
+    The distance is the norm of the residuals over the spreads, infinite where a number is missing.
+    """
+    known = np.isfinite(residuals).all(axis=1)
+    sizes = np.maximum(np.abs([*search.targets.values()]), 1e-300)
+    spread = np.std(residuals[known], axis=0) if known.any() else sizes
+    scale = np.where(spread > 0, spread, sizes)
+    return scale, np.where(known, np.linalg.norm(residuals / scale, axis=1), np.inf)
+
+
+def _nearest(search: Search, values: Array, residuals: Array) -> str:
     """Return where the scan comes nearest to the targets, or why it has no numbers."""
-    known = np.isfinite(off).all(axis=1)
-    if not known.any():
+    distance = _distances(search, residuals)[1]
+    at = values[int(np.argmin(distance))]
+    if np.isinf(distance.min()):
         text = f"no top of the scan has {search.target_text}"
         try:
-            solve(search.top(values[0]))
+            solve(search.top(at))
         except LagtopError as error:
-            return f"{text} ({error})"
+            text += f" ({error})"
         return text
-    size = np.maximum(np.abs([*search.targets.values()]), np.ptp(off[known], axis=0))
-    distance = np.linalg.norm(off / np.where(size > 0, size, 1.0), axis=1)
-    i = int(np.nanargmin(np.where(known, distance, np.nan)))
-    numbers = zip(search.targets.items(), search.residuals(values[i]).tolist(), strict=True)
+    numbers = zip(search.targets.items(), search.residuals(at).tolist(), strict=True)
     reached = ", ".join(f"{key} = {double_text(x + target)}" for (key, target), x in numbers)
-    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, values[i], strict=True))
+    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, at, strict=True))
     return f"nearest to {search.target_text} is {reached} at {where}"
 
 
@@ -255,14 +238,13 @@ def _roots(search: Search, values: Array, residuals: Array) -> list[list[float]]
     x, y = _refined(search, values[:, 0], residuals[:, 0])
     near = np.abs(y) <= _SWEPT * abs(target)
     flat = near[:-2] & near[1:-1] & near[2:]
-    for i in np.flatnonzero(np.diff(flat, prepend=False) & flat).tolist():
-        last = i + int(np.argmin([*near[i:], False])) - 1
-        if not any(map(off, x[i : i + 3].tolist())):
-            raise LagtopError(
-                f"every {name} from {x[i]:g} to {x[last]:g} has {search.target_text}, which does "
-                f"not determine {name}: use another condition, or another unknown"
-            )
-        near[i : last + 1] = False  # a constant beside the target
+    if flat.any():
+        first = int(np.argmax(flat))
+        last = first + int(np.argmin([*near[first:], False])) - 1
+        raise LagtopError(
+            f"every {name} from {x[first]:g} to {x[last]:g} has {search.target_text}, which does "
+            f"not determine {name}: use another condition, or another unknown"
+        )
     roots = set()
     for i in np.flatnonzero((y[:-1] * y[1:] <= 0) | near[:-1] | near[1:]).tolist():
         low, high = float(x[i]), float(x[i + 1])
@@ -299,40 +281,30 @@ def _minima(search: Search, values: Array, residuals: Array) -> list[list[float]
     Raises LagtopError if solutions are not single points.
     """
     low, high = values.min(axis=0), values.max(axis=0)
-    known = np.isfinite(residuals).all(axis=1)
-    if not known.any():
-        return []
-    scale = np.std(residuals[known], axis=0)
-    scale = np.where(scale > 0, scale, np.maximum(np.abs([*search.targets.values()]), 1e-300))
-    size = np.where(known, np.linalg.norm(residuals / scale, axis=1), np.inf)
-    cube = size.reshape((round(len(size) ** (1 / len(low))),) * len(low))
+    scale, distance = _distances(search, residuals)
+    cube = distance.reshape((round(len(distance) ** (1 / len(low))),) * len(low))
     least = cube == minimum_filter(cube, 3, mode="constant", cval=np.inf)
-    starts = np.flatnonzero(least.ravel() & known)
-    found: list[Array] = []
-    flat = 0
+    starts = np.flatnonzero(least.ravel() & np.isfinite(distance))
 
     def off(x: Array) -> Array:
-        missing = search.residuals(low + x * (high - low)) / scale
-        return np.where(np.isfinite(missing), missing, 1e6)
+        return np.nan_to_num(search.residuals(low + x * (high - low)) / scale, nan=1e6)
 
-    for start in starts[np.argsort(size[starts], kind="stable")][:_STARTS].tolist():
+    found: list[Array] = []
+    for start in starts[np.argsort(distance[starts], kind="stable")][:_STARTS].tolist():
         inside = np.clip((values[start] - low) / (high - low), 1e-9, 1 - 1e-9)
         exact: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
         ended = least_squares(off, inside, "3-point", (0, 1), **exact, max_nfev=40)
-        point = np.clip(low + ended.x * (high - low), low, high)
-        if np.max(np.abs(ended.fun)) > _CLOSE or any(
-            np.max(np.abs(point - x) / (high - low)) < _APART for x in found
-        ):
+        is_new = all(np.max(np.abs(ended.x - x)) > _APART for x in found)
+        if not is_new or np.max(np.abs(ended.fun)) > _CLOSE:
             continue
-        found.append(point)
+        found.append(ended.x)
         sizes = np.linalg.svd(ended.jac)[1]
-        flat += bool(sizes[-1] <= _FLAT * sizes[0])
-        if flat == _CURVE:
+        if sizes[-1] <= _FLAT * sizes[0]:
             raise LagtopError(
                 f"the conditions do not determine {' and '.join(search.spans)}: many values give "
                 f"{search.target_text}; use another condition, or another unknown"
             )
-    return sorted(x.tolist() for x in found)
+    return sorted(np.clip(low + x * (high - low), low, high).tolist() for x in found)
 
 
 def find(
@@ -358,7 +330,8 @@ def find(
     given = {name: _input(name, x) for name, x in inputs.items() if x is not None}
     texts = conditions
     if isinstance(conditions, Mapping):
-        texts = [f"{key}={_text(key, x)}" for key, x in conditions.items()]
+        values = [(key, value_of(key, x)) for key, x in conditions.items()]
+        texts = [f"{key}={_text(key, x.number)} {x.unit}" for key, x in values]
     search, found = search_of(given, list(texts), radians=radians)
     if found.missing:
         warn_of(found.missing, stacklevel=3)
@@ -368,23 +341,16 @@ def find(
         return []
 
 
-def _text(key: str, given: Any) -> str:
-    """Return the target value of a condition as text.  Raises LagtopError."""
-    if isinstance(given, str):
-        return given
-    value = value_of(key, given)
-    return f"{float(exact_number(key, value.number))!r} {value.unit}"
+def _text(key: str, number: Any) -> str:
+    return number if isinstance(number, str) else repr(float(exact_number(key, number)))
 
 
 def _input(name: str, given: Any) -> Value:
     """Return a number, or a pair as a range; a unit is kept.  Raises LagtopError."""
     value = value_of(name, given, parse_span)
-    pair = value.number
-    if isinstance(pair, Span) or not isinstance(pair, tuple | list | np.ndarray):
+    if np.asarray(value.number, object).shape != (2,):
         return value
-    if (isinstance(pair, np.ndarray) and pair.ndim != 1) or len(pair) != 2:
-        raise LagtopError(f"{name} must be a real number or a pair, got {quoted(given)}", name)
-    first, last = (exact_number(name, x) for x in pair)
+    first, last = (exact_number(name, x) for x in value.number)
     if not first < last:
         raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
     return value._replace(number=Span(first, last))
