@@ -23,7 +23,7 @@ import math
 import sys
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -83,31 +83,10 @@ def period_of(top: Top) -> tuple[float, float]:
     scale = math.sqrt(2 * float(top.g)) + abs(float(top.C * top.r0))
     t = np.linspace(0, 60 / scale, 6000)
     theta = motion_of(top, t)["theta"]
-    turns = greatest(t, theta)
+    turns = t[np.flatnonzero(np.diff(np.sign(np.diff(theta))) < 0)]
     if turns.size < 2:
         return math.nan, math.nan
     return float(turns[1] - turns[0]), float(np.ptp(theta)) / 2
-
-
-def greatest(t: Array, theta: Array) -> Array:
-    """Return the times of the maxima of the tilt."""
-    times: Array = t[np.flatnonzero(np.diff(np.sign(np.diff(theta))) < 0)]
-    return times
-
-
-def wrap(rng: np.random.Generator, angles: dict[str, Any], names: Iterable[str]) -> None:
-    """Shift some angles by random zeros, and reduce them to (-pi, pi]."""
-    for name in names:
-        angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
-
-
-def noisy(
-    top: Top, t: Array, names: Iterable[str], noise: float, rng: np.random.Generator
-) -> dict[str, Any]:
-    """Return angles of a top with noise; all but the tilt are reduced to (-pi, pi]."""
-    exact = motion_of(top, t)
-    angles = {name: exact[name] + rng.normal(scale=noise, size=t.size) for name in names}
-    return {x: y if x == "theta" else np.angle(np.exp(1j * y)) for x, y in angles.items()}
 
 
 def drawn(seed: int) -> Drawn:
@@ -128,7 +107,8 @@ def drawn(seed: int) -> Drawn:
     exact = motion_of(top, t)
     names = CHANNELS[int(rng.integers(len(CHANNELS)))]
     angles = {name: exact[name] + rng.normal(scale=sizes[name], size=count) for name in names}
-    wrap(rng, angles, [name for name in names if name != "theta"])
+    for name in [name for name in names if name != "theta"]:  # zeros anywhere, within half a turn
+        angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
     if "phi" in names and "psi" in names and rng.random() < 0.5:
         angles["psi"] = -angles["psi"]
     known = rng.random() < 0.5
