@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Callable, Iterable, Sequence
-from copy import copy
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -22,43 +22,37 @@ if TYPE_CHECKING:
 
 _SAMPLE = 1000
 """Number of rows that decide whether numbers have decimal commas."""
-_TITLES = 5
-"""Most rows above the headings, such as the title `mass A` of Tracker."""
+_TITLES = 50
+"""Most rows above the headings, such as the title `mass A` of Tracker or the header of LabVIEW."""
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
-_LABVIEW, _END_OF_HEADER = "LabVIEW Measurement", "***End_of_Header***"
-"""The first and the last line of a header of LabVIEW."""
 Known = Callable[[Sequence[str]], int]
 """Returns the number of known headings in a row, which distinguishes headings from titles."""
 
 
+@dataclass
 class Table:
     """The rows of a file in memory."""
 
-    place = "line"
+    name: str
+    """The name of the file in messages."""
+    headings: Sequence[str] | None
+    """None if the file has none."""
+    width: int
+    """The number of columns."""
+    rows: Any
+    """Lines of text, lists of JSON values, or one array."""
+    lines: Sequence[int]
+    """The numbers of the rows in messages."""
+    delimiter: str = ","
+    decimal: str = "."
+    """The decimal mark, a point or a comma; empty if it is not decided."""
+    place: str = "line"
     """The unit of `lines` in messages: `line` or `row`."""
-
-    def __init__(
-        self,
-        name: str,
-        headings: Sequence[str] | None,
-        rows: Any,
-        lines: Sequence[int],
-        delimiter: str = ",",
-    ) -> None:
-        """Take the name of a file and its rows: lines of text, lists of JSON, or one array.
-
-        `headings` are None if the file has none.  `lines` are the numbers of the rows in messages.
-        """
-        self.name, self.headings, self.rows, self.lines = name, headings, rows, lines
-        self.delimiter = delimiter
-        self.decimal = "." if delimiter == "," else ""
-        """The decimal mark, a point or a comma; empty if it is not decided."""
-        self.width = len(headings or (self.at(0, whole=False) if len(rows) else ()))
 
     def where(self, row: int) -> str:
         """Return the name of the file and the place of a row."""
@@ -79,16 +73,13 @@ class Table:
 
     def part(self, rows: slice) -> Table:
         """Return some of the rows."""
-        table = copy(self)
-        table.rows, table.lines = self.rows[rows], self.lines[rows]
-        return table
+        return replace(self, rows=self.rows[rows], lines=self.lines[rows])
 
-    def at(self, row: int, *, whole: bool = True) -> list[Any]:
-        """Return the cells of a row, as many as columns if `whole`.  Raises DataError."""
+    def at(self, row: int) -> list[Any]:
+        """Return the cells of a row, one for each column.  Raises DataError."""
         try:
             cells = self.cells(row)
-            if whole:
-                self.check(cells)
+            self.check(cells)
         except LagtopError as error:
             raise DataError(f"{self.where(row)}: {error}") from None
         return cells
@@ -102,7 +93,7 @@ class Table:
             return
         wanted, places = set(columns), dict[str, int]()
         for row, text in enumerate(self.rows[:_SAMPLE]):
-            for i, cell in enumerate(self.at(row, whole=False) if "," in text else ()):
+            for i, cell in enumerate(_split(text, self.delimiter) if "," in text else ()):
                 if "," in cell and i in wanted and _NUMBER.fullmatch(cell):
                     places.setdefault(cell, row)
         if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
@@ -124,41 +115,38 @@ class Table:
         import numpy as np
 
         self.decide(columns)
-        values = self.at_once()
+        values = self._at_once()
         if values is not None:
             return values[:, columns]
         rows = ((row, self.at(row)) for row in range(len(self.rows)))
         found = [[self._double(row, i, names[i], x[i]) for i in columns] for row, x in rows]
         return np.array(found).reshape(-1, len(columns))
 
-    def at_once(self) -> Array | None:
-        """Return all columns, or None if NumPy cannot read the lines as numbers."""
+    def _at_once(self) -> Array | None:
+        """Return all columns, or None if NumPy cannot read the rows as numbers."""
         import numpy as np
 
         if isinstance(self.rows, np.ndarray):
             return self.rows
-        text = "\n".join(self.rows) if self.rows and isinstance(self.rows[0], str) else '"'
-        if not text.isascii() or '"' in text or "\0" in text:
-            return None
-        rows = text.translate(_SWAPPED).split("\n") if self.decimal == "," else self.rows
+        rows = [x.translate(_SWAPPED) for x in self.rows] if self.decimal == "," else self.rows
         mark = None if self.delimiter == " " else self.delimiter
         try:
-            values = np.loadtxt(rows, delimiter=mark, ndmin=2, comments=None)
-        except ValueError:
+            values = np.loadtxt(rows, delimiter=mark, ndmin=2, comments=None) if rows else None
+        except (TypeError, ValueError):  # JSON, words or missing numbers
             return None
-        return values if values.shape == (len(rows), self.width) else None
+        return values if values is not None and values.shape == (len(rows), self.width) else None
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
-        if type(cell) in {int, float}:
-            return float(cell)
-        if not cell and cell is not False:
+        if cell is None or cell == "":
             return float("nan")
-        plain = self._plain(cell) if isinstance(cell, str) else ""
+        plain = self._plain(cell) if isinstance(cell, str) else repr(cell)
         if _NUMBER.fullmatch(plain) and "," not in plain:
             return float(plain)
-        wrong = f"{name} must be a number, got {_shown(cell)}{self._hint(cell)}"
-        raise DataError(f"{self.where(row)}, column {column + 1}: {wrong}")
+        try:
+            return float(self.number(cell))
+        except LagtopError as error:
+            raise DataError(f"{self.where(row)}, column {column + 1}: {name} {error}") from None
 
     def number(self, cell: Any) -> Fraction:
         """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
@@ -166,23 +154,21 @@ class Table:
             return parse_number(repr(cell))
         if not isinstance(cell, str):
             raise LagtopError(f"must be a finite number, got {_shown(cell)}")
+        other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
+        hint = ""
+        if self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell):
+            hint = f" (use --decimal {other})"
         try:
             return parse_number(self._plain(cell))
         except LagtopError:
-            if self.decimal == "," or self._hint(cell):
-                wrong = f"must be a finite decimal number, got {quoted(cell)}{self._hint(cell)}"
+            if hint or self.decimal == ",":
+                wrong = f"must be a finite decimal number, got {quoted(cell)}{hint}"
                 raise LagtopError(wrong) from None
             raise
 
     def _plain(self, cell: str) -> str:
         """Return a cell with a decimal point; a number with the other mark then fails to parse."""
         return cell.translate(_SWAPPED) if self.decimal == "," else cell
-
-    def _hint(self, cell: Any) -> str:
-        """Return a hint in parentheses if a cell is a number with the other decimal mark."""
-        other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
-        fits = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
-        return f" (use --decimal {other})" if fits else ""
 
 
 def read_table(
@@ -195,53 +181,47 @@ def read_table(
     file are then ignored.  Raises DataError.
     """
     lines = decoded(content, name).split("\n")
-    ends = [i for i, x in enumerate(lines, 1) if x.startswith(_END_OF_HEADER)]
-    start = ends[-1] if ends and lines[0].startswith(_LABVIEW) else 0
-    kept = [i for i, x in enumerate(lines) if i >= start and x.strip() and x.strip()[0] not in "#─"]
-    if kept and re.fullmatch('"?sep=."?', lines[kept[0]].strip()):
-        del kept[0]
+    kept = [i for i, x in enumerate(lines) if x.strip() and x.strip()[0] not in "#─"]
     if kept and lines[kept[0]].lstrip()[0] in "{[":
         return _json_table(name, lines, kept)
     at, delimiter = _layout([lines[i] for i in kept[: _TITLES + 1]], known, decimal, width)
-    below = kept[at + 1 :]
-    rows, headings = [lines[i] for i in below], None
+    rows = [lines[i] for i in kept[at + 1 :]]
+    # A single heading may have its unit after a blank.
+    single = delimiter == " " and len(rows) > 0 and len(rows[0].split()) == 1
+    headings: list[str] | None = None
     if at >= 0 and not width:
         line = lines[kept[at]]
-        headings = _split(line, " ")
-        if delimiter != " ":
-            headings = Table(name, None, [line], [kept[at] + 1], delimiter).at(0)
-        elif {len(x.split()) for x in rows} == {1}:
-            headings = [line.strip()]
-    table = Table(name, headings, rows, [i + 1 for i in below], delimiter)
-    table.decimal = table.decimal or decimal
+        try:
+            headings = [line.strip()] if single else _split(line, delimiter, strict=True)
+        except LagtopError as error:
+            raise DataError(f"{name}, line {kept[at] + 1}: {error}") from None
+    found = len(headings or (_split(rows[0], delimiter) if rows else ()))
     if headings is None and not width:  # perhaps in a comment, as numpy.savetxt writes them
-        comments = [re.sub("[#,;]", " ", x).split() for x in lines[start : min(kept, default=0)]]
-        fits = [x for x in comments if len(x) == table.width and known(x)]
-        table.headings = fits[-1] if fits else None
-    return table
+        comments = [re.sub("[#,;]", " ", x).split() for x in lines[: min(kept, default=0)]]
+        fits = [x for x in comments if len(x) == found and known(x)]
+        headings = fits[-1] if fits else None
+    mark = "." if delimiter == "," else decimal
+    return Table(name, headings, found, rows, [i + 1 for i in kept[at + 1 :]], delimiter, mark)
 
 
 def _layout(texts: Sequence[str], known: Known, decimal: str, width: int | None) -> tuple[int, str]:
     """Return the index of the row of headings (the most known ones), or -1, and the delimiter."""
-    if not texts:
+    rows = [{x: _split(text, x) for x in _delimiters(text, decimal)} for text in texts]
+    if not rows:
         return -1, " "
-    best, found = 0, (0, _delimiters(texts[0], decimal)[0])
-    for i, text in enumerate(texts):
-        delimiters = _delimiters(text, decimal)
-        if any(_are_numbers(_split(text, x)) for x in [*delimiters, " "]):
+    most, found = 0, (0, next(iter(rows[0])))
+    for i, row in enumerate(rows):
+        if any(map(_are_numbers, [*row.values(), _split(texts[i], " ")])):
             break
-        for delimiter in delimiters:
-            if (count := known(_split(text, delimiter))) > best:
-                best, found = count, (i, delimiter)
-    has_number = (
-        any(_NUMBER.fullmatch(x) for d in _delimiters(text, decimal) for x in _split(text, d))
-        for text in texts
-    )
-    first = found[0] + 1 if best else [*has_number, True].index(True)
-    if first == len(texts) or (best and not (width and found[1] == " ")):
+        for delimiter, cells in row.items():
+            if (count := known(cells)) > most:
+                most, found = count, (i, delimiter)
+    has_number = (any(_NUMBER.fullmatch(x) for y in row.values() for x in y) for row in rows)
+    first = found[0] + 1 if most else [*has_number, True].index(True)
+    if first == len(rows) or (most and not (width and found[1] == " ")):
         return found
-    rows = {x: _split(texts[first], x) for x in [*_delimiters(texts[first], decimal), " "]}
-    fits = {x: (width in {None, len(row)}, _are_numbers(row)) for x, row in rows.items()}
+    options = rows[first] | {" ": _split(texts[first], " ")}
+    fits = {x: (width in {None, len(row)}, _are_numbers(row)) for x, row in options.items()}
     return first - 1, max(fits, key=fits.__getitem__)
 
 
@@ -253,16 +233,21 @@ def _delimiters(text: str, decimal: str) -> list[str]:
 
 def _are_numbers(cells: Sequence[str]) -> bool:
     """Return whether all cells are numbers or empty."""
-    return all(_NUMBER.fullmatch(x) for x in cells if x)
+    return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x)
 
 
-def _split(text: str, delimiter: str) -> list[str]:
-    """Return the headings in a row; a blank before a unit in brackets is not a delimiter."""
+def _split(text: str, delimiter: str, *, strict: bool = False) -> list[str]:
+    """Return the headings in a row; a blank before a unit in brackets is not a delimiter.
+
+    Raises LagtopError for a wrong quote if `strict`.
+    """
     if delimiter == " ":
         return [x.strip('"') for x in _HEADING.findall(text)]
     try:
         return split_row(text, delimiter)
     except LagtopError:
+        if strict:
+            raise
         return [x.strip() for x in text.split(delimiter)]
 
 
@@ -282,27 +267,26 @@ def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
     """Return JSON objects, one per line or in one array; a list in them becomes several columns."""
     import orjson
 
-    def parsed(text: str, first: int) -> Any:
+    is_array = lines[kept[0]].lstrip()[0] == "["
+    texts = {kept[0]: "\n".join(lines[kept[0] :])} if is_array else {i: lines[i] for i in kept}
+    objects: list[Any] = []
+    for i, text in texts.items():
         try:
-            return orjson.loads(text)
+            objects.append(orjson.loads(text))
         except orjson.JSONDecodeError as error:
             wrong = f"not JSON: {error.msg} at character {error.colno}"
-            raise DataError(f"{name}, line {first + error.lineno}: {wrong}") from None
-
-    if lines[kept[0]].lstrip()[0] == "[":
-        objects = parsed("\n".join(lines[kept[0] :]), kept[0])
-        table = Table(name, None, objects, range(1, len(objects) + 1))
-        table.place = "row"
-    else:
-        table = Table(name, None, [parsed(lines[i], i) for i in kept], [i + 1 for i in kept])
+            raise DataError(f"{name}, line {i + error.lineno}: {wrong}") from None
+    objects = objects[0] if is_array else objects
+    numbers = range(1, len(objects) + 1) if is_array else [i + 1 for i in kept]
+    table = Table(name, None, 0, objects, numbers, place="row" if is_array else "line")
     sizes: dict[str, int] = {}
-    for row, found in enumerate(table.rows):
+    for row, found in enumerate(objects):
         if not isinstance(found, dict):
             raise DataError(f"{table.where(row)}: a row must be a JSON object")
         for key, value in found.items():
             sizes[key] = sizes.get(key) or (len(value) if isinstance(value, list) else 0)
     rows: list[list[Any]] = []
-    for row, found in enumerate(table.rows):
+    for row, found in enumerate(objects):
         rows.append([])
         for key, size in sizes.items():
             value = found.get(key)
@@ -310,9 +294,8 @@ def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
                 wrong = f"must be {size} numbers, got {_shown(value)}"
                 raise DataError(f"{table.where(row)}, column {key}: {wrong}")
             rows[-1] += (value or [None] * size) if size else [value]
-    names = [part for key, size in sizes.items() for part in parts(key, size)]
-    table.headings, table.rows, table.width = names, rows, len(names)
-    return table
+    headings = [part for key, size in sizes.items() for part in parts(key, size)]
+    return replace(table, headings=headings, width=len(headings), rows=rows)
 
 
 def _shown(value: Any) -> str:

@@ -162,9 +162,8 @@ def _read_arrays(content: bytes, name: str, kind: str) -> Table:
     if (twice := repeated(names)) is not None:
         raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
     rows = np.concatenate([*tables.values()]).T.astype(np.float64)
-    table = Table(name, None if [*tables] == [""] else names, rows, range(1, len(rows) + 1))
-    table.place, table.width = "row", len(names)
-    return table
+    headings = None if [*tables] == [""] else names
+    return Table(name, headings, len(names), rows, range(1, len(rows) + 1), place="row")
 
 
 def _numpy(content: bytes) -> Mapping[str, Any]:

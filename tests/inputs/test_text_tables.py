@@ -80,6 +80,7 @@ WRONG = {
     '{"FIRST":0.5}\n{"FIRST":1.5,\n': "line 2: not JSON: ",
     '{"FIRST":0.5}\n[1]\n': "line 2: a row must be a JSON object",
     "[" * 9000: "line 1: not JSON: ",
+    "[1, 2]": "row 1: a row must be a JSON object",
 }
 
 
@@ -176,7 +177,9 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> N
     assert read_trajectory(str(path)).values()["theta"][:, 0].tolist()[:5] == plain[:5]
     rows[100] = "100,x"
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
-    with pytest.raises(DataError, match="line 103, column 2: theta must be a number, got 'x'"):
+    with pytest.raises(
+        DataError, match="line 103, column 2: theta must be a finite decimal number, got 'x'"
+    ):
         read_trajectory(str(path)).values()
 
 

@@ -172,12 +172,15 @@ HOSTILE = [  # pickles are not loaded, and no memory is taken for the size that 
     ("content", "message"),
     [
         (b"", "must hold a trajectory, got no row"),
-        (b"t,theta\n0,1\n\n# c\n1,1_0\n", "line 5, column 2: theta must be a number, got '1_0'"),
+        (
+            b"t,theta\n0,1\n\n# c\n1,1_0\n",
+            "line 5, column 2: theta must be a finite decimal number, got '1_0'",
+        ),
         (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
         (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),
         (b"0 1\n", "has no header: name its 2 columns with --columns, such as t,quaternion"),
         (b"a,b\n0,1\n", "must have columns among the time (t, time, timestamp) and"),
-        (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column 2: theta must be a num"),
+        (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column 2: theta must be a finite"),
         (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
         (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
         (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
