@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import LagtopError
 from ..inputs import rotations
+from ..inputs.names import ANGLES
 from ..inputs.observed import Observed
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
@@ -97,8 +98,9 @@ def causes(top: Top, trajectory: Trajectory, shift: float, most: int) -> Iterato
         if rates is not None:
             other = replace(run, body_rates=run.space_rates, space_rates=run.body_rates)
             yield Cause(f"the rates are in the frame of {frame}: --rates-frame {frame}", other)
-    radians = trajectory.conventions._replace(radians=not trajectory.conventions.radians)
-    in_other_unit = trajectory._replace(conventions=radians).few(most).observed()
+    other_unit = np.radians if trajectory.conventions.radians else np.degrees
+    turned = {x: other_unit(y) for x, y in trajectory.given.items() if x in {*ANGLES, "euler"}}
+    in_other_unit = trajectory._replace(given={**trajectory.given, **turned}).few(most).observed()
     yield Cause("angles in degrees were taken as radians, or the reverse", in_other_unit)
     later, earlier = slice(1, None), slice(None, -1)
     for word, times, states in (("next", later, earlier), ("previous", earlier, later)):

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs import rotations
 from ..inputs.names import ANGLES
-from ..inputs.observed import Conventions, Named, Observed, Quantities, observe, rows_of
+from ..inputs.observed import Conventions, Observed, Quantities, observe, rows_of
 from ..inputs.rotations import within_half_turn
 from ..inputs.top import Top
 from ..motion.regime import Regime
@@ -101,9 +100,9 @@ class Trajectory(NamedTuple):
     """A trajectory as it is given, with its conventions."""
 
     given: Quantities
+    """Arrays of quantities, with all angles in radians."""
     conventions: Conventions
     align: Alignment = Alignment()
-    named: Named = MappingProxyType({})
     file: str | None = None
 
     def few(self, most: int) -> Trajectory:
@@ -113,7 +112,7 @@ class Trajectory(NamedTuple):
 
     def observed(self) -> Observed:
         """Return the motion of the trajectory, in its own frames."""
-        return observe(self.given, self.conventions, self.named)
+        return observe(self.given, self.conventions)
 
 
 def errors(motion: Motion, run: Observed, align: Alignment) -> Array:

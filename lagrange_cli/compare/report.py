@@ -40,13 +40,11 @@ def read(
     a bad or unreadable file.
     """
     file = read_trajectory(path, columns, decimal)
-    rows, named = file.values(), dict(file.quantities)
+    rows = file.values(radians=conventions.radians)
     if not len(rows["t"]):
         raise DataError(f"{file.name}: t must have at least one row")
     file.check_times(rows["t"][:, 0])
-    if "rates" in named and conventions.rates == "space":  # the option overrides p, q and r
-        named["rates"] = named["rates"]._replace(says="")
-    trajectory = Trajectory(rows, conventions, align, named, path)
+    trajectory = Trajectory(rows, file.conventions(conventions), align, path)
     try:
         trajectory.observed()
     except LagtopError as error:

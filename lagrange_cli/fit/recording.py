@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,6 @@ from ..inputs.input_keys import checked_double
 from ..inputs.names import ANGLES, check_names
 from ..inputs.observed import (
     Conventions,
-    Named,
     Quantities,
     angles_in,
     observe,
@@ -134,8 +132,9 @@ def read_recordings(
     Raises LagtopError for a file that cannot be read, DataError for one that holds no recording.
     """
     trajectory = read_trajectory(path, columns, decimal)
-    name, given = trajectory.name, trajectory.values()
-    reading["named"] = trajectory.quantities
+    conventions = reading["conventions"]
+    name, given = trajectory.name, trajectory.values(radians=conventions.radians)
+    reading["conventions"] = trajectory.conventions(conventions)
     if by is None:
         return [recording_of(name, given, **reading)]
     if by not in trajectory.names:
@@ -172,7 +171,6 @@ def recording_of(
     *,
     sigma: Mapping[str, float] | float | None = None,
     up: str = "z",
-    named: Named = MappingProxyType({}),
 ) -> Recording:
     """Return the recording in some columns, without rows that have no number.
 
@@ -181,7 +179,7 @@ def recording_of(
     """
     t = given["t"][:, 0]
     _check_times(where, t)
-    kind, found = _angles(given, conventions, up, named)
+    kind, found = _angles(given, conventions, up)
     position = given["position"] if kind == "axis" and "axis" not in given else None
     if not found:
         shown = ", ".join(x for x in given if x != "t")
@@ -229,16 +227,14 @@ def _check_times(where: str, t: Array) -> None:
         )
 
 
-def _angles(
-    given: Quantities, conventions: Conventions, up: str, named: Named
-) -> tuple[str, dict[str, Array]]:
+def _angles(given: Quantities, conventions: Conventions, up: str) -> tuple[str, dict[str, Array]]:
     """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
-    alone = angles_in(given, conventions, named)
+    alone = angles_in(given)
     if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
         if up != "z":
             raise LagtopError("align needs an axis or an attitude, got angles", "align")
         return "angles", alone
-    seen = observe(given, conventions, named)
+    seen = observe(given, conventions)
     if up != "z":
         seen = seen.turned(rotations.to_z(up), rotations.IDENTITY)
     if seen.quaternion is not None:

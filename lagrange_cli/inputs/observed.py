@@ -17,13 +17,11 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from . import rotations
 from .names import ANGLES
-from .trajectory_columns import ELEVATION, NAMELESS, QUANTITIES, FoundQuantity
+from .trajectory_columns import QUANTITIES
 
 ORDERS = ("wxyz", "xyzw")
 Quantities = Mapping[str, Array]
 """Arrays of shape (n, parts) by the name of the quantity (see `inputs.trajectory_columns`)."""
-Named = Mapping[str, FoundQuantity]
-"""The quantities of a file, with the conventions and the angle units that their names imply."""
 
 
 class Conventions(NamedTuple):
@@ -36,6 +34,7 @@ class Conventions(NamedTuple):
     rates: str = "body"
     """Frame of the angular velocity, `body` or `space`."""
     radians: bool = False
+    """Whether angles without a unit are in radians."""
 
     def checked(self) -> Conventions:
         """Return the conventions.  Raises LagtopError for an unknown one."""
@@ -84,25 +83,23 @@ class Observed:
         return replace(self, **turned)
 
 
-def observe(given: Quantities, conventions: Conventions, named: Named) -> Observed:
-    """Return the motion from its quantities; names override the conventions.
+def observe(given: Quantities, conventions: Conventions) -> Observed:
+    """Return the motion from its quantities, with all angles in radians.
 
     The first quantity that gives all of the attitude, or most of it, is used.  Raises LagtopError
     for rates of the angles without an attitude.
     """
-    alone = angles_in(given, conventions, named)
-    found: dict[str, Any] = {"t": given["t"][:, 0], "angles": alone}
+    alone = angles_in(given)
+    found: dict[str, Any] = {"t": given["t"][:, 0]}
     if "quaternion" in given:
-        order = _convention(named, "quaternion", conventions.quaternion or ORDERS[0])
+        order = conventions.quaternion or ORDERS[0]
         found |= _directed("quaternion", given["quaternion"][:, [*map(order.index, "wxyz")]])
     elif "matrix" in given:
         found["quaternion"], found["norm"] = rotations.of_matrix(given["matrix"])
     elif len(alone) == len(ANGLES):
         found["quaternion"] = rotations.of_angles(**alone)
     elif "euler" in given:
-        sequence = _convention(named, "euler", conventions.euler)
-        angles = _in_radians(given, conventions, named, "euler")
-        found["quaternion"] = rotations.of_euler(sequence, angles)
+        found["quaternion"] = rotations.of_euler(conventions.euler, given["euler"])
     elif "rotvec" in given:
         found["quaternion"] = rotations.of_vector(given["rotvec"])
     elif "axis" in given:
@@ -110,45 +107,23 @@ def observe(given: Quantities, conventions: Conventions, named: Named) -> Observ
     elif "position" in given and not alone:
         found["axis"] = rotations.directed(given["position"])
         found["distance"] = np.linalg.norm(given["position"], axis=1)
-    if {"quaternion", "axis"} & found.keys():
-        found["angles"] = {}
-    return Observed(**found | _rates(given, conventions, named, found))
-
-
-def _rates(
-    given: Quantities, conventions: Conventions, named: Named, found: Mapping[str, Any]
-) -> dict[str, Array]:
-    """Return the angular velocity, in the frame in which it is given."""
+    if not {"quaternion", "axis"} & found.keys():
+        found["angles"] = alone
     if "rates" in given:
-        return {f"{_convention(named, 'rates', conventions.rates)}_rates": given["rates"]}
-    if "angle_rates" not in given:
-        return {}
-    if not ({"quaternion", "axis"} & found.keys() or found["angles"]):
+        found[f"{conventions.rates}_rates"] = given["rates"]
+    elif "angle_rates" in given and "quaternion" in found:
+        at = rotations.angles_of(found["quaternion"])
+        rates = rotations.body_rates(at["theta"], at["phi"], *given["angle_rates"].T)
+        found["body_rates"] = np.stack(rates, axis=1)
+    elif "angle_rates" in given and not (alone or "axis" in found):
         wanted = "an attitude or a part of it, such as theta, phi and psi"
         raise LagtopError(f"angle_rates must come with {wanted}, got none", "angle_rates")
-    if "quaternion" not in found:
-        return {}
-    at = rotations.angles_of(found["quaternion"])
-    rates = rotations.body_rates(at["theta"], at["phi"], *given["angle_rates"].T)
-    return {"body_rates": np.stack(rates, axis=1)}
+    return Observed(**found)
 
 
-def angles_in(given: Quantities, conventions: Conventions, named: Named) -> dict[str, Array]:
-    """Return tilt, spin and precession, in radians, as far as each has its own column."""
-    return {x: _in_radians(given, conventions, named, x)[:, 0] for x in ANGLES if x in given}
-
-
-def _convention(named: Named, key: str, other: str) -> str:
-    """Return the convention that the name of a quantity implies, or else `other`."""
-    return named.get(key, NAMELESS).says or other
-
-
-def _in_radians(given: Quantities, conventions: Conventions, named: Named, key: str) -> Array:
-    found, angles = named.get(key, NAMELESS), given[key]
-    in_radians = conventions.radians if found.unit is None else found.unit == "rad"
-    if found.says == ELEVATION:
-        angles = (np.pi / 2 if in_radians else 90.0) - angles
-    return angles if in_radians else np.radians(angles)
+def angles_in(given: Quantities) -> dict[str, Array]:
+    """Return tilt, spin and precession, as far as each has its own column."""
+    return {x: given[x][:, 0] for x in ANGLES if x in given}
 
 
 def _directed(key: str, values: Array) -> dict[str, Array]:

@@ -10,24 +10,23 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.points import ListedPoints
-from ..arithmetic.text import quoted, shortened
+from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError, UnavailableError
 from .files import LARGEST_FILE, read_bytes, shown_path
-from .names import repeated
 from .text_tables import Table, parts, read_table
 from .trajectory_columns import (
     QUANTITIES,
-    FoundQuantity,
+    converted,
     expanded,
     in_known_unit,
     known_quantities,
     named_twice,
-    plain_name,
     quantities_in,
 )
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+    from .observed import Conventions
 
 _MAGIC = {b"PAR1": "Parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
 
@@ -63,59 +62,51 @@ class Trajectory:
             remedy = "name the columns with --columns, and one of them _"
             raise DataError(f"{self.name} {wrong}: {remedy}")
         try:
-            self.quantities = {key: self._in_known_unit(key, x) for key, x in found.items()}
+            self.quantities = {key: in_known_unit(key, x, self.names) for key, x in found.items()}
         except LagtopError as error:
             raise DataError(f"{self.name}: {error}") from None
 
-    def _in_known_unit(self, key: str, quantity: FoundQuantity) -> FoundQuantity:
-        """Return a quantity with the factor that converts it, to s, rad/s, rad or degrees."""
-        named = [self.names[i] for i in quantity.columns]
-        if len({plain_name(part)[1] for part in named}) > 1:
-            shown = " and ".join(map(repr, named[:2]))
-            raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
-        unit, factor = in_known_unit(key, quantity.unit)
-        return quantity._replace(unit=unit, factor=factor)
-
-    def values(self) -> dict[str, Array]:
+    def values(self, *, radians: bool) -> dict[str, Array]:
         """Return every quantity as an array of shape (rows, parts), with NaN for missing numbers.
 
+        Angles are returned in radians; those without a unit are in degrees, or else in `radians`.
         Raises DataError for a cell that is not a number.
         """
         wanted = [i for found in self.quantities.values() for i in found.columns]
         numbers = self.table.numbers(wanted, self.names)
-        return {
-            key: found.scaled(numbers[:, [wanted.index(i) for i in found.columns]])
-            for key, found in self.quantities.items()
-        }
+        values: dict[str, Array] = {}
+        for key, found in self.quantities.items():
+            columns = numbers[:, [wanted.index(i) for i in found.columns]]
+            values[key] = converted(key, found, columns, radians=radians)
+        return values
+
+    def conventions(self, given: Conventions) -> Conventions:
+        """Return conventions, overridden by the names of columns; the frame `space` is kept."""
+        found = {x: self.quantities[x].says for x in given._fields if x in self.quantities}
+        if given.rates == "space":
+            found.pop("rates", None)
+        implied: dict[str, Any] = {key: says for key, says in found.items() if says}
+        return given._replace(**implied)
 
     def words(self, column: str) -> list[str]:
         """Return the cells of a column as texts; numbers have their shortest form."""
         cells = self.table.column(self.names.index(column))
         return [f"{x:.17g}" if isinstance(x, float) else str(x) for x in cells]
 
-    def check_times(
-        self, t: Array, rows: Sequence[int] | None = None, *, repeats: bool = False
-    ) -> None:
-        """Raise DataError for a time that is not finite, or that turns back.
-
-        A repeated time is an error too, unless `repeats` is true.  `rows` are the indices of the
-        times among all rows (default: all).
-        """
+    def check_times(self, t: Array) -> None:
+        """Raise DataError for a time that is not finite, that repeats, or that turns back."""
         import numpy as np
 
-        before, after = t[:-1], t[1:]
-        ways = (after > before) * 1.0 - (after < before)  # a difference may be beyond all doubles
-        moving = ways[ways != 0]
-        back = ways * (moving[0] if moving.size else 0.0) < 0
+        with np.errstate(all="ignore"):
+            ways = np.sign(np.diff(t))
         for wrong, wanted in (
-            (~np.isfinite(t), "t must be a finite number, got {1}"),
-            (np.r_[False, back], "t must not turn back, got {1} after {0}"),
-            (np.r_[False, (ways == 0) & (not repeats)], "t must not repeat, got {1} twice"),
+            (~np.isfinite(t), "be a finite number, got {1}"),
+            (np.r_[False, ways == 0], "not repeat, got {1} twice"),
+            (np.r_[False, ways != ways[:1]], "not turn back, got {1} after {0}"),
         ):
-            if (found := np.flatnonzero(wrong)).size:
-                i = int(found[0])
-                place = self.table.where(i if rows is None else rows[i])
-                raise DataError(f"{place}: {wanted.format(float(t[i - 1]), float(t[i]))}")
+            for i in np.flatnonzero(wrong)[:1]:
+                must = wanted.format(float(t[i - 1]), float(t[i]))
+                raise DataError(f"{self.table.where(i)}: t must {must}")
 
 
 def read_trajectory(
@@ -155,15 +146,15 @@ def _read_arrays(content: bytes, name: str, kind: str) -> Table:
     if time is None:
         shown = shortened(", ".join(f"{x} {y.dtype} {y.shape}".strip() for x, y in found.items()))
         raise DataError(f"{name} must have real numbers in 1 or 2 dimensions, got {shown or None}")
-    tables = {x: y.reshape(len(y), -1).T for x, y in real.items() if len(y) == len(real[time])}
-    names = [
-        part for x, y in tables.items() for part in parts(x, len(y) if real[x].ndim > 1 else 0)
-    ]
-    if (twice := repeated(names)) is not None:
-        raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
-    rows = np.concatenate([*tables.values()]).T.astype(np.float64)
-    headings = None if [*tables] == [""] else names
-    return Table(name, headings, len(names), rows, range(1, len(rows) + 1), place="row")
+    columns: dict[str, Array] = {}
+    for x, y in real.items():
+        if len(y) == len(real[time]):
+            columns |= dict(
+                zip(parts(x, y.shape[1] if y.ndim > 1 else 0), np.atleast_2d(y.T), strict=True)
+            )
+    rows = np.array([*columns.values()], np.float64).T
+    headings = None if "" in found else [*columns]
+    return Table(name, headings, len(columns), rows, range(1, len(rows) + 1), place="row")
 
 
 def _numpy(content: bytes) -> Mapping[str, Any]:
@@ -181,23 +172,18 @@ def _numpy(content: bytes) -> Mapping[str, Any]:
 
 
 def _parquet(content: bytes) -> Mapping[str, Any]:
-    """Return the numeric columns, and lists of a fixed size as matrices; null becomes NaN."""
+    """Return the columns, and lists of a fixed size as matrices; null becomes NaN."""
     import numpy as np
-    from pyarrow import parquet, types
+    from pyarrow import parquet
 
     file = parquet.ParquetFile(BytesIO(content))
     _check_size(8 * file.metadata.num_rows * file.metadata.num_columns)
-    table = file.read()
-    if (twice := repeated(table.column_names)) is not None:
-        raise ValueError(f"the column {twice!r} comes twice")
     found: dict[str, Any] = {}
+    table = file.read()
     for name, column in zip(table.column_names, table.columns, strict=True):
         size = getattr(column.type, "list_size", 0)
-        kind = column.type.value_type if size else column.type
-        if types.is_floating(kind) or types.is_integer(kind):
-            rows = column.to_pylist()
-            cells = [x or [None] * size for x in rows] if size else column.to_numpy()
-            found[name] = np.array(cells, np.float64)
+        rows = [x or [None] * size for x in column.to_pylist()] if size else column.to_numpy()
+        found[name] = np.array(rows, np.float64) if size else rows
     return found
 
 
@@ -224,7 +210,7 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
         raise DataError(f"{table.name}: {wanted}, got {shown}")
     column = found["t"].columns[0]
     try:
-        _, factor = in_known_unit("t", found["t"].unit)
+        factor = in_known_unit("t", found["t"], names).factor
     except LagtopError as error:
         raise DataError(f"{table.name}: {error}") from None
     table.decide([column])

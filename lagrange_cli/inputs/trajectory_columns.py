@@ -20,8 +20,6 @@ from .names import ANGLES, suggestion
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
-ELEVATION = "elevation"
-"""The convention of an angle measured from the horizontal."""
 SKIPPED = "_"
 """The name of an ignored column."""
 
@@ -54,16 +52,6 @@ class FoundQuantity(NamedTuple):
     factor: Fraction | None = None
     """The factor that converts its numbers to the units in use, if any."""
 
-    def scaled(self, values: Array) -> Array:
-        """Return the numbers of the columns, converted."""
-        if self.factor is None:
-            return values
-        size = float(max(self.factor, 1 / self.factor))
-        return values * size if self.factor > 1 else values / size  # by a whole number, if possible
-
-
-NAMELESS = FoundQuantity(())
-"""A quantity that is not from a file: no name implies a convention or a unit."""
 
 _QUANTITIES = """
 t | time | time | t, time, timestamp
@@ -192,23 +180,45 @@ def plain_name(name: str) -> tuple[str, str | None]:
     return re.sub(r"[^a-z0-9]", "", text), unit or None
 
 
-def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:
-    """Return the unit that a quantity is converted to, and the factor; None without conversion.
+def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
+    """Return a quantity with the factor that converts it, to s, m, rad/s, rad or degrees.
 
-    Raises LagtopError for a unit that the quantity cannot have.
+    `names` are those of all columns.  Raises LagtopError for a unit that the quantity cannot have,
+    and for parts in different units.
     """
-    own = QUANTITIES[key].unit
+    named = [names[i] for i in found.columns]
+    if len({plain_name(part)[1] for part in named}) > 1:
+        shown = " and ".join(map(repr, named[:2]))
+        raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
+    own, unit = QUANTITIES[key].unit, found.unit
     if unit in {*_NO_UNITS, own}:
-        return None, None
+        return found._replace(unit=None)
     if own == "angle" and unit in {"deg", "rad"}:
-        return unit, None
+        return found
     if not own:
         raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
     from .units import factor_of  # for few files only
 
-    if own == "angle":
-        return "rad", factor_of(key, str(unit), "rad")
-    return None, factor_of(key, str(unit), own)
+    into = "rad" if own == "angle" else own
+    return found._replace(unit=into, factor=factor_of(key, str(unit), into))
+
+
+def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -> Array:
+    """Return the numbers of a quantity in known units, all angles in radians.
+
+    Angles without a unit are in degrees, or else in `radians`.
+    """
+    import numpy as np
+
+    if found.factor is not None:
+        size = float(max(found.factor, 1 / found.factor))
+        values = values * size if found.factor > 1 else values / size  # by a whole number, if it is
+    if QUANTITIES[key].unit != "angle":
+        return values
+    radians = radians if found.unit is None else found.unit == "rad"
+    if found.says == "elevation":  # from the horizontal
+        values = (np.pi / 2 if radians else 90.0) - values
+    return values if radians else np.asarray(np.radians(values))
 
 
 def expanded(names: Sequence[str]) -> list[str]:
@@ -222,17 +232,9 @@ def expanded(names: Sequence[str]) -> list[str]:
         quantity = _BY_PLAIN_NAME.get(word)
         size, ending = quantity.size if quantity else 1, f"_{unit}" if unit else ""
         single += [name] if size == 1 else [f"{word}{i}{ending}" for i in range(size)]
-    found = quantities_in(single)
-    if twice := named_twice(single, found):
-        raise LagtopError(
-            f"columns must name each quantity once, got {twice[0]!r} and {twice[1]!r}", "columns"
-        )
-    used = {i for quantity in found.values() for i in quantity.columns}
-    for i, name in enumerate(single):
-        if i not in used and name != SKIPPED:
-            raise LagtopError(
-                f"columns must be among {', '.join(QUANTITIES)}, all parts of one of them (such as "
-                f"qw,qx,qy,qz) or {SKIPPED}, got {quoted(name)}{suggestion(name, QUANTITIES)}",
-                "columns",
-            )
+    used = {single[i] for quantity in quantities_in(single).values() for i in quantity.columns}
+    if unknown := [name for name in single if name not in {*used, SKIPPED}]:
+        wanted = f"columns must be among {', '.join(QUANTITIES)}, all parts of one of them (such as"
+        got = f"{quoted(unknown[0])}{suggestion(unknown[0], QUANTITIES)}"
+        raise LagtopError(f"{wanted} qw,qx,qy,qz) or {SKIPPED}, got {got}", "columns")
     return single

@@ -70,8 +70,8 @@ def read_by_all(path: str) -> None:
 
     def trajectory(columns: list[str] | None) -> None:
         file = read_trajectory(path, columns)
-        values = file.values()
-        file.check_times(values["t"][:, 0], repeats=True)
+        values = file.values(radians=True)
+        file.check_times(values["t"][:, 0])
         assert len({len(x) for x in values.values()}) == 1
 
     readers: list[Callable[[], object]] = [tops, lambda: read_times(path).exact]

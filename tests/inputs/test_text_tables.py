@@ -23,7 +23,9 @@ def times(path: Path, decimal: str) -> list[float]:
 
 def of_a_trajectory(path: Path, decimal: str) -> list[float]:
     """Return the times of a trajectory."""
-    found: list[float] = read_trajectory(str(path), None, decimal).values()["t"][:, 0].tolist()
+    found: list[float] = (
+        read_trajectory(str(path), None, decimal).values(radians=True)["t"][:, 0].tolist()
+    )
     return found
 
 
@@ -170,17 +172,17 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> N
     cells = ["0.1", "-1e-320", "1.7976931348623157e308", "3.", ".5", "+7", "2e22"] * 30
     rows = [f"{i},{x}" for i, x in enumerate(cells)]
     path.write_text("t,theta\n" + "\n".join(rows))
-    plain = read_trajectory(str(path)).values()["theta"][:, 0].tolist()
+    plain = read_trajectory(str(path)).values(radians=True)["theta"][:, 0].tolist()
     assert plain == list(map(float, cells))
     rows[3:5] = ['"3","3."', "4,.5", "4.5,nan"]
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
-    assert read_trajectory(str(path)).values()["theta"][:, 0].tolist()[:5] == plain[:5]
+    assert read_trajectory(str(path)).values(radians=True)["theta"][:, 0].tolist()[:5] == plain[:5]
     rows[100] = "100,x"
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
     with pytest.raises(
         DataError, match="line 103, column 2: theta must be a finite decimal number, got 'x'"
     ):
-        read_trajectory(str(path)).values()
+        read_trajectory(str(path)).values(radians=True)
 
 
 @pytest.mark.parametrize(

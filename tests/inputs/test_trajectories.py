@@ -22,7 +22,6 @@ from pyarrow import parquet
 
 from lagrange_cli.errors import DataError
 from lagrange_cli.inputs import trajectory
-from lagrange_cli.inputs.observed import Conventions, angles_in
 from lagrange_cli.inputs.trajectory import read_times, read_trajectory
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES, expanded, quantities_in
 
@@ -37,7 +36,7 @@ Found = dict[str, Any]
 def read(path: Path | str, columns: list[str] | None = None) -> Found:
     """Return every quantity of a file, with checked times."""
     file = read_trajectory(str(path), columns)
-    found = file.values()
+    found = file.values(radians=True)
     file.check_times(found["t"][:, 0])
     return found
 
@@ -222,8 +221,6 @@ def test_times_may_run_backwards(tmp_path: Path) -> None:
     path.write_text("t,theta\n0,1\n-1,2\n-1,3\n")
     with pytest.raises(DataError, match=r"line 4: t must not repeat, got -1\.0 twice"):
         read(path)
-    file = read_trajectory(str(path))  # two measurements, for a fit
-    file.check_times(file.values()["t"][:, 0], repeats=True)
 
 
 def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
@@ -248,11 +245,9 @@ def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
 def test_units_in_headings(header: str, t: float, tilt: float, tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text(f"{header}\n{t / 4!r},{tilt / 2!r}\n{t / 2!r},{tilt * 1.25!r}\n")
-    file = read_trajectory(str(path))
-    found = file.values()
+    found = read(path)
     assert found["t"][:, 0] == pytest.approx([0.25, 0.5], rel=1e-15)
-    theta = angles_in(found, Conventions(), file.quantities)["theta"]
-    assert theta == pytest.approx([0.5, 1.25], rel=1e-15)
+    assert found["theta"][:, 0] == pytest.approx([0.5, 1.25], rel=1e-15)
     assert [float(x) for x in read_times(str(path)).exact] == pytest.approx([0.25, 0.5])
 
 
@@ -270,9 +265,8 @@ def test_an_elevation_is_the_complement_of_the_tilt(tmp_path: Path) -> None:
     path = tmp_path / "file"
     for heading, cell in (("elevation", 60.0), ("elevation [rad]", math.pi / 3)):
         path.write_text(f"t,{heading}\n0,{cell!r}\n")
-        file = read_trajectory(str(path))
-        theta = angles_in(file.values(), Conventions(), file.quantities)["theta"]
-        assert theta == pytest.approx([math.pi / 6], rel=1e-15)
+        found = read_trajectory(str(path)).values(radians=False)
+        assert found["theta"][0] == pytest.approx([math.pi / 6], rel=1e-15)
 
 
 @pytest.mark.parametrize(
