@@ -81,10 +81,6 @@ class MixedBodyWarning(UserWarning):
     """
 
 
-class NothingToDrawError(LagtopError):
-    """The motion does not have a requested picture."""
-
-
 class UnavailableError(LagtopError):
     """A cluster, a method or a package is not available."""
 

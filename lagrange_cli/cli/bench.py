@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from io import BytesIO
 from typing import TYPE_CHECKING
 
 from ..errors import LagtopError
@@ -11,8 +10,6 @@ from ..output.terminal import with_progress
 from . import shared as opt
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from ..output.destination import Output
 
 MOST_TIMES, MOST_SCENES, MOST_PERIODS = 10_000_000, 1000, 1e6
@@ -26,13 +23,6 @@ def _parse_spans(text: str) -> list[float]:
     if not all(0 < span <= MOST_PERIODS for span in spans) or spans != sorted(set(spans)):
         raise LagtopError(f"must increase from above 0 to {MOST_PERIODS:g} periods, got {text}")
     return spans
-
-
-def _drawn(figure: Figure, path: str) -> bytes:
-    """Return a picture in the format of its file."""
-    stream = BytesIO()
-    figure.savefig(stream, format=opt.extension(path), dpi=150)
-    return stream.getvalue()
 
 
 @opt.command(
@@ -79,7 +69,7 @@ def bench_command(
         out,
         lambda: bench(motions, methods, spans or [PERIODS], n, with_progress),
         plot,
-        lambda report: _drawn(methods_figure(report), plot or ""),
+        methods_figure,
     )
 
 
@@ -115,6 +105,6 @@ def stability_command(
         out,
         lambda: stability(kinds, samples, seed, with_progress),
         plot,
-        lambda report: _drawn(stability_figure(report), plot or ""),
+        stability_figure,
     )
     opt.fail_for(failures(report), len(report.rows), "rows")

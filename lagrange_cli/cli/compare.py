@@ -10,6 +10,8 @@ from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from ..output.destination import Output
     from ..output.report import Report
     from ..plot.reports import ErrorCurve
@@ -99,10 +101,10 @@ def compare_command(
             )
         return comparison_report(motion, results, found, limit)
 
-    def draw(_: Report) -> bytes:
+    def draw(_: Report) -> Figure:
         from ..plot.reports import draw_errors
 
-        return draw_errors(curves, limit, plot or "")
+        return draw_errors(curves, limit)
 
     report = opt.write_report(out, find, plot, draw)
     opt.fail_for(failed, len(report.rows), "trajectories")

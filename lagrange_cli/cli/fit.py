@@ -120,7 +120,11 @@ def fit_command(
         if scene_path and not failed and found[0].inputs is not None:
             stack.enter_context(opened(scene_path)).write(found[0].scene(source).encode())
         if plot:
-            stack.enter_context(opened(plot)).write(_drawn(found, plot))
+            from ..plot.reports import draw_fits
+            from ..plot.style import report_bytes
+
+            picture = report_bytes(plot, draw_fits, found)
+            stack.enter_context(opened(plot)).write(picture)
         out = out._replace(path="-") if scene_path else out
         _write(found, source, units, window is not None, out)
     if failed and len(found) == 1:
@@ -152,12 +156,3 @@ def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out:
     for x in found:
         for note in x.notes:
             complain(f"Note: {x.recording.named(note)}")
-
-
-def _drawn(found: list[Outcome], path: str) -> bytes:
-    """Return the picture of the fits."""
-    from ..plot.reports import draw_fit
-
-    curves = [curve for outcome in found for curve in outcome.curves()]
-    title = found[0].title if len(found) == 1 else ""
-    return draw_fit(curves, found[0].angle, path, title)

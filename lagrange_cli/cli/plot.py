@@ -19,8 +19,8 @@ from ..plot.style import DARK, FORMATS, LEAST_DPI, LIGHT, MOST_DPI, check_pictur
 from . import shared as opt
 
 if TYPE_CHECKING:
+    from ..arithmetic.types import Array
     from ..inputs.values import Value
-    from ..plot.options import Axis, MapOptions
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
 
@@ -84,45 +84,34 @@ def plot_command(
     fmt = _format_of(output)
     film = None if animate is None else check_picture(animate, ("gif", "mp4"))
     eye = None if camera is None else _camera(camera, top.radians)
-    chart = _map_options(key, {"x": x, "y": y}, top) if "map" in kinds else None
-    from ..plot.curves import checked_span
-    from ..plot.film import check_film, film_bytes
-    from ..plot.options import Options
+    from ..plot.film import SECONDS, film_bytes
+    from ..plot.pictures import Options
     from .table import angle_stds
 
-    seconds = check_film(animate, float(duration) if duration else None) if animate else 0.0
     others = {} if t_max is None else {"t_max": t_max}
     founds = [top._replace(scene=name or None).given(others) for name in scenes or [""]]
     motions = {name: opt.motion_of(x) for name, x in zip(scenes or [""], founds, strict=True)}
-    spans = [
-        checked_span(motion, found.others.get("t_max"))
-        for motion, found in zip(motions.values(), founds, strict=True)
-    ]
     options = Options(
-        t_max=spans[0],
+        t_max=founds[0].others.get("t_max"),
         radians=top.radians,
         camera=eye,
         look=DARK if dark else LIGHT,
-        map=chart,
+        key=key,
+        x=_axis("--x", x, top),
+        y=_axis("--y", y, top),
+        progress=with_progress,
         unit=founds[0].system.named if founds[0].system else str,
     )
     if len(founds) == 1 and (stds := angle_stds(founds[0], motions[scenes[0] if scenes else ""])):
         options = options._replace(stds=stds.at)
     with ExitStack() as stack:
-        film_file = stack.enter_context(opened(animate)) if animate is not None else None
+        if animate and film:
+            motion, resolution = next(iter(motions.values())), float(dpi or FILM_DPI)
+            stream, seconds = stack.enter_context(opened(animate)), float(duration or SECONDS)
+            stream.write(film_bytes(motion, film, options, seconds, resolution))
         if output is not None:
             picture = _picture(motions, kinds, options, (fmt, float(dpi or PAGE_DPI)))
             stack.enter_context(opened(output)).write(picture)
-        if film_file and film:
-            motion, resolution = next(iter(motions.values())), float(dpi or FILM_DPI)
-            film_file.write(
-                film_bytes(
-                    *(motion, film, options),
-                    seconds=seconds,
-                    dpi=resolution,
-                    progress=with_progress,
-                )
-            )
 
 
 def _kinds(names: Sequence[str]) -> list[str]:
@@ -155,23 +144,14 @@ def _camera(text: str, radians: bool) -> tuple[float, float]:
     return azimuth, elevation
 
 
-def _map_options(
-    key: str | None, axes: Mapping[str, str | None], top: opt.TopOptions
-) -> MapOptions:
-    """Return the key and the axes of a map."""
-    from ..plot.options import MapOptions
-
-    ends = {name: _axis(f"--{name}", text, top) for name, text in axes.items() if text}
-    return MapOptions(key or MapOptions().key, ends.get("x"), ends.get("y"), with_progress)
-
-
-def _axis(option: str, text: str, top: opt.TopOptions) -> Axis:
-    """Return the axis of a map from a text such as `r0=log:5:120:40` or `r0=60:600:40 rpm`."""
+def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Array] | None:
+    """Return the input and the values of a text such as `r0=log:5:120:40` or `r0=60:600:40 rpm`."""
     from ..inputs.input_keys import DECLARED
     from ..inputs.units import factor_of
     from ..inputs.values import parse_range, parse_value
-    from ..plot.map import checked_axis
 
+    if text is None:
+        return None
     name, _, grid = text.partition("=")
     try:
         value = parse_value(grid, parse_range)
@@ -182,7 +162,7 @@ def _axis(option: str, text: str, top: opt.TopOptions) -> Axis:
     except LagtopError as error:
         raise LagtopError(f"{option} {error}") from None
     points: Any = value.number
-    return checked_axis(option, name, next(points.blocks()), logarithmic="log:" in grid)
+    return name, next(points.blocks())
 
 
 def _picture(

@@ -20,6 +20,7 @@ from .app import complain
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
+    from matplotlib.figure import Figure
 
     from ..inputs.given import Given
     from ..inputs.values import Value
@@ -354,7 +355,7 @@ def write_report(
     out: Output,
     find: Callable[[], Report],
     plot: str | None = None,
-    draw: Callable[[Report], bytes] | None = None,
+    draw: Callable[[Report], Figure] | None = None,
 ) -> Report:
     """Write the report that `find` returns, and its picture; return the report.
 
@@ -364,7 +365,9 @@ def write_report(
     with opened(plot) if plot else nullcontext() as picture, opened(out.path) as stream:
         report = find()
         if picture and draw:
-            picture.write(draw(report))
+            from ..plot.style import report_bytes
+
+            picture.write(report_bytes(plot or "", draw, report))
         stream.write(report.text(out.fmt, width_of(out.path)))
     if out.fmt in {"csv", "ndjson"}:
         for name, text in report.conditions.items():

@@ -99,12 +99,10 @@ class Comparison(HasRecord):
 
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw the error over time, on a figure of matplotlib or a new one, and return it."""
-        from ..plot.reports import ErrorCurve, draw_error_panels, new_figure  # start-up: matplotlib
+        from ..plot.reports import ErrorCurve, draw_errors, new_figure  # start-up: matplotlib
 
-        figure = figure or new_figure()
         curve = ErrorCurve(self.file or "trajectory", self.t, self.error, None, self.error_max)
-        draw_error_panels(figure, [curve], LIMIT)
-        return figure
+        return draw_errors([curve], LIMIT, figure or new_figure())
 
     def __repr__(self) -> str:
         return f"<Comparison: {self.verdict}, error_max = {self.error_max}, {self.rows} rows>"

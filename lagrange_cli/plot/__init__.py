@@ -53,27 +53,19 @@ def draw(
     if kind != "map" and (key or x or y):
         raise LagtopError(f"key, x and y need the kind map, got {kind}")
     require_matplotlib()
-    import numpy as np
     from matplotlib import pyplot
     from matplotlib.axes import Axes
 
-    from .curves import checked_span
-    from .map import checked_axis
-    from .options import MapOptions, Options
-    from .pictures import PICTURES
+    from .pictures import PICTURES, Options
 
-    picture, axes = PICTURES[kind], [ax] if isinstance(ax, Axes) else list(ax or [])
+    picture, count, _ = PICTURES[kind]
     if ax is None:
-        grid = pyplot.subplots(picture.axes, sharex=True, squeeze=False, layout="constrained")[1]
-        axes = list(grid.flat)
-    if len(axes) != picture.axes:
-        raise LagtopError(f"ax must be {picture.axes} axes, got {len(axes)}", "ax")
-    ends = [
-        pair and checked_axis(name, pair[0], np.asarray(pair[1], float))
-        for name, pair in (("x", x), ("y", y))
-    ]
-    chart = MapOptions(key or MapOptions().key, ends[0], ends[1])
-    span = checked_span(motion, t_max)
-    options = Options(span, radians, look=DARK if dark else LIGHT, map=chart)
-    axes[0].set_title(picture.draw(motion, axes, options), pad=18)
+        grid = pyplot.subplots(count, sharex=True, squeeze=False, layout="constrained")[1]
+        ax = list(grid.flat)
+    axes = [ax] if isinstance(ax, Axes) else list(ax)
+    if len(axes) != count:
+        raise LagtopError(f"ax must be {count} axes, got {len(axes)}", "ax")
+    look = DARK if dark else LIGHT
+    options = Options(t_max, radians, look=look, key=key, x=x, y=y)
+    axes[0].set_title(picture(motion, axes, options), pad=18)
     return axes

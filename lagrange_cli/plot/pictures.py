@@ -6,81 +6,198 @@ A new picture is one function and one row in PICTURES.  Equation numbers are Chr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from matplotlib.ticker import LogLocator, MaxNLocator
+from numpy.typing import ArrayLike
 
-from ..arithmetic.types import Array, Mask
-from ..errors import NothingToDrawError
+from ..arithmetic.numbers import Number, angle_unit
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.input_keys import DECLARED, NINE
+from ..inputs.names import check_names
+from ..inputs.top import Top
+from ..motion.quantity import degree_name
+from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from .curves import sampled, span, tilt_period, turn_span
-from .map import draw_map
-from .options import Options, mark_start
-from .style import Look, number_text, plain, scale
+from ..output.terminal import Progress, silent
+from ..sweep.records import sweep
+from .style import LIGHT, Look, plain, scale
 
-FAR: dict[str, Any] = {"alpha": 0.45, "ls": (0, (3, 3)), "zorder": 1, "label": None}
-"""Style of lines on the far side of the globe."""
-ARROWS = 0.1, 0.28, 0.46, 0.64, 0.82
+MOST_PERIODS = 1000
+"""Most nutation periods in one picture; more would be a blot and not a curve."""
+SAMPLES = 200
+"""Samples per nutation period."""
+ARROWS = np.array([0.1, 0.28, 0.46, 0.64, 0.82])
 """Places of the arrowheads that show the direction of a path, as shares of its samples."""
+WORDS = {"regime": "Regime of the motion", "path": "Path of the axis"}
+"""Keys of a map whose values are words, with their titles."""
+REGIONS = "#9cc9ec #f3c69a #a9dcc3 #d9c3ea #f0e08c #e8a9a4 #c9ced4 #c8e6a0".split()
+"""Colours of words."""
+MOST_VALUES = 1000
+"""Most values along one axis of a map."""
+
+
+class Options(NamedTuple):
+    """What a picture shows, and how."""
+
+    t_max: Number | None = None
+    """Last time of the pictures over time; by default each picture chooses its own."""
+    radians: bool = False
+    """Whether angles are in radians instead of degrees."""
+    camera: tuple[float, float] | None = None
+    """Azimuth and elevation (radians) of the camera; by default it faces the path."""
+    look: Look = LIGHT
+    stds: Callable[[Array], Any] | None = None
+    """Standard deviations (radians) of tilt, spin and precession at given times: bands."""
+    key: str | None = None
+    """Key of a map; by default the mean precession rate."""
+    x: tuple[str, ArrayLike] | None = None
+    """Input along the horizontal axis of a map, and its values; by default the spin."""
+    y: tuple[str, ArrayLike] | None = None
+    """The same for the vertical axis; by default the tilt."""
+    progress: Progress = silent
+    unit: Callable[[str], str] = str
+    """Returns the name of a unit such as `rad/time` in the units of the inputs."""
+
+    @property
+    def angle_unit(self) -> tuple[float, str]:
+        """The size of one radian in the unit of angles, and the name of that unit."""
+        return angle_unit(radians=self.radians)
+
+    @property
+    def time_label(self) -> str:
+        """The label of an axis of time."""
+        return f"t ({self.unit('time').replace('time', 'input units')})"
+
+
+# --- times
+
+
+def tilt_period(motion: Motion) -> float | None:
+    """Return the period of the tilt, or None for a tilt that is constant or never returns."""
+    return None if motion.theta_min_deg == motion.theta_max_deg else motion.T_nutation
+
+
+def usual_span(motion: Motion, least: float, most: float) -> float:
+    """Return the time of one turn of the precession, but `least` to `most` nutation periods.
+
+    On the separatrix it is the time of the swing.  For a constant tilt it is one turn of the
+    precession or of the spin.
+    """
+    if swing := motion.swing:
+        return max(6.0 / swing.rate, 2.0 * swing.lowest)
+    if nutation := tilt_period(motion):
+        return min(max(motion.T_precession or 0.0, least * nutation), most * nutation)
+    return motion.T_precession or motion.T_spin or 1.0
+
+
+def last_time(motion: Motion, options: Options, usual: float) -> float:
+    """Return the last time of the options, by default the usual one.
+
+    Raises LagtopError unless it is above 0 and the curve up to it is legible.
+    """
+    most = MOST_PERIODS * (tilt_period(motion) or math.inf)
+    if options.t_max is not None and not 0 < options.t_max <= most:
+        bounds = f"> 0 and at most {MOST_PERIODS} nutation periods = {most:.6g}"
+        raise LagtopError(f"t_max must be {bounds}, got {float(options.t_max):g}", "t_max")
+    return usual if options.t_max is None else float(options.t_max)
+
+
+def sampled(motion: Motion, t_max: float, names: Sequence[str]) -> list[Array]:
+    """Return times from 0 to t_max, and columns of `lagtop table` in radians.
+
+    The samples are even in the sum of time and length of the curve, each as a share of the whole:
+    so they are dense where the curve is steep.
+    """
+    count = round(SAMPLES * max(t_max / (tilt_period(motion) or t_max), 2.0))
+    t = np.linspace(0.0, t_max, count + 1)
+    for _ in range(2):
+        points = np.stack([*motion.table(t, names).values()])
+        extent = np.ptp(points, axis=1, keepdims=True)
+        steps = np.diff(points) / np.where(extent > 0, extent, np.inf)
+        length = np.append(0.0, np.cumsum(np.hypot.reduce(steps)))
+        even = t / t_max + length / (length[-1] or 1.0)
+        t = np.interp(np.linspace(0.0, even[-1], count + 1), even, t)
+    return [*motion.table(t, ["t", *names]).values()]
 
 
 # --- sphere
 
 
-def camera_at(azimuth: float, elevation: float) -> Array:
-    """Return an orthographic camera (angles in radians): its axes right, up and towards us."""
-    sa, ca, se, ce = (f(x) for x in (azimuth, elevation) for f in (math.sin, math.cos))
+def camera_of(path: Array, options: Options, elevation: float = 20.0) -> Array:
+    """Return an orthographic camera: its axes right, up and towards us.
+
+    By default it is in front of the middle of a path and its start, a little to the side, and above
+    the horizon unless the path hangs well below it.
+    """
+    x, y, z = path.mean(axis=0) + 0.2 * path[0]  # a path that goes around has its middle at 0
+    in_front = math.atan2(y, x) + 0.3, math.radians(math.copysign(elevation, z + 0.5))
+    sa, ca, se, ce = (f(x) for x in options.camera or in_front for f in (math.sin, math.cos))
     return np.array([[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
 
 
-def camera_of(path: Array, options: Options, elevation: float = 20.0) -> Array:
-    """Return the camera of the options, or the one in front of the middle of a path.
+def project(camera: Array, points: Array) -> tuple[Array, Array]:
+    """Return x and y of points, shape (n, 2), on the near side and on the far side.
 
-    It is above the horizon unless the path hangs well below it.
+    Points of the other side are NaN.
     """
-    if options.camera:
-        return camera_at(*options.camera)
-    x, y, z = path.mean(axis=0)
-    azimuth = math.atan2(y, x)
-    if math.hypot(x, y) < 0.3:  # the path goes around: face its start, a little from the side
-        azimuth = math.atan2(path[0, 1], path[0, 0]) + 0.5
-    return camera_at(azimuth, math.radians(math.copysign(elevation, z + 0.5)))
-
-
-def project(camera: Array, points: Array) -> tuple[Array, Mask]:
-    """Return x and y, shape (2, n), of points of shape (n, 3), and whether they face us."""
-    seen = camera @ points.T
-    return seen[:2], seen[2] >= 0
+    *xy, depth = camera @ points.T
+    near = depth >= 0
+    return np.where(near, xy, np.nan).T, np.where(near, np.nan, xy).T
 
 
 def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
-    """the path of the figure axis on the unit sphere, coloured by time"""
+    """Draw the path of the figure axis on the unit sphere, with the direction, coloured by time.
+
+    Above six nutation periods the line is finer.
+    """
     (ax,), look = axes, options.look
-    t_max = options.t_max or min(turn_span(motion), span(motion, 40))
-    t, *columns = sampled(motion, t_max, ["axis"]).values()
+    t, *columns = sampled(motion, last_time(motion, options, usual_span(motion, 3, 40)), ["axis"])
     path = np.stack(columns, axis=1)
     camera = camera_of(path, options)
     draw_globe(ax, motion, camera, options)
-    lines = draw_path(ax, t, *project(camera, path), look=look, period=tilt_period(motion) or t_max)
+    near, far = project(camera, path)
     moves = np.ptp(path, axis=0).max() > 1e-12
-    x, y = project(camera, path[:1])[0]
-    mark_start(ax, x, y, look, "start" if moves else "the axis stays here")
+    mark_start(ax, camera[:2] @ path[0], look, "start" if moves else "the axis stays here")
     if moves:
+        cuts = np.linspace(0, t.size - 1, 161).astype(int)
+        fine = math.sqrt(min(1.0, 6 * (tilt_period(motion) or t[-1]) / t[-1]))
+        for side, width, alpha, order in ((far, 1.2, 0.35, 1), (near, 2.2, None, 3)):
+            pieces = [side[i : j + 1] for i, j in pairwise(cuts)]
+            lines = LineCollection(pieces, array=t[cuts[:-1]], clim=(0, t[-1]), cmap=scale(look))
+            lines.set(lw=width * max(fine, 0.35), capstyle="round", alpha=alpha, zorder=order)
+            ax.add_collection(lines)
         bar = ax.figure.colorbar(lines, ax=ax, shrink=0.6, pad=0.02, aspect=28)
         bar.outline.set_visible(False)
         bar.set_label(options.time_label)
+        is_large = np.ptp(path @ camera[:2].T, axis=0).max() > 0.15
+        heads = ((ARROWS if is_large else ARROWS[-1:]) * t.size).astype(int)
+        steps = near[heads + 1] - near[heads]
+        steps /= np.linalg.norm(steps, axis=1, keepdims=True)
+        shape: dict[str, Any] = {"headlength": 6, "headaxislength": 6, "headwidth": 5}
+        shape |= {"units": "inches", "width": 0.02, "scale_units": "inches", "scale": 8.0}
+        ax.quiver(*near[heads].T, *steps.T, color=look.ink, pivot="mid", zorder=5, **shape)
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3)
     words = f"{motion.path} path" if motion.path else motion.regime.value
     if motion.regime is Regime.SLEEPING:
         words += ", stable" if motion.exact.facts.stable else ", unstable"
     return f"Figure axis on the unit sphere: {words}"
+
+
+def mark_start(ax: Axes, point: Iterable[float], look: Look, label: str = "start") -> None:
+    """Draw a ring with a label at one point."""
+    ring: dict[str, Any] = {"mfc": look.paper, "mec": look.ink, "mew": 1.6, "ms": 7, "zorder": 6}
+    ax.plot(*point, "o", ls="none", label=label, **ring)
 
 
 def draw_globe(ax: Axes, motion: Motion, camera: Array, options: Options) -> None:
@@ -90,133 +207,87 @@ def draw_globe(ax: Axes, motion: Motion, camera: Array, options: Options) -> Non
     ax.set(aspect="equal", xlim=(-1.35, 1.35), ylim=(-1.35, 1.35))
     ax.add_patch(Circle((0, 0), 1, fc=look.faint, ec=look.quiet, alpha=0.6, zorder=0))
     draw_circle(ax, camera, math.pi / 2, color=look.quiet, lw=0.6)
-    for name, end, depth in zip("xyz", 1.24 * camera[:2].T, camera[2], strict=True):
-        start, fade, order = (end / 1.24, 1.0, 4.0) if depth >= 0 else (0 * end, 0.5, 0.5)
-        arrow = {"arrowstyle": "-|>", "color": look.quiet, "alpha": fade, "lw": 0.8}
-        if np.hypot(*end) > 0.15:
-            ax.annotate("", end, start, arrowprops=arrow, zorder=order)
-        ax.text(1.08 * end[0], 1.08 * end[1], name, color=look.quiet, ha="center", va="center")
-    limits = [math.radians(x or 0.0) for x in (motion.theta_min_deg, motion.theta_max_deg)]
-    unit = " rad" if options.radians else "°"
-    low, high = (number_text(x * options.factor, 4) + unit for x in limits)
-    line: dict[str, Any] = {"color": look.lines[0], "lw": 1.2}
-    if limits[1] - limits[0] < math.radians(0.8):
-        text = f"ϑ = {low}" if limits[0] == limits[1] else f"ϑ {low} to {high}"
-        draw_circle(ax, camera, limits[1], label=text, **line)
-    else:
-        draw_circle(ax, camera, limits[0], label=f"ϑ min {low}", **line)
-        draw_circle(ax, camera, limits[1], label=f"ϑ max {high}", ls=(0, (7, 2, 1, 2)), **line)
+    for name, end, depth in zip("xyz", camera[:2].T, camera[2], strict=True):
+        shade: dict[str, Any] = {"color": look.quiet, "alpha": 1.0 if depth >= 0 else 0.5}
+        arrow = {"arrowstyle": "<|-", "lw": 0.8, **shade}
+        ax.annotate(name, end, 1.32 * end, ha="center", va="center", arrowprops=arrow, **shade)
+    least, most = (math.radians(x or 0.0) for x in (motion.theta_min_deg, motion.theta_max_deg))
+    limits = {"ϑ min": least, "ϑ max": most} if least < most else {"ϑ =": least}
+    for (name, tilt), dashes in zip(limits.items(), ("-", (0, (7, 2, 1, 2))), strict=False):
+        text = f"{name} {tilt * options.angle_unit[0]:.4g}{' rad' if options.radians else '°'}"
+        draw_circle(ax, camera, tilt, color=look.lines[0], lw=1.2, ls=dashes, label=text)
 
 
 def draw_circle(ax: Axes, camera: Array, tilt: float, **line: Any) -> None:
-    """Draw the circle of a tilt, with its far side dashed and paler; at a pole it is a dot."""
-    around, sine = np.linspace(0.0, 2 * math.pi, 241), math.sin(tilt)
-    rim = [sine * np.cos(around), sine * np.sin(around), 0 * around + math.cos(tilt)]
-    xy, near = project(camera, np.stack(rim, axis=1))
-    if sine < 1e-3:
-        ax.plot(*xy[:, 0], "o", ms=5, zorder=2, **line | {"ls": "none"})
-        return
-    ax.plot(*np.where(near, xy, np.nan), zorder=2, **line)
-    ax.plot(*np.where(near, np.nan, xy), **line | FAR)
-
-
-def draw_path(
-    ax: Axes, t: Array, xy: Array, near: Mask, *, look: Look, period: float
-) -> LineCollection:
-    """Draw a path, coloured by time in 160 steps, with arrowheads; paler on the far side.
-
-    Return the lines of the near side.  Above six nutation periods the lines are finer.
-    """
-    step = np.floor(t / t[-1] * 160)
-    cuts = np.flatnonzero((np.diff(step) != 0) | (near[1:] != near[:-1])) + 1
-    pieces = [slice(i, j + 1) for i, j in pairwise([0, *cuts.tolist(), t.size - 1])]
-    fine = max(0.35, math.sqrt(min(1.0, 6 * period / t[-1])))
-    for side, width in ((False, 1.2), (True, 2.2)):
-        mine = [piece for piece in pieces if near[piece.start] == side]
-        lines = LineCollection(
-            [xy.T[piece] for piece in mine],
-            array=[t[piece].mean() for piece in mine],
-            cmap=scale(look),
-            alpha=None if side else 0.35,
-            linewidths=width * fine,
-            capstyle="round",
-            zorder=3 if side else 1,
-        )
-        lines.set_clim(t[0], t[-1])
-        ax.add_collection(lines)
-    head: dict[str, Any] = {"arrowstyle": "-|>,head_length=0.5,head_width=0.28"}
-    head |= {"mutation_scale": 13, "color": look.ink, "linewidth": 0, "shrinkA": 0, "shrinkB": 0}
-    extent = np.ptp(xy, axis=1).max()
-    for part in ARROWS if extent > 0.15 else ARROWS[-1:] if extent > 1e-12 else ():
-        i = int(part * t.size)
-        if near[i]:
-            ax.annotate("", tuple(xy[:, i + 1]), tuple(xy[:, i]), arrowprops=head, zorder=5)
-    return lines
+    """Draw the circle of a tilt, with its far side dashed and paler."""
+    around = np.linspace(0.0, 2 * math.pi, 241)
+    x, y, z = math.sin(tilt) * np.cos(around), math.sin(tilt) * np.sin(around), math.cos(tilt)
+    near, far = project(camera, np.stack([x, y, 0 * x + z], axis=1))
+    ax.plot(*near.T, zorder=2, **line)
+    ax.plot(*far.T, zorder=1, **line | {"alpha": 0.45, "ls": (0, (3, 3)), "label": None})
 
 
 # --- angles
 
 
 def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
-    """tilt, precession, and the deviation of the spin from its mean rate, over time"""
-    look, factor = options.look, options.factor
-    t_max = options.t_max or span(motion, 3)
-    t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"]).values()
+    """Draw tilt, precession, and the deviation of the spin from its mean rate, over time."""
+    look, (factor, unit) = options.look, options.angle_unit
+    t_max = last_time(motion, options, usual_span(motion, 3, 3))
+    t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
     stds = [0 * t] * 3 if options.stds is None else options.stds(t)
     spin, turn = motion.mean_spin_rate or 0.0, motion.mean_precession_rate
-    rows = ("ϑ", theta), ("Δφ", phi - spin * t), ("ψ", psi)
-    for ax, (name, angle), std, colour in zip(axes, rows, stds, look.lines, strict=True):
+    note = ""
+    if motion.regime in (Regime.SLEEPING, Regime.HANGING):
+        note = "spin only: there is no precession"
+    elif turn is not None:
+        axes[2].plot(t, turn * t * factor, color=look.ink, lw=0.9, ls=(0, (4, 3)), zorder=3)
+        note = f"dashed: mean rate {turn:.4g} {options.unit('rad/time')}"
+    rows = (
+        ("ϑ", theta, ""),
+        ("Δφ", phi - spin * t, f"spin less its mean rate {spin:.4g} {options.unit('rad/time')}"),
+        ("ψ", psi, note),
+    )
+    for ax, (name, angle, text), std, colour in zip(axes, rows, stds, look.lines, strict=True):
         if np.abs(angle).max() < 1e-13:  # rounding errors of an angle that is 0
             ax.set_ylim(-1, 1)
         ax.plot(t, angle * factor, color=colour)
         if np.any(std):
             ends = (angle - std) * factor, (angle + std) * factor
             ax.fill_between(t, *ends, color=colour, alpha=0.3, linewidth=0)
-        ax.set(ylabel=f"{name} ({options.angle})", xlim=(t[0], t[-1]))
-    notes = {1: f"spin less its mean rate {number_text(spin, 4)} {options.unit('rad/time')}"}
-    if motion.regime in (Regime.SLEEPING, Regime.HANGING):
-        notes[2] = "spin only: there is no precession"
-    elif turn is not None:
-        axes[2].plot(t, turn * t * factor, color=look.ink, lw=0.9, ls=(0, (4, 3)))
-        notes[2] = f"dashed: mean rate {number_text(turn, 4)} {options.unit('rad/time')}"
-    for row, text in notes.items():
-        axes[row].set_title(text, fontsize="small", color=look.quiet, loc="right")
+        ax.set(ylabel=f"{name} ({unit})", xlim=(t[0], t[-1]))
+        ax.set_title(text, fontsize="small", color=look.quiet, loc="right")
     axes[-1].set_xlabel(options.time_label)
-    mark_periods(axes, tilt_period(motion) or math.inf, t[-1])
+    period = tilt_period(motion) or math.inf
+    count = int(t[-1] / period * (1 + 1e-9))
+    whole = range(step := math.ceil(count / 8) or 1, count + 1, step)
+    mark_above(axes, {n * period: f"{n} T".removeprefix("1 ") for n in whole}, look)
     return "Tilt ϑ, spin φ, precession ψ" + "; bands: ±1σ" * (options.stds is not None)
 
 
-def mark_periods(axes: Sequence[Axes], period: float, end: float) -> None:
-    """Mark nutation periods T above the first panel, and by thin lines in all panels."""
-    count = int(end / period * (1 + 1e-9))
-    whole = range(step := math.ceil(count / 8) or 1, count + 1, step)
+def mark_above(axes: Sequence[Axes], names: Mapping[float, str], look: Look) -> None:
+    """Mark places by thin lines in all panels, with their names above the first panel."""
     for ax in axes:
-        ax.vlines(
-            [n * period for n in whole], 0, 1, "0.5", transform=ax.get_xaxis_transform(), lw=0.4
-        )
-    if whole:
-        above = axes[0].secondary_xaxis("top")
-        above.set_xticks([n * period for n in whole], [f"{n} T".removeprefix("1 ") for n in whole])
-        above.tick_params(labelsize="small", length=3, pad=1)
-        above.spines["top"].set_visible(False)
+        ax.vlines([*names], 0, 1, look.quiet, transform=ax.get_xaxis_transform(), lw=0.5)
+    above = axes[0].secondary_xaxis("top")
+    above.set_xticks([*names], [*names.values()], size="small")
+    above.tick_params(length=3, pad=1)
+    above.spines["top"].set_visible(False)
 
 
 # --- cubic and phase
 
 
 def cubic(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
-    """f(u), its roots, and the band of the motion"""
+    """Draw f(u), its roots, and the band of the motion."""
     (ax,), look = axes, options.look
     u1, u2, u3 = float(motion.u1 or 0), float(motion.u2 or 0), motion.u3
     near = u3 is not None and u3 - u1 <= (1.5 * (u1 - u2) or 2.0)
     right = float(u3 or 0) if near else u1
     width = max(right - u2, 1e-9) if right > u2 else 0.4
     u = np.linspace(u2 - 0.4 * width, right + 0.4 * width, 801)
-    f = (u - u1) * (u - u2)
-    if u3 is None:  # no torque, or a vertical axis: the roots add up to (alpha + b^2)/a
-        f *= float(motion.a) * (u + u1 + u2) - (motion.energy_constant + float(motion.b) ** 2)
-    else:
-        f *= float(motion.a) * (u - u3)
+    total = motion.energy_constant + float(motion.b) ** 2  # the roots add up to total / a
+    f = (u - u1) * (u - u2) * (float(motion.a) * (u + u1 + u2) - total)
     inside = (u >= u2) & (u <= u1)
     ax.axhline(0.0, color=look.quiet, lw=0.9)
     ax.axvspan(u2, u1, color=look.faint, zorder=0)
@@ -225,22 +296,15 @@ def cubic(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     hump, most = float(f[inside].max(initial=0.0)), float(np.abs(f).max()) or 1.0
     ax.set_xlim(u[0], u[-1])
     ax.set_ylim(*((-0.6 * most, 1.1 * most) if hump < 1e-3 * most else (-1.3 * hump, 1.3 * hump)))
-    above: dict[str, Any] = {"textcoords": "offset points", "color": look.quiet, "size": "small"}
-    for pole, name in ((1, "upright"), (-1, "hanging")):
-        if u[0] <= pole <= u[-1]:
-            ax.axvline(pole, color=look.quiet, lw=1.0, ls=(0, (4, 3)), zorder=0.5)
-            top = ax.get_xaxis_transform()
-            ax.annotate(name, (pole, 1.0), (0, 2), xycoords=top, ha="center", **above)
+    mark_above(axes, {-1: "hanging", 1: "upright"}, look)
     roots = {"u₁ = u₂": u1} if u1 == u2 else {"u₂": u2, "u₁": u1}
     known = roots | ({} if u3 is None else {"u₃": float(u3)})
+    offsets = {"u₁ = u₂": (0, 13), "u₂": (-13, 11), "u₁": (-13, -11), "u₃": (13, -11)}
     for name, root in known.items() if near else roots.items():
-        x, y, ha, va = {
-            "u₁": (-7, -8, "right", "top"),
-            "u₃": (7, -8, "left", "top"),
-        }.get(name, (-7, 8, "right", "bottom"))
         ax.plot(root, 0.0, "o", ms=7, color=look.ink)
-        ax.annotate(name, (root, 0.0), (x, y), textcoords="offset points", ha=ha, va=va)
-    values = ",   ".join(f"{name} = {number_text(root, 7)}" for name, root in known.items())
+        place: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "center"}
+        ax.annotate(name, (root, 0.0), offsets[name], **place)
+    values = ",   ".join(f"{name} = {root:.7g}" for name, root in known.items())
     ax.set_xlabel(f"u = cos ϑ;   {values}", fontsize="small")
     ax.set_ylabel(f"f(u) ({options.unit('1/time²')})")
     ax.locator_params(axis="x", nbins=5 if width > 1e-4 else 2)
@@ -248,12 +312,12 @@ def cubic(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
 
 
 def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
-    """tilt rate against tilt, and the separatrix"""
-    (ax,), look, factor = axes, options.look, options.factor
-    _, theta, rate = sampled(motion, span(motion, 1), ["theta", "thetadot"]).values()
+    """Draw the tilt rate against the tilt, and the separatrix."""
+    (ax,), look, (factor, unit) = axes, options.look, options.angle_unit
+    _, theta, rate = sampled(motion, usual_span(motion, 1, 1), ["theta", "thetadot"])
     ax.axhline(0.0, color=look.quiet, lw=0.9)
     ax.plot(theta * factor, rate, color=look.lines[0], label="this motion")
-    mark_start(ax, theta[0] * factor, float(motion.top.thetadot0), look)
+    mark_start(ax, (theta[0] * factor, float(motion.top.thetadot0)), look)
     a, b = float(motion.a), float(motion.b)
     if b * b < 2 * a:
         tilt, speed = separatrix(a, b)
@@ -263,8 +327,7 @@ def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
         why = "without torque" if a == 0 else "the upright top is stable with this spin"
         ax.plot([], [], ls="none", label=f"no separatrix: {why}")
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-    ax.set_xlabel(f"tilt ϑ ({options.angle})")
-    ax.set_ylabel(f"tilt rate ϑ̇ ({options.unit('rad/time')})")
+    ax.set(xlabel=f"tilt ϑ ({unit})", ylabel=f"tilt rate ϑ̇ ({options.unit('rad/time')})")
     ax.margins(0.06)
     ax.locator_params(axis="x", nbins=5)
     return "Nutation in the phase plane"
@@ -284,58 +347,147 @@ def separatrix(a: float, b: float) -> tuple[Array, Array]:
     return tilt, np.where(np.arange(385) < 192, rate, -rate)
 
 
+# --- map
+
+
 def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
-    """a key of the record over two inputs"""
-    return draw_map(motion, axes[0], options)
+    """Draw a key of the record over a grid of two inputs, the border of stability and the scene.
+
+    Raises LagtopError for an unknown key, for wrong axes, and if the key has no value anywhere.
+    """
+    (ax,), look = axes, options.look
+    key = degree_name(options.key or "mean_precession_rate")
+    check_names("key", [key], [*WORDS, *NUMBER_KEYS, *requested_keys()])
+    grid = grid_of(motion.top, options)
+    for side, (name, points) in zip("xy", grid.items(), strict=True):
+        declared = DECLARED[name]
+        unit = options.angle_unit[1] if declared.unit == "angle" else options.unit(declared.unit)
+        known = "" if "len" in unit or "mass" in unit else f" ({unit})"
+        geometric = np.geomspace(points[0], points[-1], points.size) if points[0] > 0 else 0
+        shape = "log" if points.size > 2 and np.allclose(points, geometric, 1e-12) else "linear"
+        label = f"{declared.name} {declared.symbol}{known}"
+        ax.set(**{f"{side}label": label, f"{side}scale": shape})
+    inputs: dict[str, Any] = dict(motion.top.inputs(radians=options.radians))
+    tilt = next(name for name in inputs if name.startswith("theta0"))
+    (x, xs), (y, ys) = ((tilt if x == "theta0" else x, values) for x, values in grid.items())
+    keys = list(dict.fromkeys([key, "stability_factor"]))
+    rows = [
+        sweep(keys=keys, **inputs | {x: xs, y: value})
+        for value in options.progress(ys.tolist(), "map")
+    ]
+    values, stability = (np.array([row[name] for row in rows]) for name in (keys[0], keys[-1]))
+    title = (draw_words if key in WORDS else draw_numbers)(ax, grid, key, values, options)
+    if np.any(stability < 1) and np.any(stability > 1):
+        line: dict[str, Any] = {"colors": look.ink, "linewidths": 1.8, "linestyles": "--"}
+        ax.contour(xs, ys, stability, [1.0], **line)
+        ax.plot([], [], "--", color=look.ink, label="with more spin an upright top is stable")
+    own = float(inputs[x]), float(inputs[y])
+    if xs[0] <= own[0] <= xs[-1] and ys[0] <= own[1] <= ys[-1]:
+        mark_start(ax, own, look, "this scene")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
+    return title
 
 
-# --- pages
+def grid_of(top: Top, options: Options) -> dict[str, Array]:
+    """Return the two inputs of a map, horizontal first, with their increasing values.
+
+    The spins go up to twice the threshold of the sleeping top, or beyond the top's own spin.
+    """
+    threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
+    most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
+    tilts = np.radians(np.linspace(2.0, 178.0, 120)) * options.angle_unit[0]
+    x = options.x or ("r0", (np.arange(160) + 0.5) * most / 160)
+    y = options.y or ("theta0", tilts)
+    if x[0] == y[0]:
+        raise LagtopError(f"x and y must be two inputs, got {x[0]} twice")
+    grid = {name: np.asarray(values, float) for name, values in (x, y)}
+    for option, (name, values) in zip("xy", grid.items(), strict=True):
+        check_names(option, [name], NINE)
+        if not 2 <= values.size <= MOST_VALUES:
+            bounds = f"2 to {MOST_VALUES} values"
+            raise LagtopError(f"{option} must have {bounds}, got {values.size}", option)
+        if not np.all(np.diff(values) > 0):
+            ends = f"{name}={values[0]:g}:{values[-1]:g}"
+            raise LagtopError(f"{option} must have start < stop, got {ends}", option)
+    return grid
 
 
-class Picture(NamedTuple):
-    """A kind of picture."""
+def draw_numbers(
+    ax: Axes, grid: dict[str, Array], key: str, values: Array, options: Options
+) -> str:
+    """Draw a number as filled contours with labelled lines, and a colour bar; return a title.
 
-    draw: Callable[[Motion, Sequence[Axes], Options], str]
-    """Draws on axes, and returns a title."""
-    size: tuple[float, float]
-    """Width and height (inches) of one picture."""
-    axes: int = 1
-    """Number of axes, one below the other, with the same time axis."""
+    The colours span the values without the lowest and the highest 1 %, which may be a peak.  There
+    are no lines beside a jump, where they would be jagged.
+    """
+    declared, look = number_key(key), options.look
+    assert declared is not None
+    unit = options.unit(declared.unit)
+    if declared.unit == "angle":  # keys of angles are in degrees
+        values, unit = np.radians(values) * options.angle_unit[0], options.angle_unit[1]
+    shown = np.ma.masked_invalid(values)
+    if not shown.count():
+        raise LagtopError(f"no map: {key} is undefined for all of these tops")
+    low, high = np.percentile(shown.compressed(), [1, 99]).tolist()
+    if low == high:
+        low, high = low - 0.5 * (abs(low) or 1), low + 0.5 * (abs(low) or 1)
+    logarithmic = low > 0 and high > 30 * low
+    locator = LogLocator(subs=(1.0, 2.0, 5.0)) if logarithmic else MaxNLocator(10)
+    levels = np.unique(locator.tick_values(low, high))
+    norm = (LogNorm if logarithmic else Normalize)(levels[0], levels[-1])
+    ax.set_facecolor(look.faint)
+    filled = ax.contourf(*grid.values(), shown, levels, cmap=scale(look), norm=norm, extend="both")
+    slope = np.max(np.abs(np.gradient(shown.filled(np.nan))), axis=0)
+    smooth = np.ma.masked_where(slope > (high - low) / 8, shown)
+    lines = ax.contour(*grid.values(), smooth, levels, colors=look.paper, linewidths=0.6)
+    ax.clabel(lines, levels[1:-1:2], fontsize="small", fmt="%g")
+    label = f"{declared.symbol} ({unit})" if unit else declared.symbol
+    bar = ax.figure.colorbar(filled, ax=ax, aspect=28, format="%g", label=label)
+    bar.outline.set_visible(False)
+    if shown.count() < shown.size:
+        ax.plot([], [], "s", color=look.faint, mec=look.quiet, label="undefined")
+    return f"{declared.symbol}: {declared.meaning} {declared.equation}".rstrip()
 
 
-PICTURES = {
-    "sphere": Picture(sphere, (6.0, 5.6)),
-    "angles": Picture(angles, (6.8, 6.0), 3),
-    "cubic": Picture(cubic, (6.4, 4.8)),
-    "phase": Picture(phase, (6.4, 4.8)),
-    "map": Picture(map, (6.8, 5.0)),
+def draw_words(ax: Axes, grid: dict[str, Array], key: str, values: Array, _: Options) -> str:
+    """Draw words as coloured regions with a legend; return a title."""
+    names, numbers = np.unique(values.astype(str), return_inverse=True)
+    regions = ListedColormap(REGIONS[: names.size])
+    ax.pcolormesh(*grid.values(), numbers.reshape(values.shape), cmap=regions, rasterized=True)
+    for colour, name in zip(REGIONS, names, strict=False):
+        ax.plot([], [], "s", color=colour, label=name.replace("None", "undefined"))
+    return WORDS[key]
+
+
+# --- sheets
+
+
+PICTURES: dict[str, tuple[Callable[[Motion, Sequence[Axes], Options], str], int, Any]] = {
+    "sphere": (sphere, 1, (6.0, 5.6)),
+    "angles": (angles, 3, (6.8, 6.0)),
+    "cubic": (cubic, 1, (6.4, 4.8)),
+    "phase": (phase, 1, (6.4, 4.8)),
+    "map": (map, 1, (6.8, 5.0)),
 }
-"""The kinds of picture by name."""
+"""The function of each kind, which draws on axes and returns a title; the number of its axes, one
+below the other; and the width and height of one picture (inches)."""
 
 
 def figure_of(motions: Mapping[str, Motion], kinds: Sequence[str], options: Options) -> Figure:
     """Return a figure with a panel for each kind of each motion, by the name of its scene.
 
-    Several scenes stand side by side; several kinds of one scene fill a square.  Raises
-    NothingToDrawError if a single picture has nothing to show; in a sheet the panel says so.
+    Several scenes stand side by side; several kinds of one scene fill a square.
     """
     panels = [(name, kind) for kind in kinds for name in motions]
     columns = len(motions) if len(motions) > 1 else math.ceil(math.sqrt(len(kinds)))
     rows = -(-len(panels) // columns)
-    width, height = (max(PICTURES[kind].size[i] for kind in kinds) for i in (0, 1))
+    width, height = np.max([PICTURES[kind][2] for kind in kinds], axis=0)
     figure = Figure(figsize=(width * columns, height * rows))
     places = figure.subfigures(rows, columns, squeeze=False).flat
     for place, (name, kind) in zip(places, panels, strict=False):
-        axes = place.subplots(PICTURES[kind].axes, sharex=True, squeeze=False).ravel()
-        try:
-            title = PICTURES[kind].draw(motions[name], axes, options)
-        except NothingToDrawError as nothing:
-            if len(panels) == 1:
-                raise
-            title = str(nothing)
-            for ax in axes:
-                ax.set_axis_off()
-        if name and (len(motions) > 1 or kind == kinds[0]):
-            title = f"{plain(name)}: {title[:1].lower()}{title[1:]}"
-        place.suptitle(title, x=0.012, ha="left")
+        draw, count, _ = PICTURES[kind]
+        axes = place.subplots(count, sharex=True, squeeze=False).ravel()
+        title = draw(motions[name], axes, options)
+        place.suptitle(f"{plain(name)}: {title}" if name else title, x=0.012, ha="left")
     return figure

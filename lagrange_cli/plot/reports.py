@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .style import LIGHT, figure_bytes, plain, require_matplotlib, scale, styled
+from .style import LIGHT, plain, require_matplotlib, scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ..arithmetic.types import Array
-    from ..fit.outcome import Curve
+    from ..fit.outcome import Outcome
 
 MOST_RECORDINGS = 3
 """Most recordings on one sheet."""
-
-
-def report_picture(
-    path: str, size: tuple[float, float], title: str, draw: Callable[[Figure], None]
-) -> bytes:
-    """Return a picture of a size (inches) in the format given by its file name."""
-    from matplotlib.figure import Figure
-
-    with styled(LIGHT):
-        figure = Figure(figsize=size)
-        draw(figure)
-        return figure_bytes(figure, path.rpartition(".")[2].lower(), 150, title, title)
 
 
 def new_figure() -> Figure:
@@ -51,21 +39,16 @@ class ErrorCurve(NamedTuple):
     """Error used in the convergence plot."""
 
 
-def draw_errors(curves: Sequence[ErrorCurve], limit: float, path: str) -> bytes:
-    """Return the picture of errors in the format given by its file name."""
-    size = (10.0 if any(curve.step for curve in curves) else 7.5), 4.6
-    title = "lagtop compare: error (rad) over time"
-    return report_picture(path, size, title, lambda x: draw_error_panels(x, curves, limit))
-
-
-def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float) -> None:
-    """Draw a line over time for each trajectory, and the limit.
+def draw_errors(curves: Sequence[ErrorCurve], limit: float, figure: Figure | None = None) -> Figure:
+    """Draw a line over time for each trajectory, and the limit, and return the figure.
 
     If the trajectories have steps, a second panel shows the error of each over its step.
     """
     import numpy as np
+    from matplotlib.figure import Figure
 
     steps = [(x.step, x.compared) for x in curves if x.step and x.compared and x.compared < np.inf]
+    figure = figure or Figure(figsize=(10.0 if steps else 7.5, 4.6))
     over_time, *over_step = figure.subplots(1, 2 if steps else 1, squeeze=False)[0]
     shades = scale(LIGHT)(np.linspace(0, 1, len(curves)))
     for curve, colour, dashes in zip(curves, shades, cycle(("-", "--", "-.", ":"))):
@@ -78,6 +61,7 @@ def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float
     over_time.legend(loc="upper left", bbox_to_anchor=(0, -0.14), ncols=2)
     for axes in over_step:
         draw_convergence(axes, sorted(steps))
+    return figure
 
 
 def draw_convergence(axes: Axes, points: Sequence[tuple[float, float]]) -> None:
@@ -88,31 +72,15 @@ def draw_convergence(axes: Axes, points: Sequence[tuple[float, float]]) -> None:
     for order in (1, 2, 4):
         end = errors[-1] * (steps[0] / steps[-1]) ** order
         axes.plot([steps[-1], steps[0]], [errors[-1], end], lw=0.7, ls=":", **quiet)
-        axes.annotate(
-            f"order {order}", (steps[0], end), (2, -9), textcoords="offset points", size=8, **quiet
-        )
+        place = (steps[0], end), (2, -9)
+        axes.annotate(f"order {order}", *place, textcoords="offset points", size=8, **quiet)
     axes.set(xscale="log", yscale="log", xlabel="step (units of the trajectory)")
     axes.set(ylabel="error (rad)", title="Convergence")
     axes.set_xticks(steps, [f"{x:g}" for x in steps], rotation=30)
     axes.set_xticks([], minor=True)
 
 
-def draw_fit(curves: Sequence[Curve], unit: str, path: str, title: str = "") -> bytes:
-    """Return the picture of the fits of at most three recordings, in the format of the file name.
-
-    `unit` is that of the angles.
-    """
-    names = list(dict.fromkeys(curve.name.rpartition(": ")[0] for curve in curves))
-    kept = [x for x in curves if x.name.rpartition(": ")[0] in names[:MOST_RECORDINGS]]
-    return report_picture(
-        path,
-        (8.0, 1.0 + 2.8 * len(kept)),
-        "lagtop fit: data, fitted motion and residuals",
-        lambda figure: draw_fit_panels(figure, kept, unit, title),
-    )
-
-
-def draw_outcome(outcome: Any, figure: Figure | None = None) -> Figure:
+def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
     """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure.
 
     Angles are in degrees, or in radians if the fit was made so.  Raises UnavailableError without
@@ -123,17 +91,18 @@ def draw_outcome(outcome: Any, figure: Figure | None = None) -> Figure:
     >>> len(draw_outcome(fit(t, theta=theta, psi=psi)).axes)
     4
     """
-    figure = figure or new_figure()
-    draw_fit_panels(figure, list(outcome.curves()), outcome.angle)
-    return figure
+    return draw_fits([outcome], figure or new_figure())
 
 
-def draw_fit_panels(figure: Figure, curves: Sequence[Curve], unit: str, title: str = "") -> None:
-    """Draw two panels for each channel: the data with the curve, and the residuals below."""
-    panels = figure.subplots(
-        2 * len(curves), 1, squeeze=False, sharex="col", height_ratios=[3, 1] * len(curves)
-    )[:, 0]
-    for curve, above, below in zip(curves, panels[::2], panels[1::2], strict=True):
+def draw_fits(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Figure:
+    """Draw each channel of at most three recordings with the fit, and its residuals below."""
+    from matplotlib.figure import Figure
+
+    curves = [(x.angle, curve) for x in outcomes[:MOST_RECORDINGS] for curve in x.curves()]
+    rows = len(curves)
+    figure = figure or Figure(figsize=(8.0, 1.0 + 2.8 * rows))
+    grid = figure.subplots(2 * rows, squeeze=False, sharex="col", height_ratios=[3, 1] * rows)
+    for (unit, curve), above, below in zip(curves, grid[::2, 0], grid[1::2, 0], strict=True):
         recording, _, angle = curve.name.rpartition(": ")
         number = ("theta", "phi", "psi").index(angle)
         symbol, colour = "ϑφψ"[number], LIGHT.lines[number]
@@ -144,6 +113,7 @@ def draw_fit_panels(figure: Figure, curves: Sequence[Curve], unit: str, title: s
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
         below.set(ylabel=f"residual\n({unit})")
-    panels[-1].set(xlabel="t (units of the recording)")
-    if title:
-        figure.suptitle(plain(title), x=0.012, ha="left")
+    grid[-1, 0].set_xlabel("t (units of the recording)")
+    if len(outcomes) == 1:
+        figure.suptitle(plain(outcomes[0].title), x=0.012, ha="left")
+    return figure

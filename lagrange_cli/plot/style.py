@@ -10,12 +10,11 @@ import io
 import logging
 import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
-from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import CannotWriteError, LagtopError, UnavailableError
 
@@ -82,14 +81,6 @@ def plain(text: str) -> str:
     return "".join(x if x.isprintable() else " " for x in text).replace("$", r"\$")
 
 
-def number_text(value: float, digits: int = 6) -> str:
-    """Return a number to a few digits; if that rounds it to 1 or -1, by its distance from there."""
-    shown = f"{value:.{digits}g}"
-    if shown in {"1", "-1"} and abs(value) != 1:
-        shown = f"{shown} {value - round(value):+.2g}".replace("+", "+ ").replace(" -", " - ")
-    return shown.replace("-", "−")
-
-
 def require_matplotlib() -> None:
     """Raise UnavailableError, with the remedy, if matplotlib is missing or cannot be used."""
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as about its folder of settings
@@ -131,10 +122,13 @@ def figure_bytes(figure: Figure, fmt: str, dpi: float, title: str, text: str) ->
     if fmt == "png" and width * height > MOST_PIXELS:
         most = (MOST_PIXELS / (width * height)) ** 0.5 * dpi
         raise LagtopError(f"dpi must be at most {most:.0f} for this picture, got {dpi:g}", "dpi")
-    about: dict[str, Any] = {"Title": title, "Subject" if fmt == "pdf" else "Description": text}
+    about = {"Title": title, "Subject" if fmt == "pdf" else "Description": text}
     buffer = io.BytesIO()
     figure.savefig(buffer, format=fmt, dpi=dpi, metadata=about)
-    if fmt != "svg":
-        return buffer.getvalue()
-    described = f"</title>\n <desc>{escape(text)}</desc>".encode()  # for screen readers
-    return buffer.getvalue().replace(b"</title>", described, 1)
+    return buffer.getvalue()
+
+
+def report_bytes(path: str, draw: Callable[..., Figure], *args: object) -> bytes:
+    """Return the picture that `draw` makes of some arguments, in the format of the file name."""
+    with styled(LIGHT):
+        return figure_bytes(draw(*args), Path(path).suffix[1:].lower(), 150, "lagtop", "a report")

@@ -408,7 +408,7 @@ def test_every_error_is_of_one_family_and_says_its_exit_code() -> None:
     }
     assert codes == {
         **{"DataError": 65, "SceneError": 65, "UnavailableError": 69, "CannotWriteError": 74},
-        **{"SomeFailedError": 1, "AbsentError": 1, "NothingToDrawError": 2, "OutOfRangeError": 2},
+        **{"SomeFailedError": 1, "AbsentError": 1, "OutOfRangeError": 2},
     }
     assert LagtopError.exit_code == 2
 

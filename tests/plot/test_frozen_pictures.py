@@ -24,16 +24,14 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from lagrange_cli.plot.film import film_figure
-from lagrange_cli.plot.map import checked_axis
-from lagrange_cli.plot.options import MapOptions, Options
-from lagrange_cli.plot.pictures import figure_of
-from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels, draw_fit_panels
+from lagrange_cli.plot.pictures import Options, figure_of
+from lagrange_cli.plot.reports import ErrorCurve, draw_errors, draw_fits
 from lagrange_cli.plot.style import DARK, LIGHT, styled
 
 STORED = Path(__file__).with_name("pictures.json")
-R0 = checked_axis("--x", "r0", np.linspace(20, 90, 6))
-THETA0 = checked_axis("--y", "theta0", np.linspace(20, 160, 5))
-PSIDOT0 = checked_axis("--x", "psidot0", np.linspace(-4, 4, 9))
+R0 = "r0", np.linspace(20, 90, 6)
+THETA0 = "theta0", np.linspace(20, 160, 5)
+PSIDOT0 = "psidot0", np.linspace(-4, 4, 9)
 
 
 def of_motion(kind: str, top: Top, **options: Any) -> Figure:
@@ -54,16 +52,15 @@ def of_film() -> Figure:
 def of_errors(steps: tuple[float | None, ...]) -> Figure:
     t = np.linspace(0, 1, 9)
     curves = [ErrorCurve(f"step {x}", t, (x or 1) ** 4 * t, x, x and x**4) for x in steps]
-    draw_error_panels(figure := Figure(), curves, 1e-3)
-    return figure
+    return draw_errors(curves, 1e-3)
 
 
 def of_fit() -> Figure:
     t = np.linspace(0, 1, 9)
     curve = {"t": t, "data": t**2, "residual": t**3, "fine_t": t, "curve": 2 * t}
-    curves: Any = [SimpleNamespace(name=f"{x}: psi", **curve) for x in ("first", "second")]
-    draw_fit_panels(figure := Figure(layout="constrained"), curves, "deg", "good")
-    return figure
+    curves = [SimpleNamespace(name=f"{x}: psi", **curve) for x in ("first", "second")]
+    outcome: Any = SimpleNamespace(curves=lambda: curves, angle="deg", title="good")
+    return draw_fits([outcome])
 
 
 NAMES = "looping-top cusped-top hanging-still plane-pendulum sleeping-top spherical-pendulum"
@@ -77,8 +74,8 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     },
     "bands": partial(of_motion, "angles", Top(), stds=lambda t: [0.1 + t] * 3, radians=True),
     "dark": partial(of_motion, "sphere", Top(), look=DARK, camera=(0.3, -0.4), t_max=0.3),
-    "map of numbers": partial(of_motion, "map", Top(), map=MapOptions(x=R0, y=THETA0)),
-    "map of words": partial(of_motion, "map", Top(), map=MapOptions("path", PSIDOT0, R0)),
+    "map of numbers": partial(of_motion, "map", Top(), x=R0, y=THETA0),
+    "map of words": partial(of_motion, "map", Top(), key="path", x=PSIDOT0, y=R0),
     "several scenes": of_scenes,
     "film": of_film,
     "errors": partial(of_errors, (None,)),

@@ -15,13 +15,18 @@ pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
 from PIL import Image
 
-from lagrange_cli.plot.curves import sampled, span, turn_span
 from lagrange_cli.plot.film import cone
-from lagrange_cli.plot.map import checked_axis
-from lagrange_cli.plot.options import MapOptions, Options
-from lagrange_cli.plot.pictures import PICTURES, camera_at, camera_of, figure_of, project
-from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels
-from lagrange_cli.plot.style import LIGHT, figure_bytes, number_text, plain, styled
+from lagrange_cli.plot.pictures import (
+    PICTURES,
+    Options,
+    camera_of,
+    figure_of,
+    project,
+    sampled,
+    usual_span,
+)
+from lagrange_cli.plot.reports import ErrorCurve, draw_errors
+from lagrange_cli.plot.style import LIGHT, figure_bytes, plain, styled
 
 
 def drawn(kind: str, motion: Motion, **options: Any) -> Figure:
@@ -34,11 +39,10 @@ def test_the_path_is_that_of_the_axis() -> None:
     motion = solve(Top())
     with styled(LIGHT):
         figure = figure_of({"": motion}, ["sphere"], Options(camera=(0.3, 0.5), t_max=1.0))
-    near, far = (figure.axes[0].collections[i] for i in (1, 0))
-    found = np.concatenate([*near.get_segments(), *far.get_segments()])  # type: ignore[attr-defined]
-    right, up = camera_at(0.3, 0.5)[:2]
+    sides: Any = figure.axes[0].collections[:2]
+    found = np.concatenate([x for side in sides for x in side.get_segments() if len(x)])
     axis = motion.axis(np.linspace(0, 1, 8000))
-    exact = np.stack([axis @ right, axis @ up], axis=1)
+    exact = axis @ camera_of(axis, Options(camera=(0.3, 0.5)))[:2].T
     distance = np.abs(found[:, None] - exact[None]).sum(axis=2).min(axis=1)
     assert distance.max() < 2e-3
     assert len(found) > 100
@@ -47,8 +51,8 @@ def test_the_path_is_that_of_the_axis() -> None:
 def test_the_camera_is_in_front_of_the_path() -> None:
     motion = solve(read_scene("wavy-top"))
     path = motion.axis(np.linspace(0, 0.3, 50))
-    (x, y), near = project(camera_of(path, Options()), path)
-    assert near.all()
+    (x, y), far = (side.T for side in project(camera_of(path, Options()), path))
+    assert np.isnan(far).all()
     assert np.abs(x).mean() < 0.3
     assert y.min() > 0
 
@@ -62,7 +66,7 @@ def test_spin_is_drawn_as_its_deviation_from_the_mean_rate() -> None:
         np.degrees(exact.phi - (motion.mean_spin_rate or 0) * t), abs=1e-9
     )
     assert tilt.get_lines()[0].get_ydata() == pytest.approx(np.degrees(exact.theta))
-    assert precession.get_lines()[0].get_ydata() == pytest.approx(np.degrees(exact.psi))
+    assert precession.get_lines()[1].get_ydata() == pytest.approx(np.degrees(exact.psi))
     assert spin.get_ylabel() == "Δφ (deg)"
 
 
@@ -97,56 +101,48 @@ def test_the_phase_plane_holds_the_separatrix() -> None:
 
 def test_sampled_curves_are_smooth() -> None:
     motion = solve(read_scene("slow-top"))
-    _, *axis = sampled(motion, turn_span(motion), ["axis"]).values()
+    _, *axis = sampled(motion, usual_span(motion, 3, 40), ["axis"])
     steps = np.diff(np.stack(axis, axis=1), axis=0)
     size = np.linalg.norm(steps, axis=1)
     turn = np.sum(steps[1:] * steps[:-1], axis=1) / (size[1:] * size[:-1])
     assert np.degrees(np.arccos(np.clip(turn, -1, 1)))[size[1:] > 1e-2].max() < 20
-    assert span(motion, 2) == 2 * (motion.T_nutation or 0)
+    assert usual_span(motion, 2, 2) == 2 * (motion.T_nutation or 0)
 
 
-@pytest.mark.parametrize("key", ["mean_precession_rate", "theta_max_deg"])
-def test_a_map_shows_the_number_of_each_top(key: str) -> None:
-    x = checked_axis("--x", "r0", np.linspace(20, 90, 8))
-    y = checked_axis("--y", "theta0", np.linspace(20, 160, 6))
-    chart = MapOptions(key, x, y)
-    from lagrange_cli.plot.map import grid_of
-
-    values, border = grid_of(solve(Top()), x, y, key, Options(map=chart))
-    exact = [
-        [getattr(solve(Top(r0=r, theta0_deg=tilt)), key) for r in x.values] for tilt in y.values
-    ]
-    assert np.asarray(values, float) == pytest.approx(np.array(exact, float), rel=1e-12)
-    assert border[0] == pytest.approx(solve(Top()).stability_factor ** 0.5 * x.values / 50)
-    assert drawn("map", solve(Top()), map=chart).axes[0].get_ylabel().endswith("(deg)")
+def test_a_map_shows_the_number_of_each_top() -> None:
+    r0, tilt = np.geomspace(20, 50, 20), np.linspace(0.5, 2.5, 20)
+    figure = drawn(
+        "map", solve(Top()), key="theta_max_deg", radians=True, x=("r0", r0), y=("theta0", tilt)
+    )
+    axes = figure.axes[0]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    assert axes.get_ylabel().endswith("(rad)")
+    lines: Any = axes.collections[1]
+    found = [(x, path.vertices) for x, path in zip(lines.levels, lines.get_paths(), strict=True)]
+    exact = {x: solve(Top(r0=at[0][0], theta0_rad=at[0][1])) for x, at in found if len(at)}
+    assert len(exact) > 4
+    assert [math.radians(top.theta_max_deg) for top in exact.values()] == pytest.approx(
+        [*exact], rel=2e-3
+    )
 
 
 def test_names_from_outside_are_plain_text() -> None:
     assert plain("a$b\x1b[31m\n") == r"a\$b [31m "
     curve = ErrorCurve("$x_1$", np.arange(3.0), np.array([1e-3, 1e-2, np.nan]))
-    figure = Figure()
-    draw_error_panels(figure, [curve], 1e-3)
-    figure.canvas.draw()
+    figure = draw_errors([curve], 1e-3)
     legend = figure.axes[0].get_legend()
     assert legend
     assert legend.get_texts()[0].get_text() == r"\$x_1\$"
 
 
-def test_numbers_next_to_one_are_shown_by_their_distance() -> None:
-    assert number_text(1 - 1.5e-14) == "1 − 1.5e−14"
-    assert number_text(-1 + 2e-9, 4) == "−1 + 2e−09"
-    assert number_text(0.25) == "0.25"
-
-
 def test_the_axle_of_the_film_is_the_figure_axis() -> None:
-    motion, camera = solve(Top()), camera_at(0.2, 0.4)
+    motion = solve(Top())
+    axis = motion.axis([0.3])
+    camera = camera_of(axis, Options())
     attitude = np.array([*motion.table(0.3, ["quaternion"]).values()])
-    triangles, shades, axle, rim, _ = cone(attitude, camera, LIGHT)
-    axis = motion.axis([0.3])[0]
-    assert axle[:, 1] == pytest.approx(camera[:2] @ axis)
-    assert axle[:, 0] == pytest.approx(0.62 * (camera[:2] @ axis))
-    assert len(triangles) == len(shades)
-    assert rim.mean(axis=1) == pytest.approx(axle[:, 0], abs=0.02)
+    triangles, shades, rim = cone(attitude, camera, LIGHT)
+    assert len(triangles) == len(shades) > 30
+    assert rim[1:].mean(axis=0) == pytest.approx(0.62 * (camera[:2] @ axis[0]))
 
 
 @pytest.mark.slow
@@ -165,7 +161,7 @@ def test_files_hold_a_title_and_a_description(fmt: str) -> None:
         data = figure_bytes(figure, fmt, 40, "a title", "two < three")
     assert data[:4] in {b"\x89PNG", b"<?xm", b"%PDF"}
     if fmt == "svg":
-        assert b"<desc>two &lt; three</desc>" in data
+        assert b"two &lt; three" in data
         assert b"<text" in data
     if fmt == "png":
         with pytest.raises(LagtopError, match="dpi must be at most"):
@@ -195,7 +191,7 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
         (["sphere", "-o", "x.png", "--key", "a"], "need map"),
         (["map", "-o", "x.png", "--key", "nosuch"], "nosuch"),
         (["map", "-o", "x.png", "--x", "r0=1:2"], "--x"),
-        (["map", "-o", "x.png", "--x", "q0=1:2:3"], "--x"),
+        (["map", "-o", "x.png", "--x", "q0=1:2:3"], "--x must be among"),
         (["map", "-o", "x.png", "--x", "r0=9:2:3"], "start < stop"),
         (["map", "-o", "x.png", "--x", "theta0=1:9:3"], "two inputs"),
         (["map", "-o", "x.png", "--g", "0", "--key", "u3"], "undefined"),
@@ -227,8 +223,8 @@ def test_the_command_writes_the_sheet_and_three_scenes(lagtop: Lagtop, tmp_path:
     scenes = ("cusped-top", "looping-top", "wavy-top")
     assert lagtop("plot", "sphere", *scenes, "-o", three).exit_code == 0
     text = three.read_text()
-    assert [text.index(f"{name}: figure axis") for name in scenes] == sorted(
-        text.index(f"{name}: figure axis") for name in scenes
+    assert [text.index(f"{name}: Figure axis") for name in scenes] == sorted(
+        text.index(f"{name}: Figure axis") for name in scenes
     )
     for name, path in zip(scenes, ("cusped", "looping", "wavy"), strict=True):
         assert solve(read_scene(name)).path == path
