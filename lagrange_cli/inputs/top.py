@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import InitVar, dataclass
-from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ..arithmetic.angle import Angle, Tilt
 from ..arithmetic.ball import Balls, balls, pi_to
-from ..arithmetic.numbers import DOUBLES, Number, is_real, unrounded
-from ..arithmetic.text import own_context
+from ..arithmetic.numbers import DOUBLES, Number, unrounded
+from ..arithmetic.rounding import text_of
 from ..errors import LagtopError
 from .input_keys import (
     BODY,
@@ -33,12 +32,8 @@ _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
 _LARGEST = 1e100
 _UNITS = "choose other units"
-_REMEDY = {
-    "s": "for a low centre of mass use 180 - theta0 and -r0",
-    "g": "for upward gravity use 180 - theta0 and -r0",
-}
-_DIGITS_SHOWN = own_context(50, [])
-"""Decimal context of this module, so that messages do not depend on the caller's context."""
+_OTHER_END = {"s": "a low centre of mass", "g": "upward gravity"}
+"""Causes of a negative input that turning the top over describes."""
 
 
 class Parts(NamedTuple):
@@ -228,14 +223,20 @@ INPUTS = (*Top.fields, "A_cm", "phidot0")
 
 def _checked(name: str, value: Any) -> Number:
     """Return an input as a double or as a fraction.  Raises LagtopError for an impossible one."""
-    number = _finite(name, value)
+    nearest = checked_double(name, value)
+    if not math.isfinite(nearest):
+        raise LagtopError(f"{name} must be finite, got {nearest}", name)
+    if value and not nearest and not isinstance(value, Fraction):
+        raise LagtopError(f"{name} must be 0 or at least 5e-324 in size, got {value!s}", name)
+    number = unrounded(value, nearest)
     _require(-_LARGEST <= number <= _LARGEST, name, "within 1e100 in size", number, _UNITS)
     bound = DECLARED[name].bound if name in DECLARED else ""
     if bound.startswith("positive"):
         _require(number > 0, name, "> 0", number)
         _require(number >= _SMALLEST, name, ">= 1e-100", number, _UNITS)
     if bound == "0 or more":
-        _require(number >= 0, name, ">= 0", number, _REMEDY[name])
+        remedy = f"for {_OTHER_END[name]} use 180 - theta0 and -r0"
+        _require(number >= 0, name, ">= 0", number, remedy)
     if name.startswith(f"{TILT}_"):
         exact = Fraction(number)
         in_degrees = name.endswith("deg")
@@ -246,22 +247,6 @@ def _checked(name: str, value: Any) -> Number:
     return number
 
 
-def _finite(name: str, value: Any) -> Number:
-    if isinstance(value, Fraction):
-        return value
-    is_int, size = isinstance(value, int), getattr(getattr(value, "dtype", None), "itemsize", 0)
-    # Longer numbers than doubles are not converted, because NumPy would warn.
-    if is_real(value) and (is_int or size > 8) and abs(value) > _LARGEST:
-        shown = _shown(value) if is_int else repr(value)
-        raise LagtopError(f"{name} must be within 1e100 in size, got {shown}", name)
-    nearest = checked_double(name, value)
-    if not math.isfinite(nearest):
-        raise LagtopError(f"{name} must be finite, got {nearest}", name)
-    if value and not nearest:
-        raise LagtopError(f"{name} must be 0 or at least 5e-324 in size, got {value!s}", name)
-    return unrounded(value, nearest)
-
-
 def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:
     if not fine:
         hint = f" ({remedy})" if remedy else ""
@@ -270,9 +255,5 @@ def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = ""
 
 def _shown(value: Number) -> str:
     """Return a number as text, with enough digits to tell 180.00000000000000000001 from 180."""
-    if isinstance(value, float) or (abs(value) <= _LARGEST and float(value) == value):
-        return str(float(value))
-    exact = Fraction(value)
-    parts = Decimal(exact.numerator), Decimal(exact.denominator)
-    quotient = _DIGITS_SHOWN.normalize(_DIGITS_SHOWN.divide(*parts))
-    return _DIGITS_SHOWN.to_sci_string(quotient)
+    is_double = isinstance(value, float) or (abs(value) <= _LARGEST and float(value) == value)
+    return str(float(value)) if is_double else text_of(value, 50)
