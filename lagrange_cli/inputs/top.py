@@ -256,4 +256,4 @@ def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = ""
 def _shown(value: Number) -> str:
     """Return a number as text, with enough digits to tell 180.00000000000000000001 from 180."""
     is_double = isinstance(value, float) or (abs(value) <= _LARGEST and float(value) == value)
-    return str(float(value)) if is_double else text_of(value, 50)
+    return str(float(value)) if is_double else text_of(Fraction(value), 50)

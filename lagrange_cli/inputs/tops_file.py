@@ -18,7 +18,7 @@ from ..arithmetic.points import MOST_POINTS, Points
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError
 from .files import read_bytes, shown_path
-from .given import Given, gather
+from .given import Given, converted, gather
 from .headings import name_and_unit
 from .input_keys import TILT, checked_double, one_of_each, overridden
 from .names import repeated
@@ -86,25 +86,22 @@ class TopsFile(NamedTuple):
     carried: Sequence[str]
     """The extra columns, which are copied to the output, in their order."""
     units: Mapping[str, Value]
-    """The value 1 in the unit of its heading, for each column of an input."""
-    table: Table
-    factors: Mapping[str, Fraction] = {}
+    """The value 1 in the unit of its heading, for each column of an input, without conversion."""
+    factors: Mapping[str, Fraction]
     """The conversion factor of each column whose heading has a unit."""
+    table: Table
 
-    def among(self, inputs: Mapping[str, Any], scene: str | None) -> tuple[Given, TopsFile]:
-        """Return the inputs given in addition to the file, and its format in the same units.
+    def shared(self, inputs: Mapping[str, Any], scene: str | None) -> Given:
+        """Return the inputs given in addition to the file.
 
         Raises DataError for a heading that lacks a unit, and the errors of `gather`.
         """
         try:
-            found = gather(inputs, scene, varying=self.units.keys(), others=self.units)
+            return gather(inputs, scene, varying=self.columns, others=self.units)
         except LagtopError as error:
             if error.key in self.units and error.key not in inputs:
                 raise DataError(f"{self.table.name}, heading {error.key}: {error}") from None
             raise
-        keys = dict(zip(self.units, found.others, strict=True))
-        factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
-        return found, self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
     @property
     def size(self) -> int:
@@ -138,15 +135,13 @@ class TopsFile(NamedTuple):
 
     def _double(self, name: str, cell: Any) -> float:
         """Return the input in a cell.  Raises LagtopError."""
-        if cell in STEADY_WORDS:
-            raise LagtopError(f"{name} {steady_refused(cell)}")
         try:
             number = self.table.number(cell)
         except LagtopError as error:
+            wrong = steady_refused(cell) if cell in STEADY_WORDS else str(error)
             if isinstance(cell, str) and re.search(r"\d\s*(\(\d|±|\+/?-)", cell):
                 wrong = f"must have no uncertainty, got {quoted(cell)}: loop over solve"
-                raise LagtopError(f"{name} {wrong}") from None
-            raise LagtopError(f"{name} {error}") from None
+            raise LagtopError(f"{name} {wrong}") from None
         return checked_double(name, number * self.factors.get(name, 1))
 
 
@@ -159,29 +154,28 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     """
     table = read_table(read_bytes(path), shown_path(path), _known_inputs, decimal)
     name, headings = table.name, table.headings or []
-    found = [_column_of(x) for x in headings]
-    columns = [column for column, _ in found]
-    # A tilt needs its unit in the name or in the heading.
-    units = {x: Value(Fraction(1), y) for x, y in found if x in INPUTS or (x == TILT and y)}
-    carried = [x for x in columns if x not in units and x not in computed]
-    _check_spelling(carried, units.keys(), name)
+    columns, units, factors = list[str](), dict[str, Value](), dict[str, Fraction]()
+    for heading in headings:
+        column, unit = _column_of(heading)
+        if unit and column != TILT and column.startswith(TILT):
+            raise DataError(f"{name}: the column {column} must be called {TILT} [{unit}]")
+        if column in INPUTS or unit:  # a tilt needs its unit in the name or in the heading
+            units[column] = Value(Fraction(1), unit)
+            try:
+                ((column, one),) = converted({column: units[column]}).items()
+            except LagtopError as error:
+                raise DataError(f"{name}, heading {heading}: {error}") from None
+            factors[column] = one.number
+        columns.append(column)
+    carried = [x for x in columns if x not in factors and x not in computed]
+    _check_spelling(carried, factors.keys(), name)
     if (twice := repeated(columns)) is not None:
         raise DataError(f"{name} must name each column once, got {twice!r} twice")
-    if not units:
+    if not factors:
         wanted = f"must begin with a header that names inputs ({' '.join(INPUTS)})"
         raise DataError(f"{name} {wanted}, got {quoted(','.join(headings))}")
-    for column, one in units.items():
-        if one.unit and column.startswith(f"{TILT}_"):
-            raise DataError(f"{name}: the column {column} must be called {TILT} [{one.unit}]")
-        if one.unit:
-            from .units import factor_of  # for few files only
-
-            try:
-                factor_of(column, one.unit)
-            except LagtopError as error:
-                raise DataError(f"{name}, heading {column} [{one.unit}]: {error}") from None
-    table.decide(i for i, x in enumerate(columns) if x in units)
-    return TopsFile(columns, carried, units, table)
+    table.decide(i for i, x in enumerate(columns) if x in factors)
+    return TopsFile(columns, carried, units, factors, table)
 
 
 def _column_of(heading: str) -> tuple[str, str]:

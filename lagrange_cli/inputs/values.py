@@ -75,9 +75,7 @@ def parse_value(
     try:
         plain, std = _split_uncertainty(number)
         if std is not None and not uncertain:
-            spread = re.search(r"\([\d.]+\)|(\+/?-|±)\s*[^\s)%]+(\s*%)?", number)
-            remedy = f"leave out {spread[0] if spread else 'it'}"
-            raise LagtopError(f"must have no uncertainty in this command, {got}: {remedy}")
+            raise LagtopError(f"must have no uncertainty in this command, {got}: leave it out")
         return Value(parse(plain), unit, std)
     except LagtopError as error:
         whole = str(error).replace(f"got {quoted(number)}", got)

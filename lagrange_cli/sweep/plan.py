@@ -119,7 +119,8 @@ def plan(
         raise LagtopError(f"a range of {min(names)} and a file of tops exclude each other")
     digest = digest_of(path) if described else ""
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
-    found, source = read_tops(path, computed, decimal).among(axes, scene)
+    source = read_tops(path, computed, decimal)
+    found = source.shared(axes, scene)
     shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     sweep = Sweep([*source.carried, *with_error], shared, with_error, radians, fmt, found.system)
