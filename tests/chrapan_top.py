@@ -210,7 +210,6 @@ def tops() -> Iterator[tuple[Motion]]:
     return ((motion,) for motion in MOTIONS)
 
 
-def spoil(patch: pytest.MonkeyPatch, *modules: str) -> None:
-    """Put tops in place, here and in some modules, whose record and angles are slightly wrong."""
-    for name in (__name__, *modules):
-        patch.setattr(sys.modules[name], "MOTIONS", SPOILED)
+def spoil(patch: pytest.MonkeyPatch) -> None:
+    """Put tops in place whose record and angles are slightly wrong."""
+    patch.setattr(sys.modules[__name__], "MOTIONS", SPOILED)

@@ -5,20 +5,27 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
-from itertools import chain, starmap
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import pytest
 from ours import ar
 
-Sides = Iterator[tuple[Any, Any]]
-"""Pairs of a left and a right side: one by our functions, the other independent of them."""
-
-Equation = Callable[[], Sides]
-Pair = Callable[..., Any]
-"""Both sides of an equation in one case, or a list of such pairs."""
+Pairs = list[tuple[Any, Any]]
+"""Left and right sides: one by our functions, the other independent of them."""
+Sides = Callable[..., Iterable[tuple[Any, Any]] | tuple[Any, Any]]
+"""The sides of an equation in one case: a pair, or several pairs that are not a tuple."""
 Cases = Callable[[], Iterable[tuple[Any, ...]]]
+"""Cases, such as a top and a time."""
+
+
+def once() -> list[tuple[()]]:
+    """Return the one case of an equation without parameters."""
+    return [()]
+
+
+def pairs(left: Iterable[Any], right: Iterable[Any]) -> Pairs:
+    """Return pairs of sides from two rows of numbers."""
+    return list(zip(left, right, strict=True))
 
 
 PLACE = re.compile(
@@ -39,59 +46,44 @@ class Register:
         self.fails: dict[str, Equation] = {}
         self.misread: dict[str, Equation] = {}
 
-    def equation(self, number: str) -> Callable[[Equation], Equation]:
-        """Register an equation whose sides agree, by the number or the section where it stands."""
-        return _entry(self.holds, number)
+    def each(self, cases: Cases, holds: Mapping[str, Sides]) -> None:
+        """Register equations, by the number or the section where they stand, with their cases."""
+        _enter(self.holds, holds, cases)
 
-    def as_printed(self, number: str) -> Callable[[Equation], Equation]:
-        """Register an equation as the text at hand prints it, whose sides do not agree.
+    def each_as_printed(self, cases: Cases, fails: Mapping[str, Sides]) -> None:
+        """Register equations as the text at hand prints them, whose sides do not agree.
 
         If one equation has several errors, its number is followed by ", ..." after " as printed".
         """
-        return _entry(self.fails, number)
+        _enter(self.fails, fails, cases)
 
-    def each(self, cases: Cases, holds: Mapping[str, Pair]) -> None:
-        """Register equations with pairs of sides in each case, such as a top and a time."""
-        for number, sides in holds.items():
-            self.equation(number)(partial(_pairs, sides, cases))
-
-    def table(self, cases: Cases, holds: Mapping[str, Callable[..., Iterable[Any]]]) -> None:
-        """Register equations with several pairs of sides in each case."""
-        for number, pairs in holds.items():
-            self.equation(number)(partial(_all_pairs, pairs, cases))
-
-    def each_as_printed(self, cases: Cases, fails: Mapping[str, Pair]) -> None:
-        """Register misprints with pairs of sides in each case."""
-        for number, sides in fails.items():
-            self.as_printed(number)(partial(_pairs, sides, cases))
-
-    def misreading(self, number: str) -> Callable[[Equation], Equation]:
-        """Register another reading of a blurred sign, whose sides do not agree."""
-        return _entry(self.misread, number)
+    def misreadings(self, misread: Mapping[str, Sides]) -> None:
+        """Register other readings of blurred signs, whose sides do not agree."""
+        _enter(self.misread, misread, once)
 
 
-def _pairs(sides: Pair, cases: Cases) -> Sides:
-    """Yield the pairs of sides of each case."""
-    for case in cases():
-        found = sides(*case)
-        yield from found if isinstance(found, list) else [found]
+class Equation(NamedTuple):
+    """An equation with its cases."""
+
+    sides: Sides
+    cases: Cases
+
+    def gaps(self) -> list[float]:
+        """Return how far the sides of each pair are apart; one without pairs is an error."""
+        found = []
+        for case in self.cases():
+            sides = self.sides(*case)
+            found += [gap(*pair) for pair in ([sides] if isinstance(sides, tuple) else sides)]
+        assert found, "the equation compares nothing"
+        return found
 
 
-def _all_pairs(pairs: Callable[..., Iterable[Any]], cases: Cases) -> Sides:
-    """Yield all pairs of sides of each case."""
-    return chain.from_iterable(starmap(pairs, cases()))
-
-
-def _entry(equations: dict[str, Equation], number: str) -> Callable[[Equation], Equation]:
-    """Return a decorator that registers an equation under a number that is not taken yet."""
-
-    def register(sides: Equation) -> Equation:
+def _enter(register: dict[str, Equation], equations: Mapping[str, Sides], cases: Cases) -> None:
+    """Register equations under numbers that are not taken yet."""
+    for number, sides in equations.items():
         assert PLACE.match(number), f"{number} does not begin with a place in the source"
-        assert number not in equations, f"{number} is registered twice"
-        equations[number] = sides
-        return sides
-
-    return register
+        assert number not in register, f"{number} is registered twice"
+        register[number] = Equation(sides, cases)
 
 
 class EquationTests:
@@ -119,16 +111,16 @@ class EquationTests:
             metafunc.parametrize("misprint", [*self.register.fails, *self.register.misread])
 
     def test_equation(self, number: str) -> None:
-        assert max(gaps(self.register.holds[number])) < self.tolerances.get(number, 1e-40)
+        assert max(self.register.holds[number].gaps()) < self.tolerances.get(number, 1e-40)
 
     @pytest.mark.slow
     def test_equation_can_fail(self, number: str, monkeypatch: pytest.MonkeyPatch) -> None:
         self.spoil(monkeypatch)
-        assert max(gaps(self.register.holds[number])) > 1e-6
+        assert max(self.register.holds[number].gaps()) > 1e-6
 
     def test_as_printed_it_fails(self, misprint: str) -> None:
         wrong = self.register.fails | self.register.misread
-        assert min(gaps(wrong[misprint])) > 1e-3
+        assert min(wrong[misprint].gaps()) > 1e-3
 
     def test_every_misprint_is_put_right(self) -> None:
         wrong = {*self.register.fails, *self.register.misread}
@@ -136,13 +128,6 @@ class EquationTests:
 
     def test_the_errata_are_the_misprints(self) -> None:
         assert set(self.register.fails) == self.errata
-
-
-def gaps(equation: Equation) -> list[float]:
-    """Return how far the sides of each pair are apart; an equation without pairs is an error."""
-    found = [gap(left, right) for left, right in equation()]
-    assert found, "the equation compares nothing"
-    return found
 
 
 def gap(left: Any, right: Any) -> float:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
-from functools import partial
 from itertools import chain, islice
 from typing import Any, ClassVar
 
 import pytest
-from equations import EquationTests, Register, Sides, slightly_wrong
+from equations import EquationTests, Register, once, pairs, slightly_wrong
 from errata import misprints
 from ours import ar, fraction, incomplete_f, jacobi, nome, ours, quarter_period
 
@@ -21,7 +20,6 @@ from lagrange_cli.elliptic.nome_series import k_series, nome_series
 aksenov = Register()
 MODULI = [ar.mpf(x) for x in ("0.03", "0.5", "0.9", "0.9999")]
 ARGUMENTS = [ar.mpf(x) for x in ("-2.3", "0.4", "1.7", "11")]
-pairs: Callable[..., Any] = partial(zip, strict=True)
 
 
 def moduli() -> Iterable[tuple[Any, ...]]:
@@ -62,7 +60,7 @@ def cross_ratios(roots: list[Any]) -> list[Any]:
     return [x, 1 / x, 1 - x, 1 / (1 - x), 1 - 1 / x, x / (x - 1)]
 
 
-def substituted() -> Sides:
+def substituted() -> Iterator[tuple[Any, Any]]:
     """Yield the integral between four real roots, and the moduli of two complex pairs."""
     a, b, c, d = roots = [ar.mpf(x) for x in ("2.1", "0.4", "-0.9", "-3")]
     m, y = cross_ratios(roots)[0], ar.mpf("1.3")
@@ -78,8 +76,8 @@ def substituted() -> Sides:
     yield from ((ar.im(x), 0) for x in cross_ratios(complex_roots))
 
 
-aksenov.table(
-    lambda: [()],
+aksenov.each(
+    once,
     {
         "section 3.1: a linear-fractional substitution": substituted,
         "section 3.1: property 5": lambda: chain(
@@ -88,7 +86,7 @@ aksenov.table(
         ),
     },
 )
-aksenov.table(
+aksenov.each(
     moduli,
     {
         "(3.1.1)": lambda k, m, K: [(jacobi(first_kind(ar.mpf("0.7"), m), k)[1], ar.mpf("0.7"))],
@@ -110,7 +108,7 @@ aksenov.table(
         "(3.1.8)": lambda k, m, K: [(partial_sum("K", k, terms=600), K)] if k < 0.99 else [],
     },
 )
-aksenov.table(
+aksenov.each(
     points,
     {
         "(3.1.3)": lambda k, m, u, am, *_: [(ar.ellipf(am, m), u)],
@@ -134,7 +132,7 @@ aksenov.table(
     },
 )
 SMALL = ar.mpf(10) ** -12
-aksenov.table(
+aksenov.each(
     lambda: ((u, ar.sin(u), ar.cos(u), ar.sinh(u), ar.cosh(u)) for u in ARGUMENTS[:3]),
     {
         "section 3.1: property 5, next terms": lambda u, sin, cos, sinh, cosh: [
@@ -187,7 +185,7 @@ def k2(sign: int) -> Any:
     return ((DELTA - DELTA_STAR) ** 2 + sign * (C.m1 - C.m2) ** 2) / (4 * C.m1 * C.m2)
 
 
-aksenov.table(
+aksenov.each(
     times,
     {
         "(3.2.1)": lambda tau, eta, xi, theta: [  # over a sine, which takes the root at delta* away
@@ -219,8 +217,8 @@ aksenov.table(
         "(3.2.11)": lambda tau, eta, xi, theta: [(eta, fractional(xi))],
     },
 )
-aksenov.table(
-    lambda: [()],
+aksenov.each(
+    once,
     {
         "(3.2.3)": lambda: [
             (C.m1, ar.sqrt(Q_**2 - (DELTA - P_) ** 2)),
@@ -247,8 +245,11 @@ aksenov.table(
 
 two_real = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
 aksenov.each_as_printed(
-    lambda: [()],
+    once,
     {
+        "section 3.1: a linear-fractional substitution": lambda: [  # no real modulus
+            (ar.im(x), 0) for x in cross_ratios(two_real)
+        ],
         "(3.1.6)": lambda: (nome(0.5), ar.exp(ar.pi * ar.ellipk(0.75) / ar.ellipk(0.25))),
         "section 3.1: property 4": lambda: (
             jacobi(1, 0.5)[3] ** 2 + jacobi(1, 0.5)[1] ** 2 / 4,
@@ -256,16 +257,16 @@ aksenov.each_as_printed(
         ),
     },
 )
-aksenov.as_printed("section 3.1: a linear-fractional substitution")(
-    lambda: ((ar.im(x), 0) for x in cross_ratios(two_real))  # no real modulus
-)
-aksenov.misreading("(3.2.5) as printed, the plus read as a minus")(
-    lambda: iter([(x * C.k**2, x * k2(-1)) for x in [4 * C.m1 * C.m2 / (C.m1 - C.m2) ** 2]])
-)
-aksenov.misreading("(3.2.10) as printed, the minus read as a plus")(
-    lambda: iter(
-        [(eta_at(x), fractional(ar.ellipfun("sn", C.sigma1 * x + K1, m=C.k1**2))) for x in TAUS[:1]]
-    )
+aksenov.misreadings(
+    {
+        "(3.2.5) as printed, the plus read as a minus": lambda: [
+            (x * C.k**2, x * k2(-1)) for x in [4 * C.m1 * C.m2 / (C.m1 - C.m2) ** 2]
+        ],
+        "(3.2.10) as printed, the minus read as a plus": lambda: (
+            eta_at(TAUS[0]),
+            fractional(ar.ellipfun("sn", C.sigma1 * TAUS[0] + K1, m=C.k1**2)),
+        ),
+    }
 )
 
 

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any, ClassVar
 
 import pytest
-from equations import EquationTests, Register, Sides, slightly_wrong
+from equations import EquationTests, Register, once, slightly_wrong
 from errata import misprints
 from ours import (
     ar,
@@ -92,11 +92,6 @@ def both(function: Any, sign: int, w: Any) -> Any:
     return function("00", w, JA, k) + sign * function("11", w, JA, k)
 
 
-def once() -> Iterator[tuple[()]]:
-    """Yield the one case of an equation without parameters."""
-    yield ()
-
-
 ETA, ANY = ar.mpc("0.3", "0.7"), ar.mpc("-1.9", "1.3")
 """An argument and a parameter that are neither real nor imaginary."""
 
@@ -116,7 +111,7 @@ def rational_slope(kappa: Any, m: Any) -> tuple[Any, Any]:
     return zeta("01", ANY, kappa) + less / 2 - more / 2, wave * sn * cn * dn / (1 - wave * sn**2)
 
 
-chrapan.table(
+chrapan.each(
     any_modulus,
     {
         "section 1 a: argument and modulus of Z may be any numbers": lambda kappa, _, of: [
@@ -140,7 +135,7 @@ chrapan.table(
 )
 
 
-def real_forms() -> Sides:
+def real_forms() -> Iterator[tuple[Any, Any]]:
     """Yield the forms of Z(i alpha) in section 1 c."""
     line = ar.pi * ALPHA / (2 * K * K_PRIME)
     z, z11 = (zeta_there(ij, ALPHA, *OTHER) for ij in ("01", "11"))
@@ -152,7 +147,7 @@ def real_forms() -> Sides:
     yield zeta("10", JA, k), -J * (line + z)
 
 
-def legendre(x: Any) -> Sides:
+def legendre(x: Any) -> Iterator[tuple[Any, Any]]:
     """Yield Legendre's relation for a modulus, and K and E by mpmath."""
     (K, E), (K1, E1) = ((quarter_period(y), second_kind(y)) for y in (x, ar.sqrt(1 - x**2)))
     yield E * K1 + E1 * K - K * K1, ar.pi / 2
@@ -168,7 +163,7 @@ def sum_1_8(sign: int) -> tuple[Any, Any]:
 
 
 PHI = ar.mpf("0.7277")
-chrapan.table(
+chrapan.each(
     once,
     {
         "(1,1)": lambda: [
@@ -210,7 +205,7 @@ chrapan.table(
         "(1,8)": lambda: [sum_1_8(-1)],
     },
 )
-chrapan.table(
+chrapan.each(
     lambda: [(x,) for x in MODULI],
     {
         "section 1 e: Legendre's relation": legendre,
@@ -259,7 +254,7 @@ def quotient_of(values: Any) -> Any:
     return J * ar.atan(S * D * cn / (C * sn * dn))
 
 
-chrapan.table(
+chrapan.each(
     once,
     {
         "(2,1)": lambda: [
@@ -357,7 +352,7 @@ def integral(m: Any, v: Any, pi01: Any) -> tuple[Any, Any]:
     return ar.quad(integrand, [0, W]), sn / (cn * dn) * pi01(v)
 
 
-chrapan.table(
+chrapan.each(
     lambda: [(1,), (-1,)],
     {
         "(2,10)": lambda sign: [
@@ -376,7 +371,7 @@ chrapan.table(
         "(3,7)": lambda sign: [(slope(partial(both, pi_function, sign), K), slope_3_7(sign))],
     },
 )
-chrapan.table(
+chrapan.each(
     lambda: [(V,), (J * V,), (V + J * V,)],
     {
         "(3,8) for the imaginary modulus of section 4": lambda v: [

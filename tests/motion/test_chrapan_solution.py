@@ -27,19 +27,13 @@ from chrapan_top import (
     spoil,
     tops,
 )
-from equations import EquationTests, Pair, Register
+from equations import EquationTests, Pairs, Register, pairs
 from errata import misprints
 from ours import Ours
 
 chrapan = Register()
 pi_function = Ours(ar).pi_function
-Pairs = list[tuple[Any, Any]]
 few = partial(moments, *PARTS[:2])
-
-
-def pairs(left: Any, right: Any) -> Pairs:
-    """Return pairs of sides."""
-    return list(zip(left, right, strict=True))
 
 
 def rotation(top: Motion, t: Any) -> Any:
@@ -152,7 +146,7 @@ def fallen(top: Motion, t: Any) -> tuple[Any, Any]:
     return 2 * top.mgs * (top.u1 - top.u(t)) / top.A, squares(top, t, 2)[0][1]
 
 
-MECHANICS: dict[str, Pair] = {
+MECHANICS = {
     "section 4 b: the angular velocity": lambda top, t: [
         *pairs(turning(top, t), velocity(top, t, 2)),
         (ar.fdot(zip(velocity(top, t, 2), rotation(top, t)[:, 2], strict=True)), top.r0),
@@ -287,7 +281,7 @@ def slopes_of_f(top: Motion) -> Pairs:
     return [*found, (slope(partial(factored, top), u1), -top.a * (1 - u1**2))]
 
 
-CONSTANTS: dict[str, Pair] = {
+CONSTANTS = {
     "(4,4)": lambda top: (top.a, 2 * top.mgs / top.A),
     "(4,5)": lambda top: (top.b, top.C * top.r0 / top.A),
     "(4,6)": lambda top: pairs([top.u1, top.u2], [top.u(ar.mpf(0)), top.u(top.T / 2)]),
@@ -343,7 +337,7 @@ def states() -> Iterator[tuple[Any, ...]]:
         yield top, t, top.u(t), top.xi(t) ** 2, *top.roots
 
 
-STATES: dict[str, Pair] = {
+STATES = {
     "(4,9)": lambda top, t, u, xi2, u1, u2, u3: (slope(top.u, t) ** 2, cubic(top, u)),
     "(4,20)": lambda top, t, u, xi2, u1, u2, u3: [
         (u, u3 - (u3 - u1) / top.jacobi(t)[2] ** 2),
