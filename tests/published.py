@@ -1,7 +1,7 @@
 """Numbers that others have printed, checked: a table of tests/README.md is made from here.
 
-The exact values are those of `lagtop` in many digits; `exact_by_the_reference` has them from the
-proved enclosures of `ball_reference`, which share no formula with it.
+The exact values are those of `lagtop` in many digits; a test compares them with the proved
+enclosures of `ball_reference`, which share no formula with it.
 """
 
 from __future__ import annotations
@@ -19,27 +19,24 @@ from conftest import ROOT
 from lagtop import Motion, read_scene, solve
 from ours import ManyDigits, Ours
 
-from lagrange_cli.inputs.names import ANGLES
 from lagrange_cli.motion.over_time.tables import ProvedTable
 
 Many = Any
 """An mpf with many digits."""
 
 DIGITS, SHOWN = 60, 18
-STEP = Fraction(1, 10**18)
-"""Step of the central differences that give the rates; their error is of the size of its square."""
 ELLIPJ, _K = "k = 0.99999999997", "0.99999999997"
 
 
 class State(NamedTuple):
-    """Angles at a time, unwrapped, and their rates."""
+    """Angles at a time, unwrapped, and their rates, by the names of the columns."""
 
     theta: Many
     phi: Many
     psi: Many
-    theta_rate: Many
-    phi_rate: Many
-    psi_rate: Many
+    thetadot: Many
+    phidot: Many
+    psidot: Many
 
 
 class Printed(NamedTuple):
@@ -90,8 +87,8 @@ def rotation(now: State) -> list[list[Many]]:
 
 def omega_y(now: State) -> Many:
     """Return the angular velocity about y of space, in the frame of `quaternion`."""
-    ours = now.theta_rate * mpmath.sin(now.psi)
-    ours -= now.phi_rate * mpmath.sin(now.theta) * mpmath.cos(now.psi)
+    ours = now.thetadot * mpmath.sin(now.psi)
+    ours -= now.phidot * mpmath.sin(now.theta) * mpmath.cos(now.psi)
     return -ours  # space is turned by 180 degrees about z
 
 
@@ -132,27 +129,30 @@ def motion(scene: str) -> Motion:
     return solve(read_scene(str(ROOT / "sample_inputs" / f"{scene}.toml"), exact=True))
 
 
-@cache
-def _angles(scene: str, t: Fraction) -> list[Many]:
-    """Return the angles that lagtop gives at a time."""
-    row = ProvedTable(motion(scene), ANGLES, DIGITS, radians=True).row(t)
-    return [mpmath.mpf(number.value) for number in row]
+def exact(x: Printed, *, by_balls: bool = False) -> Many:
+    """Return the exact value of a printed number, by lagtop or by the reference.
 
-
-def exact(x: Printed) -> Many:
-    """Return the exact value of a printed number, by lagtop."""
+    The reference of cn is mpmath.
+    """
     with mpmath.workdps(DIGITS):
+        if x.scene == ELLIPJ and by_balls:
+            return mpmath.ellipfun("cn", 50, k=mpmath.mpf(_K))
         if x.scene == ELLIPJ:
             ar = ManyDigits(DIGITS)
             return mpmath.mpf(ar.nstr(Ours(ar).jacobi(50, ar.mpf(_K))[2], DIGITS))
         if not x.t:
-            return mpmath.mpf(
-                str(motion(x.scene).record(digits=DIGITS, keys=[x.quantity])[x.quantity])
-            )
-        t, step = Fraction(x.t), mpmath.mpf(STEP.numerator) / STEP.denominator
-        before, after = _angles(x.scene, t - STEP), _angles(x.scene, t + STEP)
-        rates = [(b - a) / (2 * step) for a, b in zip(before, after, strict=True)]
-        return _value(x, State(*_angles(x.scene, t), *rates))
+            key = x.quantity
+            record = motion(x.scene).record(digits=DIGITS, keys=[key])
+            return _middle(_balls(x.scene).exact(key)) if by_balls else mpmath.mpf(record[key])
+        if by_balls:
+            now = State(*map(_middle, _balls(x.scene).at(Fraction(x.t))[:6]))
+        else:
+            table = ProvedTable(motion(x.scene), State._fields, DIGITS, radians=True)
+            now = State(*(mpmath.mpf(found.value) for found in table.row(Fraction(x.t))))
+        value = QUANTITIES[x.quantity](now)
+        if x.quantity.startswith("Rot"):  # angles of a rotation have the whole turns of the print
+            value += 2 * mpmath.pi * mpmath.nint((mpmath.mpf(x.text) - value) / 2 / mpmath.pi)
+        return value
 
 
 @cache
@@ -161,29 +161,10 @@ def _balls(scene: str) -> BallReference:
     return BallReference({key: getattr(top, key) for key in top.fields})
 
 
-def exact_by_the_reference(x: Printed) -> Many:
-    """Return the exact value of a printed number, by ball arithmetic; of cn by mpmath."""
-    with mpmath.workdps(DIGITS):
-        if x.scene == ELLIPJ:
-            return mpmath.ellipfun("cn", 50, k=mpmath.mpf(_K))
-        if not x.t:
-            return _middle(_balls(x.scene).exact(x.quantity))
-        return _value(x, State(*(_middle(ball) for ball in _balls(x.scene).at(Fraction(x.t))[:6])))
-
-
 def _middle(ball: Any) -> Many:
     """Return the middle of a ball of at least 25 digits."""
     assert ball.rad() < 1e-25 * max(1, abs(float(ball)))
     return mpmath.mpf(ball.mid().str(DIGITS, radius=False))
-
-
-def _value(x: Printed, now: State) -> Many:
-    """Return a quantity; angles of a rotation have the whole turns of the print."""
-    value = QUANTITIES[x.quantity](now)
-    if x.quantity.startswith("Rot"):
-        turn = 2 * mpmath.pi
-        value += turn * mpmath.nint((mpmath.mpf(x.text) - value) / turn)
-    return value
 
 
 def error(x: Printed) -> tuple[Many, bool]:

@@ -15,12 +15,14 @@ from pathlib import Path
 
 import click
 import pytest
-from compare_tables import COMPARE_TABLES
 from errata import errata_table, figures_table
 from published import published_table
 
 from lagrange_cli.cli.app import main
+from lagrange_cli.compare.compare import COMPARISON_KEYS, VERDICTS
+from lagrange_cli.compare.differences import WORDS
 from lagrange_cli.inputs.input_keys import DECLARED, TILT
+from lagrange_cli.inputs.trajectory_columns import QUANTITIES
 from lagrange_cli.motion.explanation import listed
 from lagrange_cli.motion.record import NUMBER_KEYS, number_key, requested_keys
 
@@ -148,6 +150,20 @@ def inputs_table() -> list[str]:
     return lines
 
 
+def two_columns(first: str, second: str, rows: dict[str, str]) -> list[str]:
+    """Return names and their meanings as a table in Markdown."""
+    lines = [f"| `{x}` | {y} |" for x, y in rows.items()]
+    return [f"| {first} | {second} |", "|---|---|", *lines]
+
+
+COMPARE_TABLES: dict[tuple[str, str], dict[str, str]] = {
+    ("column", "quantity, and known names"): {
+        key: f"{x.meaning}: {x.shown}" for key, x in QUANTITIES.items()
+    },
+    ("key", "meaning"): COMPARISON_KEYS,
+    ("verdict", "if"): VERDICTS,
+    ("word", "meaning"): WORDS,
+}
 KINDS_OF_KEYS = {"record": "key", "on request": "further key", "column": "column"}
 """The headings of the tables of keys and columns."""
 TABLES: list[tuple[Callable[[], list[str]], str]] = [
@@ -159,7 +175,10 @@ TABLES: list[tuple[Callable[[], list[str]], str]] = [
         for kind, heading in KINDS_OF_KEYS.items()
     ),
     (published_table, "tests"),
-    *((table, "lagrange_cli/compare") for table in COMPARE_TABLES),
+    *(
+        (partial(two_columns, *heads, rows), "lagrange_cli/compare")
+        for heads, rows in COMPARE_TABLES.items()
+    ),
 ]
 """Tables that are made, and the folders of the pages that show them."""
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import Body
 from lagtop import LagtopError, Top, solve
 from scipy.integrate import solve_ivp
 
@@ -52,29 +53,15 @@ def test_angles_of_lagtop_give_the_attitude() -> None:
     assert np.abs(angles - quaternion).max() < 1e-13
 
 
-def moments(_: float, state: Any) -> list[float]:
-    """Euler's equations from the moments A and C, and the rate of the quaternion."""
-    p, q, w, x, y, z = state
-    A, C, r, weight = START["A"], START["C"], START["r0"], START["m"] * START["g"] * START["s"]
-    return [
-        ((A - C) * q * r + weight * 2 * (y * z + w * x)) / A,
-        ((C - A) * p * r - weight * 2 * (x * z - w * y)) / A,
-        (-x * p - y * q - z * r) / 2,
-        (w * p + y * r - z * q) / 2,
-        (w * q + z * p - x * r) / 2,
-        (w * r + x * q - y * p) / 2,
-    ]
-
-
 @pytest.mark.parametrize("name", ["RK45", "DOP853", "LSODA"])
 def test_scipy_runs_as_in_a_plain_call(name: str) -> None:
-    half, across = math.radians(25), START["psidot0"] * math.sin(math.radians(50))
-    start = [START["thetadot0"], across, math.cos(half), math.sin(half), 0.0, 0.0]
-    times = np.linspace(0, 1.5, 30)
-    plain = solve_ivp(moments, (0, 1.5), start, name, t_eval=times, rtol=1e-7, atol=1e-7)
+    body, times = Body.of(MOTION.top), np.linspace(0, 1.5, 30)
+    plain = solve_ivp(
+        lambda _, y: body.slope(y), (0, 1.5), body.state, name, times, rtol=1e-7, atol=1e-7
+    )
     columns, evaluations = run(name, 1e-7, times)
-    assert evaluations == pytest.approx(plain.nfev, rel=0.01)
-    assert np.abs(attitudes(columns) - plain.y[2:].T).max() < 1e-6
+    assert evaluations == pytest.approx(plain.nfev, rel=0.05)
+    assert np.abs(attitudes(columns) - plain.y[:4].T).max() < 1e-6
 
 
 @pytest.mark.parametrize("name", ["RK4", "MuJoCo-RK4"])
