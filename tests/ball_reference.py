@@ -19,9 +19,6 @@ from balls.record import Motion, Remainders
 from balls.requested import Requested
 from balls.scene import Number, Scene, Undecided, arb_bits, facts_of, scene_from
 from flint import arb
-from lagtop import Top, solve
-
-from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 EPS = 2.0**-52
 FIRST_BITS, MOST_BITS = 160, 20_000
@@ -238,17 +235,6 @@ class BallReference:
             if not size > 0:
                 return 0.0 if away.contains(0) else math.inf
             return float((away / (EPS * size)).abs_upper())
-
-
-def assert_nearest(scene: dict[str, Any]) -> None:
-    """Check that every key of a record is the double nearest to its value, and 0 where that is."""
-    motion, balls = solve(Top(**scene)), BallReference(Top(**scene).as_dict())
-    for key in (*NUMBER_KEYS, *requested_keys()):
-        computed = getattr(motion, key)
-        if computed is None:
-            assert balls.exact(key) is None, key
-        else:
-            assert balls.ulps(key, computed) <= 0.5 + 1e-9, (key, scene)
 
 
 def _with_units(state: State, *, wrapped: bool = False) -> list[tuple[arb, arb]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from conftest import ROOT
@@ -16,6 +17,14 @@ UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
 """Scene files of the project."""
 
+STEADY: list[dict[str, float]] = [
+    *({"theta0_deg": 90}, {"theta0_deg": 90, "r0": -2}, {"theta0_deg": 150}, {"r0": 3, "g": 0}),
+    *({"theta0_deg": 60, "r0": -3, "g": 4.5}, {"theta0_deg": 0, "r0": -5, "g": 4}),
+    *({"theta0_deg": 120, "r0": 0, "A": 2}, {"theta0_deg": 0}),
+    *({"r0": math.nextafter(3**0.25 * 2**0.5, up)} for up in (0, 9)),
+]
+"""Starts whose steady rates have closed values, coincide or nearly do, or do not exist."""
+
 NAMED: dict[str, dict[str, float]] = {
     "worked example": {},
     "other way round": {"r0": -50},
@@ -28,7 +37,19 @@ NAMED: dict[str, dict[str, float]] = {
     "nearly hanging": {"theta0_deg": 179.9, "r0": 3},
     "nearly upright, unstable": {"theta0_deg": 0.01},
     "nearly upright, stable": {"theta0_deg": 0.01, "r0": 60},
-    "at the sleeping threshold": {"A": 1, "C": 1, "m": 1, "s": 1, "g": 1, "r0": 2, "theta0_deg": 1},
+    **{
+        f"at the sleeping threshold, r0 = {r0}": UNIT | {"r0": r0, "theta0_deg": 1}
+        for r0 in (2, math.nextafter(2, 0), math.nextafter(2, 3))
+    },
+    **{
+        f"tiny tilt of {tilt}": UNIT | {"r0": 3, "theta0_deg": tilt, "psidot0": 1}
+        for tilt in (1e-15, 1e-30, 1e-70)
+    },
+    **{
+        f"leaves the pole at {rate}": UNIT | {"r0": 1, "theta0_deg": 0, "thetadot0": rate}
+        for rate in (1e-18, 1e-120)
+    },
+    **{f"steady rates {x}": UNIT | {"r0": 2, "theta0_deg": 30} | x for x in STEADY},
 }
 
 

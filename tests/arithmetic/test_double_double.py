@@ -11,7 +11,6 @@ import pytest
 
 from lagrange_cli.arithmetic.arrays import order_by_parity, placed, taken
 from lagrange_cli.arithmetic.double_double import (
-    MANY,
     Period,
     fraction_of_product,
     period_of,
@@ -68,17 +67,6 @@ def test_a_far_time_does_not_change_a_near_one() -> None:
             counted(near, period, 0.2), counted(both, period, 0.2), strict=True
         ):
             np.testing.assert_array_equal(alone, beside[:-1])
-
-
-def test_a_period_splits_into_parts_that_whole_numbers_multiply_exactly() -> None:
-    rng = random.Random(27)
-    for _ in range(50):
-        exact, period = random_period(rng)
-        n = rng.randrange(int(MANY))
-        for part in (period.high, period.middle):
-            assert Fraction(float(n * part)) == n * Fraction(float(part))
-        total = sum(Fraction(float(x)) for x in (period.high, period.middle, period.low))
-        assert abs(total - exact) <= exact / 2**105
 
 
 @pytest.mark.parametrize("length", [Pair(0.0, 0.0), Pair(math.inf, 0.0)])

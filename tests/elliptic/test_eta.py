@@ -12,7 +12,6 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
-from lagtop import Top, solve
 
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.eta import EtaTable, Quadrature, eta_record
@@ -104,17 +103,6 @@ def test_chain(name: str) -> None:
             assert is_nearest(row["h1"], h1)
             assert is_nearest(row["theta_rad"], mpmath.atan2(sn, cn) + turns * mpmath.pi)
             assert is_nearest(row["xi_prime"], sn * (-1) ** int(turns))
-
-
-def test_the_top_is_the_cubic_case() -> None:
-    """u(t) another way: the roots put into the satellite's routine, for a start at u2."""
-    motion = solve(Top(theta0_deg=60, psidot0=20))
-    record = motion.record(digits=50, keys=["a", "u1", "u2", "u3"])
-    a, u1, u2, u3 = map(Fraction, record.values())
-    of, times = Quadrature(u2, u1, (u3,), a), np.linspace(-3, 400, 1001)
-    eta = np.array([row["eta"] for row in rows_of(of, times, ["eta"])])
-    assert abs(eta - np.cos(motion.angles(times).theta)).max() < 1e-15
-    assert eta_record(of)["period"] == motion.T_nutation
 
 
 def test_far_times(lagtop: Lagtop) -> None:
@@ -226,18 +214,3 @@ def test_zeros_of_the_constants_are_exact(of: Quadrature, zeros: str) -> None:
     in_digits, in_doubles = eta_record(of, 20), eta_record(of)
     assert {key for key, text in in_digits.items() if text == "0.0"} == set(zeros.split())
     assert {key for key, x in in_doubles.items() if x == 0} == set(zeros.split())
-
-
-def test_constants_that_nearly_vanish_have_their_digits() -> None:
-    """d = (m''^2 - m'^2)/(m' + m'')^2 with m'^2 = 1 + x and m''^2 = 1 exactly: about -x/4."""
-    x = Fraction("1e-80")
-    of = Quadrature(Fraction(0), x, (Fraction(-1), 1 + 2 * x))
-    lower, upper, outer = of.lower, of.upper, of.outer
-    square1 = abs((upper - outer[0]) * (upper - outer[1]))
-    square2 = abs((lower - outer[0]) * (lower - outer[1]))
-    with mpmath.workdps(200):
-        first, second, difference = (
-            mpmath.mpf(y.numerator) / y.denominator for y in (square1, square2, square2 - square1)
-        )
-        exact = difference / (mpmath.sqrt(first) + mpmath.sqrt(second)) ** 2
-        assert abs(mpmath.mpf(eta_record(of, 20)["d"]) / exact - 1) < 1e-19

@@ -25,6 +25,7 @@ JACOBI = [
     ("--k 0.5 --u 1,2 --series 3", "--series takes one --u, got 2"),
     # complex numbers, and moduli of any kind
     ("--k 1+2i", "--k must be 0 or more, or imaginary as 0.8i, got 1.0+2.0i"),
+    ("--k 0.8 --u 1+2j", "must be a finite number, complex as 0.3+0.7i, got '1+2j'"),
     ("--k x", "--k must be a finite decimal number, got 'x'"),
     ("--k 1.5 --phi 30", "--phi and --series need a real --u, and a --k in [0, 1]"),
     ("--k 0.5 --u i,2K", "--u must not contain K if numbers are complex"),

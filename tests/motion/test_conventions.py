@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from lagtop import Motion, Top, solve
+from lagtop import LagtopError, Motion, Top, solve
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
@@ -26,7 +26,9 @@ def attitude(motion: Motion, t: NDArray[np.float64]) -> Rotation:
     """Return the rotation from body to space of the quaternion, read as the README says."""
     columns = motion.table(t, ["quaternion"])
     q = np.stack([columns[f"quaternion_{part}"] for part in "wxyz"], axis=-1)
-    return Rotation.from_quat(q, scalar_first=True)
+    found = Rotation.from_quat(q, scalar_first=True)
+    assert motion.rotation(t).approx_equal(found, atol=1e-14).all()
+    return found
 
 
 def test_the_angles_are_intrinsic_zxz(motion: Motion) -> None:
@@ -53,6 +55,7 @@ def test_the_figure_axis_is_body_z_and_tilt_counts_from_space_z(motion: Motion) 
     """Worst seen: 5.6e-16 and 2.2e-16."""
     at = motion.table(TIMES, ["axis", "theta"])
     axis = np.stack([at[f"axis_{part}"] for part in "xyz"], axis=-1)
+    np.testing.assert_array_equal(motion.axis(TIMES.reshape(5, 5)), axis.reshape(5, 5, 3))
     assert np.abs(attitude(motion, TIMES).apply(SPACE[2]) - axis).max() < 1e-15
     assert np.abs(np.cos(at["theta"]) - axis[:, 2]).max() < 5e-16
 
@@ -64,6 +67,12 @@ def test_p_q_r_are_the_angular_velocity_along_body_axes(motion: Motion) -> None:
     at = motion.table(TIMES, ["p", "q", "r"])
     rates = np.stack([at["p"], at["q"], at["r"]], axis=-1)
     assert np.abs(turn.as_rotvec() / (2 * step) - rates).max() < 3e-8
+
+
+def test_rotations_are_of_times_in_one_dimension(motion: Motion) -> None:
+    assert motion.rotation(0.1).approx_equal(attitude(motion, np.array([0.1]))[0], atol=1e-14)
+    with pytest.raises(LagtopError, match=r"t must be .* one dimension, got the shape \(1, 25\)"):
+        motion.rotation([TIMES])
 
 
 def test_the_moment_is_that_of_the_weight(motion: Motion) -> None:

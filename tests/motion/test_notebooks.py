@@ -12,28 +12,12 @@ from ball_reference import BallReference
 from lagtop import LagtopError, Top, compare, fit, solve
 from matplotlib.figure import Figure
 from scenes import EVERY_KIND
-from scipy.spatial.transform import Rotation
 
 from lagrange_cli.errors import UnavailableError
 
 SEPARATRIX = EVERY_KIND["separatrix in a plane"]
 MOTION = solve(Top(theta0_deg=30, psidot0=3))
 TIMES = np.array([0.0, 0.1, 1.7])
-
-
-def test_rotations_are_those_of_the_angles() -> None:
-    theta, phi, psi = MOTION.angles(TIMES)
-    expected = Rotation.from_euler("ZXZ", np.transpose([psi, theta, phi]))
-    assert (MOTION.rotation(TIMES).inv() * expected).magnitude() == pytest.approx(0, abs=1e-14)
-    assert MOTION.rotation(0.1).approx_equal(expected[1], atol=1e-14)
-    with pytest.raises(LagtopError, match=r"t must be .* one dimension, got the shape \(1, 3\)"):
-        MOTION.rotation([TIMES])
-
-
-def test_the_axis_is_the_body_axis_in_space() -> None:
-    assert MOTION.axis(TIMES) == pytest.approx(MOTION.rotation(TIMES).apply([0, 0, 1]), abs=1e-14)
-    assert MOTION.axis(0.1).shape == (3,)
-    assert MOTION.axis([TIMES, TIMES]).shape == (2, 3, 3)
 
 
 @pytest.mark.parametrize("fall", [-8.0, -0.5, 0.5, 8.0])

@@ -56,16 +56,6 @@ def test_a_record_has_them_only_when_they_are_asked_for(lagtop: Lagtop) -> None:
     assert set(requested_keys()) <= set(dir(motion))
 
 
-def test_undefined_quantities_are_none(lagtop: Lagtop) -> None:
-    sleeping, pendulum = solve(Top(theta0_deg=0)), solve(Top(r0=0))
-    assert sleeping.Lz == 872900.0
-    assert sleeping.u2_criterion is sleeping.phi_half_deg is sleeping.roots_sum is None
-    assert pendulum.phi_half_deg is pendulum.spin_rate_upper is None  # the lower pole
-    assert pendulum.phi_period_deg == 180.0
-    found = lagtop("solve", "--theta0", "0", "--get", "roots_sum")
-    assert (found.exit_code, found.stdout) == (1, "")
-
-
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
