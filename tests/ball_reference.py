@@ -226,7 +226,7 @@ class BallReference:
 
     def relative(self, key: str, computed: float, absolute: float | None = None) -> float:
         """Return the error of a key in eps of its exact value, or of the size given instead."""
-        exact = self.record.get(key)
+        exact = self.exact(key)
         if exact is None or not math.isfinite(computed):
             return math.inf
         with arb_bits(8 * FIRST_BITS):

@@ -17,7 +17,7 @@ UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
 """Scene files of the project."""
 
-STEADY: list[dict[str, float]] = [
+STEADY: list[dict[str, Any]] = [
     *({"theta0_deg": 90}, {"theta0_deg": 90, "r0": -2}, {"theta0_deg": 150}, {"r0": 3, "g": 0}),
     *({"theta0_deg": 60, "r0": -3, "g": 4.5}, {"theta0_deg": 0, "r0": -5, "g": 4}),
     *({"theta0_deg": 120, "r0": 0, "A": 2}, {"theta0_deg": 0}),

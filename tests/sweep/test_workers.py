@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 import os
 import re
 import signal
@@ -17,52 +16,11 @@ from typing import Any
 
 import pytest
 from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, process, wait_until
-from lagtop import LagtopError
 
-from lagrange_cli.errors import UnavailableError
-from lagrange_cli.sweep.workers import in_order, parse_jobs
+from lagrange_cli.sweep.workers import parse_jobs
 
 LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1"]
 LOST = rb"Error: a process that shared the work was lost \(killed, or out of memory\).*\n"
-
-
-def late(x: int) -> tuple[int, int]:
-    """Return a number and the process that it was in; some take longer: the order is restored."""
-    time.sleep(0.05 if x % 5 == 0 else 0.01)
-    return x, os.getpid()
-
-
-def refuse(x: int) -> None:
-    """Fail."""
-    raise LagtopError(f"{x} is too large")
-
-
-def lose(x: int) -> int:
-    """Kill the process that has the item 5."""
-    if x == 5 and multiprocessing.parent_process() is not None:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return x
-
-
-def test_one_process_needs_no_others() -> None:
-    assert list(in_order(late, range(3))) == [(x, os.getpid()) for x in range(3)]
-
-
-@pytest.mark.slow
-def test_results_come_in_the_order_of_the_work() -> None:
-    numbers, places = zip(*in_order(late, range(60), 3), strict=True)
-    assert numbers == tuple(range(60))
-    assert os.getpid() not in places
-    assert len(set(places)) > 1
-    assert list(in_order(late, [], 2)) == []
-
-
-@pytest.mark.slow
-def test_errors_of_the_work_and_lost_processes_are_raised() -> None:
-    with pytest.raises(LagtopError, match="0 is too large"):
-        list(in_order(refuse, range(9), 2))
-    with pytest.raises(UnavailableError, match="was lost"):
-        list(in_order(lose, range(9), 2))
 
 
 def test_jobs(lagtop: Lagtop) -> None:
