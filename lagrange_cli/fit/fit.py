@@ -23,7 +23,7 @@ from ..inputs.given import gather
 from ..inputs.values import value_of
 from .motions import STATE
 from .nutation import Minimum, Problem, nutating_outcome
-from .outcome import CHANCE, GOOD, Outcome
+from .outcome import CHANCE, GOOD, Outcome, chi2_bounds
 from .recording import Known, Recording, known_inputs, recording_from, turned_up
 from .starts import noise_of, oscillation_in, signals_in, starts
 from .steady import steady_outcome
@@ -68,6 +68,10 @@ def best_fit(
         outcome = _nutation(recording, known, frequency, radians=radians)
     outcome = outcome or steady_outcome(recording, known, oscillates=visible, radians=radians)
     outcome.chance = chance
+    low = chi2_bounds(outcome.dof)[0]
+    if outcome.chi2_dof is not None and outcome.chi2_dof < low:
+        shown = f"{outcome.chi2_dof:.3g} is below {low:.3g}"
+        outcome.notes.append(f"chi2/dof = {shown}: the noise is below sigma")
     if helpful and outcome.failures():
         near = all(rest.rms < 1 for rest in outcome.residuals.values())
         if visible and not lasts and near:
@@ -207,8 +211,8 @@ def fit(
     ('good', [])
     >>> [(key, round(x, 1)) for key, (x, std) in outcome.numbers.items()][:3]
     [('a', 319.1), ('b', 22.4), ('r0', 50.0)]
-    >>> round(outcome.numbers["A"][0], -2), round(outcome.chi2_dof, 1), outcome.record()["dof"]
-    (39000.0, 1.0, 592)
+    >>> round(outcome.numbers["A"][0], -2), outcome.record()["dof"]
+    (39000.0, 592)
     """
     check_type("known", known, Mapping, NoneType)
     recording = recording_from(

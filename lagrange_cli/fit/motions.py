@@ -63,38 +63,32 @@ def angles(states: Array, t: Array) -> Array:
     argument = ellipkinc(first, m) + speed * t
     periods = np.round(argument / (2 * quarter))
     sn, _, _, phase = ellipj(argument - 2 * quarter * periods, m)
-    legs = _Legendre(phase, m), _Legendre(first, m), _Legendre(np.pi / 2, m)
     down, up = 2 * np.sin(theta / 2) ** 2, 2 * np.cos(theta / 2) ** 2  # 1 - u and 1 + u
-    north, south = psi_rate * sine**2 - b * down, psi_rate * sine**2 + b * up
+    momenta = psi_rate * sine**2 + b * np.stack([-down, up])  # N and S
     # 1 - u1 and 1 + u2 may be tiny: the cubic at u = 1 and -1 gives them without a difference
-    near_north = north**2 / (a * (down + below) * (third - down)) + _TINY
-    near_south = south**2 / (a * (up + above) * (third + up)) + _TINY
-    turned = []
-    for momentum, at_u2, at_u1, n in (
-        (north, down + below, near_north, swing / (down + below)),
-        (south, near_south, up + above, -swing / near_south),
-    ):
-        at_end, at_start, at_quarter = (x.third_kind(n, at_u1 / at_u2) for x in legs)
-        grown = at_end - at_start + 2 * periods * at_quarter
-        turned.append(momentum / at_u2 * grown / (2 * speed))
-    turned_north, turned_south = turned
+    beyond = np.stack([(down + below) * (third - down), (up + above) * (third + up)])
+    near_north, near_south = momenta**2 / (a * beyond) + _TINY
+    at_u2, at_u1 = np.stack([down + below, near_south]), np.stack([near_north, up + above])
+    n = np.stack([swing, -swing]) / at_u2
+    at_end, at_start, at_quarter = (
+        third_kind(x, m, n, at_u1 / at_u2) for x in (phase, first, np.pi / 2)
+    )
+    grown = at_end - at_start + 2 * periods * at_quarter
+    north, south = momenta / at_u2 * grown / (2 * speed)
     tilt = np.arccos(np.clip(u - below + swing * sn * sn, -1, 1))
-    return np.stack([tilt, turned_south - turned_north, turned_south + turned_north])
+    return np.stack([tilt, south - north, south + north])
 
 
-class _Legendre:
-    """Incomplete integrals at |phase| <= pi/2 for one parameter m, by Carlson's functions."""
+def third_kind(phase: Array | float, m: Array, n: Array, rest: Array) -> Array:
+    """Return the integral of 1/((1 - n sin^2) sqrt(1 - m sin^2)) up to |phase| <= pi/2.
 
-    def __init__(self, phase: Array | float, m: Array) -> None:
-        self.s = np.sin(phase)
-        self.x, self.y = np.cos(phase) ** 2, 1 - m * self.s**2
-        self.first_kind = self.s * elliprf(self.x, self.y, 1.0)
-
-    def third_kind(self, n: Array, rest: Array) -> Array:
-        """Return the integral of 1/((1 - n sin^2) sqrt(1 - m sin^2)), with rest = 1 - n > 0."""
-        more = elliprj(self.x, self.y, 1.0, self.x + rest * self.s**2)
-        integral: Array = self.first_kind + n / 3 * self.s**3 * more
-        return integral
+    Rest is 1 - n > 0.  Carlson's functions give the integral.
+    """
+    s, x = np.sin(phase), np.cos(phase) ** 2
+    y = 1 - m * s * s
+    more = elliprj(x, y, 1.0, x + rest * s * s)
+    integral: Array = s * elliprf(x, y, 1.0) + n / 3 * s**3 * more
+    return integral
 
 
 @np.errstate(all="ignore")
@@ -111,10 +105,10 @@ def nutating(
     north1, north2 = 2 * np.sin(least / 2) ** 2, 2 * np.sin(greatest / 2) ** 2
     width = north2 * (1 + height)
     m = (u1 - u2) / width
-    whole = _Legendre(np.pi / 2, m)
-    a = (4 * whole.first_kind / period) ** 2 / width
+    quarter = ellipk(m)
+    a = (4 * quarter / period) ** 2 / width
     south = signs[0] * np.sqrt(a * (1 + u1) * (1 + u2) * (2 + north2 * height))
     north = signs[1] * np.sqrt(a * north1 * north2 * north2 * height)
-    grown = south / (1 + u2) * whole.third_kind((u2 - u1) / (1 + u2), (1 + u1) / (1 + u2))
-    grown = grown + north / north2 * whole.third_kind((u1 - u2) / north2, north1 / north2)
-    return a, (south - north) / 2, (south + north) / 2, grown / (2 * whole.first_kind)
+    ends = (south, u2 - u1, 1 + u1, 1 + u2), (north, u1 - u2, north1, north2)
+    grown = sum(p / y * third_kind(np.pi / 2, m, dx / y, x / y) for p, dx, x, y in ends)
+    return a, (south - north) / 2, (south + north) / 2, grown / (2 * quarter)

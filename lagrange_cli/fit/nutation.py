@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,12 +11,11 @@ from scipy.optimize import OptimizeResult, least_squares
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from ..inputs.rotations import within_half_turn
 from ..motion.quantity import unit_name
 from ..motion.record import shown_keys
 from ..sweep.records import sweep
 from .motions import STATE, angles
-from .outcome import Outcome, Residuals, chi2_bounds
+from .outcome import Outcome
 from .recording import Known, Recording
 from .starts import Signal
 
@@ -33,6 +31,7 @@ _MEANINGS = {
     "psi_zero": "psi of the data in the first row",
     "phi_zero": "phi of the data in the first row",
 }
+_ANGLES = ("theta0", "psi_zero", "phi_zero")
 _ELEMENTARY = {
     "T_nutation_elementary": "T_nutation",
     "precession_rate_elementary": "mean_precession_rate",
@@ -43,12 +42,14 @@ _DERIVED = (
 )
 _DEPENDENT = 1e-7
 """Ratio of singular values of the slopes below which parameters are not determined."""
+_IMPROVED = 0.999
+"""Standard deviation of a known input after the fit, over the given one, from which it is new."""
 _SHARE = 0.05
 """Share of a parameter in a direction that is not determined, from which it is not either."""
 _APART, _LEAST, _FASTEST = 4.0, 2.0, 1e6
 """Standard deviations between different tops, those by which a > 0, and the largest b^2/a at which
 a is determined."""
-_STEP, _SHORT_STEP, _LEAST_STEP = 1e-6, 1e-7, 1e-3
+_STEP, _SHORT_STEP, _LEAST_SIZE = 1e-6, 1e-7, 1e-3
 """Steps of central and of forward differences, over the size of a parameter, and its least size."""
 _POLE, _FAR = 1e-9, 1e3
 """Least distance from a pole, and weighted residual of a motion that does not exist."""
@@ -59,7 +60,7 @@ class Problem:
 
     Parameters are the state, r0 if the spin is recorded, and the zeros of psi and phi.  Known
     inputs replace a, b, r0 and the start as far as they determine them.  A known input that is
-    uncertain, and does so, is a parameter with a prior.
+    uncertain is a parameter with a prior.
     """
 
     def __init__(self, recording: Recording, known: Known, sigma: Mapping[str, float]) -> None:
@@ -70,23 +71,17 @@ class Problem:
         """Whether the opposite b leaves the same tilt."""
         self.has_torque = weight | {"A"} <= has
         self.is_tied = self.spins and "C" in has and ("A" in has or weight <= has)
-        used = {*STATE, *["r0"] * self.spins}
-        if self.has_torque:
-            used |= weight | {"A"}
-        if self.is_tied:
-            used |= {"C"} | ({"A"} if "A" in has else weight)
-        self.priors = [x for x in known.stds if x in used]
         fixed = {*has, *["a"] * self.has_torque, *["b"] * self.is_tied}
         self.names = [x for x in (*STATE, *["r0"] * ("phi" in seen)) if x not in fixed]
         self.names += [f"{x}_zero" for x in ("psi", "phi") if x in seen]
-        self.names += self.priors
+        self.count = len(self.names)
+        """The number of parameters without a prior."""
+        self.names += known.stds
 
     def thinned(self, count: int) -> Problem:
         """Return the same problem for at most `count` rows of the recording."""
-        one = self.recording
-        rows = np.unique(np.linspace(0, one.t.size - 1, count).astype(int))
-        angles = {key: x[rows] for key, x in one.angles.items()}
-        return Problem(replace(one, t=one.t[rows], angles=angles), self.known, self.sigma)
+        rows = np.unique(np.linspace(0, self.recording.t.size - 1, count).astype(int))
+        return Problem(self.recording.part(rows), self.known, self.sigma)
 
     def values(self, x: Array) -> dict[str, Array]:
         """Return the quantities of the motion from parameters, shape (tops, parameters)."""
@@ -101,6 +96,11 @@ class Problem:
         found.setdefault("r0", found["b"])
         return {name: np.broadcast_to(value, len(x)) for name, value in found.items()}
 
+    def ratio(self, x: Array) -> Array:
+        """Return C/A = b/r0."""
+        value = self.values(x)
+        return value["b"] / value["r0"]
+
     def angles(self, x: Array, t: Array) -> Array:
         """Return theta, phi and psi with the zeros of the recording, shape (3, tops, times)."""
         value = self.values(x)
@@ -112,35 +112,25 @@ class Problem:
 
     def residuals(self, x: Array) -> Array:
         """Return recording minus motion in radians, shape (tops, channels, times)."""
-        theta, phi, psi = self.angles(x, self.recording.t)
-        seen = self.recording.angles
-        if self.recording.kind == "angles":
-            motion = {"theta": theta, "phi": phi, "psi": psi}
-            found = [within_half_turn(seen[key] - motion[key]) for key in self.recording.channels]
-            return np.asarray(np.stack(found, axis=1))
-        turned, sine = within_half_turn(seen["psi"] - psi), np.sin(seen["theta"])
-        along_meridian = sine * np.cos(theta) * np.cos(turned)
-        found = [along_meridian - np.cos(seen["theta"]) * np.sin(theta), sine * np.sin(turned)]
-        if self.recording.kind == "attitude":
-            found.append(within_half_turn(seen["phi"] - phi + turned * np.cos(theta)))
-        return np.stack(found, axis=1)
+        return self.recording.residuals(*self.angles(x, self.recording.t))
 
     def weighted(self, x: Array) -> Array:
         """Return residuals over standard deviations, a row for each top, and priors at the end."""
         sizes = np.array([self.sigma[channel] for channel in self.recording.channels])
         found = (self.residuals(x) / sizes[:, np.newaxis])[:, self.recording.present]
         value = self.values(x)
-        priors = [(value[y] - self.known[y]) / self.known.stds[y] for y in self.priors]
+        priors = [(value[y] - self.known[y]) / std for y, std in self.known.stds.items()]
         rows: Array = np.nan_to_num(np.column_stack([found, *priors]), nan=_FAR, posinf=_FAR)
         return rows
 
-    def slopes(self, x: Array, *, central: bool = False) -> Array:
-        """Return the derivatives of the weighted residuals, by forward or central differences."""
-        steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), _LEAST_STEP)
-        if central:
-            steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
+    def slopes(
+        self, x: Array, function: Callable[[Array], Array], *, central: bool = True
+    ) -> Array:
+        """Return the derivatives of a function of many tops by the parameters, in the last axis."""
+        steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), _LEAST_SIZE)
+        steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
         below = x - np.diag(steps) if central else x[np.newaxis]
-        found = self.weighted(np.concatenate([x + np.diag(steps), below]))
+        found = function(np.concatenate([x + np.diag(steps), below]))
         return np.asarray((found[: x.size] - found[x.size :]).T / ((1 + central) * steps))
 
     def solve(self, x: Array, steps: int) -> OptimizeResult:
@@ -150,7 +140,7 @@ class Problem:
         return least_squares(
             lambda at: self.weighted(at[np.newaxis])[0],
             np.clip(x, low, high),
-            self.slopes,
+            lambda at: self.slopes(at, self.weighted, central=False),
             bounds=(low, high),
             x_scale="jac",
             xtol=1e-12,
@@ -202,7 +192,6 @@ class Minimum(NamedTuple):
     spread: Array
     """A matrix S with the covariance S S^T of the parameters."""
     chi2: float
-    dof: int
     unknown: list[str]
     """Parameters that the recording does not determine."""
 
@@ -213,13 +202,13 @@ class Minimum(NamedTuple):
         problem = Problem(recording, problem.known, problem.sigma)
         found = problem.solve(start, 80)
         present = recording.present
-        share = present.sum() / max(present.sum() - found.x.size, 1)
+        share = present.sum() / max(present.sum() - problem.count, 1)
         for _ in range(0 if recording.sigma else 4):
             rest = np.where(present, problem.residuals(found.x[np.newaxis])[0], np.nan)
             sizes = np.sqrt(np.nanmean(rest**2, axis=1) * share) + 1e-12  # never 0
             problem.sigma = dict(zip(recording.channels, sizes.tolist(), strict=True))
             found = problem.solve(found.x, 20)
-        slopes = problem.slopes(found.x, central=True)
+        slopes = problem.slopes(found.x, problem.weighted)
         size = np.linalg.norm(slopes, axis=0) + 1e-300
         _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
         sure = values > _DEPENDENT * values[0]
@@ -230,8 +219,7 @@ class Minimum(NamedTuple):
             least = max(_LEAST * np.linalg.norm(spread[i]), b * b / _FASTEST)
             loose[i] |= found.x[i] <= least
         unknown = [name for name, x in zip(problem.names, loose, strict=True) if x]
-        dof = slopes.shape[0] - slopes.shape[1]
-        return cls(problem, found.x, spread, 2 * float(found.cost), max(dof, 1), unknown)
+        return cls(problem, found.x, spread, 2 * float(found.cost), unknown)
 
     @property
     def badness(self) -> float:
@@ -246,6 +234,19 @@ class Minimum(NamedTuple):
         found = self.problem.values(self.x[np.newaxis])
         return {name: float(x[0]) for name, x in found.items()}
 
+    def numbers(
+        self, function: Callable[[Array], Mapping[str, Array]]
+    ) -> dict[str, tuple[float, float]]:
+        """Return finite functions of the parameters, with standard deviations."""
+
+        def columns(x: Array) -> Array:
+            return np.stack([*function(x).values()], axis=-1)
+
+        stds = np.linalg.norm(self.problem.slopes(self.x, columns) @ self.spread, axis=1)
+        found = zip(function(self.x[np.newaxis]).items(), stds, strict=True)
+        numbers = {key: (float(value), float(std)) for (key, (value,)), std in found}
+        return {key: x for key, x in numbers.items() if np.isfinite(x).all()}
+
     def differs(self, other: Minimum) -> bool:
         """Return whether this is another top: in a, b or r0."""
         rows = [i for i, name in enumerate(self.problem.names) if name in {"a", "b", "r0"}]
@@ -258,10 +259,11 @@ def nutating_outcome(
 ) -> Outcome:
     """Return the result of a fit; the `rival` is another top that fits as well."""
     problem, recording = found.problem, found.problem.recording
-    rows = problem.residuals(found.x[np.newaxis])[0]
-    present = zip(recording.channels, rows, recording.present, strict=True)
     values, names = found.values, problem.names
-    numbers = _numbers(found, radians=radians)
+    sizes = zip(names, np.linalg.norm(found.spread, axis=1), strict=True)
+    stds = problem.known.stds
+    free = {name for name, std in sizes if std < _IMPROVED * stds.get(name, math.inf)}
+    numbers = found.numbers(lambda x: _computed(problem, x, free, radians=radians))
     notes, faults = [*recording.notes], []
     if problem.is_even:
         notes.append("the sign of b is not determined: theta alone does not show the direction")
@@ -271,32 +273,23 @@ def nutating_outcome(
     if found.unknown:
         faults.append(f"the recording does not determine {' and '.join(found.unknown)}")
     if problem.spins:
-        pairs = [
-            (names.index(x), sign / values[x]) for x, sign in (("b", 1), ("r0", -1)) if x in names
-        ]
-        ratio = values["b"] / values["r0"] if values["r0"] else 0.0
-        std = abs(ratio) * float(np.linalg.norm(sum(y * found.spread[i] for i, y in pairs)))
+        ratio, std = found.numbers(lambda x: {"C/A": problem.ratio(x)}).get("C/A", (0.0, 0.0))
         if not -_APART * std < ratio < 2 + _APART * std:
             faults.append(f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2")
         if "phi" in recording.angles and abs(values["r0"]) * recording.frame > math.pi:
             notes.append("the spin exceeds half a turn per frame: r0 is the slowest possible rate")
-    chi2_dof = found.chi2 / found.dof
-    if recording.sigma and chi2_dof < (low := chi2_bounds(found.dof)[0]):
-        notes.append(f"chi2/dof = {chi2_dof:.3g} is below {low:.3g}: the noise is below sigma")
     if products := [x for x in numbers if set(x) & set("*/")]:
         notes.append(f"only {' and '.join(products)} can be determined: give known inputs")
-    body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"}]
+    body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
     return Outcome(
         recording,
         problem.known,
         radians,
         numbers,
         {key: _meaning(key, problem, numbers, radians=radians) for key in numbers},
-        {name: Residuals(recording.t[known], y[known]) for name, y, known in present},
-        found.dof,
-        chi2_dof,
-        frequency,
         lambda t: problem.angles(found.x[np.newaxis], t)[:, 0],
+        problem.count,
+        frequency,
         faults,
         notes,
         _inputs(found, numbers),
@@ -304,39 +297,23 @@ def nutating_outcome(
     )
 
 
-def _numbers(found: Minimum, *, radians: bool) -> dict[str, tuple[float, float]]:
-    """Return every number and its standard deviation, from one batch of finite differences."""
-    problem, known = found.problem, found.problem.known
-    others = [x for x in known.stds if x not in problem.names]
-    centre = np.array([*found.x, *(known[x] for x in others)])
-    spread = np.zeros((centre.size, found.spread.shape[1] + len(others)))
-    spread[: found.x.size, : found.spread.shape[1]] = found.spread
-    for i, name in enumerate(others, -len(others)):
-        spread[i, i] = known.stds[name]
-    steps = 1e-6 * np.maximum(np.abs(centre), 1e-3)
-    x = np.concatenate([[centre], centre + np.diag(steps), centre - np.diag(steps)])
-    uncertain = dict(zip(others, x[:, found.x.size :].T, strict=True))
-    numbers, (per_radian, unit) = {}, angle_unit(radians=radians)
-    computed = _computed(problem, x[:, : found.x.size], uncertain, radians=radians)
-    for key, y in computed.items():
-        slopes = (y[1 : steps.size + 1] - y[steps.size + 1 :]) / (2 * steps)
-        std = float(np.linalg.norm(slopes @ spread))
-        scale, ending = (
-            (per_radian, f"_{unit}") if key in {"theta0", "psi_zero", "phi_zero"} else (1.0, "")
-        )
-        if np.isfinite([y[0], std]).all():
-            numbers[f"{key}{ending}"] = float(y[0]) * scale, std * scale
-    return numbers
-
-
 def _computed(
-    problem: Problem, x: Array, others: Mapping[str, Array], *, radians: bool
+    problem: Problem, x: Array, free: Collection[str], *, radians: bool
 ) -> dict[str, Array]:
-    """Return the unknown numbers of the motion and of the body for many parameters."""
-    v = {**problem.values(x), **others}
-    free = {*problem.names, *["b"] * problem.is_tied}
-    found = {name: v[name] for name in (*_MEANINGS, *problem.priors) if name in free}
-    has = {name: v[name] for name in problem.known} | ({"r0": v["r0"]} if problem.spins else {})
+    """Return the numbers of the motion and of the body for many parameters.
+
+    Of the parameters, only those in `free` are returned: not the known inputs that the recording
+    does not improve.
+    """
+    v, (scale, unit) = problem.values(x), angle_unit(radians=radians)
+    free = {*free, *["b"] * problem.is_tied}
+    found = {}
+    for name in (*_MEANINGS, *problem.known.stds):
+        if name in _ANGLES and name in free:
+            found[f"{name}_{unit}"] = v[name] * scale
+        elif name in free:
+            found[name] = v[name]
+    has = {name: v[name] for name in (*problem.known, *["r0"] * problem.spins)}
     found |= body_numbers(v["a"] / 2, v["b"], has)
     keys = [unit_name(key, radians=radians) for key in _DERIVED]
     start = {"theta0_rad": v["theta0"], "thetadot0": v["thetadot0"], "psidot0": v["psidot0"]}
@@ -347,8 +324,7 @@ def _computed(
         del derived["mean_spin_rate"]
     for key, exact in _ELEMENTARY.items():
         derived[f"{key}{PERCENT}"] = 100 * (derived[key] / derived[exact] - 1)
-    certain = problem.known.keys() - problem.known.stds.keys()
-    return {key: y for key, y in (found | derived).items() if key not in certain}
+    return found | derived
 
 
 def body_numbers(torque: Array, b: Array, has: Mapping[str, Array]) -> dict[str, Array]:
@@ -375,7 +351,7 @@ def _meaning(
     key: str, problem: Problem, numbers: Mapping[str, tuple[float, float]], *, radians: bool
 ) -> str:
     name = key.removesuffix(f"_{angle_unit(radians=radians)[1]}")
-    if name in problem.priors:
+    if name in problem.known.stds:
         return "known, improved by the fit"
     if off := numbers.get(f"{key}{PERCENT}"):
         word, sigmas = ("small", "large")[off[0] > 0], off[0] / (off[1] or math.inf)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -112,14 +113,12 @@ class Outcome(HasRecord):
     radians: bool
     numbers: Mapping[str, tuple[float, float]]
     meanings: Mapping[str, str]
-    residuals: Mapping[str, Residuals]
-    """The residuals by channel, in radians."""
-    dof: int
-    chi2_dof: float
-    frequency: float
-    """The frequency of the nutation, at which residuals are searched for structure."""
     motion: Callable[[Array], Array]
     """The fitted theta, phi and psi in radians, shape (3, times), at times since the first row."""
+    parameters: int
+    """The number of parameters that the recording determines."""
+    frequency: float
+    """The frequency of the nutation, at which residuals are searched for structure."""
     faults: list[str]
     """Why the motion is wrong or undetermined, besides the residuals."""
     notes: list[str]
@@ -132,6 +131,27 @@ class Outcome(HasRecord):
     """What to try if the fit has failed, as other fits confirm."""
     chance: float = CHANCE
     """Probability that noise fails a test."""
+
+    @cached_property
+    def residuals(self) -> dict[str, Residuals]:
+        """The residuals by channel, in radians."""
+        one = self.recording
+        rows = one.residuals(*self.motion(one.t))
+        found = zip(one.channels, rows, one.present, strict=True)
+        return {name: Residuals(one.t[known], y[known]) for name, y, known in found}
+
+    @property
+    def dof(self) -> int:
+        """The number of degrees of freedom."""
+        return max(int(self.recording.present.sum()) - self.parameters, 1)
+
+    @property
+    def chi2_dof(self) -> float | None:
+        """Chi^2 per degree of freedom; None if no standard deviations were given."""
+        if not (sigma := self.recording.sigma):
+            return None
+        sums = [float(np.sum((rest.y / sigma[x]) ** 2)) for x, rest in self.residuals.items()]
+        return sum(sums) / self.dof
 
     def failures(self) -> list[str]:
         """Return the reasons why the fit has failed, if there are any."""
@@ -148,10 +168,10 @@ class Outcome(HasRecord):
             if rest.rms > _MOST:
                 off = f"{rest.rms * scale:.3g} {unit}"
                 found.append(f"no motion of a top matches: {name} is {off} off")
-        high = chi2_bounds(self.dof, self.chance)[1]
-        if self.recording.sigma and self.chi2_dof > high:
+        high, chi2 = chi2_bounds(self.dof, self.chance)[1], self.chi2_dof
+        if chi2 is not None and chi2 > high:
             found.append(
-                f"chi2/dof = {self.chi2_dof:.3g} is above {high:.3g}: another motion, or more noise"
+                f"chi2/dof = {chi2:.3g} is above {high:.3g}: another motion, or more noise"
             )
         for name, rest in self.residuals.items():
             found += rest.faults(name, self.frequency, self.chance)
@@ -170,7 +190,8 @@ class Outcome(HasRecord):
     def title(self) -> str:
         """The verdict, the first three numbers, and chi^2 if sigma is given, for a picture."""
         shown = [f"{x} = {uncertain_text(*y)}" for x, y in [*self.numbers.items()][:3]]
-        shown += [f"chi2/dof = {self.chi2_dof:.3g}"] * bool(self.recording.sigma)
+        if self.chi2_dof is not None:
+            shown.append(f"chi2/dof = {self.chi2_dof:.3g}")
         return f"lagtop fit: {', '.join([self.verdict, *shown])}"
 
     @property
@@ -193,7 +214,7 @@ class Outcome(HasRecord):
         for key, (value, std) in self.numbers.items():
             record |= {key: value, f"{key}_std": std}
         record |= {"t_start": self.recording.t_start, "rows": self.recording.t.size}
-        record |= {"dof": self.dof, "chi2_dof": self.chi2_dof if self.recording.sigma else None}
+        record |= {"dof": self.dof, "chi2_dof": self.chi2_dof}
         record["chi2_dof_low"], record["chi2_dof_high"] = chi2_bounds(self.dof)
         scale, unit = angle_unit(radians=self.radians)
         for name, rest in self.residuals.items():

@@ -24,6 +24,7 @@ from ..inputs.observed import (
     quantities_of,
     rows_of,
 )
+from ..inputs.rotations import within_half_turn
 from ..inputs.top import Top
 from ..inputs.trajectory import read_trajectory
 
@@ -99,6 +100,22 @@ class Recording:
         angles = {name: self.angles[old] for name, old in names.items() if old in self.angles}
         sigma = {name: self.sigma[old] for name, old in names.items() if old in self.sigma}
         return replace(self, angles=angles, sigma=sigma)
+
+    def residuals(self, theta: Array, phi: Array, psi: Array) -> Array:
+        """Return recording minus motion in radians, shape (..., channels, times).
+
+        The angles of one motion have the shape (times,), those of many (tops, times).
+        """
+        motion = {"theta": theta, "phi": phi, "psi": psi}
+        off = {x: within_half_turn(seen - motion[x]) for x, seen in self.angles.items()}
+        if self.kind == "angles":
+            return np.stack([off[name] for name in self.channels], axis=-2)
+        sine, cosine = np.sin(self.angles["theta"]), np.cos(self.angles["theta"])
+        along_meridian = sine * np.cos(theta) * np.cos(off["psi"])
+        found = [along_meridian - cosine * np.sin(theta), sine * np.sin(off["psi"])]
+        if self.kind == "attitude":
+            found.append(within_half_turn(self.angles["phi"] - phi + off["psi"] * np.cos(theta)))
+        return np.stack(found, axis=-2)
 
     def part(self, rows: Any, name: str = "") -> Recording:
         """Return some rows, in this order, with times since the first of them."""
@@ -194,7 +211,7 @@ def recording_of(
             raise DataError(f"{where}: {name} must have 4 numbers or more, got {known.sum()}")
         if known.any():
             kept = np.where(known, values, np.nan)
-            angles[name] = kept if name == "theta" else rotations.within_half_turn(kept)
+            angles[name] = kept if name == "theta" else within_half_turn(kept)
     if angles.keys() == {"phi"}:
         raise DataError(f"{where} must have theta or psi too: phi alone does not determine a top")
     known = np.any([np.zeros(t.size), *map(np.isfinite, angles.values())], axis=0)

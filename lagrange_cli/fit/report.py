@@ -116,7 +116,7 @@ def fit_report(
 def _conclusions(outcome: Outcome) -> Iterator[str]:
     """Yield sentences on one recording."""
     yield f"Verdict: {outcome.verdict}."
-    if outcome.recording.sigma:
+    if outcome.chi2_dof is not None:
         low, high = chi2_bounds(outcome.dof)
         bounds = f"noise {low:.3f} to {high:.3f}; {outcome.dof} dof"
         yield f"chi2/dof = {outcome.chi2_dof:.3f}, {bounds}."

@@ -8,14 +8,14 @@ cos(theta)/(4 lambda) with the stability factor lambda = b^2/(2a).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from .outcome import Outcome, Residuals
+from .outcome import Outcome
 from .recording import Known, Recording
 from .starts import signals_in
 
@@ -35,32 +35,24 @@ _MEANINGS = {
 _Numbers = dict[str, tuple[float, float]]
 
 
-class _Line(NamedTuple):
-    """A straight line through an angle, or the mean of the tilt; `leading` is the rate or mean."""
+class _Mean(NamedTuple):
+    """The mean of the tilt, or the mean rate of another angle, and the angle in the first row."""
 
-    leading: tuple[float, float]
-    at: Callable[[Array], Array]
-    residuals: Residuals
-
-    @classmethod
-    def through(cls, t: Array, y: Array, degree: int) -> _Line:
-        """Return the line through the values of an angle."""
-        middle = float(t.mean())
-        factors, spread = np.polyfit(t - middle, y, degree, cov=True)
-
-        def at(times: Array) -> Array:
-            return np.asarray(np.polyval(factors, times - middle))
-
-        leading = float(factors[0]), math.sqrt(spread[0, 0])
-        return cls(leading, at, Residuals(t, y - at(t)))
+    value: float
+    std: float
+    start: float
 
 
-def _lines(recording: Recording) -> dict[str, _Line]:
-    found = {x: y.t * y.rate + y.y for x, y in signals_in(recording).items()}
-    t = {x: recording.t[np.isfinite(y)] for x, y in recording.angles.items()}
-    if "theta" in found:
-        found["theta"] = recording.angles["theta"][np.isfinite(recording.angles["theta"])]
-    return {x: _Line.through(t[x], y, int(x != "theta")) for x, y in found.items()}
+def _means(recording: Recording) -> dict[str, _Mean]:
+    """Return the mean tilt, and the slopes of straight lines through spin and precession."""
+    found = {}
+    for name, signal in signals_in(recording).items():
+        is_tilt, middle = name == "theta", signal.t.mean()
+        y = np.arccos(signal.y) if is_tilt else signal.y + signal.rate * signal.t
+        factors, spread = np.polyfit(signal.t - middle, y, 0 if is_tilt else 1, cov=True)
+        start = float(np.polyval(factors, -middle))
+        found[name] = _Mean(float(factors[0]), math.sqrt(spread[0, 0]), start)
+    return found
 
 
 def steady_outcome(
@@ -68,52 +60,49 @@ def steady_outcome(
 ) -> Outcome:
     """Return the result of a fit of a constant tilt and constant rates."""
     scale, unit = angle_unit(radians=radians)
-    lines = _lines(recording)
+    means, none = _means(recording), _Mean(0.0, 0.0, 0.0)
     given = known.get("theta0", math.pi / 2), known.stds.get("theta0", 0.0)
-    tilt, tilt_std = lines["theta"].leading if "theta" in lines else given
-    (rate, rate_std), (spin, spin_std) = (
-        lines[x].leading if x in lines else (0.0, 0.0) for x in ("psi", "phi")
+    tilt, turn, spin = (
+        means.get("theta", _Mean(*given, 0.0)),
+        *(means.get(x, none) for x in ("psi", "phi")),
     )
-    cosine = math.cos(tilt)
-    backwards = rate * (spin + rate * cosine) < 0 < -rate * (spin - rate * cosine)  # C/A < 0
+    cosine = math.cos(tilt.value)
+    backwards = (
+        turn.value * (spin.value + turn.value * cosine)
+        < 0
+        < -turn.value * (spin.value - turn.value * cosine)
+    )  # C/A < 0
     if recording.kind == "angles" and backwards:
-        recording, rate = recording.mirrored, -rate
-        lines = _lines(recording)
+        recording, turn = recording.mirrored, _Mean(-turn.value, turn.std, -turn.start)
     numbers: _Numbers = {}
     notes = ["no nutation is visible: the numbers are means over the recording", *recording.notes]
-    if "theta" in lines:
-        numbers[f"mean_tilt_{unit}"] = tilt * scale, tilt_std * scale
-    if "psi" in lines:
-        numbers["mean_precession_rate"] = rate, rate_std
+    if "theta" in means:
+        numbers[f"mean_tilt_{unit}"] = tilt.value * scale, tilt.std * scale
+    if "psi" in means:
+        numbers["mean_precession_rate"] = turn[:2]
     r0 = known.get("r0", 0.0), known.stds.get("r0", 0.0)
-    if "phi" in lines:
-        numbers["mean_spin_rate"] = spin, spin_std
-    if "phi" in lines and "r0" not in known:
-        r0 = numbers["r0"] = spin + rate * cosine, math.hypot(spin_std, rate_std * cosine)
-        turn = f"{2 * math.pi / recording.frame:.6g}"
-        notes.append(f"r0 is known only up to whole turns per frame, multiples of {turn}")
-    if rate and r0[0]:
+    if "phi" in means:
+        numbers["mean_spin_rate"] = spin[:2]
+    if "phi" in means and "r0" not in known:
+        r0 = numbers["r0"] = (
+            spin.value + turn.value * cosine,
+            math.hypot(spin.std, turn.std * cosine),
+        )
+        turns = f"{2 * math.pi / recording.frame:.6g}"
+        notes.append(f"r0 is known only up to whole turns per frame, multiples of {turns}")
+    if turn.value and r0[0]:
         certain = {"A", "C"} <= known.keys()
-        bias = abs(rate * cosine / r0[0]) / (known["C"] / known["A"] if certain else _RATIO)
-        numbers |= _of_body(rate, math.hypot(rate_std / rate, bias), r0, known)
+        bias = abs(turn.value * cosine / r0[0]) / (known["C"] / known["A"] if certain else _RATIO)
+        numbers |= _of_body(turn.value, math.hypot(turn.std / turn.value, bias), r0, known)
         assumed = "" if certain else f" if C/A = {_RATIO:g}"
         notes.append(
             f"b/a is too small by cos(theta)/(4 lambda), {100 * bias:.2g} %{assumed}, which its "
             "uncertainty contains"
         )
-    residuals = {}
-    for name, line in lines.items():
-        whole = recording.kind != "angles"
-        channel = {"psi": "across", "phi": "along"}.get(name, name) if whole else name
-        size = math.sin(tilt) if channel == "across" else 1.0
-        residuals[channel] = line.residuals._replace(y=line.residuals.y * size)
-    dof = sum(x.y.size - 2 for x in residuals.values()) + ("theta" in lines)
-    sigma = recording.sigma or {x: y.rms or 1.0 for x, y in residuals.items()}
-    chi2 = sum(float(np.sum((y.y / sigma[x]) ** 2)) for x, y in residuals.items())
 
     def motion(t: Array) -> Array:
-        some = [lines[x].at(t) if x in lines else 0 * t for x in ("phi", "psi")]
-        return np.stack([np.full(t.shape, tilt), *some])
+        lines = [x.start + x.value * t for x in (spin, turn)]
+        return np.stack([np.full(t.shape, tilt.value), *lines])
 
     return Outcome(
         recording,
@@ -121,23 +110,15 @@ def steady_outcome(
         radians,
         numbers,
         {x: _MEANINGS.get(x.removesuffix(f"_{unit}"), "by the elementary theory") for x in numbers},
-        residuals,
-        dof,
-        chi2 / dof,
-        1 / float(recording.t[-1]),
         motion,
-        [*_faults(recording, residuals, numbers, oscillates=oscillates)],
+        2 * len(means) - ("theta" in means),
+        1 / float(recording.t[-1]),
+        [*_faults(recording, numbers, oscillates=oscillates)],
         notes,
     )
 
 
-def _faults(
-    recording: Recording,
-    residuals: Mapping[str, Residuals],
-    numbers: _Numbers,
-    *,
-    oscillates: bool,
-) -> Iterator[str]:
+def _faults(recording: Recording, numbers: _Numbers, *, oscillates: bool) -> Iterator[str]:
     """Yield why the motion is no steady precession, besides the residuals."""
     rate, std = numbers.get("mean_precession_rate", (0.0, 0.0))
     if oscillates:
@@ -148,8 +129,9 @@ def _faults(
         yield "no nutation is visible, and the precession rate is not determined"
     elif "r0" in numbers and rate * numbers["r0"][0] < 0:
         yield "C/A < 0 is impossible: spin and precession have opposite signs"
-    if "theta" in residuals and residuals["theta"].rms > _MOST_TILT and not recording.sigma:
-        off = math.degrees(residuals["theta"].rms)
+    scatter = float(np.nanstd(recording.angles.get("theta", 0.0)))
+    if scatter > _MOST_TILT and not recording.sigma:
+        off = math.degrees(scatter)
         yield f"the tilt varies by {off:.2g} degrees: give --sigma if this is noise"
     elif recording.t.size < _LEAST_ROWS and not recording.sigma:
         yield f"{recording.t.size} rows are too few to tell nutation from noise: give --sigma"
