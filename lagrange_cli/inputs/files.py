@@ -58,13 +58,12 @@ def _opened(path: str) -> Iterator[Any]:
 
 def _read_whole(file: Any, most: int) -> bytes:
     """Return the bytes of a file.  Raises OSError for more than `most` of them."""
-    chunks, size = list[bytes](), 0
+    content = bytearray()
     while chunk := file.read(_AT_ONCE):
-        chunks.append(chunk)
-        size += len(chunk)
-        if size > most:
+        content += chunk
+        if len(content) > most:
             raise OSError(f"it must have at most {most} bytes, has more")
-    return b"".join(chunks)
+    return bytes(content)
 
 
 def decoded(content: bytes, name: str) -> str:

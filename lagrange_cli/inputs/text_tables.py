@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -50,7 +50,7 @@ class Table:
     """The numbers of the rows in messages."""
     delimiter: str = ","
     decimal: str = "."
-    """The decimal mark, a point or a comma; empty if it is not decided."""
+    """The decimal mark, a point or a comma."""
     place: str = "line"
     """The unit of `lines` in messages: `line` or `row`."""
 
@@ -84,24 +84,6 @@ class Table:
             raise DataError(f"{self.where(row)}: {error}") from None
         return cells
 
-    def decide(self, columns: Iterable[int]) -> None:
-        """Set the decimal mark from the first rows of some columns, unless it is set.
-
-        Raises DataError if a comma may be a decimal mark or separate thousands.
-        """
-        if self.decimal:
-            return
-        wanted, places = set(columns), dict[str, int]()
-        for row, text in enumerate(self.rows[:_SAMPLE]):
-            for i, cell in enumerate(_split(text, self.delimiter) if "," in text else ()):
-                if "," in cell and i in wanted and _NUMBER.fullmatch(cell):
-                    places.setdefault(cell, row)
-        if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
-            cell, row = next(iter(places.items()))
-            wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
-            raise DataError(f"{self.where(row)}: {wrong}: pass --decimal point or --decimal comma")
-        self.decimal = "," if places else "."
-
     def column(self, index: int) -> list[Any]:
         """Return the cells of one column.  Raises DataError as `at` does."""
         return [self.at(row)[index] for row in range(len(self.rows))]
@@ -114,7 +96,6 @@ class Table:
         """
         import numpy as np
 
-        self.decide(columns)
         values = self._at_once()
         if values is not None:
             return values[:, columns]
@@ -200,8 +181,25 @@ def read_table(
         comments = [re.sub("[#,;]", " ", x).split() for x in lines[: min(kept, default=0)]]
         fits = [x for x in comments if len(x) == found and known(x)]
         headings = fits[-1] if fits else None
-    mark = "." if delimiter == "," else decimal
-    return Table(name, headings, found, rows, [i + 1 for i in kept[at + 1 :]], delimiter, mark)
+    table = Table(name, headings, found, rows, [i + 1 for i in kept[at + 1 :]], delimiter)
+    return table if delimiter == "," else replace(table, decimal=decimal or _decimal_mark(table))
+
+
+def _decimal_mark(table: Table) -> str:
+    """Return the decimal mark of the first rows.
+
+    Raises DataError if a comma may be a decimal mark or separate thousands.
+    """
+    places: dict[str, int] = {}
+    for row, text in enumerate(table.rows[:_SAMPLE]):
+        for cell in _split(text, table.delimiter) if "," in text else ():
+            if "," in cell and _NUMBER.fullmatch(cell):
+                places.setdefault(cell, row)
+    if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
+        cell, row = next(iter(places.items()))
+        wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
+        raise DataError(f"{table.where(row)}: {wrong}: pass --decimal point or --decimal comma")
+    return "," if places else "."
 
 
 def _layout(texts: Sequence[str], known: Known, decimal: str, width: int | None) -> tuple[int, str]:

@@ -174,7 +174,6 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     if not factors:
         wanted = f"must begin with a header that names inputs ({' '.join(INPUTS)})"
         raise DataError(f"{name} {wanted}, got {quoted(','.join(headings))}")
-    table.decide(i for i, x in enumerate(columns) if x in factors)
     return TopsFile(columns, carried, units, factors, table)
 
 

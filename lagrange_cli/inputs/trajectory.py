@@ -213,7 +213,6 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
         factor = in_known_unit("t", found["t"], names).factor
     except LagtopError as error:
         raise DataError(f"{table.name}: {error}") from None
-    table.decide([column])
     times = []
     for row, cell in enumerate(table.column(column)):
         try:
