@@ -79,37 +79,6 @@ def spin(inputs: Mapping[str, Number]) -> Number:
     return value
 
 
-class SteadyRate(float):
-    """A rate of steady precession, rounded to the nearest double and printed as its word."""
-
-    word: str
-
-    def __new__(cls, word: str, value: float) -> SteadyRate:
-        """Return the rate for one of `STEADY_WORDS`."""
-        rate = super().__new__(cls, value)
-        rate.word = word
-        return rate
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether the other is this rate, or the number 0 if this is.
-
-        The nearest double of the rate is another rate: it belongs to a top that nutates.
-        """
-        if isinstance(other, SteadyRate):
-            return self.word == other.word and float(self) == float(other)
-        return other == 0 and float(self) == 0
-
-    def __hash__(self) -> int:
-        return hash((self.word, float(self)))
-
-    def __repr__(self) -> str:
-        return repr(self.word)
-
-    def __reduce__(self) -> tuple[type, tuple[str, float]]:
-        """Return the constructor and its arguments, for copies and pickles."""
-        return SteadyRate, (self.word, float(self))
-
-
 class SteadyRates(NamedTuple):
     """The rates of steady precession of a top at its tilt."""
 
@@ -153,8 +122,10 @@ def rates_of(top: Any) -> SteadyRates:
     return SteadyRates(2 * m * g * s / A, C * r0 / A, top.angle)
 
 
-def steady_rate_of(top: Any, word: str) -> SteadyRate:
-    """Return the rate of steady precession that a word names; the top's own rate is not used.
+def steady_rate_of(top: Any, word: str) -> float:
+    """Return the rate of steady precession that a word names, rounded to the nearest double.
+
+    The top's own rate is not used.
 
     Raises LagtopError for an unknown word, and for a top that has no such rate.
     """
@@ -183,5 +154,5 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
 
         found = settled("psidot0", enclosure, nearest_double("psidot0"))
         assert found is not None
-        return SteadyRate(word, found.value)
+        return float(found.value)
     raise LagtopError(wrong, wrong.partition(" ")[0])

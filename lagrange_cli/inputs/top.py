@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import InitVar, dataclass
+from dataclasses import InitVar, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -47,7 +47,7 @@ _EXAMPLE: Any = None
 """The default of an input: that of the worked example."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class Top:
     """A heavy symmetric top with a fixed point, and its state at t = 0, where phi = psi = 0.
 
@@ -91,6 +91,8 @@ class Top:
     thetadot0: Number = _EXAMPLE
     psidot0: Any = None
     theta0_rad: Number | None = None
+    steady_word: str | None = field(default=None, init=False)
+    """The word that was given for psidot0, which then is the nearest double; None for a number."""
     A_cm: InitVar[Number | None] = None
     phidot0: InitVar[Number | None] = None
 
@@ -107,7 +109,7 @@ class Top:
         given = self.as_dict() | {"A_cm": A_cm, "phidot0": phidot0}
         given = {name: x for name, x in given.items() if x is not None}
         psidot0 = given.get("psidot0")
-        if word := psidot0 if isinstance(psidot0, str) else getattr(psidot0, "word", None):
+        if word := psidot0 if isinstance(psidot0, str) else None:
             given["psidot0"] = 0.0
             if phidot0 is not None:
                 raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
@@ -130,12 +132,17 @@ class Top:
             from .derived_inputs import steady_rate_of  # for few tops only
 
             object.__setattr__(self, "psidot0", steady_rate_of(self, word))
+            object.__setattr__(self, "steady_word", word)
         if missing := from_example(given):
             warn_of(missing, stacklevel=4)
 
+    def __repr__(self) -> str:
+        return f"Top({', '.join(f'{name}={x!r}' for name, x in self.as_dict().items())})"
+
     def as_dict(self) -> dict[str, Any]:
         """Return the inputs by key; one of the two tilts is None."""
-        return {name: getattr(self, name) for name in self.fields}
+        inputs = {name: getattr(self, name) for name in self.fields}
+        return inputs | {"psidot0": self.steady_word or self.psidot0}
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
@@ -154,7 +161,7 @@ class Top:
     def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
-        values = self.as_dict()
+        values = self.as_dict() | {"psidot0": self.psidot0}
         if values[tilt] is None:
             other: Any = self.theta0_deg if radians else self.theta0_rad
             values[tilt] = ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
@@ -171,11 +178,6 @@ class Top:
     def angle(self) -> Angle:
         """The angle theta0, exactly."""
         return Angle.of(self.theta0_deg, self.theta0_rad)
-
-    @property
-    def steady_word(self) -> str | None:
-        """The word that was given for psidot0, or None for a number."""
-        return getattr(self.psidot0, "word", None)
 
     @property
     def is_released(self) -> bool:
@@ -216,7 +218,7 @@ class Top:
         return " ".join(words).replace("'", "")
 
 
-Top.fields = tuple(name for name in Top.__slots__)
+Top.fields = tuple(name for name in Top.__slots__ if name != "steady_word")
 INPUTS = (*Top.fields, "A_cm", "phidot0")
 """The keys of all inputs of a top: its fields, and the alternatives to A and r0."""
 

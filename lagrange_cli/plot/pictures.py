@@ -371,8 +371,9 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     tilt = next(name for name in inputs if name.startswith("theta0"))
     (x, xs), (y, ys) = ((tilt if x == "theta0" else x, values) for x, values in grid.items())
     keys = list(dict.fromkeys([key, "stability_factor"]))
+    rate = {"psidot0": motion.top.as_dict()["psidot0"]}  # a word is refused unless it is an axis
     rows = [
-        sweep(keys=keys, **inputs | {x: xs, y: value})
+        sweep(keys=keys, **inputs | rate | {x: xs, y: value})
         for value in options.progress(ys.tolist(), "map")
     ]
     values, stability = (np.array([row[name] for row in rows]) for name in (keys[0], keys[-1]))

@@ -86,7 +86,7 @@ class SweepInputs:
     def __init__(self, inputs: Mapping[str, Any]) -> None:
         """Raise LagtopError for an unknown input, and for inputs that do not fit together."""
         check_names("inputs", list(inputs) or ["m"], INPUTS)
-        if word := getattr(inputs.get("psidot0"), "word", None):
+        if isinstance(word := inputs.get("psidot0"), str):
             raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
         for name, x in inputs.items():
             if getattr(x, "dims", ()):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from fractions import Fraction
 from typing import Any
 
@@ -55,6 +56,9 @@ def test_the_steady_motion_is_that_of_the_exact_root() -> None:
     assert (word.regime, double.regime) == (Regime.STEADY, Regime.REGULAR)
     assert word.k == 0
     assert 0 < double.k < 1e-7
+    assert word.top != double.top
+    assert pickle.loads(pickle.dumps(word.top)) == word.top == Top(**word.top.as_dict())
+    assert "psidot0='steady'" in repr(word.top)
 
 
 @pytest.mark.parametrize(
