@@ -64,9 +64,9 @@ class LagtopGroup(click.Group):
         try:
             return super().invoke(ctx)
         except LagtopError as error:
-            if ctx.invoked_subcommand is not None:
-                command = self.get_command(ctx, ctx.invoked_subcommand)
-                error.args = (_naming_option(error, command.params),)
+            name = ctx.invoked_subcommand
+            params = self.get_command(ctx, name).params if name else []
+            error.args = (_naming_option(error, params),)
             raise
         except KeyboardInterrupt:
             _die_by("SIGINT", 130)
@@ -76,34 +76,29 @@ class LagtopGroup(click.Group):
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run like click's method, but end with one line on standard error and an exit code."""
         run: Any = super().main
-        if not extra.pop("standalone_mode", True):
-            return run(*args, standalone_mode=False, **extra)
         if sys.stderr is None:  # closed by the caller: the next file would get its number
             sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         try:
-            sys.exit(run(*args, standalone_mode=False, **extra) or 0)
+            sys.exit(run(*args, **extra | {"standalone_mode": False}) or 0)
         except click.ClickException as error:
-            _end(_usage_message(error), error.exit_code)
+            text, code = _usage_message(error), error.exit_code
         except click.Abort:
             _die_by("SIGINT", 130)
         except MemoryError:
-            _end("out of memory", UnavailableError.exit_code)
+            text, code = "out of memory", UnavailableError.exit_code
         except OSError as error:  # of a file that no reader or writer has named
-            place = f": {error.filename}" if error.filename else ""
             with suppress(OSError, AttributeError):  # what is left in the buffer is lost anyway
                 os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            _end(f"{error.strerror or error}{place}", CannotWriteError.exit_code)
+            place = f": {error.filename}" if error.filename else ""
+            text, code = f"{error.strerror or error}{place}", CannotWriteError.exit_code
         except LagtopError as error:
-            _end(str(error), error.exit_code)
+            text, code = str(error), error.exit_code
         except (KeyError, ValueError):
             if _COMPLETION not in os.environ:
                 raise
-            _end(f"{_COMPLETION} needs the variables that a shell sets: unset it", 2)
-
-
-def _end(message: str, code: int) -> NoReturn:
-    complain(f"Error: {message}")
-    sys.exit(code)
+            text, code = f"{_COMPLETION} needs the variables that a shell sets: unset it", 2
+        complain(f"Error: {text}")
+        sys.exit(code)
 
 
 def _naming_option(error: LagtopError, params: list[click.Parameter]) -> str:
@@ -112,9 +107,9 @@ def _naming_option(error: LagtopError, params: list[click.Parameter]) -> str:
     The key of a tilt has a unit.
     """
     text, key = str(error), error.key or ""
-    name = key.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
-    if text.startswith(f"{key} ") and any(f"--{name}" in param.opts for param in params):
-        return f"--{name}{text.removeprefix(key)}"
+    option = f"--{key.removesuffix('_deg').removesuffix('_rad').replace('_', '-')}"
+    if text.startswith(f"{key} ") and any(option in param.opts for param in params):
+        return option + text.removeprefix(key)
     return text
 
 

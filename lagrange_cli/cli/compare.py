@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import click
+
 from ..errors import LagtopError
 from ..inputs.scenes import is_scene_file
 from . import shared as opt
@@ -12,9 +14,9 @@ from .app import complain
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..compare.compare import Convergence
     from ..output.destination import Output
     from ..output.report import Report
-    from ..plot.reports import ErrorCurve
 
 
 @opt.command(
@@ -23,14 +25,14 @@ if TYPE_CHECKING:
     "compare looping-top run.csv --max-error 1e-6 --plot errors.svg",
     "table --columns t,axis --r0 -50 | lagtop compare - || true",
 )
-@opt.top("[SCENE] TRAJECTORY...", required=True, is_scene=is_scene_file)
+@opt.top("[SCENE] TRAJECTORY...", is_scene=is_scene_file)
 @opt.columns
 @opt.quaternion_order
 @opt.euler_sequence
 @opt.option(
     "--rates-frame",
     metavar="FRAME",
-    type=opt.Choice(["body", "space"]),
+    type=click.Choice(["body", "space"]),
     default="body",
     help="Frame of the angular velocity: body or space.",
 )
@@ -41,8 +43,17 @@ if TYPE_CHECKING:
     help="Other axes: axis=y, up=y, left (left-handed).  From the first row: start (zero of spin "
     "and precession), time (zero of t).",
 )
-@opt.option("--step-sizes", type=opt.NUMBERS, help="Step sizes, for the order of convergence.")
-@opt.option("--max-error", type=opt.POSITIVE, help="Acceptable error in rad.  [default: 0.001]")
+@opt.option(
+    "--step-sizes",
+    type=opt.Parsed("X,...", opt.parse_numbers),
+    help="Step sizes, for the order of convergence.",
+)
+@opt.option(
+    "--max-error",
+    type=opt.Parsed("X", opt.parse_positive),
+    default="0.001",
+    help="Acceptable error in rad.",
+)
 @opt.decimal
 @opt.plot
 @opt.output(*opt.REPORT_FORMATS)
@@ -55,7 +66,7 @@ def compare_command(
     rates_frame: str,
     align: list[str] | None,
     step_sizes: list[float] | None,
-    max_error: float | None,
+    max_error: float,
     decimal: str,
     plot: str | None,
     out: Output,
@@ -68,43 +79,37 @@ def compare_command(
 
     The exit code is 1 unless the verdict on every trajectory is fine.
     """
-    from ..compare.compare import LIMIT, compared
+    from ..compare.compare import compared
     from ..compare.differences import Alignment
     from ..compare.report import comparison_report, read, sentence
     from ..inputs.observed import Conventions
+    from ..plot.reports import ErrorCurve, draw_errors
 
-    opt.check_plot(plot, out.path)
     if not words:
         raise LagtopError("no trajectory: give a file, or - for standard input")
     if words.count("-") > 1:
         raise LagtopError("standard input can be read once, got - twice")
-    limit = LIMIT if max_error is None else max_error
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, top.radians).checked()
     alignment = Alignment.of(align or [])
-    motion = top.motion()
-    failed: list[str] = []
-    curves: list[ErrorCurve] = []
+    motion = opt.motion_of(top.given(), uses_stds=False)
+    found: Convergence | None = None
 
     def find() -> Report:
+        nonlocal found
         trajectories = [read(x, conventions, alignment, columns, decimal) for x in words]
-        results, found = compared(motion, trajectories, limit, step_sizes)
+        results, found = compared(motion, trajectories, max_error, step_sizes)
         if top.scene is None and not top.inputs:
             complain("Warning: no scene and no inputs: compared with the worked example")
-        failed.extend(sentence(x) for x in results if x.verdict != "fine")
-        if plot:
-            from ..plot.reports import ErrorCurve
+        return comparison_report(motion, results, found, max_error)
 
-            errors = found.errors if found else [None] * len(results)
-            curves.extend(
-                ErrorCurve(str(x.file), x.t, x.error, x.step, error)
-                for x, error in zip(results, errors, strict=True)
-            )
-        return comparison_report(motion, results, found, limit)
-
-    def draw(_: Report) -> Figure:
-        from ..plot.reports import draw_errors
-
-        return draw_errors(curves, limit)
+    def draw(report: Report) -> Figure:
+        errors = found.errors if found else [None] * len(report.rows)
+        curves = [
+            ErrorCurve(str(x.file), x.t, x.error, x.step, error)
+            for x, error in zip(report.rows, errors, strict=True)
+        ]
+        return draw_errors(curves, max_error)
 
     report = opt.write_report(out, find, plot, draw)
+    failed = [sentence(x) for x in report.rows if x.verdict != "fine"]
     opt.fail_for(failed, len(report.rows), "trajectories")

@@ -33,16 +33,17 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     """
     from ..motion.explanation import explanations, listed
 
-    found = top.given()
+    found, radians = top.given(), top.radians
     named = found.system.named if found.system else str
-    if words:
-        rows = explanations(opt.motion_of(found), words, radians=top.radians, named=named)
-    else:
-        rows = listed(radians=top.radians, named=named)
-    if words and out.fmt == "table":
+    if not words:
+        rows = listed(radians=radians, named=named)
+        opt.write_report(out, lambda: Report({}, _LISTED, rows, []))
+        return
+    rows = explanations(opt.motion_of(found), words, radians=radians, named=named)
+    if out.fmt == "table":
         out.text("\n".join(map(_block, rows)))
     else:
-        out.report(lambda: Report({}, _EXPLAINED if words else _LISTED, rows, []))
+        opt.write_report(out, lambda: Report({}, _EXPLAINED, rows, []))
 
 
 def _block(row: Explained) -> str:
@@ -85,4 +86,4 @@ def scenes_command(out: Output) -> None:
     """
     rows = [_Scene(name, scene_remark(name)) for name in scene_names()]
     fields = [Field(x, x, is_text=True) for x in _Scene._fields]
-    out.report(lambda: Report({}, fields, rows, []))
+    opt.write_report(out, lambda: Report({}, fields, rows, []))

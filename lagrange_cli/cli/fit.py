@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import json_text
@@ -39,7 +39,7 @@ def _parse_up(text: str) -> str:
     "fit recording.csv --m 1587 --g 981 -o fitted.toml",
     "fit recording.csv --sigma 0.3 --plot residuals.svg",
 )
-@opt.top("RECORDING", whole=False, required=True, is_scene=None)
+@opt.top("RECORDING", whole=False, is_scene=None)
 @opt.option(
     "--sigma",
     type=opt.Parsed("SIGMA", _parse_sigma),
@@ -88,13 +88,16 @@ def fit_command(
     from ..fit.recording import known_inputs, read_recordings
     from ..inputs.files import shown_path
     from ..inputs.observed import Conventions
+    from ..plot.reports import draw_fits
+    from ..plot.style import report_bytes
 
-    opt.check_plot(plot, out.path)
     if len(words) != 1:
-        raise LagtopError(f"fit takes one recording, got {len(words)}: use --by COLUMN")
+        remedy = "use --by COLUMN" if words else "give a file, or - for standard input"
+        raise LagtopError(f"fit takes one recording, got {len(words)}: {remedy}")
     scene_path = out.path if opt.extension(out.path) == "toml" else None
     if window is not None and (by or plot or scene_path):
         raise LagtopError("--window goes without --by, --plot and -o FILE.toml")
+    opt.check_plot(plot, out.path)
     radians = top.radians
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
     unit = unit_in_radians(radians=radians)
@@ -120,9 +123,6 @@ def fit_command(
         if scene_path and not failed and found[0].inputs is not None:
             stack.enter_context(opened(scene_path)).write(found[0].scene(source).encode())
         if plot:
-            from ..plot.reports import draw_fits
-            from ..plot.style import report_bytes
-
             picture = report_bytes(plot, draw_fits, found)
             stack.enter_context(opened(plot)).write(picture)
         out = out._replace(path="-") if scene_path else out
@@ -141,18 +141,14 @@ def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out:
     if out.fmt == "table":
         opt.write_report(out, lambda: fit_report(found, source, units, is_windows=is_windows))
         return
-    records: list[dict[str, Any]] = [x.record() for x in found]
+    records = [x.record() for x in found]
     if out.fmt == "json" and is_windows:
         decay = decay_of(found)
-        whole = {"decay": decay and decay._asdict(), "windows": records}
-        out.text(f"{json_text(whole)}\n")
+        out.text(f"{json_text({'decay': decay and decay._asdict(), 'windows': records})}\n")
     elif out.fmt == "json" and len(records) == 1:
         out.record(records[0], dict)
     else:
         out.rows(records, list(dict.fromkeys(key for record in records for key in record)))
-    if is_windows:
-        complain(decay_text(found))
-        return
-    for x in found:
-        for note in x.notes:
-            complain(f"Note: {x.recording.named(note)}")
+    notes = [f"Note: {x.recording.named(note)}" for x in found for note in x.notes]
+    for line in [decay_text(found)] if is_windows else notes:
+        complain(line)

@@ -102,8 +102,8 @@ def plot_command(
         progress=with_progress,
         unit=founds[0].system.named if founds[0].system else str,
     )
-    if len(founds) == 1 and (stds := angle_stds(founds[0], motions[scenes[0] if scenes else ""])):
-        options = options._replace(stds=stds.at)
+    if len(founds) == 1:
+        options = options._replace(stds=angle_stds(founds[0], *motions.values()))
     with ExitStack() as stack:
         if animate and film:
             motion, resolution = next(iter(motions.values())), float(dpi or FILM_DPI)
@@ -206,8 +206,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     from ..plot.browser.view import open_page, view
 
     found = top.given()
-    opt.warn_unused(found)
-    page = view(opt.motion_of(found), found.system.named if found.system else str)
+    page = view(opt.motion_of(found, uses_stds=False), found.system.named if found.system else str)
     if output:
         with opened(output) as stream:
             stream.write(page.encode())

@@ -3,33 +3,30 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
-from functools import partial, wraps
+from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError, SomeFailedError
-from ..inputs.input_keys import DECLARED
+from ..inputs.input_keys import DECLARED, example_options, remark_on
 from ..inputs.names import split_names
+from ..inputs.values import Value, parse_value
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
 from .app import complain
 
 if TYPE_CHECKING:
-    from click.shell_completion import CompletionItem
     from matplotlib.figure import Figure
 
     from ..inputs.given import Given
-    from ..inputs.values import Value
-    from ..motion.numbers import Numbers
     from ..motion.solve import Motion
     from ..output.report import Report
 
 F = TypeVar("F", bound=Callable[..., Any])
-M = TypeVar("M", bound="Numbers")
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 REPORT_FORMATS = ("table", "csv", "json", "ndjson")
 
@@ -51,18 +48,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         try:
             return self.parse(value)
         except LagtopError as error:
-            name = param.opts[-1] if param and param.opts[-1].startswith("-") else ""
-            raise LagtopError(f"{name} {error}".lstrip()) from None
-
-
-def _scenes_or_files(_: Any, __: Any, begun: str) -> list[CompletionItem]:
-    """Return the shipped scenes that begin with a word, or a request for files."""
-    from click.shell_completion import CompletionItem
-
-    from ..inputs.scenes import scene_names
-
-    scenes = [CompletionItem(x) for x in scene_names() if x.startswith(begun)]
-    return scenes or [CompletionItem(begun, type="file")]
+            raise LagtopError(f"{param.opts[-1] if param else ''} {error}") from None
 
 
 def count(most: float = 1e9) -> Parsed:
@@ -77,6 +63,11 @@ def count(most: float = 1e9) -> Parsed:
         return int(exact)
 
     return Parsed("N", parse)
+
+
+def values(parse: Callable[[str], Any] = parse_number, **allowed: bool) -> Parsed:
+    """Return the type of an input that may have a unit; `parse` reads its numbers."""
+    return Parsed("X", lambda text: parse_value(text, parse, **allowed))
 
 
 def parse_positive(text: str) -> float:
@@ -98,23 +89,11 @@ def _parse_mark(text: str) -> str:
     return {"point": ".", "comma": ","}.get(text, text)
 
 
-def _parse_value(text: str, **allowed: Any) -> Value:
-    from ..inputs.values import parse_value
-
-    return parse_value(text, **allowed)
-
-
 NUMBER = Parsed("X", parse_number)
-POSITIVE = Parsed("X", parse_positive)
 LIST = Parsed("NAME,...", split_names)
-NUMBERS = Parsed("X,...", parse_numbers)
-VALUE = Parsed("X", partial(_parse_value, uncertain=True))
-"""An input of one top: a number, which may have a unit and an uncertainty."""
-STEADY = Parsed("X", partial(_parse_value, uncertain=True, steady=True))
-TIME = Parsed("X", _parse_value)
+TIME = values()
 
 option = click.option
-Choice = click.Choice
 rad = option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
 certify = option(
     "--certify", is_flag=True, help="Also print KEY_radius, a proven bound on the error."
@@ -123,7 +102,6 @@ keys = option("--keys", type=LIST, help="Compute and print only these keys (see 
 plot = option("--plot", metavar="FILE", help="Also draw the report: FILE.png, .svg or .pdf.")
 decimal = option(
     "--decimal",
-    metavar="MARK",
     default="",
     show_default=False,
     type=Parsed("MARK", _parse_mark),
@@ -150,6 +128,14 @@ euler_sequence = option(
 )
 
 
+def _scenes_or_files(ctx: click.Context, param: click.Parameter, begun: str) -> list[Any]:
+    """Return the shipped scenes that begin with a word, or a request for files."""
+    from ..inputs.scenes import scene_names
+
+    scenes = [name for name in scene_names() if name.startswith(begun)]
+    return scenes or list(click.Path().shell_complete(ctx, param, begun))
+
+
 scenes = click.argument("scenes", nargs=-1, metavar="[SCENE]...", shell_complete=_scenes_or_files)
 
 
@@ -164,18 +150,16 @@ def digits(most: int) -> Callable[[F], F]:
     return option("--digits", type=count(most), help=text)
 
 
-def command(name: str, *examples: str, **attributes: Any) -> Callable[[F], click.Command]:
+def command(name: str, *examples: str) -> Callable[[F], click.Command]:
     """Declare a command whose help ends with examples."""
     lines = "".join(f"\n  lagtop {example}" for example in examples)
     settings = {"help_option_names": ["-h", "--help"], "show_default": True}
-    return click.command(
-        name, epilog=f"\b\nExamples:{lines}", context_settings=settings, **attributes
-    )
+    return click.command(name, epilog=f"\b\nExamples:{lines}", context_settings=settings)
 
 
 def exclude(**values: Any) -> None:
     """Raise LagtopError if more than one of some options, by parameter, was given."""
-    given = [x for x, y in values.items() if y is not None and y is not False and y != ()]
+    given = [x for x, y in values.items() if y is not None and y is not False]
     if len(given) > 1:
         first, second = (f"--{name.replace('_', '-')}" for name in given[:2])
         raise LagtopError(f"use {first} or {second}, not both")
@@ -194,40 +178,34 @@ class TopOptions(NamedTuple):
 
         `others` are further values that are converted to the same units, such as times.
         """
-        from ..inputs.given import gather  # not for commands without a top
+        from ..inputs.given import gather  # start-up of commands without a top
 
         return gather(self.inputs, self.scene, others=others or {})
 
-    def motion(self) -> Motion:
-        """Return the motion, with a warning if the uncertainty of an input is not used."""
-        found = self.given()
-        warn_unused(found)
-        return motion_of(found)
-
 
 def is_scene(word: str) -> bool:
-    """Return whether a word among others, such as conditions or kinds of picture, names a scene.
+    """Return whether a word among others, such as conditions, names a scene.
 
     Scenes are `-`, shipped scenes, words that end in `.toml`, and words with a dot or a slash that
     are no condition.
     """
-    from ..inputs.scenes import scene_names
+    from ..inputs.scenes import is_scene_file
 
     is_path = bool(set(word) & set("./")) and not set(word) & set("=<>")
-    return word == "-" or word.endswith(".toml") or is_path or word in scene_names()
+    return word == "-" or is_path or is_scene_file(word)
 
 
 def top(
     argument: str = "[SCENE]",
     *,
-    kind: Parsed = VALUE,
+    kind: Parsed | None = None,
     whole: bool = True,
-    required: bool = False,
     is_scene: Callable[[str], bool] | None = is_scene,
 ) -> Callable[[F], F]:
     """Declare the inputs of a top and --rad, which become `top`, and the arguments of a command.
 
-    If the `argument` is more than a scene, the command gets the other `words`; `is_scene` finds the
+    `kind` is the type of the inputs; by default they are numbers that may have an uncertainty.  If
+    the `argument` is more than a scene, the command gets the other `words`; `is_scene` finds the
     scene among them, unless it is None.  A top that is not `whole` has no defaults.
     """
     names = [name for name in DECLARED if whole or name != "phidot0"]  # which needs a whole start
@@ -250,13 +228,12 @@ def top(
 
         found: Any = rad(run)
         for name in reversed(names):
-            of_one = whole and kind is VALUE
-            parameter = STEADY if of_one and name == "psidot0" else kind
+            steady = whole and name == "psidot0"
+            parameter = kind or values(uncertain=True, steady=steady)
             flag, text = f"--{name.replace('_', '-')}", _help_of(name, shows_default=whole)
             found = option(flag, name, type=parameter, help=text)(found)
-        words: Any = {"nargs": -1 if several else 1, "required": required, "metavar": argument}
-        found = click.argument("words", shell_complete=_scenes_or_files, **words)(found)
-        return cast(F, found)
+        words: Any = {"nargs": -1 if several else 1, "required": False, "metavar": argument}
+        return cast(F, click.argument("words", shell_complete=_scenes_or_files, **words)(found))
 
     return decorate
 
@@ -266,45 +243,36 @@ def _help_of(name: str, *, shows_default: bool) -> str:
     declared = DECLARED[name]
     rate = "rad per unit of time" if declared.unit == "rad/time" else ""
     text = ", ".join(filter(None, (declared.meaning, rate, declared.bound)))
-    ending = f"  [default: {declared.default:g}]" if declared.default is not None else ""
-    return f"{text[0].upper()}{text[1:]}.{ending if shows_default else ''}"
+    has_default = shows_default and declared.default is not None
+    ending = f"  [default: {declared.default:g}]" if has_default else ""
+    return f"{text[0].upper()}{text[1:]}.{ending}"
 
 
-def motion_of(found: Given, *, exact: bool = False) -> Motion:
+def motion_of(found: Given, *, exact: bool = False, uses_stds: bool = True) -> Motion:
     """Return the motion of some inputs, kept as decimals if `exact`, after warnings about them."""
-    from ..motion.solve import solve
+    from ..motion.solve import solve  # start-up of commands without a top
 
-    return warned(solve(found.top(exact=exact)), found)
-
-
-def warned(motion: M, found: Given) -> M:
-    """Return a motion, after warnings about mixed inputs and about a body that cannot be built."""
-    warn_missing(found)
+    motion = solve(found.top(exact=exact))
+    warn(found, uses_stds=uses_stds)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
 
 
-def warn_missing(found: Given) -> None:
-    """Warn of inputs of the body from the worked example, and of a scene without inputs."""
+def warn(found: Given, *, uses_stds: bool = False) -> None:
+    """Warn of a scene without inputs, of defaults for the body, and of unused uncertainties."""
     if found.empty is not None:
         complain(f"Warning: {found.empty} has no inputs: using the worked example")
     if found.missing:
-        from ..inputs.input_keys import example_options, remark_on
-
         words = example_options(found.missing, units=found.system is not None)
         complain(f"Warning: {remark_on(found.missing, words)}")
-
-
-def warn_unused(found: Given) -> None:
-    """Warn of inputs whose uncertainties a command does not use."""
-    if names := ", ".join(found.stds):
+    if found.stds and not uses_stds:
         used = "solve, table and plot angles use it"
-        complain(f"Warning: the uncertainty of {names} is not used: {used}")
+        complain(f"Warning: the uncertainty of {', '.join(found.stds)} is not used: {used}")
 
 
 def output(
-    *formats: str, extensions: Iterable[str] = (), on_terminal: str = ""
+    *formats: str, extensions: Sequence[str] = (), on_terminal: str = ""
 ) -> Callable[[F], F]:
     """Declare --output and --format, which become `out`.
 
@@ -328,11 +296,7 @@ def output(
                     f"extension of {quoted(output)}, or add --format"
                 )
             if chosen == "parquet":
-                from ..output.formats import check_parquet
-
-                if is_screen(output):
-                    raise LagtopError("--format parquet is not for a terminal: use -o FILE.parquet")
-                check_parquet()
+                _check_parquet(output, others)
             function(out=Output(output, chosen, fmt is not None), **others)
 
         kind, help_ = click.Choice(formats), "Output file (replaced only on success)."
@@ -343,12 +307,15 @@ def output(
     return decorate
 
 
-def check_plot(path: str | None, output: str) -> None:
-    """Raise LagtopError for a picture of an unknown type, or one over the report."""
-    if path is not None:
-        from ..plot.style import FORMATS, check_picture
+def _check_parquet(path: str, others: Mapping[str, Any]) -> None:
+    """Raise LagtopError if Parquet cannot be written to a path, or cannot hold the numbers."""
+    from ..output.formats import check_parquet
 
-        check_picture(path, FORMATS, output)
+    if is_screen(path):
+        raise LagtopError("--format parquet is not for a terminal: use -o FILE.parquet")
+    if others.get("digits") or others.get("certify"):
+        raise LagtopError("--format parquet holds doubles: with --digits use csv, json or table")
+    check_parquet()
 
 
 def write_report(
@@ -362,6 +329,7 @@ def write_report(
     Both destinations are opened first, and replaced only if everything is written.  CSV holds only
     the rows: its conditions go to standard error.
     """
+    check_plot(plot, out.path)
     with opened(plot) if plot else nullcontext() as picture, opened(out.path) as stream:
         report = find()
         if picture and draw:
@@ -373,6 +341,14 @@ def write_report(
         for name, text in report.conditions.items():
             complain(f"{name}: {text}")
     return report
+
+
+def check_plot(path: str | None, output: str) -> None:
+    """Raise LagtopError for a picture of an unknown type, or one over the report."""
+    if path is not None:
+        from ..plot.style import FORMATS, check_picture
+
+        check_picture(path, FORMATS, output)
 
 
 def fail_for(failures: Sequence[str], count: int, what: str) -> None:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from ..errors import AbsentError, LagtopError
-from ..motion.numbers import Numbers, record_in_range
+from ..inputs.names import check_names
+from ..motion.numbers import record_in_range
 from ..motion.quantity import unit_name
 from ..motion.record import all_keys, record_keys, shown_keys
-from ..motion.regime import exact
 from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
     from ..arithmetic.key import Key
-    from ..inputs.units import System
+    from ..motion.solve import Motion
     from ..output.destination import Output
 
 
@@ -61,70 +62,48 @@ def solve_command(
         from . import uncertainty
 
         uncertainty.check(found, digits=digits, derivation=derivation, certify=certify)
-    motion = opt.warned(Numbers(exact(found.top(exact=digits is not None))), found)
+    motion = opt.motion_of(found, exact=digits is not None)
     if budget is not None:
         uncertainty.write_budget(found, motion, budget, radians, out)
         return
     names = _steps_of_section_8(motion, radians) if derivation else get
     wanted = list(dict.fromkeys(name.removesuffix("_std") for name in names)) if names else None
-    record = _record(motion, found.system, wanted, digits=digits, radii=certify, radians=radians)
-    named = str if found.system is None else found.system.named
-    is_whole = wanted is None and out.fmt != "csv"
-    sentence = _summary(record, motion, named) if is_whole else {}
+    record, beyond = record_in_range(
+        motion, keys=wanted, digits=digits, radii=certify, radians=radians
+    )
+    if beyond and wanted:
+        raise beyond[0]
+    if beyond:
+        complain("Warning: " + "; ".join(map(str, beyond)))
+    named = found.system.named if found.system else str
+    if found.system and record.get("remark"):
+        record["remark"] = found.system.in_words(record["remark"])
+    sentence = {}
+    if wanted is None and out.fmt != "csv":
+        from ..motion.summary import summary
+
+        with suppress(TypeError):  # a number beyond the range of doubles is None
+            sentence["summary"] = summary(record, motion.exact.facts, named)
     if found.stds:
         drawn = out.fmt == "table" and (get is None or out.is_named)
         record = uncertainty.with_stds(found, motion, record, drawn)
     record |= sentence
     shown = shown_keys(radians=radians, named=named, requested=names is not None)
     if get is not None:
-        values = _chosen_values(motion, record, get)
+        record = _chosen_values(motion, record, get)
         if out.fmt == "table":
-            out.values(values.values())
-        else:
-            out.record(values, lambda: shown)
-    elif names is not None:
-        more = {x: record[x] for x in record if x.endswith("_radius") or x == "remark"}
-        steps = {name: record[name] for name in names} | more
-        out.record(steps, lambda: _keys_by_step(shown, radians))
-    else:
-        if found.system is not None and out.fmt in {"json", "ndjson"}:
-            record["units"] = {x: key.unit for x, key in shown.items() if x in record and key.unit}
-        out.record(record, lambda: shown)
-
-
-def _record(
-    motion: Numbers, system: System | None, keys: list[str] | None, **how: Any
-) -> dict[str, Any]:
-    """Return the record, or some keys of it; warn of numbers beyond the range of doubles.
-
-    `how` holds the other arguments of `record_in_range`.
-    """
-    record, beyond = record_in_range(motion, keys=keys, **how)
-    if beyond and keys:
-        raise beyond[0]
-    if beyond:
-        complain("Warning: " + "; ".join(map(str, beyond)))
-    if system is not None and record.get("remark"):
-        record["remark"] = system.in_words(record["remark"])
-    return record
-
-
-def _summary(
-    record: dict[str, Any], motion: Numbers, named: Callable[[str], str]
-) -> dict[str, str]:
-    """Return the sentence on a motion, by its key, unless one of its numbers is out of range."""
-    from ..motion.summary import summary
-
-    try:
-        return {"summary": summary(record, motion.exact.facts, named)}
-    except TypeError:  # a number beyond the range of doubles is None
-        return {}
+            out.values(record.values())
+            return
+    elif derivation:
+        shown = _keys_by_step(shown, radians)
+        record = {x: record[x] for x in [*shown, *record]}
+    elif found.system and out.fmt in {"json", "ndjson"}:
+        record["units"] = {x: key.unit for x, key in shown.items() if x in record and key.unit}
+    out.record(record, lambda: shown)
 
 
 def _check_selected(keys: Sequence[str], radians: bool) -> None:
     """Raise LagtopError for an unknown or repeated key."""
-    from ..inputs.names import check_names
-
     values = [key.removesuffix("_std") for key in keys]
     if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
         values = list(dict.fromkeys(values))
@@ -132,7 +111,7 @@ def _check_selected(keys: Sequence[str], radians: bool) -> None:
     check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
 
 
-def _chosen_values(motion: Numbers, record: dict[str, Any], keys: Sequence[str]) -> dict[str, Any]:
+def _chosen_values(motion: Motion, record: dict[str, Any], keys: Sequence[str]) -> dict[str, Any]:
     """Return values of the record, each with its radius, if any.
 
     Raises AbsentError if the motion has no such number, LagtopError for the uncertainty of a text.
@@ -146,7 +125,7 @@ def _chosen_values(motion: Numbers, record: dict[str, Any], keys: Sequence[str])
     return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
 
 
-def _steps_of_section_8(motion: Numbers, radians: bool) -> list[str]:
+def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
     from ..motion.paper.requested import derivation_keys
 

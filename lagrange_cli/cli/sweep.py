@@ -12,29 +12,19 @@ from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..inputs.files import shown_path
 from ..inputs.scenes import is_scene_file
+from ..inputs.values import parse_number_or_span, parse_values
 from ..output.terminal import with_progress
+from ..sweep.workers import in_order, parse_jobs
 from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
     from ..inputs.units import System
-    from ..inputs.values import Value
     from ..output.destination import Output
     from ..sweep.plan import NumberedBlock
 
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
-
-
-def _input(read: str) -> opt.Parsed:
-    """Return the type of an input; `read` names the reader of its numbers."""
-
-    def parse(text: str) -> Value:
-        from ..inputs import values
-
-        return values.parse_value(text, getattr(values, read))
-
-    return opt.Parsed("X", parse)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -45,12 +35,6 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
-def _parse_jobs(text: str) -> int:
-    from ..sweep.workers import parse_jobs
-
-    return parse_jobs(text)
-
-
 @opt.command(
     "sweep",
     "sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv",
@@ -59,11 +43,11 @@ def _parse_jobs(text: str) -> int:
 )
 @opt.top(
     "[SCENE] [TOPS.csv|.ndjson|-]",
-    kind=_input("parse_values"),
+    kind=opt.values(parse_values),
     is_scene=is_scene_file,
 )
 @opt.keys
-@opt.option("--jobs", type=opt.Parsed("N|auto", _parse_jobs), help="Processes; auto: one per core.")
+@opt.option("--jobs", type=opt.Parsed("N|auto", parse_jobs), help="Processes; auto: one per core.")
 @opt.option("--parts", metavar="DIR", help="Write one file per part into this folder.")
 @opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")
 @opt.option("--dask", metavar="ADDRESS", help="Use the Dask cluster of this scheduler.")
@@ -98,7 +82,6 @@ def sweep_command(
     """
     from ..sweep.parts import Parts
     from ..sweep.plan import ErrorCount, plan
-    from ..sweep.workers import in_order
 
     opt.exclude(jobs=jobs, dask=dask)
     opt.exclude(parts=parts, output=out.path != "-")
@@ -111,8 +94,7 @@ def sweep_command(
     path = words[0] if words else None
     how: dict[str, Any] = {"radians": top.radians, "fmt": out.fmt, "decimal": decimal, "keys": keys}
     todo = plan(path, top.inputs, top.scene, described=parts is not None, **how)
-    opt.warn_missing(todo.given)
-    opt.warn_unused(todo.given)
+    opt.warn(todo.given)
     sweep = todo.sweep
     if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
         sweep, out = sweep._replace(fmt="csv"), out._replace(fmt="csv")
@@ -156,10 +138,7 @@ def _headings(
     "find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43",
     "find --psidot0=-8:0 theta_max=80 path=looping --keys psidot0",
 )
-@opt.top(
-    "[SCENE] CONDITION...",
-    kind=_input("parse_number_or_span"),
-)
+@opt.top("[SCENE] CONDITION...", kind=opt.values(parse_number_or_span))
 @opt.option("--scan", type=opt.count(), help="Values of each unknown.  [default: 4000, 60 or 20]")
 @opt.keys
 @opt.output("csv", "ndjson", "json", "table", on_terminal="table")
@@ -190,8 +169,7 @@ def find_command(
         chosen = check_names("keys", keys, all_keys(radians=top.radians))
     search, given = search_of(top.inputs, words, scene=top.scene, radians=top.radians)
     motions, looked = find_tops(search, scan)
-    opt.warn_missing(given)
-    opt.warn_unused(given)
+    opt.warn(given)
     complain(f"{len(motions)} found; {looked}")
     records = [record_in_range(motion, radians=top.radians, keys=chosen)[0] for motion in motions]
     for record in records:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import DataError, LagtopError
@@ -11,10 +11,10 @@ from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
+    from ..arithmetic.types import Array
     from ..inputs.given import Given
     from ..inputs.values import Value
     from ..motion.solve import Motion
-    from ..motion.uncertainty import AngleStds
     from ..output.destination import Output
 
 MAX_DRAWN_ROWS = 10_000
@@ -69,11 +69,9 @@ def table_command(
         opt.exclude(**{"times": times, name: value})
     if top.scene == times == "-":
         raise LagtopError("standard input holds the scene or --times, not both")
-    if (digits is not None or certify) and out.fmt == "parquet":
-        raise LagtopError("--format parquet holds doubles: with --digits use csv, json or table")
     given = {name: x for name, x in (("t_min", t_min), ("t_max", t_max), ("dt", dt)) if x}
-    found = top.given(given)
-    if found.stds and (digits is not None or certify):
+    found, proved = top.given(given), digits is not None or certify
+    if found.stds and proved:
         raise LagtopError("--digits and --certify take inputs without uncertainties")
     motion = opt.motion_of(found, exact=digits is not None)
     names = DEFAULT_COLUMNS if columns is None else columns
@@ -83,11 +81,10 @@ def table_command(
         at = read_times(times, decimal) if times else grid(motion, n=n, **found.others)
         if out.fmt == "table" and at.count > MAX_DRAWN_ROWS:
             raise LagtopError(f"--format table shows at most {MAX_DRAWN_ROWS} rows, got {at.count}")
-        if digits is None and not certify:
-            stds = angle_stds(found, motion)
-            header, parts = rows(motion, at, names, stds=stds.at if stds else None, **how)
-        else:
+        if proved:
             header, parts = ProvedTable(motion, names, digits, **how).rows(at, radii=certify)
+        else:
+            header, parts = rows(motion, at, names, stds=angle_stds(found, motion), **how)
         if out.fmt == "table":
             header = _with_units(header, names, found)
         out.table(header, with_progress(parts, "rows", at.count or None, len))
@@ -97,8 +94,8 @@ def table_command(
         raise DataError(f"{shown_path(times)}: {error}") from None
 
 
-def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
-    """Return the uncertainties of the angles over time, if inputs are uncertain.
+def angle_stds(found: Given, motion: Motion) -> Callable[[Array], Array] | None:
+    """Return the uncertainties of the angles as a function of times, if inputs are uncertain.
 
     If there are none, a warning states the reason.
     """
@@ -110,7 +107,7 @@ def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     stds = AngleStds(motion, found.stds, found.inputs.keys())
     if stds.derivatives.missing:
         complain(f"Warning: no uncertainty of the angles: {NO_DERIVATIVE}")
-    return stds
+    return stds.at
 
 
 def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> list[str]:

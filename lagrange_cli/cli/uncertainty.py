@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
@@ -12,15 +12,14 @@ from ..inputs.names import check_names
 from ..motion.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
 from ..motion.quantity import degree_name, unit_name
 from ..motion.record import shown_keys
-from ..motion.solve import Motion
-from ..motion.uncertainty import FirstOrder, stds_of
+from ..motion.uncertainty import Contribution, FirstOrder, stds_of
 from ..output.report import Field, Report, uncertain_text, with_unit
 from .app import complain
 from .shared import write_report
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
-    from ..motion.numbers import Numbers
+    from ..motion.solve import Motion
     from ..output.destination import Output
 
 
@@ -34,62 +33,46 @@ def check(found: Given, **options: object) -> None:
 
 
 def with_stds(
-    found: Given, motion: Numbers, record: Mapping[str, Any], shown: bool
+    found: Given, motion: Motion, record: Mapping[str, Any], shown: bool
 ) -> dict[str, Any]:
     """Return a record with the keys KEY_std; values are `shown` as `value(uncertainty)` or bare.
 
     A warning names the numbers that have none.
     """
-    uncertain = first_order(found, motion)
-    stds = stds_of(record, uncertain)
-    lost = [key for key in record if record[key] is not None and f"{key}_std" in stds]
-    if lost := [key for key in lost if stds[f"{key}_std"] is None]:
+    stds = stds_of(record, _first_order(found, motion))
+    lost = [x for x in record if record[x] is not None and stds.get(f"{x}_std", 0) is None]
+    if lost:
         known = any(degree_name(key) in DIFFERENTIABLE for key in lost)
         reason = NO_DERIVATIVE if known else "keys outside the record have none"
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
-    if not shown:
-        return dict(record) | stds
     texts = {
         name: NumberText(uncertain_text(float(value), std))
         for name, value in record.items()
-        if value is not None and (std := stds.get(f"{name}_std"))
+        if shown and value is not None and (std := stds.get(f"{name}_std"))
     }
     return dict(record) | stds | texts
 
 
-def first_order(found: Given, motion: Numbers) -> FirstOrder:
+def _first_order(found: Given, motion: Motion) -> FirstOrder:
     """Return the first-order uncertainties of a motion."""
-    return FirstOrder(Motion(motion.exact), found.stds, found.inputs.keys())
+    return FirstOrder(motion, found.stds, found.inputs.keys())
 
 
-class _BudgetRow(NamedTuple):
-    """An input or, in the last row, the key itself, which has no more than its uncertainty."""
-
-    quantity: str
-    value: float
-    std: float
-    sensitivity: float | None = None
-    contribution: float | None = None
-    elasticity: float | None = None
-    share: float | None = None
-
-
-def write_budget(found: Given, motion: Numbers, key: str, radians: bool, out: Output) -> None:
+def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Output) -> None:
     """Write the budget of a key: the contribution of each uncertain input, and the key itself.
 
     Raises AbsentError if the motion has no such key, or it has no derivative.
     """
     check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
-    value = Motion(motion.exact).record(radians=radians, keys=[key])[key]
+    value = motion.record(radians=radians, keys=[key])[key]
     if value is None:
         raise AbsentError(f"{key} is {motion.absence(key)}")
-    uncertain = first_order(found, motion)
+    uncertain = _first_order(found, motion)
     whole = uncertain.std(key)
     if whole is None:
         raise AbsentError(f"{key} has no uncertainty of first order: {NO_DERIVATIVE}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     units = _units(found, [key, *given])
-    shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
     fields = [
         Field("quantity", "quantity", lambda x: with_unit(x, units.get(x)), is_text=True),
         Field("value", "value", lambda x: f"{x:.6g}"),
@@ -99,8 +82,8 @@ def write_budget(found: Given, motion: Numbers, key: str, radians: bool, out: Ou
         Field("elasticity", "elasticity", _figures),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
-    rows = [_BudgetRow(*line) for line in uncertain.budget(key, given)]
-    rows.append(_BudgetRow(key, value, whole))  # last of all, as in EA-4/02
+    rows = [*uncertain.budget(key, given), Contribution(key, value, whole)]  # last, as in EA-4/02
+    shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
     conclusion = f"{shown}, to first order; inputs are taken as independent."
     write_report(out, lambda: Report({"key": key}, fields, rows, [conclusion], units))
 

@@ -25,18 +25,21 @@ input."""
 
 
 class Contribution(NamedTuple):
-    """The contribution of one input to the uncertainty of a number: one line of a budget."""
+    """A line of a budget: the contribution of an input to the uncertainty of a number.
 
-    input: str
+    The number itself has a line that ends with its uncertainty.
+    """
+
+    quantity: str
     value: float
     std: float
-    sensitivity: float
+    sensitivity: float | None = None
     """The derivative of the number by the input."""
-    contribution: float
+    contribution: float | None = None
     """The product of sensitivity and uncertainty, with its sign."""
-    elasticity: float | None
+    elasticity: float | None = None
     """The relative change of the number over the relative change of the input, or None."""
-    share: float | None
+    share: float | None = None
     """The share of the variance, or None."""
 
 
@@ -106,7 +109,7 @@ class FirstOrder:
             share = float(part * part / variance) if variance else None
             numbers = float(slope), float(part), elasticity, share
             lines.append(Contribution(name, given[name], std, *numbers))
-        return sorted(lines, key=lambda line: -abs(line.contribution))
+        return sorted(lines, key=lambda line: -abs(line.contribution or 0))
 
 
 def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, Fraction]]:
