@@ -199,24 +199,20 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     cannot be read, and for a row without a time.
     """
     table = read_table(read_bytes(path), shown_path(path), known_quantities, decimal)
-    if table.headings is None and table.width > 1:
-        wanted = f"{table.width} columns must have headings, t among them"
-        raise DataError(f"{table.where(0)}: {wanted}, got none")
-    names = ["t"] if table.headings is None else table.headings
-    found = quantities_in(names)
-    if "t" not in found:
-        shown = shortened(", ".join(map(repr, names)))
+    names = table.headings or ["t"] * (table.width < 2)
+    found = quantities_in(names).get("t")
+    if found is None:
+        shown = shortened(", ".join(map(repr, names))) or f"{table.width} columns without headings"
         wanted = "the time must be a number below the heading t or time"
         raise DataError(f"{table.name}: {wanted}, got {shown}")
-    column = found["t"].columns[0]
     try:
-        factor = in_known_unit("t", found["t"], names).factor
+        factor = in_known_unit("t", found, names).factor or 1
     except LagtopError as error:
         raise DataError(f"{table.name}: {error}") from None
     times = []
-    for row, cell in enumerate(table.column(column)):
+    for row, cell in enumerate(table.column(found.columns[0])):
         try:
-            times.append((factor or 1) * table.number(cell))
+            times.append(factor * table.number(cell))
         except LagtopError as error:
             raise DataError(f"{table.where(row)}: the time {error}") from None
     if not times:

@@ -84,7 +84,12 @@ def test_commands_for_one_top_take_the_words(lagtop: Lagtop) -> None:
     assert found.stdout == "steady\nsteady precession\n"
     rows = lagtop(*"table --r0 60 --psidot0 steady-fast --t-max 1 --n 2 --digits 20".split()).stdout
     assert {row.split(",")[1] for row in rows.splitlines()[1:]} == {"30.0"}
-    for words in ("sweep --r0 50,60", "find --r0 1:2 T_nutation=1", "fit recording.csv"):
+    for words in (
+        "sweep --r0 50,60",
+        "find --r0 1:2 T_nutation=1",
+        "fit recording.csv",
+        "plot map --r0 60 -o a.png",
+    ):
         refused = lagtop(*words.split(), "--psidot0", "steady")
         keys = "steady_rate_slow and steady_rate_fast"
         wanted = f"must be a number unless one top is solved, got steady: see the keys {keys}"
