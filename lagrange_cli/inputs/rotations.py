@@ -132,8 +132,9 @@ def of_euler(sequence: str, angles: Array) -> Array:
 
 def of_vector(vectors: Array) -> Array:
     """Return rotations from rotation vectors: the direction is the axis, the length the angle."""
-    angle = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.concatenate([np.cos(angle / 2), np.sinc(angle / (2 * np.pi)) / 2 * vectors], axis=1)
+    from scipy.spatial.transform import Rotation
+
+    return np.asarray(Rotation.from_rotvec(vectors).as_quat(scalar_first=True))
 
 
 def body_rates(

@@ -7,17 +7,13 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..arithmetic.ball import pi_to
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .input_keys import DECLARED, TILT
 from .names import suggestion
-
-Dimensions = tuple[int, int, int, int]
-"""The powers of mass, length, time and angle."""
-
 
 PI_DIGITS = 1100
 """Digits of pi in units of angle: more than any result has."""
@@ -29,13 +25,14 @@ class Unit(NamedTuple):
     size: Fraction = Fraction(1)
     """The size over that power of pi."""
     power_of_pi: int = 0
-    dimensions: Dimensions = (0, 0, 0, 0)
+    dimensions: tuple[int, ...] = (0, 0, 0, 0)
+    """The powers of mass, length, time and angle."""
 
     def times(self, other: Unit, power: int) -> Unit:
         """Return this unit times a power of the other."""
-        sums: Any = (x + power * y for x, y in zip(self.dimensions, other.dimensions, strict=True))
-        size = self.size * other.size**power
-        return Unit(size, self.power_of_pi + power * other.power_of_pi, tuple(sums))
+        sums = tuple(x + power * y for x, y in zip(self.dimensions, other.dimensions, strict=True))
+        pi = self.power_of_pi + power * other.power_of_pi
+        return Unit(self.size * other.size**power, pi, sums)
 
 
 _TABLE = """
@@ -53,7 +50,7 @@ _RATE = (0, 0, -1, 1)
 
 
 UNITS: dict[str, Unit] = {
-    name: Unit(Fraction(size), int(pi), tuple(map(int, powers.split())))  # type: ignore[arg-type]
+    name: Unit(Fraction(size), int(pi), tuple(map(int, powers.split())))
     for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().split("\n"))
     for name, size in (pair.split("=") for pair in pairs.split())
 }
