@@ -100,17 +100,33 @@ class Motion:
         """Square of the imaginary modulus of section 4 g."""
         return -(self.u1 - self.u2) / (self.u3 - self.u1)
 
-    def xi(self, t: Any) -> Any:
-        """Return sn(eta, kappa) of section 4 g, by mpmath for the imaginary modulus itself."""
-        eta = ar.sqrt(self.a * (self.u3 - self.u1)) * t / 2
-        return ar.re(ar.ellipfun("sn", eta, m=self.kappa2))
+    @property
+    def kappa(self) -> Any:
+        """Imaginary modulus of section 4 g."""
+        return J * ar.sqrt(-self.kappa2)
 
-    def at_parameter(self, which: int) -> list[Any]:
-        """Return sn, cn, dn of the parameter alpha1 or alpha2 for the imaginary modulus."""
-        first = J * self.alpha * self.k_prime
-        shift = J * self.k_prime * (self.K_prime - J * self.K)
-        v = first if which == 1 else first + shift
+    def eta(self, t: Any) -> Any:
+        """Return the argument of section 4 g."""
+        return ar.sqrt(self.a * (self.u3 - self.u1)) * t / 2
+
+    def imaginary(self, v: Any) -> list[Any]:
+        """Return sn, cn, dn by mpmath for the imaginary modulus itself."""
         return [ar.ellipfun(name, v, m=self.kappa2) for name in ("sn", "cn", "dn")]
+
+    def xi(self, t: Any) -> Any:
+        """Return sn(eta, kappa) of section 4 g."""
+        return ar.re(self.imaginary(self.eta(t))[0])
+
+    @property
+    def parameters(self) -> tuple[Any, Any]:
+        """Parameters alpha1 = i alpha k' and alpha2 = alpha1 + k' (iK' + K) of section 4 j."""
+        first = J * self.alpha * self.k_prime
+        return first, first + self.k_prime * (J * self.K_prime + self.K)
+
+    @cached_property
+    def at_parameters(self) -> list[list[Any]]:
+        """Functions sn, cn, dn of both parameters for the imaginary modulus."""
+        return [self.imaginary(v) for v in self.parameters]
 
     def body_rates(self, t: Any) -> tuple[Any, Any]:
         """Return p and q of (4,1)."""

@@ -2,13 +2,15 @@
 
 On one side stand the angles and the record of the program in 150 digits; on the other definitions:
 the rotation matrix, Euler's equations with slopes of those angles, and mpmath's elliptic functions,
-those of the paper's imaginary modulus too.
+those of the paper's imaginary modulus too.  mpmath takes this modulus as it is, in sn, cn, dn, in
+K, and in the theta functions, whose nome is then negative; so do our own functions.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import chain
 from typing import Any, ClassVar
 
 import pytest
@@ -32,7 +34,7 @@ from errata import misprints
 from ours import Ours
 
 chrapan = Register()
-pi_function = Ours(ar).pi_function
+ours = Ours(ar)
 few = partial(moments, *PARTS[:2])
 
 
@@ -293,10 +295,6 @@ CONSTANTS = {
         (ar.sign(discriminant(top) - (top.b**2 - 2 * top.a) ** 2), 1),
     ],
     "section 4 e: f and its slope at 1, -1 and u1": slopes_of_f,
-    "section 4 j: product of the two sn": lambda top: (
-        top.kappa2 * top.at_parameter(1)[0] ** 2 * top.at_parameter(2)[0] ** 2,
-        1,
-    ),
 }
 """Sides without time."""
 
@@ -370,7 +368,7 @@ chrapan.each(states, STATES)
 
 def at_poles(top: Motion, t: Any) -> list[Any]:
     """Return kappa^2 sn^2 xi^2 at both parameters."""
-    return [top.kappa2 * top.at_parameter(i)[0] ** 2 * top.xi(t) ** 2 for i in (1, 2)]
+    return [top.kappa2 * sn**2 * top.xi(t) ** 2 for sn, _, _ in top.at_parameters]
 
 
 def precession_rate(top: Motion, t: Any, power: int) -> Any:
@@ -396,7 +394,7 @@ def printed_at_parameters(top: Motion) -> list[Any]:
 
 def at_parameters(top: Motion, signs: tuple[int, ...]) -> Pairs:
     """Return sn, cn, dn of both parameters with their squares, and with signs, as printed."""
-    ours, printed = top.at_parameter(1) + top.at_parameter(2), printed_at_parameters(top)
+    ours, printed = list(chain(*top.at_parameters)), printed_at_parameters(top)
     signed = [sign * x for sign, x in zip(signs, printed, strict=True)]
     return pairs([x**2 for x in ours], [x**2 for x in printed]) + pairs(ours, signed)
 
@@ -411,14 +409,14 @@ def before_4_27(top: Motion, sign: int) -> Pairs:
     """Return the line before (4,27) with u3 - u1, or with a sign of 1 u3 + u1, by both values."""
     u1, u2, u3 = top.roots
     right = J * ar.sqrt((u3 + sign * u1) * (1 + u1) / ((u3 + 1) * (1 + u2)))
-    sn, cn, dn = top.at_parameter(1)
+    sn, cn, dn = top.at_parameters[0]
     return [(sn / (cn * dn), right), (quotient(top, J * top.alpha), right)]
 
 
 def pi(top: Motion, t: Any) -> tuple[Any, Any]:
     """Return Pi00 and Pi11 of section 4 j."""
     place = top.w(t), J * top.alpha, top.k
-    return pi_function("00", *place), pi_function("11", *place)
+    return ours.pi_function("00", *place), ours.pi_function("11", *place)
 
 
 def precession(top: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
@@ -435,7 +433,7 @@ def own_spin(top: Motion, t: Any, sigma: Any) -> tuple[Any, Any]:
 
 def argument(top: Motion, t: Any, stretch: Any) -> tuple[Any, Any]:
     """Return w of (4,30), and eta times a factor that should be sqrt(1 + k_bar^2)."""
-    return 2 * top.K * t / top.T, ar.sqrt(top.a * (top.u3 - top.u1)) * t / 2 * stretch
+    return 2 * top.K * t / top.T, top.eta(t) * stretch
 
 
 def of_w(top: Motion, t: Any, part: int) -> tuple[Any, Any]:
@@ -520,6 +518,116 @@ chrapan.each_as_printed(
         "(4,28)": lambda top, _: at_alpha(top, -1, top.b),
         "(4,29)": lambda top, t: precession(top, t, 1),
         "(4,34)": lambda top, t: own_spin(top, t, 1),
+    },
+)
+
+
+def here(top: Motion, v: Any) -> list[Any]:
+    """Return our sn, cn and dn for the imaginary modulus."""
+    return list(ours.jacobi(v, top.kappa)[1:])
+
+
+def squares_at_parameters(top: Motion) -> list[Any]:
+    """Return the squares of sn, cn, dn at alpha1 and at alpha2, from the roots (4 i)."""
+    u1, u2, u3 = top.roots
+    south = [x / (1 + u1) for x in (u1 - u3, u3 + 1, 1 + u2)]
+    return south + [x / (1 - u1) for x in (u3 - u1, 1 - u3, 1 - u2)]
+
+
+def pi01(top: Motion, t: Any) -> list[Any]:
+    """Return our Pi01(eta, alpha1, kappa) and Pi01(eta, alpha2, kappa), continuous in t."""
+    return [ours.pi_function("01", top.eta(t), v, top.kappa) for v in top.parameters]
+
+
+def pi01_there(top: Motion, t: Any, v: Any) -> Any:
+    """Return exp 2 Pi01(eta, v, kappa) by its definition and mpmath's theta with nome -q."""
+    q, scale = -top.nome, ar.pi / (2 * ar.ellipk(top.kappa2))
+    zeta = scale * ar.jtheta(4, scale * v, q, 1) / ar.jtheta(4, scale * v, q)
+    less, more = (ar.jtheta(4, scale * (top.eta(t) + sign * v), q) for sign in (-1, 1))
+    return ar.exp(2 * top.eta(t) * zeta) * less / more
+
+
+def weighted(top: Motion, t: Any) -> list[Any]:
+    """Return sn/(cn dn) times Pi01 of each parameter, from the roots, over sqrt(a (u3 - u1))/b."""
+    size = top.b / ar.sqrt(top.a * (top.u3 - top.u1))
+    places = zip(top.at_parameters, pi01(top, t), strict=True)
+    return [size * sn / (cn * dn) * value for (sn, cn, dn), value in places]
+
+
+def rates_of_xi(top: Motion, t: Any) -> list[tuple[Any, Any]]:
+    """Return f and the rate of xi = sn(eta, kappa) with their formulas."""
+    (u1, u2, u3), xi = top.roots, here(top, top.eta(t))[0]
+    rest = (1 - xi**2) * (1 - top.kappa2 * xi**2)
+    return [
+        (slope(top.u, t) ** 2, top.a * (u1 - u2) ** 2 * (u3 - u1) * xi**2 * rest),
+        (slope(lambda at: here(top, top.eta(at))[0], t) ** 2, top.a * (u3 - u1) / 4 * rest),
+    ]
+
+
+chrapan.each(
+    tops,
+    {
+        "section 4 g: the modulus, and its complement greater than 1": lambda top: pairs(
+            [top.kappa, ar.sqrt((top.u3 - top.u2) / (top.u3 - top.u1)), ar.sqrt(1 - top.kappa2)],
+            [J * top.k / top.k_prime, 1 / top.k_prime, 1 / top.k_prime],
+        ),
+        "section 4 h: quarter periods of the imaginary modulus": lambda top: pairs(
+            [top.k_prime * top.K, top.k_prime * (top.K_prime - J * top.K)],
+            [ar.ellipk(top.kappa2), ar.ellipk(1 / top.k_prime**2)],
+        ),
+        "section 4 i: squares of sn, cn, dn at both parameters": lambda top: pairs(
+            [x**2 for v in top.parameters for x in here(top, v)], squares_at_parameters(top)
+        ),
+        "section 4 g: sn, cn, dn of the imaginary modulus anywhere": lambda top: [
+            (x, ar.ellipfun(name, top.alpha * (3 + 4 * J) / 10, m=-((top.k / top.k_prime) ** 2)))
+            for name, x in zip(
+                "sn cn dn".split(), here(top, top.alpha * (3 + 4 * J) / 10), strict=True
+            )
+        ],
+        "section 4 j: the second parameter is iK' further, the product is 1": lambda top: [
+            (top.parameters[1] - top.parameters[0], J * ar.ellipk(1 / top.k_prime**2)),
+            (top.kappa2 * ar.fprod(top.imaginary(v)[0] for v in top.parameters) ** 2, 1),
+            (top.kappa2 * squares_at_parameters(top)[0] * squares_at_parameters(top)[3], 1),
+        ],
+        "section 4 j: sn, cn, dn of i alpha for the real modulus": lambda top: pairs(
+            [x**2 for x in ours.jacobi(J * top.alpha, top.k)[1:]],
+            [x / (1 + top.u2) for x in (top.u2 - top.u3, top.u3 + 1, 1 + top.u1)],
+        ),
+    },
+)
+chrapan.each(
+    moments,
+    {
+        "section 4 g: u by sn of the imaginary modulus": lambda top, t: [
+            (top.u(t), top.u1 - (top.u1 - top.u2) * side(top, top.eta(t))[0] ** 2)
+            for side in (here, Motion.imaginary)
+        ],
+        "section 4 i: precession by Pi01": lambda top, t: (
+            top.sigma * J * sum(pi01(top, t)),
+            top.angles(t)[2],
+        ),
+        "section 4 l: spin by Pi01": lambda top, t: (
+            top.r0 * t + top.sigma * J * (pi01(top, t)[0] - pi01(top, t)[1]),
+            top.angles(t)[1],
+        ),
+    },
+)
+chrapan.each(
+    partial(moments, PARTS[0], PARTS[2], PARTS[5]),
+    {
+        "section 4 g: f and the rate of xi": rates_of_xi,
+        "section 4 i: Pi01 of both parameters": lambda top, t: pairs(
+            [ar.exp(2 * value) for value in pi01(top, t)],
+            [pi01_there(top, t, v) for v in top.parameters],
+        ),
+        "section 4 i: precession by Pi01 and the values at its parameters": lambda top, t: (
+            weighted(top, t)[0] - weighted(top, t)[1],
+            top.angles(t)[2],
+        ),
+        "section 4 l: spin by Pi01 and the values at its parameters": lambda top, t: (
+            top.r0 * t + sum(weighted(top, t)),
+            top.angles(t)[1],
+        ),
     },
 )
 
