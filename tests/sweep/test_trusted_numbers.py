@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from ball_reference import BallReference
-from exact_scenes import KINDS
 from flint import arb
-from hard_scenes import in_doubles, nutating
+from hard_scenes import KINDS, in_doubles, nutating
 from lagtop import Top, solve, sweep
 from scenes import EVERY_KIND, UNIT
 
@@ -77,7 +76,7 @@ def test_every_key_is_within_ten_eps(kind: str, count: int) -> None:
 
 
 EXAMPLE = {name: float(getattr(Top(), name)) for name in ("m", "A", "C", "s", "g")}
-WHIRLS, STIFF = random.Random(4), random.Random("stiff (fast spin)")
+WHIRLS, STIFF = random.Random(4), random.Random("stiff")
 CANCELLING: dict[str, list[dict[str, float]]] = {
     "over the lower pole from next to the upper one": [
         EXAMPLE | {"r0": 0, "theta0_deg": tilt, "psidot0": 1}
@@ -94,7 +93,7 @@ CANCELLING: dict[str, list[dict[str, float]]] = {
         for _ in range(30)
     ],
     # among them a spin rate far below its parts: gaps good to 2^-38 would put it 31 eps off
-    "stiff tops": [nutating("stiff (fast spin)", STIFF) for _ in range(25)],
+    "stiff tops": [nutating("stiff", STIFF) for _ in range(25)],
     "elementary theory": [
         *(EXAMPLE | x for x in EVERY_KIND.values() if "theta0_deg" in x),
         *(UNIT | {"theta0_deg": 90, "r0": r0} for r0 in (0, 2, -2)),

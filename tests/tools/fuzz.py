@@ -41,9 +41,8 @@ from ball_reference import BallReference
 from balls.requested import Requested
 from balls.scene import Undecided
 from balls.scene import arb_bits as precision
-from exact_scenes import KINDS, as_decimals
 from flint import arb
-from hard_scenes import HardTimes, Scene
+from hard_scenes import KINDS, Scene, as_decimals
 from lagtop import LagtopError, Motion, Top, solve, sweep
 
 from lagrange_cli.arithmetic.points import ListedPoints
@@ -102,7 +101,11 @@ def times_of(rng: random.Random, period: Fraction, decades: int = 14) -> list[fl
     ]
     powers = rng.uniform(-9, 1), 0, *(rng.uniform(0, decades) for _ in range(ELSEWHERE - 2))
     periods = [rng.choice([-1, 1]) * rng.random() * 10**power for power in powers]
-    return HardTimes(periods, quarters).times(period)
+    times = [float(period * number) for number in periods]
+    for number in quarters:
+        t = float(period * number / 4)
+        times += [t, math.nextafter(t, math.inf), math.nextafter(t, -math.inf)]
+    return times
 
 
 def period_of(balls: BallReference) -> Fraction:
