@@ -13,11 +13,19 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, TypeVar
 
-from arb_balls import exact_arb, many_digits
 from balls.angles import State
 from balls.record import Motion, Remainders
 from balls.requested import Requested
-from balls.scene import Number, Scene, Undecided, arb_bits, facts_of, scene_from
+from balls.scene import (
+    Number,
+    Scene,
+    Undecided,
+    arb_bits,
+    exact_arb,
+    facts_of,
+    many_digits,
+    scene_from,
+)
 from flint import arb
 
 EPS = 2.0**-52

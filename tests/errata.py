@@ -10,11 +10,11 @@ import csv
 from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import mpmath
 from ball_reference import BallReference
+from balls.scene import many_digits
 from lagtop import Top
 
 
@@ -59,13 +59,13 @@ def errata_table() -> list[str]:
 class Figure(NamedTuple):
     """A number of section 8.
 
-    `text` is printed, `true` computes it from exact values, and `own` from other printed figures,
-    which it may read from its argument by name; without `own` it stands alone.
+    `text` is printed, `key` is its name in the program, and `own` computes it from other printed
+    figures, which it may read from its argument by name; without `own` it stands alone.
     """
 
     name: str
     text: str
-    true: Callable[[Any], Any]
+    key: str
     own: Callable[[dict[str, Any]], Any] | None = None
 
 
@@ -76,73 +76,60 @@ def mean_precession(p: dict[str, Any]) -> Any:
     return p["precession rate at T/2"] / 2 * (2 - p["u3 - u2"]) + 4 / p["T"] * curve
 
 
+OWN: dict[str, Callable[[dict[str, Any]], Any]] = {
+    "(u3 + u2)^2": lambda p: p["u3 + u2"] ** 2,
+    "-4 u3 u2": lambda p: -4 * p["u3 u2"],
+    "(u3 - u2)^2": lambda p: p["(u3 + u2)^2"] + p["-4 u3 u2"],
+    "k^2": lambda p: (p["u1"] - p["u2"]) / p["u3 - u2"],
+    "arcsin k": lambda p: mpmath.degrees(mpmath.asin(mpmath.sqrt(p["k^2"]))),
+    "arcsin k'": lambda p: 90 - p["arcsin k"],
+    "K": lambda p: interpolated(mpmath.ellipk, p["arcsin k"]),
+    "alpha = F(amplitude, k')": lambda p: mpmath.ellipf(
+        mpmath.radians(p["amplitude (7,2)"]), 1 - p["k^2"]
+    ),
+    "T": lambda p: 4 * p["K"] / mpmath.sqrt(p["a"] * p["u3 - u2"]),
+    "mean spin rate": lambda p: 50 * p["1 - C/2A"] + mpmath.pi / p["T"],
+    "mean precession rate": mean_precession,
+    "spin rate at T/2": lambda p: 50 - p["precession rate at T/2"] * p["u2"],
+    "precession rate at T/2": lambda p: p["a"] / p["b"],
+    "T of the precession": lambda p: 2 * mpmath.pi / p["mean precession rate"],
+}
+"""Figures from other printed ones."""
+
 FIGURES = [
-    Figure("a", "319.091", lambda c: c.a),
-    Figure("1 - C/2A", "0.776363", lambda c: 1 - c.C / (2 * c.A)),
-    Figure("u1", "0.8660254", lambda c: c.u1),
-    Figure("b", "22.3637", lambda c: c.b),
-    Figure("u3 + u2", "1.56737", lambda c: c.u3 + c.u2),
-    Figure("u3 u2", "0.35738", lambda c: c.u3 * c.u2),
-    Figure("(u3 + u2)^2", "2.45665", lambda c: (c.u3 + c.u2) ** 2, lambda p: p["u3 + u2"] ** 2),
-    Figure("-4 u3 u2", "-1.42952", lambda c: -4 * c.u3 * c.u2, lambda p: -4 * p["u3 u2"]),
-    Figure(
-        *("(u3 - u2)^2", "1.02713", lambda c: (c.u3 - c.u2) ** 2),
-        lambda p: p["(u3 + u2)^2"] + p["-4 u3 u2"],
-    ),
-    Figure("u3 - u2", "1.01347", lambda c: c.u3 - c.u2),
-    Figure("2 u3", "2.58084", lambda c: 2 * c.u3),
-    Figure("2 u2", "0.55390", lambda c: 2 * c.u2),
-    Figure("u3", "1.29042", lambda c: c.u3),
-    Figure("u2", "0.27695", lambda c: c.u2),
-    Figure(
-        *("k^2", "0.581238", lambda c: c.k**2),
-        lambda p: (p["u1"] - p["u2"]) / p["u3 - u2"],
-    ),
-    Figure(
-        *("arcsin k", "49d40m31s", lambda c: c.modular_angle_deg),
-        lambda p: mpmath.degrees(mpmath.asin(mpmath.sqrt(p["k^2"]))),
-    ),
-    Figure(
-        *("arcsin k'", "40d19m29s", lambda c: 90 - c.modular_angle_deg),
-        lambda p: 90 - p["arcsin k"],
-    ),
-    Figure("amplitude (7,2)", "41d41m50s", lambda c: c.amplitude_deg),
-    Figure("K", "1.9299", lambda c: c.K, lambda p: interpolated(mpmath.ellipk, p["arcsin k"])),
-    Figure("E", "1.3085", lambda c: c.E),
-    Figure(
-        *("alpha = F(amplitude, k')", "0.7544", lambda c: c.alpha),
-        lambda p: mpmath.ellipf(mpmath.radians(p["amplitude (7,2)"]), 1 - p["k^2"]),
-    ),
-    Figure(
-        *("E(amplitude, k')", "0.7028"),
-        lambda c: mpmath.ellipe(mpmath.radians(c.amplitude_deg), c.k_prime**2),
-    ),
-    Figure(
-        *("T", "0.42927", lambda c: c.T_nutation),
-        lambda p: 4 * p["K"] / mpmath.sqrt(p["a"] * p["u3 - u2"]),
-    ),
-    Figure("u(T/4)", "0.63459", lambda c: c.u_quarter),
-    Figure(
-        *("mean spin rate", "46.13659", lambda c: c.mean_spin_rate),
-        lambda p: 50 * p["1 - C/2A"] + mpmath.pi / p["T"],
-    ),
-    Figure(
-        *("mean precession rate", "7.98957", lambda c: c.mean_precession_rate),
-        mean_precession,
-    ),
-    Figure(
-        *("spin rate at T/2", "46.04841", lambda c: c.spin_rate_half),
-        lambda p: 50 - p["precession rate at T/2"] * p["u2"],
-    ),
-    Figure(
-        *("precession rate at T/2", "14.2682", lambda c: c.precession_rate_half),
-        lambda p: p["a"] / p["b"],
-    ),
-    Figure("T of the spin", "0.136186", lambda c: c.T_spin),
-    Figure(
-        *("T of the precession", "0.786423", lambda c: c.T_precession),
-        lambda p: 2 * mpmath.pi / p["mean precession rate"],
-    ),
+    Figure(name, text, key, OWN.get(name))
+    for name, text, key in (
+        ("a", "319.091", "a"),
+        ("1 - C/2A", "0.776363", "spin_share"),
+        ("u1", "0.8660254", "u1"),
+        ("b", "22.3637", "b"),
+        ("u3 + u2", "1.56737", "roots_sum"),
+        ("u3 u2", "0.35738", "roots_product"),
+        ("(u3 + u2)^2", "2.45665", "roots_sum_squared"),
+        ("-4 u3 u2", "-1.42952", "roots_product_fourfold"),
+        ("(u3 - u2)^2", "1.02713", "roots_gap_squared"),
+        ("u3 - u2", "1.01347", "roots_gap"),
+        ("2 u3", "2.58084", "u3_twice"),
+        ("2 u2", "0.55390", "u2_twice"),
+        ("u3", "1.29042", "u3"),
+        ("u2", "0.27695", "u2"),
+        ("k^2", "0.581238", "k_squared"),
+        ("arcsin k", "49d40m31s", "modular_angle_deg"),
+        ("arcsin k'", "40d19m29s", "comodular_angle_deg"),
+        ("amplitude (7,2)", "41d41m50s", "amplitude_deg"),
+        ("K", "1.9299", "K"),
+        ("E", "1.3085", "E"),
+        ("alpha = F(amplitude, k')", "0.7544", "alpha"),
+        ("E(amplitude, k')", "0.7028", "E_amplitude"),
+        ("T", "0.42927", "T_nutation"),
+        ("u(T/4)", "0.63459", "u_quarter"),
+        ("mean spin rate", "46.13659", "mean_spin_rate"),
+        ("mean precession rate", "7.98957", "mean_precession_rate"),
+        ("spin rate at T/2", "46.04841", "spin_rate_half"),
+        ("precession rate at T/2", "14.2682", "precession_rate_half"),
+        ("T of the spin", "0.136186", "T_spin"),
+        ("T of the precession", "0.786423", "T_precession"),
+    )
 ]
 """All numbers printed in section 8 that are computed there."""
 
@@ -157,11 +144,11 @@ def interpolated(integral: Callable[[Any], Any], degrees: Any) -> Any:
     return ends[0] + (degrees - below) * (ends[1] - ends[0])
 
 
-def true_values() -> Any:
-    """Return the reference's numbers of the worked example, with A and C."""
-    top = Top()
-    numbers = BallReference(top.as_dict()).numbers()
-    return SimpleNamespace(**numbers, A=mpmath.mpf(top.A), C=mpmath.mpf(top.C))
+def true_values() -> dict[str, Any]:
+    """Return the figures by key, by the reference."""
+    balls = BallReference(Top().as_dict())
+    found = ((x.key, balls.exact(x.key)) for x in FIGURES)
+    return {key: many_digits(ball) for key, ball in found if ball is not None}
 
 
 def carried_on(figure: Figure, true: Any) -> str:
@@ -187,7 +174,7 @@ def figures_table() -> list[str]:
     values = true_values()
     with mpmath.workdps(40):
         for figure in FIGURES:
-            true = figure.true(values)
+            true = values[figure.key]
             verdict = carried_on(figure, true)
             mark = "**" if verdict else ""
             shown = f"{mark}{round_alike(true, figure.text)}{mark}"

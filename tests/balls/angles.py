@@ -6,11 +6,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
 
-from arb_balls import exact_arb
 from flint import acb, arb
 
 from balls.constants import Constants
-from balls.scene import Undecided, middle
+from balls.scene import Undecided, exact_arb, middle
 
 
 class State(NamedTuple):

@@ -6,10 +6,9 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
-from arb_balls import exact_arb
 from flint import arb, arb_poly, ctx
 
-from balls.scene import Scene, Undecided, facts_of, middle, rational
+from balls.scene import Scene, Undecided, exact_arb, facts_of, middle, rational
 
 
 class Constants:

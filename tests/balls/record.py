@@ -5,11 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from arb_balls import exact_arb
 from flint import acb, arb
 
 from balls.angles import Moving
-from balls.scene import Undecided
+from balls.scene import Undecided, exact_arb
 
 
 class Remainders(NamedTuple):

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from arb_balls import exact_arb
 from flint import acb, arb
 
 from balls.record import Motion, in_degrees
-from balls.scene import Scene, Undecided
+from balls.scene import Scene, Undecided, exact_arb
 
 
 class Requested(Motion):

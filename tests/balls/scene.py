@@ -19,9 +19,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from decimal import Decimal
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import mpmath
 from flint import arb, ctx, fmpq
 
 Number = Fraction | float | int | str
@@ -114,6 +116,17 @@ def middle(ball: arb) -> Fraction:
 
 def rational(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
+
+
+def exact_arb(value: Decimal | Fraction | float | str) -> arb:
+    """Return an exact number in Arb."""
+    return arb(rational(Fraction(value)))
+
+
+def many_digits(ball: arb) -> Any:
+    """Return the middle of a ball as a number of mpmath, to 60 digits."""
+    with mpmath.workdps(60):
+        return mpmath.mpf(ball.mid().str(60, radius=False))
 
 
 @contextmanager

@@ -7,8 +7,8 @@ import random
 
 import mpmath
 import pytest
-from arb_balls import many_digits
 from ball_reference import BallReference
+from balls.scene import many_digits
 from hard_scenes import HARD_KINDS, nutating
 from lagtop import Top, solve
 

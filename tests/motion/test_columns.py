@@ -14,9 +14,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arb_balls import exact_arb
 from ball_reference import BallReference
-from balls.scene import arb_bits
+from balls.scene import arb_bits, exact_arb
 from lagtop import Motion, Top, solve
 from scenes import EVERY_KIND, UNIT, period
 

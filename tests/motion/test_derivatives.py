@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arb_balls import exact_arb
 from ball_reference import BallReference
-from balls.scene import arb_bits
+from balls.scene import arb_bits, exact_arb
 from flint import arb
 from lagtop import LagtopError, Top, sensitivities, solve
 from scenes import EPS, EVERY_KIND, UNIT

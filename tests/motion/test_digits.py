@@ -10,9 +10,8 @@ from typing import Any
 
 import mpmath
 import pytest
-from arb_balls import exact_arb
 from ball_reference import BallReference
-from balls.scene import arb_bits
+from balls.scene import arb_bits, exact_arb
 from chrapan_top import rows_of
 from conftest import Lagtop
 from flint import arb

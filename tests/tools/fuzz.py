@@ -36,10 +36,9 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
 
-from arb_balls import exact_arb
 from ball_reference import BallReference
 from balls.requested import Requested
-from balls.scene import Undecided
+from balls.scene import Undecided, exact_arb
 from balls.scene import arb_bits as precision
 from flint import arb
 from hard_scenes import KINDS, Scene, as_decimals
