@@ -89,7 +89,7 @@ aksenov.each(
 aksenov.each(
     moduli,
     {
-        "(3.1.1)": lambda k, m, K: [(jacobi(first_kind(ar.mpf("0.7"), m), k)[1], ar.mpf("0.7"))],
+        "(3.1.1)": lambda k, m, K: (jacobi(first_kind(ar.mpf("0.7"), m), k)[1], ar.mpf("0.7")),
         "(3.1.2)": lambda k, m, K: [
             (quarter_period(k), K),
             *((incomplete_f(phi, k), ar.ellipf(phi, m)) for phi in (ar.mpf("0.7"), ar.mpf("4.4"))),
@@ -104,14 +104,14 @@ aksenov.each(
             for i, values in enumerate([(0, 1, 1), (1, 0, 0), (0, -1, 1), (-1, 0, 0), (0, 1, 1)])
             for pair in pairs(jacobi(i * K, k)[1:], (*values[:2], values[2] or ar.sqrt(1 - m)))
         ],
-        "(3.1.6)": lambda k, m, K: [(nome(k), ar.exp(-ar.pi * ar.ellipk(1 - m) / K))],
+        "(3.1.6)": lambda k, m, K: (nome(k), ar.exp(-ar.pi * ar.ellipk(1 - m) / K)),
         "(3.1.8)": lambda k, m, K: [(partial_sum("K", k, terms=600), K)] if k < 0.99 else [],
     },
 )
 aksenov.each(
     points,
     {
-        "(3.1.3)": lambda k, m, u, am, *_: [(ar.ellipf(am, m), u)],
+        "(3.1.3)": lambda k, m, u, am, *_: (ar.ellipf(am, m), u),
         "section 3.1: definitions of sn, cn, dn": lambda k, m, u, am, *found: [
             *pairs(found, (ar.sin(am), ar.cos(am), ar.sqrt(1 - m * ar.sin(am) ** 2))),
             *pairs(found, theirs(u, m)),
@@ -126,9 +126,9 @@ aksenov.each(
         "section 3.1: property 4": lambda k, m, u, am, sn, cn, dn: [
             *((sn**2 + cn**2, 1), (dn**2 + m * sn**2, 1), (dn**2 - m * cn**2 + m, 1))
         ],
-        "(3.1.4)": lambda k, m, u, *_: [(partial_sum("sn", k, u), ar.ellipfun("sn", u, m=m))],
-        "(3.1.5)": lambda k, m, u, *_: [(partial_sum("cn", k, u), ar.ellipfun("cn", u, m=m))],
-        "(3.1.7)": lambda k, m, u, *_: [(ar.ellipf(partial_sum("am", k, u), m), u)],
+        "(3.1.4)": lambda k, m, u, *_: (partial_sum("sn", k, u), ar.ellipfun("sn", u, m=m)),
+        "(3.1.5)": lambda k, m, u, *_: (partial_sum("cn", k, u), ar.ellipfun("cn", u, m=m)),
+        "(3.1.7)": lambda k, m, u, *_: (ar.ellipf(partial_sum("am", k, u), m), u),
     },
 )
 SMALL = ar.mpf(10) ** -12
@@ -188,33 +188,31 @@ def k2(sign: int) -> Any:
 aksenov.each(
     times,
     {
-        "(3.2.1)": lambda tau, eta, xi, theta: [  # over a sine, which takes the root at delta* away
-            (
-                to(
-                    ar.asin((eta - MIDDLE) / HALF),
-                    lambda x: Q_**2 - (MIDDLE + HALF * ar.sin(x) - P_) ** 2,
-                ),
-                ar.sqrt(G_) * tau,
-            )
-        ],
-        "(3.2.2)": lambda tau, eta, xi, theta: [
-            (
-                (eta - MIDDLE) / HALF,
-                (C.m1 - C.m2 - (C.m1 + C.m2) * xi) / ((C.m1 - C.m2) * xi - C.m1 - C.m2),
-            )
-        ],
-        "(3.2.4)": lambda tau, eta, xi, theta: [
-            (to(theta, lambda x: 1 + C.k**2 * ar.cos(x) ** 2), ar.sqrt(G_ * C.m1 * C.m2) * tau)
-        ],
-        "(3.2.6)": lambda tau, eta, xi, theta: [(eta, fractional(ar.sin(theta)))],
+        "(3.2.1)": lambda tau, eta, xi, theta: (
+            to(
+                ar.asin((eta - MIDDLE) / HALF),
+                lambda x: Q_**2 - (MIDDLE + HALF * ar.sin(x) - P_) ** 2,
+            ),
+            ar.sqrt(G_) * tau,
+        ),
+        "(3.2.2)": lambda tau, eta, xi, theta: (
+            (eta - MIDDLE) / HALF,
+            (C.m1 - C.m2 - (C.m1 + C.m2) * xi) / ((C.m1 - C.m2) * xi - C.m1 - C.m2),
+        ),
+        "(3.2.4)": lambda tau, eta, xi, theta: (
+            to(theta, lambda x: 1 + C.k**2 * ar.cos(x) ** 2),
+            ar.sqrt(G_ * C.m1 * C.m2) * tau,
+        ),
+        "(3.2.6)": lambda tau, eta, xi, theta: (eta, fractional(ar.sin(theta))),
         "(3.2.7)": lambda tau, eta, xi, theta: [
             (to(theta, lambda x: 1 - (C.k1 * ar.sin(x)) ** 2), C.sigma1 * tau),
             (ar.ellipf(theta, C.k1**2) + K1, C.sigma1 * tau),
         ],
-        "(3.2.9)": lambda tau, eta, xi, theta: [
-            (eta, fractional(ar.sin(jacobi(C.sigma1 * tau - K1, C.k1)[0])))
-        ],
-        "(3.2.11)": lambda tau, eta, xi, theta: [(eta, fractional(xi))],
+        "(3.2.9)": lambda tau, eta, xi, theta: (
+            eta,
+            fractional(ar.sin(jacobi(C.sigma1 * tau - K1, C.k1)[0])),
+        ),
+        "(3.2.11)": lambda tau, eta, xi, theta: (eta, fractional(xi)),
     },
 )
 aksenov.each(
@@ -224,7 +222,7 @@ aksenov.each(
             (C.m1, ar.sqrt(Q_**2 - (DELTA - P_) ** 2)),
             (C.m2, ar.sqrt(Q_**2 - (DELTA_STAR - P_) ** 2)),
         ],
-        "(3.2.5)": lambda: [(C.k**2, k2(1))],
+        "(3.2.5)": lambda: (C.k**2, k2(1)),
         "(3.2.8)": lambda: [
             (C.k1**2, k2(1) / (1 + k2(1))),
             (C.sigma1, ar.sqrt(G_ * C.m1 * C.m2 * (1 + k2(1)))),

@@ -166,34 +166,26 @@ PHI = ar.mpf("0.7277")
 chrapan.each(
     once,
     {
-        "(1,1)": lambda: [
-            (zeta_there("01", V, *IMAGINARY), STRETCH * zeta("00", V * STRETCH, k)),
-        ],
-        "(1,2)": lambda: [
-            (zeta_there("11", V, *IMAGINARY), STRETCH * zeta("11", V * STRETCH, k)),
-        ],
+        "(1,1)": lambda: (zeta_there("01", V, *IMAGINARY), STRETCH * zeta("00", V * STRETCH, k)),
+        "(1,2)": lambda: (zeta_there("11", V, *IMAGINARY), STRETCH * zeta("11", V * STRETCH, k)),
         "(1,1) and (1,2) of complex arguments": lambda: [
             (zeta(ij, ETA, J * K_BAR), STRETCH * zeta_there(there, ETA * STRETCH))
             for ij, there in (("01", "00"), ("11", "11"))
         ],
         "section 1 c: real forms of Z(i alpha)": real_forms,
-        "section 1 d: sum of Z00 and Z11": lambda: [
-            (
-                zeta("00", JA, k) + zeta("11", JA, k),
-                J * (COMPLEMENT**2 * S * C / D - C * D / S - ar.pi * ALPHA / (K * K_PRIME))
-                - 2 * J * zeta_there("01", ALPHA, *OTHER),
-            )
-        ],
-        "(1,3)": lambda: [(zeta("00", JA, k) - zeta("11", JA, k), J * C / (S * D))],
-        "(1,4)": lambda: [(zeta("00", JA, k) - zeta("01", JA, k), -J * k**2 * S / (C * D))],
-        "(1,5)": lambda: [(zeta("11", JA, k) - zeta("10", JA, k), -J * C * D / S)],
-        "section 1 e: Z(alpha) = E(alpha, k') - E' alpha/K'": lambda: [
-            (
-                zeta("01", ALPHA, COMPLEMENT),
-                ar.quad(lambda x: ar.ellipfun("dn", x, m=1 - k**2) ** 2, [0, ALPHA])
-                - ar.ellipe(1 - k**2) / K_PRIME * ALPHA,
-            )
-        ],
+        "section 1 d: sum of Z00 and Z11": lambda: (
+            zeta("00", JA, k) + zeta("11", JA, k),
+            J * (COMPLEMENT**2 * S * C / D - C * D / S - ar.pi * ALPHA / (K * K_PRIME))
+            - 2 * J * zeta_there("01", ALPHA, *OTHER),
+        ),
+        "(1,3)": lambda: (zeta("00", JA, k) - zeta("11", JA, k), J * C / (S * D)),
+        "(1,4)": lambda: (zeta("00", JA, k) - zeta("01", JA, k), -J * k**2 * S / (C * D)),
+        "(1,5)": lambda: (zeta("11", JA, k) - zeta("10", JA, k), -J * C * D / S),
+        "section 1 e: Z(alpha) = E(alpha, k') - E' alpha/K'": lambda: (
+            zeta("01", ALPHA, COMPLEMENT),
+            ar.quad(lambda x: ar.ellipfun("dn", x, m=1 - k**2) ** 2, [0, ALPHA])
+            - ar.ellipe(1 - k**2) / K_PRIME * ALPHA,
+        ),
         "(1,6)": lambda: [
             (incomplete_f(PHI, COMPLEMENT), ar.quad(integrand, [0, end]))
             for end, integrand in (
@@ -201,7 +193,7 @@ chrapan.each(
                 (ar.sin(PHI), lambda x: 1 / ar.sqrt((1 - x**2) * (1 - (COMPLEMENT * x) ** 2))),
             )
         ],
-        "(1,7)": lambda: [(jacobi(ALPHA, COMPLEMENT)[0], ar.asin(S))],
+        "(1,7)": lambda: (jacobi(ALPHA, COMPLEMENT)[0], ar.asin(S)),
         "(1,8)": lambda: [sum_1_8(-1)],
     },
 )
@@ -209,9 +201,7 @@ chrapan.each(
     lambda: [(x,) for x in MODULI],
     {
         "section 1 e: Legendre's relation": legendre,
-        "(2,4)": lambda x: [
-            (nome(x), ar.exp(-ar.pi * ar.ellipk(1 - x**2) / ar.ellipk(x**2))),
-        ],
+        "(2,4)": lambda x: (nome(x), ar.exp(-ar.pi * ar.ellipk(1 - x**2) / ar.ellipk(x**2))),
     },
 )
 
@@ -257,12 +247,10 @@ def quotient_of(values: Any) -> Any:
 chrapan.each(
     once,
     {
-        "(2,1)": lambda: [
-            (
-                ratio_there("01", W, V + J * K_PRIME),
-                ratio(omega("11", W, V, k) + J * ar.pi * (W / K + 1) / 2),
-            )
-        ],
+        "(2,1)": lambda: (
+            ratio_there("01", W, V + J * K_PRIME),
+            ratio(omega("11", W, V, k) + J * ar.pi * (W / K + 1) / 2),
+        ),
         **{
             f"(2,{number})": lambda ij=ij, there=there: [
                 (
@@ -283,24 +271,21 @@ chrapan.each(
         "(2,5), continued over all w": lambda: [
             (omega("11", w, JA, k), continued(w)) for w in (-3 * W, W, 5 * W)
         ],
-        "(2,6)": lambda: [
-            (
-                ratio(both(omega, -1, W)),
-                ratio(quotient_of(ar.ellipfun(f, W, m=k**2) for f in ("sn", "cn", "dn"))),
-            )
-        ],
+        "(2,6)": lambda: (
+            ratio(both(omega, -1, W)),
+            ratio(quotient_of(ar.ellipfun(f, W, m=k**2) for f in ("sn", "cn", "dn"))),
+        ),
         **{
-            f"(2,{number})": lambda ij=ij: [
-                (
-                    slope(lambda w: omega(ij, w, JA, k), W),
-                    (zeta_there(ij, W - JA) - zeta_there(ij, W + JA)) / 2,
-                )
-            ]
+            f"(2,{number})": lambda ij=ij: (
+                slope(lambda w: omega(ij, w, JA, k), W),
+                (zeta_there(ij, W - JA) - zeta_there(ij, W + JA)) / 2,
+            )
             for number, ij in enumerate(THIRD, 7)
         },
-        "section 3 a: Pi01 of Jacobi": lambda: [
-            (ratio(pi_function("01", W, V, k)), pi_there("01", W, V))
-        ],
+        "section 3 a: Pi01 of Jacobi": lambda: (
+            ratio(pi_function("01", W, V, k)),
+            pi_there("01", W, V),
+        ),
         **{
             f"(3,{number})": lambda ij=ij: [
                 (ratio(pi_function(ij, W, v, k)), pi_there(ij, W, v)) for v in (V, JA)
@@ -314,16 +299,12 @@ chrapan.each(
             )
             for ij in THIRD
         ],
-        "(3,3)": lambda: [
-            (pi_there("01", W, V + J * K_PRIME), -ratio(pi_function("11", W, V, k))),
-        ],
+        "(3,3)": lambda: (pi_there("01", W, V + J * K_PRIME), -ratio(pi_function("11", W, V, k))),
         **{
-            f"(3,{number})": lambda ij=ij, there=there: [
-                (
-                    pi_there(ij, W, J * V, *IMAGINARY),
-                    ratio(pi_function(there, W * STRETCH, J * V * STRETCH, k)),
-                )
-            ]
+            f"(3,{number})": lambda ij=ij, there=there: (
+                pi_there(ij, W, J * V, *IMAGINARY),
+                ratio(pi_function(there, W * STRETCH, J * V * STRETCH, k)),
+            )
             for number, ij, there in ((4, "01", "00"), (5, "11", "11"))
         },
         "(3,8)": lambda: [integral(k**2, V, lambda v: pi_function("01", W, v, k))],
@@ -355,20 +336,16 @@ def integral(m: Any, v: Any, pi01: Any) -> tuple[Any, Any]:
 chrapan.each(
     lambda: [(1,), (-1,)],
     {
-        "(2,10)": lambda sign: [
-            (
-                slope(partial(both, omega, sign), 0),
-                -zeta_there("00", JA) - sign * zeta_there("11", JA),
-            )
-        ],
-        "(2,11)": lambda sign: [
-            (
-                slope(partial(both, omega, sign), K),
-                -zeta_there("01", JA) - sign * zeta_there("10", JA),
-            )
-        ],
-        "(3,6)": lambda sign: [(slope(partial(both, pi_function, sign), 0), 0)],
-        "(3,7)": lambda sign: [(slope(partial(both, pi_function, sign), K), slope_3_7(sign))],
+        "(2,10)": lambda sign: (
+            slope(partial(both, omega, sign), 0),
+            -zeta_there("00", JA) - sign * zeta_there("11", JA),
+        ),
+        "(2,11)": lambda sign: (
+            slope(partial(both, omega, sign), K),
+            -zeta_there("01", JA) - sign * zeta_there("10", JA),
+        ),
+        "(3,6)": lambda sign: (slope(partial(both, pi_function, sign), 0), 0),
+        "(3,7)": lambda sign: (slope(partial(both, pi_function, sign), K), slope_3_7(sign)),
     },
 )
 chrapan.each(
