@@ -50,20 +50,6 @@ def test_singular_motions_are_those_of_the_integrator(name: str) -> None:
         assert parts == pytest.approx(wanted.tolist(), abs=3e-9), (name, t)
 
 
-def test_degenerate_starts_are_decided_exactly() -> None:
-    def facts(**inputs: float) -> Any:
-        return BallReference(UNIT | {"r0": 1} | inputs).facts
-
-    assert facts(theta0_deg=60, psidot0=1, r0=1.5).steady
-    assert not facts(theta0_deg=60, psidot0=1, r0=math.nextafter(1.5, 3)).steady
-    assert facts(theta0_deg=60, psidot0=1, r0=1.5, thetadot0=0.5).separatrix
-    assert not facts(theta0_deg=60, psidot0=1, r0=1.5, thetadot0=math.nextafter(0.5, 1)).separatrix
-    assert facts(theta0_deg=60, psidot0=-2).over_bottom
-    assert not facts(theta0_deg=61, psidot0=-2).over_bottom
-    assert facts(theta0_deg=0).vertical
-    assert facts(theta0_deg=180).vertical
-
-
 def test_a_key_one_double_off_is_told() -> None:
     scene = GENERIC
     balls = BallReference(scene)

@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 from conftest import LAGTOP, Lagtop, wait_until
 from lagtop import Top, solve, sweep
-from scenes import UNIT
+from scenes import EVERY_KIND, UNIT
 
 from lagrange_cli.sweep.records import column_keys
 
@@ -34,25 +34,10 @@ def table(text: str) -> list[Record]:
 
 
 SPECIAL: list[dict[str, Any]] = [
-    {},
-    {"r0": 0},
-    {"theta0_deg": 0},
-    {"theta0_deg": 0, "r0": 100},
-    {"theta0_deg": 180, "r0": -3},
-    {"g": 0},
-    {"s": 0, "r0": 0},
-    {"theta0_rad": 0.5},
-    {"theta0_rad": 0, "r0": 40},
-    {"psidot0": 3},
-    {"thetadot0": -2, "psidot0": 1},
-    {"theta0_rad": 3.141592, "thetadot0": -2, "psidot0": 1},
-    {"psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151},
-    UNIT | {"r0": 2, "theta0_deg": 1},
-    UNIT | {"r0": math.nextafter(2, 3), "theta0_deg": 0},
-    UNIT | {"r0": 2, "theta0_deg": 0},
-    {"m": 1e-40, "A": 1e-40, "C": 1e-40},
-    {"r0": 1e70},
-    {"theta0_deg": 1e-100},
+    *EVERY_KIND.values(),
+    *({}, {"theta0_rad": 0, "r0": 40}, {"theta0_rad": 3.141592, "thetadot0": -2, "psidot0": 1}),
+    *({"m": 1e-40, "A": 1e-40, "C": 1e-40}, {"r0": 1e70}, {"theta0_deg": 1e-100}),
+    *({"psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151},),
 ]
 
 

@@ -101,7 +101,10 @@ CANCELLING: dict[str, list[dict[str, float]]] = {
         UNIT | {"theta0_deg": 60, "r0": -1, "psidot0": 2 / 3},
         UNIT | {"theta0_deg": 30, "r0": 1},
     ],
-    "a cosine": [EXAMPLE | {"theta0_deg": 90, "r0": 1e10}],
+    "a cosine": [
+        EXAMPLE | {"theta0_deg": tilt, "r0": r0}
+        for tilt, r0 in ((90, 1e10), (90.5, 50), (89.5, 50))
+    ],
 }
 
 
