@@ -22,7 +22,6 @@ from lagrange_cli.bench.work_precision import (
     conclusions,
     exact_motion,
     marked,
-    methods_figure,
 )
 
 WORKED = {"worked": solve(Top())}
@@ -112,18 +111,6 @@ def test_the_command_compares_scenes(lagtop: Lagtop, tmp_path: Path) -> None:
     assert {x["scene"] for x in report["rows"]} == {"chrapan-1952", "slow-top"}
     assert all(x["error_rad"] < 1e-7 for x in report["rows"])
     assert picture.stat().st_size > 10_000
-
-
-@pytest.mark.slow
-def test_pictures_draw_each_method(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("matplotlib")
-    monkeypatch.setattr(hard, "COMPARED", ("lagtop", "Taylor"))
-    report = bench(WORKED, ["lagtop", "RK45"], count=5)
-    _, curve = methods_figure(report).axes[0].get_lines()[-2:]
-    errors = sorted(x.error_rad for x in report.rows if x.method == "RK45")
-    assert sorted(np.asarray(curve.get_xdata()).tolist()) == errors
-    figure = hard.stability_figure(hard.stability(["near-hanging"], 0))
-    assert [axes.get_title() for axes in figure.axes] == ["span of 1 T", "span of 100 T"]
 
 
 @pytest.mark.parametrize("kind", hard.KINDS)

@@ -139,35 +139,6 @@ def test_degenerate_radicands_are_named(lagtop: Lagtop, outer: str, kind: str) -
     assert still["kind"] == f"{degree}, the band is a double root: eta is constant"
 
 
-@pytest.mark.parametrize(
-    ("lower", "upper", "p", "height"),
-    [
-        ("-0.5", "0.6", "0.1", "1e-60"),
-        ("-0.5", "0.6", "1e40", "3"),
-        ("0.6", "0.6000000000000000000000000000000000000001", "0.6", "1e-50"),
-    ],
-)
-def test_complex_pair_with_digits(lower: str, upper: str, p: str, height: str) -> None:
-    """Constants by (3.2.3), (3.2.5) with a minus, (3.2.8) and (3.2.12), cancelling in 300 digits.
-
-    Roots are next to the band, far from it, and next to an end of a narrow band.
-    """
-    shown = eta_record(quadrature(lower, upper, f"{p} {p}", height=height), 30)
-    with mpmath.workdps(300):
-        low, high, middle, far = map(mpmath.mpf, (lower, upper, p, height))
-        m1, m2 = mpmath.hypot(high - middle, far), mpmath.hypot(low - middle, far)
-        k2 = ((m1 - m2) ** 2 - (high - low) ** 2) / (4 * m1 * m2)
-        sigma1, K1 = mpmath.sqrt(m1 * m2 * (1 + k2)), mpmath.ellipk(k2 / (1 + k2))
-        exact = {
-            **{"m_prime": m1, "m_double_prime": m2, "sigma1": sigma1, "K1": K1},
-            **{"k_imag": mpmath.sqrt(-k2), "k1_imag": mpmath.sqrt(-k2 / (1 + k2))},
-            **{"k1_prime": 1 / mpmath.sqrt(1 + k2), "period": 4 * K1 / sigma1},
-            **{"tau3": -K1 / sigma1, "d": (m2 - m1) / (m1 + m2)},
-        }
-        for name, value in exact.items():
-            assert abs(mpmath.mpf(shown[name]) - value) <= 1e-29 * abs(value), name
-
-
 def test_chain_of_the_command(lagtop: Lagtop) -> None:
     """At tau = 0 theta is -90 degrees; a pair of roots on the axis is what it tends to."""
     args = "eta --delta 0.5 --delta-star -0.25 --columns h1,theta,xi_prime --tau 0,2.5".split()
