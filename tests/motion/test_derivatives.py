@@ -102,6 +102,9 @@ EXACT: list[tuple[dict[str, float], str, str, float]] = [
     ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 2}, "mean_spin_rate", "r0", math.nan),
     ({"g": 0, "r0": 3, "theta0_deg": 0}, "a", "g", 2.0),
     ({"g": 0, "r0": 0, "theta0_deg": 180}, "a", "g", 2.0),
+    # a pendulum that turns over passes over both poles
+    ({"r0": 0, "theta0_deg": 160, "thetadot0": 3}, "theta_max_deg", "m", 0.0),
+    ({"r0": 0, "theta0_deg": 160, "thetadot0": 3}, "mean_spin_rate", "r0", math.nan),
     # after release from rest psi'(T/2) = a/b = 2mgs/(C r0), whatever the tilt and A are
     ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "theta0_deg", 0.0),
     ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "A", 0.0),
