@@ -22,6 +22,7 @@ from hard_scenes import HARD_KINDS, in_doubles
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
 
 from lagrange_cli.inputs.scenes import scene_names
+from lagrange_cli.plot.style import DARK, LIGHT
 
 MOTION_JS = ROOT / "lagrange_cli" / "plot" / "browser" / "motion.js"
 KINDS = ("generic", "from rest", "slow", "near a pole", "near steady", "no spin")
@@ -118,13 +119,6 @@ def test_random_scenes_move_as_lagtop_says(kinds: Sequence[str], count: int) -> 
     assert sum(is_sketch for _, is_sketch in ordinary) <= 0.02 * len(ordinary)
 
 
-def test_a_wrong_motion_would_be_seen() -> None:
-    motion = solve(Top())
-    (page,) = computed([motion])
-    off = np.stack(motion.angles(np.array(times_of(motion)) * (1 + 1e-7)), axis=1)
-    assert np.abs(np.array(page["angles"]) - off).max() > LIMIT
-
-
 def test_numbers_and_words_follow_the_inputs() -> None:
     motions = [solve(Top(psidot0=x)) for x in (0, -4, 4)]
     motions += [solve(Top(theta0_deg=0, r0=r)) for r in (60, 50)]
@@ -151,6 +145,9 @@ def test_the_file_is_small_and_asks_for_nothing() -> None:
         (part,) = re.findall(rf"<{name}[^>]*>(.*?)</{name}>", text, re.DOTALL)
         digest = b64encode(sha256(part.encode()).digest()).decode()
         assert f"{name}-src 'sha256-{digest}'" in text
+    for look in (LIGHT, DARK):
+        colours = {look.paper, look.ink, look.quiet, look.faint, *look.lines}
+        assert colours <= {*re.findall(r"#\w{6}", text)}
     assert "innerHTML" not in text
     assert "insertAdjacentHTML" not in text
 
@@ -166,7 +163,7 @@ def test_texts_from_outside_are_no_markup() -> None:
     [
         ([], "nothing to do"),
         (["-o", "top.pdf"], "must be a file that ends in .html"),
-        (["-o", "top.html", "--m", "1e40"], "m must be from 1e-30 to 1e30"),
+        (["-o", "top.html", "--g", "1e-40"], "g must be from 1e-30 to 1e30"),
     ],
 )
 def test_bad_requests_end_in_one_line(
@@ -177,11 +174,6 @@ def test_bad_requests_end_in_one_line(
     assert done.exit_code == 2
     assert said in done.stderr
     assert list(tmp_path.iterdir()) == []
-
-
-def test_inputs_out_of_range_are_refused() -> None:
-    with pytest.raises(LagtopError, match="from 1e-30 to 1e30"):
-        view(solve(Top(g=1e-40)))
 
 
 # --- one session of a browser
@@ -256,7 +248,7 @@ def test_a_session_in_the_browser(browser: Browser) -> None:
     assert "has loops" in browser.ask("return at('words').textContent")
 
     browser.ask("set('field-C', '-1')")
-    assert browser.ask("return at('error').textContent") == "C must be positive"
+    assert browser.ask("return at('error').textContent") == "C must be positive, at most 2A"
     assert browser.ask("return document.body.className") == "bad"
     browser.ask("set('field-C', '17458')")
     assert browser.ask("return [at('error').textContent, document.body.className]") == ["", ""]

@@ -43,16 +43,6 @@ function carlsonF(x, y, z) {
   return carlsonF((x + shift) / 4, (y + shift) / 4, (z + shift) / 4);
 }
 
-/** A root of the cubic after Newton's method, unless that would leave a part of the band. */
-function newton(u, band, { a, b, alpha, beta }) {
-  for (let n = 0; n < 3; n += 1) {
-    const f = (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2;
-    const slopeOfF = -a * (1 - u * u) - 2 * u * (alpha - a * u) + 2 * b * (beta - b * u);
-    if (Math.abs(f) < 0.1 * band * Math.abs(slopeOfF)) u -= f / slopeOfF;
-  }
-  return u;
-}
-
 /** The cubic (4,9): its roots u1 >= u2, and the distances 1 - u1, u1 - u0, u3 - u1, u3 - u0. */
 function cubicOf({ a, b, alpha, beta, u0, above, rise }) {
   if (!a) {
@@ -75,8 +65,6 @@ function cubicOf({ a, b, alpha, beta, u0, above, rise }) {
     const spread = Math.sqrt(Math.max(width, 0));
     [u2, u1] = [middle - spread, middle + spread];
   }
-  const band = u1 - u2;
-  [u2, u1] = [u2, u1].map((u) => newton(u, band, { a, b, alpha, beta }));
   const isTop = !rise && Math.abs(u1 - u0) <= Math.abs(u2 - u0);
   if (!rise && !isTop) u2 = u0;
   // (1 - u1)(u3 - 1) and (u3 - 1) - (1 - u1) keep their digits next to the separatrix

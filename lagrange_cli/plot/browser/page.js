@@ -2,7 +2,6 @@
 // DATA holds the scene, the shipped scenes, the inputs and the keys; `motionOf` computes.
 
 const at = Object.fromEntries([...document.querySelectorAll("[id]")].map((part) => [part.id, part]));
-const DEGREES = 180 / Math.PI;
 const CURVES = {
   theta: ["ϑ", "ϑ (°)", "blue"],
   phi: ["φ", "φ less its mean rate (°)", "red"],
@@ -92,7 +91,7 @@ const around = ({ nodes, axis, across }, radius, angle, height) =>
 
 /** The camera; zoomed in, it follows the mean motion of the axis. */
 function viewOf(width, height) {
-  const { nodes, axis, across } = frameOf((90 - camera.elevation) / DEGREES, (camera.azimuth + 90) / DEGREES);
+  const { nodes, axis, across } = frameOf((90 - camera.elevation) / DEGREE, (camera.azimuth + 90) / DEGREE);
   const scale = (camera.zoom * Math.min(width, height)) / 2.5;
   const middle = sum([clamped(camera.zoom - 1.5, 0, 1), frameOf(curves.tilt, curves.turn * t).axis]);
   const place = (p) => {
@@ -127,7 +126,7 @@ function facesOf(frame, phi, { place, depth, lamp }, blur) {
 }
 
 function drawSpace() {
-  const { pen, width, height, letters } = prepared(at.space);
+  const { pen, width, height } = prepared(at.space);
   const view = viewOf(width, height);
   const { place, depth } = view;
   const angles = motion.angles(t);
@@ -144,8 +143,8 @@ function drawSpace() {
     };
     const { theta_min_deg: least, theta_max_deg: most } = motion.record;
     side(circle.map((x) => frameOf(Math.PI / 2, x).axis), "quiet");
-    side(circle.map((x) => frameOf(least / DEGREES, x).axis), "blue");
-    side(circle.map((x) => frameOf(most / DEGREES, x).axis), "blue", { dash: [9, 3, 2, 3] });
+    side(circle.map((x) => frameOf(least / DEGREE, x).axis), "blue");
+    side(circle.map((x) => frameOf(most / DEGREE, x).axis), "blue", { dash: [9, 3, 2, 3] });
     side(path, "trace", { width: 2.2 });
     for (const [name, axis] of Object.entries({ x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] })) {
       if (depth(axis) >= 0 !== isNear) continue;
@@ -176,69 +175,72 @@ function drawSpace() {
       word(pen, symbol, place(sum([1.14, point(shown / 2)])), tint);
     }
   }
-  at.now.textContent = Object.entries(angles).map(([x, y]) => `${CURVES[x][0]} = ${text(y * DEGREES)}°`).join("\n");
-  at.now.style.fontSize = `${letters}px`;
+  at.now.textContent = Object.entries(angles).map(([x, y]) => `${CURVES[x][0]} = ${text(y * DEGREE)}°`).join("\n");
 }
 
 // --- curves and cubic
 
-/** The names of ticks at the left and at the foot, each with its place. */
-function scales(pen, letters, left, foot, { across = [], up = [] }, digits) {
-  for (const [tick, x] of across) word(pen, text(tick, digits), [x, foot + 0.7 * letters], "ink");
-  for (const [tick, y] of up) {
-    word(pen, text(tick, digits), [left - 6, y], "ink", "right");
-    line(pen, [[left - 3, y], [left, y]], "quiet");
+/** Draw the scales of a panel, with about so many ticks; return the function that places a point in it. */
+function panel(pen, [left, right, top, bottom], [x0, x1], [y0, y1], [across, up]) {
+  const place = ([x, y]) => [
+    left + ((x - x0) / (x1 - x0)) * (right - left),
+    bottom - ((y - y0) / (y1 - y0)) * (bottom - top),
+  ];
+  const letters = parseInt(pen.font, 10);
+  for (const x of across ? ticks(x0, x1, across) : []) {
+    word(pen, text(x), [place([x, y0])[0], bottom + 0.8 * letters], "ink");
   }
+  for (const y of ticks(y0, y1, up)) {
+    const [x, height] = place([x0, y]);
+    word(pen, text(y), [x - 6, height], "ink", "right");
+    line(pen, [[x - 3, height], [x, height]], "quiet");
+  }
+  return place;
 }
 
 function drawCurves() {
   const { pen, width, height, letters } = prepared(at.plots);
-  const [left, right, foot] = [4.8 * letters, width - 8, height - 2.6 * letters];
-  const x = (time) => left + ((time - curves.from) / curves.span) * (right - left);
+  const [left, right, foot] = [4.8 * letters, width - 8, height - 2.2 * letters];
+  const { from, span, times } = curves;
   const mean = { theta: 0, phi: motion.record.mean_spin_rate ?? 0, psi: 0 };
   Object.entries(CURVES).forEach(([name, [, title, tint]], i) => {
-    const values = curves.angles.map((angles, j) => (angles[name] - mean[name] * curves.times[j]) * DEGREES);
+    const values = curves.angles.map((angles, j) => (angles[name] - mean[name] * times[j]) * DEGREE);
     const [low, high] = [Math.min(...values), Math.max(...values)];
-    const [from, to] = high - low > 1e-7 ? [low, high] : [low - 1, high + 1];
-    const [top, bottom] = [(foot * i) / 3 + 1.3 * letters, (foot * (i + 1)) / 3 - 6];
-    const y = (value) => bottom - ((value - from) / (to - from)) * (bottom - top);
-    scales(pen, letters, left, foot, { up: ticks(from, to, 4).map((tick) => [tick, y(tick)]) }, 6);
-    word(pen, title, [left + 4, top - 0.6 * letters], tint, "left");
-    line(pen, values.map((value, j) => [x(curves.times[j]), y(value)]), tint, { width: 1.8 });
+    const range = high - low > 1e-7 ? [low, high] : [low - 1, high + 1];
+    const box = [left, right, (foot * i) / 3 + 1.3 * letters, (foot * (i + 1)) / 3 - 6];
+    const place = panel(pen, box, [from, from + span], range, [i === 2 ? 5 : 0, 4]);
+    word(pen, title, [left + 4, box[2] - 0.6 * letters], tint, "left");
+    line(pen, values.map((value, j) => place([times[j], value])), tint, { width: 1.8 });
   });
-  const across = ticks(curves.from, curves.from + curves.span, 5).map((tick) => [tick, x(tick)]);
-  scales(pen, letters, left, foot, { across }, 6);
-  word(pen, `t (${timeUnit})`, [(left + right) / 2, foot + 1.9 * letters], "ink");
-  line(pen, [[x(t), 4], [x(t), foot]], "trace", { width: 1.5 });
-  curves.timeAt = (place) => curves.from + ((place - left) / (right - left)) * curves.span;
+  const now = left + ((t - from) / span) * (right - left);
+  word(pen, `t (${timeUnit})`, [(left + right) / 2, foot + 1.5 * letters], "ink");
+  line(pen, [[now, 4], [now, foot]], "trace", { width: 1.5 });
+  curves.timeAt = (place) => from + ((place - left) / (right - left)) * span;
 }
 
 function drawCubic() {
   const { pen, width, height, letters } = prepared(at.cubic);
   const { u1, u2, u3 } = motion.record;
-  const [left, right, top, bottom] = [4.8 * letters, width - 8, 1.6 * letters, height - 2.6 * letters];
+  const box = [4.8 * letters, width - 8, 1.6 * letters, height - 2.6 * letters];
   const last = u3 !== null && u3 - u1 < 1.5 * (u1 - u2) ? u3 : u1;
   const room = 0.35 * (last - u2) || 0.2;
   const points = even(u2 - room, last + room, 200).map((u) => [u, motion.f(u)]);
   const hump = points.filter(([u]) => u >= u2 && u <= u1);
   const most = Math.max(...hump.map(([, f]) => f), 0) || Math.max(...points.map(([, f]) => Math.abs(f))) || 1;
-  const x = (u) => left + ((u - u2 + room) / (last - u2 + 2 * room)) * (right - left);
-  const y = (f) => (top + bottom) / 2 - (f / (1.3 * most)) * ((bottom - top) / 2);
-  const place = ([u, f]) => [x(u), y(f)];
+  const place = panel(pen, box, [u2 - room, last + room], [-1.3 * most, 1.3 * most], [4, 3]);
   area(pen, [[u2, 0], ...hump, [u1, 0]].map(place), "faint");
   line(pen, points.map((point) => (Math.abs(point[1]) < 1.4 * most ? place(point) : null)), "blue", { width: 1.8 });
-  line(pen, [[left, y(0)], [right, y(0)]], "quiet");
-  scales(pen, letters, left, bottom, { up: ticks(-most, most, 3).map((tick) => [tick, y(tick)]) }, 3);
-  scales(pen, letters, left, bottom, { across: ticks(u2 - room, last + room, 4).map((tick) => [tick, x(tick)]) }, 4);
+  line(pen, [[u2 - room, 0], [last + room, 0]].map(place), "quiet");
   const roots = u1 === u2 ? { "u₁ = u₂": u2 } : { "u₂": u2, "u₁": u1 };
   for (const [name, u] of Object.entries(last === u3 ? { ...roots, "u₃": u3 } : roots)) {
-    disc(pen, place([u, 0]), 3, "ink");
-    word(pen, name, [x(u) + (name === "u₃" ? 9 : -9), y(0) - 11], "ink");
+    const [x, y] = place([u, 0]);
+    disc(pen, [x, y], 3, "ink");
+    word(pen, name, [x + (name === "u₃" ? 9 : -9), y - 11], "ink");
   }
   const u = Math.cos(motion.angles(t).theta);
   disc(pen, place([u, motion.f(u)]), 6, "trace");
-  word(pen, "f(u) = u̇²", [left + 4, 0.8 * letters], "blue", "left");
-  word(pen, "u = cos ϑ", [(left + right) / 2, bottom + 1.9 * letters], "ink");
+  word(pen, "f(u) = u̇²", [box[0] + 4, 0.8 * letters], "blue", "left");
+  word(pen, "u = cos ϑ", [(box[0] + width) / 2, height - 0.7 * letters], "ink");
 }
 
 // --- scene, time and camera
@@ -251,7 +253,7 @@ function sample() {
   const angles = times.map(motion.angles);
   const axes = angles.map(({ theta, psi }) => frameOf(theta, psi).axis);
   const { theta_min_deg: low, theta_max_deg: high, mean_precession_rate: turn } = motion.record;
-  curves = { from, span, times, angles, axes, tilt: (low + high) / 2 / DEGREES, turn: turn ?? 0 };
+  curves = { from, span, times, angles, axes, tilt: (low + high) / 2 / DEGREE, turn: turn ?? 0 };
 }
 
 function draw() {
@@ -266,9 +268,9 @@ function draw() {
   if (document.activeElement !== at.scrub) at.scrub.value = (t / motion.span) * 10;
 }
 
+const make = (tag, parts) => Object.assign(document.createElement(tag), parts);
 const fields = {};
 for (const [name, { symbol, meaning, unit }] of Object.entries(DATA.inputs)) {
-  const make = (tag, parts) => Object.assign(document.createElement(tag), parts);
   const words = `${symbol}  ${meaning}${/mass|len/.test(unit) || !unit ? "" : ` (${unit})`}`;
   const label = make("label", { htmlFor: `field-${name}`, textContent: words });
   const field = make("input", { type: "text", id: `field-${name}`, inputMode: "decimal" });
@@ -284,24 +286,24 @@ for (const [name, { symbol, meaning, unit }] of Object.entries(DATA.inputs)) {
 /** The ends of a slider around a value. */
 function rangeOf(name, x) {
   const { A, C, m, g, s } = scene;
-  const rate = Math.sqrt((2 * m * g * s) / A) || 1;
   if (name === "theta0_deg") return [0, 180];
-  if (name === "C") return [0, 2 * A];
-  if (name === "A") return [C / 2, 3 * A];
-  const most = name === "r0" ? (2.5 * rate * A) / C : name.endsWith("dot0") ? rate : 0;
-  return most ? [-1, 1].map((side) => side * Math.max(1.5 * Math.abs(x), most)) : [0, 3 * x || 1];
+  if (!name.endsWith("0")) return [0, name === "C" ? 2 * A : 3 * x || 1];
+  const rate = Math.sqrt((2 * m * g * s) / A) || 1;
+  const most = Math.max(1.5 * Math.abs(x), name === "r0" ? (2.5 * rate * A) / C : rate);
+  return [-most, most];
 }
 
 /** Why a scene is impossible, or an empty text. */
 function complaint(given) {
-  for (const [name, x] of Object.entries(given)) {
-    const { symbol, sign } = DATA.inputs[name];
-    if (!Number.isFinite(x)) return `${symbol} must be a number`;
-    if (x < 0 ? sign : sign === "be positive" && !x) return `${symbol} must ${sign}`;
+  const { m, A, C, s, g, theta0_deg: tilt, psidot0 } = given;
+  const outside = {
+    m: m <= 0, A: A <= 0, C: C <= 0 || C > 2 * A, s: s < 0, g: g < 0, theta0_deg: tilt < 0 || tilt > 180,
+  };
+  for (const [name, { symbol, bound }] of Object.entries(DATA.inputs)) {
+    if (!Number.isFinite(given[name])) return `${symbol} must be a number`;
+    if (outside[name]) return `${symbol} must be ${bound}`;
   }
-  if (given.C > 2 * given.A) return `C must be at most 2A = ${text(2 * given.A)}`;
-  if (given.theta0_deg < 0 || given.theta0_deg > 180) return "ϑ0 must be from 0° to 180°";
-  return given.theta0_deg % 180 === 0 && given.psidot0 ? "a vertical axis has no ψ̇0" : "";
+  return tilt % 180 === 0 && psidot0 ? "a vertical axis has no ψ̇0" : "";
 }
 
 /** Change some inputs, unless they are impossible; `anew` sets the ends of the sliders. */
@@ -318,13 +320,11 @@ function change(changes, anew = false) {
   if (anew) pace = motion.span / 2.5;
   at.words.textContent = sentence(motion, timeUnit);
   at.sketch.hidden = !motion.isSketch;
-  const shown = Object.entries(motion.record).filter(([, x]) => x !== null);
-  at.record.replaceChildren(...shown.map(([name, x]) => {
+  at.record.replaceChildren(...Object.entries(motion.record).filter(([, x]) => x !== null).map(([name, x]) => {
     const { symbol, meaning, unit, formula } = DATA.keys[name];
-    const row = document.createElement("tr");
+    const row = make("tr", {});
     for (const words of [symbol, meaning, `${text(x)} ${unit}`]) row.insertCell().textContent = words;
-    row.cells[1].append(Object.assign(document.createElement("small"), { textContent: formula }));
-    row.cells[2].title = formula;
+    row.cells[1].append(make("small", { textContent: formula }));
     return row;
   }));
   stale();
@@ -355,9 +355,8 @@ function link() {
 function restore() {
   const words = new URLSearchParams(location.hash.slice(1));
   const known = Object.fromEntries([...words].map(([name, x]) => [name, number(x)]));
-  const inputs = Object.keys(DATA.inputs).filter((name) => name in known);
   change(DATA.scene, true);
-  change(Object.fromEntries(inputs.map((name) => [name, known[name]])), true);
+  change(Object.fromEntries(Object.entries(known).filter(([name]) => name in DATA.inputs)), true);
   for (const name of Object.keys(camera)) if (Number.isFinite(known[name])) camera[name] = known[name];
   if (Number.isFinite(known.speed)) at.speed.value = known.speed;
   at.arcs.checked = known.arcs !== 0;
@@ -403,9 +402,7 @@ on(document, "keydown", (event) => {
 });
 at.scenes.append(...["this scene", ...Object.keys(DATA.scenes)].map((name) => new Option(name)));
 on(at.scenes, "change", () => {
-  const { inputs, remark } = DATA.scenes[at.scenes.value] ?? { inputs: DATA.scene, remark: "" };
-  change(inputs, true);
-  at.scenes.title = remark;
+  change(DATA.scenes[at.scenes.value] ?? DATA.scene, true);
   setTime(0);
 });
 on(document, "change pointerup wheel", link);
