@@ -104,7 +104,7 @@ class EvenPoints(Points):
             sure = np.isfinite(values) & (values == total + (rest - margin))
         unsure = np.flatnonzero(~sure)
         values[unsure] = [float(self.start + int(i) * self.step) for i in index[unsure]]
-        return values
+        return values + 0.0  # no negative zero
 
     def decimals(self) -> Iterator[Fraction]:
         """Yield every point exactly."""

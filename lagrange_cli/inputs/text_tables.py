@@ -209,7 +209,7 @@ def _layout(texts: Sequence[str], known: Known, decimal: str, width: int | None)
         return -1, " "
     most, found = 0, (0, next(iter(rows[0])))
     for i, row in enumerate(rows):
-        if any(map(_are_numbers, [*row.values(), _split(texts[i], " ")])):
+        if any(map(_are_numbers, row.values())):
             break
         for delimiter, cells in row.items():
             if (count := known(cells)) > most:

@@ -79,6 +79,7 @@ WRONG = {
     'FIRST,SECOND\n0.5,"30\n': "a quoted cell must end with its quote, and on its line",
     'FIRST,"SECOND\n0.5,30\n': "line 1: a quoted cell must end with its quote, and on its line",
     "FIRST,SECOND\n0.5,30,1\n": "a row must have 2 cells, got 3",
+    "FIRST,SECOND\n0.5,30\nFIRST,SECOND,A,phi\n": "a row must have 2 cells, got 4",
     '{"FIRST":0.5}\n{"FIRST":1.5,\n': "line 2: not JSON: ",
     '{"FIRST":0.5}\n[1]\n': "line 2: a row must be a JSON object",
     "[" * 9000: "line 1: not JSON: ",
@@ -149,7 +150,12 @@ def test_a_file_beyond_the_limit_is_refused(
 
 def test_times_are_exact(tmp_path: Path) -> None:
     path = tmp_path / "file"
-    for text in ('{"t":0.1}\n{"t":1e-3}\n', "t\n0.1\n1e-3\n", "t ms,x\n100,\n1,\n"):
+    for text in (
+        '{"t":0.1}\n{"t":1e-3}\n',
+        "t\n0.1\n1e-3\n",
+        "t ms,x\n100,\n1,\n",
+        "t ms\n100\n1\n",
+    ):
         path.write_text(text)
         assert read_times(str(path)).exact == [Fraction(1, 10), Fraction(1, 1000)]
 

@@ -149,6 +149,7 @@ numbers = st.one_of(
 @settings(max_examples=30)
 @given(numbers, numbers, st.integers(2, 40))
 @example(Fraction(0), Fraction(1.797e308), 33)
+@example(Fraction(0), Fraction(-5e-324), 3)
 def test_every_point_is_rounded_once(first: Fraction, last: Fraction, count: int) -> None:
     points = EvenPoints(first, (last - first) / (count - 1), count)
     values = points.at(np.arange(count)).tolist()
