@@ -136,7 +136,7 @@ def fit_command(
 
 def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out: Output) -> None:
     """Write a report, or one record for each recording."""
-    from ..fit.report import decay_of, decay_text, fit_report
+    from ..fit.outcome import decay_of, decay_text, fit_report
 
     if out.fmt == "table":
         opt.write_report(out, lambda: fit_report(found, source, units, is_windows=is_windows))

@@ -1,11 +1,18 @@
-"""The result of a fit: tests of the residuals, the verdict, the record, the scene, the curves."""
+"""The result of a fit: tests of the residuals, verdict, record, scene and curves; reports on fits.
+
+Friction slows a real top, but the closed form has no friction.  Within a short window the loss is
+below the noise.  A line through the logarithms of r0, or of b if the spin is not recorded, gives
+the decay time.  The torque a = 2mgs/A does not decay: for this line, the fits are corrected to the
+weighted mean of a, with which their errors of b and r0 correlate.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,7 +23,7 @@ from ..arithmetic.types import Array
 from ..errors import AbsentError
 from ..inputs.rotations import within_half_turn
 from ..motion.notebook import HasRecord
-from ..output.report import uncertain_text
+from ..output.report import Field, Report, uncertain_text
 from .recording import Known, Recording, shifted_origin
 
 if TYPE_CHECKING:
@@ -25,6 +32,12 @@ if TYPE_CHECKING:
 GOOD, STEADY, FAILED = "good", "good, no nutation", "failed"
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
+PERCENT = "_percent"
+"""Ending of the keys of relative errors of elementary formulas."""
+_COLUMNS = ("r0", "b", "theta0_deg", "theta0_rad", "T_nutation", "mean_precession_rate")
+"""Numbers in the rows of windows."""
+_SURE = 3.0
+"""Standard deviations from which a decay is significant."""
 _MOST, _ROUNDING = 1.0, 1e-10
 """Largest rms residual of a channel, and rms of rounding errors, in radians."""
 
@@ -125,8 +138,8 @@ class Outcome(HasRecord):
     """How the recording was interpreted."""
     inputs: Mapping[str, float] | None = None
     """Inputs of `Top` with this motion; None for a steady precession."""
-    covariance: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    """The covariance of a, b and r0 by pairs of keys, as far as they are parameters."""
+    correlations: Mapping[str, float] = field(default_factory=dict)
+    """Correlations of a, b and r0 by pairs such as `a and b`, as far as they are parameters."""
     hints: list[str] = field(default_factory=list)
     """What to try if the fit has failed, as other fits confirm."""
     chance: float = CHANCE
@@ -195,15 +208,6 @@ class Outcome(HasRecord):
         return f"lagtop fit: {', '.join([self.verdict, *shown])}"
 
     @property
-    def correlations(self) -> dict[str, float]:
-        """Correlations of a, b and r0 by pairs, such as `a and b`."""
-        return {
-            f"{x} and {y}": c / (self.numbers[x][1] * self.numbers[y][1])
-            for (x, y), c in self.covariance.items()
-            if x < y
-        }
-
-    @property
     def angle(self) -> str:
         """The unit of angles in use, `deg` or `rad`."""
         return angle_unit(radians=self.radians)[1]
@@ -259,3 +263,105 @@ class Outcome(HasRecord):
 
         drawn: Figure = draw_outcome(self, figure)
         return drawn
+
+
+class Decay(NamedTuple):
+    """The exponential decay of r0 or of b, with chi^2 of the line through the logarithms."""
+
+    quantity: str
+    rate: float
+    """The relative rate."""
+    rate_std: float
+    time: float | None
+    """The decay time 1/rate; None if no decay is significant."""
+    time_std: float | None
+    chi2_dof: float
+
+    def __str__(self) -> str:
+        shown = f"does not decay: its relative rate is {uncertain_text(*self[1:3])}"
+        if self.time is not None and self.time_std is not None:
+            shown = f"decays with a time of {uncertain_text(self.time, self.time_std)}"
+        return f"{self.quantity} {shown}; chi2/dof of the exponential: {self.chi2_dof:.2f}."
+
+
+def decay_of(outcomes: Sequence[Outcome]) -> Decay | None:
+    """Return the decay through windows, or None if fewer than three of them are good."""
+    good = [x for x in outcomes if x.verdict == GOOD]
+    if len(good) < 3:
+        return None
+    name = "r0" if all("r0" in x.numbers for x in good) else "b"
+    values, stds = np.array([x.numbers[name] for x in good]).T
+    if all((pair := f"a and {name}") in x.correlations for x in good):
+        torque, torque_std = np.array([x.numbers["a"] for x in good]).T
+        shared = stds * [x.correlations[pair] for x in good]
+        mean = np.average(torque, weights=torque_std**-2)
+        values = values + shared / torque_std * (mean - torque)
+        stds = np.sqrt(stds**2 - shared**2)
+    t = np.array([x.recording.middle for x in good])
+    logs, weights = np.log(np.abs(values)), np.abs(values / stds)
+    (slope, level), spread = np.polyfit(t, logs, 1, w=weights, cov="unscaled")
+    off, rate, std = weights * (logs - level - slope * t), -float(slope), math.sqrt(spread[0, 0])
+    time, time_std = (1 / rate, std / rate**2) if rate > _SURE * std else (None, None)
+    return Decay(name, rate, std, time, time_std, float(off @ off) / (len(good) - 2))
+
+
+def decay_text(outcomes: Sequence[Outcome]) -> str:
+    """Return a sentence on the decay of the spin through windows."""
+    return str(decay_of(outcomes) or "Fewer than three windows are good: the decay is not known.")
+
+
+def fit_report(
+    outcomes: Sequence[Outcome], source: str, units: str, *, is_windows: bool = False
+) -> Report:
+    """Return the report on the recordings of a file, or on its windows: a row for each of them.
+
+    `units` are those of the known inputs.
+    """
+    recording, known = outcomes[0].recording, outcomes[0].known
+    count, channels = sum(x.recording.t.size for x in outcomes), ", ".join(recording.channels)
+    shown = [
+        f"{name} = {uncertain_text(*x)}{' rad' * (name == 'theta0')}" for name, x in known.items()
+    ]
+    conditions = {
+        "data": f"{source}: {count} rows of {channels}, from t = {recording.t_start:g}",
+        "known": (", ".join(shown) or "nothing") + units,
+        "sigma": "as given" if recording.sigma else "estimated from the residuals",
+    }
+    if is_windows:
+        keys = [x for x in _COLUMNS if any(x in outcome.numbers for outcome in outcomes)]
+        fields = [Field(x, x, is_text=True) for x in ("t", *keys, "verdict")]
+        rows = []
+        for x in outcomes:
+            cells = {y: uncertain_text(*x.numbers[y]) if y in x.numbers else "" for y in keys}
+            cells |= {"t": f"{x.recording.middle:.6g}", "verdict": x.verdict}
+            rows.append(SimpleNamespace(**cells))
+        return Report(conditions, fields, rows, [decay_text(outcomes)])
+    fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
+    if any(x.recording.name for x in outcomes):
+        fields = [Field("name", "recording", is_text=True, names_the_row=True), *fields]
+    rows = [
+        SimpleNamespace(
+            name=x.recording.name, key=key, value=uncertain_text(*number), meaning=x.meanings[key]
+        )
+        for x in outcomes
+        for key, number in x.numbers.items()
+        if not key.endswith(PERCENT)
+    ]
+    conclusions = [x.recording.named(line) for x in outcomes for line in _conclusions(x)]
+    return Report(conditions, fields, rows, conclusions)
+
+
+def _conclusions(outcome: Outcome) -> Iterator[str]:
+    """Yield sentences on one recording."""
+    yield f"Verdict: {outcome.verdict}."
+    if outcome.chi2_dof is not None:
+        low, high = chi2_bounds(outcome.dof)
+        bounds = f"noise {low:.3f} to {high:.3f}; {outcome.dof} dof"
+        yield f"chi2/dof = {outcome.chi2_dof:.3f}, {bounds}."
+    scale, unit = angle_unit(radians=outcome.radians)
+    rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
+    yield f"RMS residual ({unit}): {rest}."
+    if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
+        yield f"Correlation: {pairs}."
+    yield from (f"Note: {text}." for text in outcome.notes)
+    yield from (f"Failed: {text}." for text in [*outcome.failures(), *outcome.hints])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -35,6 +35,8 @@ CHANNELS = {
 }
 """Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
 about the axis."""
+Known = Mapping[str, tuple[float, float]]
+"""Known inputs by key, theta0 in radians, with standard deviations, which may be 0."""
 LEAST_ROWS = 12
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
@@ -97,8 +99,8 @@ class Recording:
     def exchanged(self) -> Recording:
         """The recording with phi and psi exchanged, as most books name them."""
         names = {"theta": "theta", "phi": "psi", "psi": "phi"}
-        angles = {name: self.angles[old] for name, old in names.items() if old in self.angles}
-        sigma = {name: self.sigma[old] for name, old in names.items() if old in self.sigma}
+        angles = {names[x]: y for x, y in self.angles.items()}
+        sigma = {names[x]: y for x, y in self.sigma.items()}
         return replace(self, angles=angles, sigma=sigma)
 
     def residuals(self, theta: Array, phi: Array, psi: Array) -> Array:
@@ -302,19 +304,6 @@ def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3)
     return None if hidden else offset
 
 
-class Known(dict[str, float]):
-    """Known inputs by key, theta0 in radians, with the standard deviations of uncertain ones."""
-
-    def __init__(self, inputs: Mapping[str, float], stds: Mapping[str, float]) -> None:
-        super().__init__(inputs)
-        self.stds = dict(stds)
-
-    def only(self, names: Collection[str]) -> Known:
-        """Return some of the inputs."""
-        kept = {x: y for x, y in self.items() if x in names}
-        return Known(kept, {x: y for x, y in self.stds.items() if x in names})
-
-
 def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
     """Return known inputs from inputs of `Top`, and the standard deviations of some.
 
@@ -337,8 +326,9 @@ def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
             spread["A"] = std
     moment = known.get("A", known.get("C", 1.0))
     Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **known})
+    pairs = {name: (value, spread.get(name, 0.0)) for name, value in known.items()}
     for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
-        for values in (known, spread):
-            if key in values:
-                values["theta0"] = values.pop(key) * unit
-    return Known(known, spread)
+        if key in pairs:
+            value, std = pairs.pop(key)
+            pairs["theta0"] = value * unit, std * unit
+    return pairs

@@ -49,38 +49,30 @@ class Signal(NamedTuple):
     grows: bool
     rate: float = 0.0
 
-    def basis(self, t: Array, frequency: float, order: int) -> Array:
-        """Return harmonics as columns: 1, cosines, sines, and t if the signal grows."""
-        turns = 2 * np.pi * frequency * t[:, np.newaxis] * np.arange(1, order + 1)
-        columns = [np.ones((t.size, 1)), np.cos(turns), np.sin(turns)]
-        return np.concatenate([*columns, t[:, np.newaxis]] if self.grows else columns, axis=1)
-
-    def harmonics(self, frequency: float, order: int) -> tuple[Array, float]:
-        """Return the best factors of harmonics, and the noise that remains."""
-        basis = self.basis(self.t, frequency, order)
-        factors = np.asarray(np.linalg.lstsq(basis, self.y, rcond=None)[0], float)
-        rest = self.y - basis @ factors
-        return factors, math.sqrt(rest @ rest / max(rest.size - factors.size, 1)) + 1e-9
-
-    def noises(self, frequencies: Array, order: int) -> Array:
-        """Return the noise that harmonics of many frequencies leave, by normal equations."""
-        wave = np.exp(2j * np.pi * frequencies[:, np.newaxis] * self.t)
+    def basis(self, t: Array, frequencies: Array, order: int) -> Array:
+        """Return 1, t if the signal grows, and harmonics, shape (frequencies, columns, times)."""
+        wave = np.exp(2j * np.pi * frequencies[:, np.newaxis] * t)
         powers = wave[:, np.newaxis] ** np.arange(1, order + 1)[:, np.newaxis]
-        trend = np.stack([np.ones(self.t.size), self.t / self.t[-1]])[: 1 + self.grows]
+        trend = np.stack([np.ones(t.size), t / self.t[-1]])[: 1 + self.grows]
         trends = np.broadcast_to(trend, (frequencies.size, *trend.shape))
-        basis = np.concatenate([trends, powers.real, powers.imag], axis=1)
-        y = self.y - self.y.mean()
-        gram = basis @ basis.transpose(0, 2, 1) + 1e-10 * y.size * np.eye(basis.shape[1])
-        right = basis @ y
-        factors = np.linalg.solve(gram, right[..., np.newaxis])[..., 0]
-        rest = np.maximum(y @ y - np.sum(factors * right, axis=1), 0)
-        noise: Array = np.sqrt(rest / max(y.size - basis.shape[1], 1)) + 1e-9
-        return noise
+        return np.concatenate([trends, powers.real, powers.imag], axis=1)
+
+    def harmonics(self, frequencies: Array, order: int) -> tuple[Array, Array]:
+        """Return the best factors of the basis for each frequency, and the noise that remains."""
+        basis = self.basis(self.t, frequencies, order)
+        gram = basis @ basis.transpose(0, 2, 1) + 1e-10 * self.y.size * np.eye(basis.shape[1])
+        factors = np.linalg.solve(gram, (basis @ self.y)[..., np.newaxis])
+        rest = self.y - np.sum(factors * basis, axis=1)
+        dof = max(self.y.size - basis.shape[1], 1)
+        noise: Array = np.sqrt(np.sum(rest**2, axis=1) / dof) + 1e-9
+        return np.asarray(factors[..., 0], float), noise
 
     def finest(self, frequency: float) -> tuple[Array, float]:
-        """Return the same for the number of harmonics that leaves the least noise."""
+        """Return the same at one frequency, for the order that leaves the least noise."""
         orders = (4, 8, 16) if self.y.size > 100 else (4,) if self.y.size > 20 else (1,)
-        return min((self.harmonics(frequency, x) for x in orders), key=lambda found: found[1])
+        found = (self.harmonics(np.array([frequency]), x) for x in orders)
+        factors, noise = min(found, key=lambda x: x[1])
+        return factors[0], float(noise[0])
 
 
 def signals_in(recording: Recording) -> dict[str, Signal]:
@@ -115,7 +107,7 @@ def oscillation_in(signals: dict[str, Signal]) -> tuple[float, bool]:
 
     def noise(frequencies: Array | float, order: int) -> Array:
         tried = np.atleast_1d(frequencies)
-        found: Array = np.log([x.noises(tried, order) for x in used]).sum(axis=0)
+        found: Array = np.log([x.harmonics(tried, order)[1] for x in used]).sum(axis=0)
         return found
 
     def order_at(frequency: float) -> int:
@@ -159,7 +151,8 @@ def starts(signals: dict[str, Signal], frequency: float, tilt: float | None) -> 
     least, greatest, at_start = _turning_points(shown, frequency) if shown else (*_grid(), None)
     rates: list[float] = []
     if "psi" in signals:
-        mean = signals["psi"].rate + signals["psi"].finest(frequency)[0][-1]
+        spin = signals["psi"]
+        mean = spin.rate + spin.finest(frequency)[0][1] / spin.t[-1]
         turns = (0, -1, 1) if shown else (0,)  # unknown if the axis passes next to a pole
         rates = [mean + i * 2 * math.pi * frequency for i in turns]
     found: list[Array] = []
@@ -197,7 +190,8 @@ def starts(signals: dict[str, Signal], frequency: float, tilt: float | None) -> 
 def _turning_points(tilt: Signal, frequency: float) -> tuple[Array, Array, float]:
     """Return pairs of turning points near those of the harmonics, and the cosine at the start."""
     factors, _ = tilt.finest(frequency)
-    wave = tilt.basis(np.linspace(0, 1 / frequency, 720), frequency, factors.size // 2) @ factors
+    phases, order = np.linspace(0, 1 / frequency, 720), factors.size // 2
+    wave = factors @ tilt.basis(phases, np.array([frequency]), order)[0]
     ends = np.arccos(np.clip([wave.max(), wave.min()], -1, 1))
     seen = np.arccos([tilt.y.max(), tilt.y.min()])
     lows = np.array([ends[0], seen[0], seen[0] / 3])

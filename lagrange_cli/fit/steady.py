@@ -61,38 +61,32 @@ def steady_outcome(
     """Return the result of a fit of a constant tilt and constant rates."""
     scale, unit = angle_unit(radians=radians)
     means, none = _means(recording), _Mean(0.0, 0.0, 0.0)
-    given = known.get("theta0", math.pi / 2), known.stds.get("theta0", 0.0)
-    tilt, turn, spin = (
-        means.get("theta", _Mean(*given, 0.0)),
-        *(means.get(x, none) for x in ("psi", "phi")),
-    )
-    cosine = math.cos(tilt.value)
-    backwards = (
-        turn.value * (spin.value + turn.value * cosine)
-        < 0
-        < -turn.value * (spin.value - turn.value * cosine)
-    )  # C/A < 0
+    tilt = means.get("theta", _Mean(*known.get("theta0", (math.pi / 2, 0.0)), 0.0))
+    turn, spin = means.get("psi", none), means.get("phi", none)
+    along = turn.value * math.cos(tilt.value)
+    backwards = turn.value * (spin.value + along) < 0 < turn.value * (along - spin.value)  # C/A < 0
     if recording.kind == "angles" and backwards:
-        recording, turn = recording.mirrored, _Mean(-turn.value, turn.std, -turn.start)
+        recording, along = recording.mirrored, -along
+        turn = _Mean(-turn.value, turn.std, -turn.start)
     numbers: _Numbers = {}
+    for name, key, (value, std, _), size in (
+        ("theta", f"mean_tilt_{unit}", tilt, scale),
+        ("psi", "mean_precession_rate", turn, 1.0),
+        ("phi", "mean_spin_rate", spin, 1.0),
+    ):
+        if name in means:
+            numbers[key] = value * size, std * size
     notes = ["no nutation is visible: the numbers are means over the recording", *recording.notes]
-    if "theta" in means:
-        numbers[f"mean_tilt_{unit}"] = tilt.value * scale, tilt.std * scale
-    if "psi" in means:
-        numbers["mean_precession_rate"] = turn[:2]
-    r0 = known.get("r0", 0.0), known.stds.get("r0", 0.0)
-    if "phi" in means:
-        numbers["mean_spin_rate"] = spin[:2]
+    r0 = known.get("r0", (0.0, 0.0))
     if "phi" in means and "r0" not in known:
-        r0 = numbers["r0"] = (
-            spin.value + turn.value * cosine,
-            math.hypot(spin.std, turn.std * cosine),
-        )
+        r0_std = math.hypot(spin.std, turn.std * math.cos(tilt.value))
+        r0 = numbers["r0"] = spin.value + along, r0_std
         turns = f"{2 * math.pi / recording.frame:.6g}"
         notes.append(f"r0 is known only up to whole turns per frame, multiples of {turns}")
     if turn.value and r0[0]:
         certain = {"A", "C"} <= known.keys()
-        bias = abs(turn.value * cosine / r0[0]) / (known["C"] / known["A"] if certain else _RATIO)
+        ratio = known["C"][0] / known["A"][0] if certain else _RATIO
+        bias = abs(along / r0[0]) / ratio
         numbers |= _of_body(turn.value, math.hypot(turn.std / turn.value, bias), r0, known)
         assumed = "" if certain else f" if C/A = {_RATIO:g}"
         notes.append(
@@ -142,7 +136,7 @@ def _of_body(rate: float, spread: float, r0: tuple[float, float], known: Known) 
     half, unknown = 1 / (2 * rate), [x for x in ("m", "s", "g") if x not in known]
     found = {"b/a": (half, abs(half) * spread)}
     if "C" not in known:
-        value = 2 * half / r0[0] * math.prod(known[x] for x in "msg" if x in known)
+        value = 2 * half / r0[0] * math.prod(known[x][0] for x in "msg" if x in known)
         over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
         found[f"C{over}"] = value, abs(value) * math.hypot(spread, r0[1] / r0[0])
     return found

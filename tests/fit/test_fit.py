@@ -19,12 +19,10 @@ from lagtop import LagtopError, Top, fit, read_scene, solve
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.fit.fit import fit_windows
+from lagrange_cli.fit.fit import Problem, body_numbers, fit_windows, slowest
 from lagrange_cli.fit.motions import angles, nutating
-from lagrange_cli.fit.nutation import Problem, body_numbers, slowest
-from lagrange_cli.fit.outcome import CHANCE, Outcome, Residuals, chi2_bounds
+from lagrange_cli.fit.outcome import CHANCE, Outcome, Residuals, chi2_bounds, decay_of
 from lagrange_cli.fit.recording import known_inputs, recording_from, shifted_origin
-from lagrange_cli.fit.report import decay_of
 
 sys.path.append(str(Path(__file__).parents[1] / "tools"))
 DEGREE = math.pi / 180
@@ -151,7 +149,7 @@ def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
     small = np.random.default_rng(24).normal(scale=1e-4, size=(20, 3))
     moved = (turns * Rotation.from_rotvec(small)).as_quat(scalar_first=True)
     recording = recording_from(t, quaternion=moved)
-    problem = Problem(recording, known_inputs({}, {}), dict.fromkeys(recording.channels, 1.0))
+    problem = Problem(recording, known_inputs({}, {}), np.ones(3))
     start = TRUTH | {"theta0": 75 * DEGREE}
     x = np.array([[start.get(name, 0.0) for name in problem.names]])
     theta, across, along = problem.residuals(x)[0]
