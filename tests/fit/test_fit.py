@@ -469,16 +469,7 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
     [
         (f"{SAMPLE} {SAMPLE}", 2, "fit takes one recording, got 2: use --by COLUMN"),
         (f"{SAMPLE} --sigma -1", 2, "--sigma must be > 0, got -1"),
-        (
-            f"{SAMPLE} --sigma theta=1",
-            2,
-            "--sigma must be given for all of theta, phi, psi",
-        ),
-        (
-            f"{SAMPLE} --sigma across=1",
-            2,
-            "--sigma must be given for all of theta, phi, psi",
-        ),
+        (f"{SAMPLE} --sigma theta=1", 2, "--sigma must be given for all of theta, phi, psi"),
         (f"{SAMPLE} --by x", 2, "--by must name a column of"),
         (f"{SAMPLE} --window 1", 2, "--window must be 2 windows or more, got 1"),
         (f"{SAMPLE} --window 100", 2, "--window must hold 12 rows or more, got 1: use fewer"),
