@@ -83,7 +83,7 @@ def compare_command(
     from ..compare.differences import Alignment
     from ..compare.report import comparison_report, read, sentence
     from ..inputs.observed import Conventions
-    from ..plot.reports import ErrorCurve, draw_errors
+    from ..plot.reports import draw_errors
 
     if not words:
         raise LagtopError("no trajectory: give a file, or - for standard input")
@@ -103,12 +103,7 @@ def compare_command(
         return comparison_report(motion, results, found, max_error)
 
     def draw(report: Report) -> Figure:
-        errors = found.errors if found else [None] * len(report.rows)
-        curves = [
-            ErrorCurve(str(x.file), x.t, x.error, x.step, error)
-            for x, error in zip(report.rows, errors, strict=True)
-        ]
-        return draw_errors(curves, max_error)
+        return draw_errors(report.rows, max_error, found.errors if found else ())
 
     report = opt.write_report(out, find, plot, draw)
     failed = [sentence(x) for x in report.rows if x.verdict != "fine"]

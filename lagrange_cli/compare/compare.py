@@ -99,10 +99,9 @@ class Comparison(HasRecord):
 
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw the error over time, on a figure of matplotlib or a new one, and return it."""
-        from ..plot.reports import ErrorCurve, draw_errors, new_figure  # start-up: matplotlib
+        from ..plot.reports import draw_errors, new_figure  # start-up: matplotlib
 
-        curve = ErrorCurve(self.file or "trajectory", self.t, self.error, None, self.error_max)
-        return draw_errors([curve], LIMIT, figure or new_figure())
+        return draw_errors([self], LIMIT, figure=figure or new_figure())
 
     def __repr__(self) -> str:
         return f"<Comparison: {self.verdict}, error_max = {self.error_max}, {self.rows} rows>"

@@ -53,15 +53,14 @@ def draw(
     if kind != "map" and (key or x or y):
         raise LagtopError(f"key, x and y need the kind map, got {kind}")
     require_matplotlib()
-    from matplotlib import pyplot
     from matplotlib.axes import Axes
 
     from .pictures import PICTURES, Options
+    from .reports import new_figure
 
     picture, count, _ = PICTURES[kind]
     if ax is None:
-        grid = pyplot.subplots(count, sharex=True, squeeze=False, layout="constrained")[1]
-        ax = list(grid.flat)
+        ax = list(new_figure().subplots(count, sharex=True, squeeze=False).flat)
     axes = [ax] if isinstance(ax, Axes) else list(ax)
     if len(axes) != count:
         raise LagtopError(f"ax must be {count} axes, got {len(axes)}", "ax")

@@ -21,14 +21,12 @@ from ..motion.solve import Motion
 from .pictures import Options, camera_of, draw_globe, last_time, project, sampled, usual_span
 from .style import Look, scale, styled
 
-PER_SECOND, SECONDS, MOST_SECONDS, DPI = 25, 6.0, 120.0, 100.0
+PER_SECOND, SECONDS, MOST_SECONDS = 25, 6.0, 120.0
 HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 36
 """Height and radius (in radii of the globe) and number of wedges of the cone."""
 
 
-def film_bytes(
-    motion: Motion, suffix: str, options: Options, seconds: float = SECONDS, dpi: float = DPI
-) -> bytes:
+def film_bytes(motion: Motion, suffix: str, options: Options, seconds: float, dpi: float) -> bytes:
     """Return a film of the spinning top as `gif` or `mp4`.
 
     It shows `options.t_max`, or else one turn of the precession, at most six nutations.  Raises

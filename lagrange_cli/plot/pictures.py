@@ -319,8 +319,11 @@ def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     ax.plot(theta * factor, rate, color=look.lines[0], label="this motion")
     mark_start(ax, (theta[0] * factor, float(motion.top.thetadot0)), look)
     a, b = float(motion.a), float(motion.b)
-    if b * b < 2 * a:
-        tilt, speed = separatrix(a, b)
+    if b * b < 2 * a:  # with alpha = a and beta = b, (4,9) is
+        # theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2)
+        tilt = math.acos(b * b / a - 1) * np.sin(np.linspace(0.0, math.pi, 385))
+        square = 2 * a * np.sin(tilt / 2) ** 2 - (b * np.tan(tilt / 2)) ** 2
+        speed = np.sqrt(np.maximum(square, 0.0)) * np.where(np.arange(385) < 192, 1, -1)
         name = "separatrix of a top that starts upright with this spin"
         ax.plot(tilt * factor, speed, color=look.ink, lw=1.4, ls=(0, (5, 2)), label=name)
     else:
@@ -331,20 +334,6 @@ def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     ax.margins(0.06)
     ax.locator_params(axis="x", nbins=5)
     return "Nutation in the phase plane"
-
-
-def separatrix(a: float, b: float) -> tuple[Array, Array]:
-    """Return tilt and rate on the orbit that leaves the upright position and returns to it.
-
-    The orbit exists for b^2 < 2a.  With alpha = a and beta = b, (4,9) becomes
-
-        theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2).
-    """
-    along = np.sin(np.linspace(0.0, math.pi, 385))
-    tilt = math.acos(b * b / a - 1) * along
-    square = 2 * a * np.sin(tilt / 2) ** 2 - (b * np.tan(tilt / 2)) ** 2
-    rate = np.sqrt(np.maximum(square, 0.0))
-    return tilt, np.where(np.arange(385) < 192, rate, -rate)
 
 
 # --- map

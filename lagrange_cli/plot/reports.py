@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from .style import LIGHT, plain, require_matplotlib, scale
 
@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..arithmetic.types import Array
     from ..fit.outcome import Outcome
 
 MOST_RECORDINGS = 3
@@ -27,34 +26,28 @@ def new_figure() -> Figure:
     return pyplot.figure(layout="constrained")
 
 
-class ErrorCurve(NamedTuple):
-    """Errors of one trajectory."""
+def draw_errors(
+    results: Sequence[Any],
+    limit: float,
+    errors: Sequence[float | None] = (),
+    figure: Figure | None = None,
+) -> Figure:
+    """Draw the error of each comparison over time, and the limit, and return the figure.
 
-    name: str
-    t: Array
-    error: Array
-    """Errors in radians at the times t; NaN where the trajectory is lost."""
-    step: float | None = None
-    compared: float | None = None
-    """Error used in the convergence plot."""
-
-
-def draw_errors(curves: Sequence[ErrorCurve], limit: float, figure: Figure | None = None) -> Figure:
-    """Draw a line over time for each trajectory, and the limit, and return the figure.
-
-    If the trajectories have steps, a second panel shows the error of each over its step.
+    If the comparisons have steps, a second panel shows the `errors` over them.
     """
     import numpy as np
     from matplotlib.figure import Figure
 
-    steps = [(x.step, x.compared) for x in curves if x.step and x.compared and x.compared < np.inf]
+    pairs = zip(results, errors, strict=False)
+    steps = [(x.step, error) for x, error in pairs if x.step and error and error < np.inf]
     figure = figure or Figure(figsize=(10.0 if steps else 7.5, 4.6))
     over_time, *over_step = figure.subplots(1, 2 if steps else 1, squeeze=False)[0]
-    shades = scale(LIGHT)(np.linspace(0, 1, len(curves)))
-    for curve, colour, dashes in zip(curves, shades, cycle(("-", "--", "-.", ":"))):
-        positive = np.where(curve.error > 0, curve.error, np.nan)  # 0 and NaN have no logarithm
-        name = plain(curve.name)
-        over_time.plot(curve.t, positive, lw=1.2, color=colour, ls=dashes, label=name)
+    shades = scale(LIGHT)(np.linspace(0, 1, len(results)))
+    for x, colour, dashes in zip(results, shades, cycle(("-", "--", "-.", ":"))):
+        positive = np.where(x.error > 0, x.error, np.nan)  # 0 and NaN have no logarithm
+        name = plain(str(x.file or "trajectory"))
+        over_time.plot(x.t, positive, lw=1.2, color=colour, ls=dashes, label=name)
     over_time.axhline(limit, color=LIGHT.quiet, lw=0.8, ls=":", label="--max-error")
     over_time.set(yscale="log", xlabel="t (units of the trajectory)", ylabel="error (rad)")
     over_time.set_title("Error over time")

@@ -25,7 +25,7 @@ from matplotlib.text import Text
 
 from lagrange_cli.plot.film import film_figure
 from lagrange_cli.plot.pictures import Options, figure_of
-from lagrange_cli.plot.reports import ErrorCurve, draw_errors, draw_fits
+from lagrange_cli.plot.reports import draw_errors, draw_fits
 from lagrange_cli.plot.style import DARK, LIGHT, styled
 
 STORED = Path(__file__).with_name("pictures.json")
@@ -51,8 +51,8 @@ def of_film() -> Figure:
 
 def of_errors(steps: tuple[float | None, ...]) -> Figure:
     t = np.linspace(0, 1, 9)
-    curves = [ErrorCurve(f"step {x}", t, (x or 1) ** 4 * t, x, x and x**4) for x in steps]
-    return draw_errors(curves, 1e-3)
+    results = [SimpleNamespace(file=x, t=t, error=(x or 1) ** 4 * t, step=x) for x in steps]
+    return draw_errors(results, 1e-3, [x and x**4 for x in steps])
 
 
 def of_fit() -> Figure:

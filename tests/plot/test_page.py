@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ROOT, Lagtop
+from conftest import ROOT
 from hard_scenes import HARD_KINDS, in_doubles
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
 
@@ -156,24 +156,6 @@ def test_texts_from_outside_are_no_markup() -> None:
     text = view(solve(Top()), lambda unit: f"</script><b>{unit}")
     assert text.count("</script>") == 1
     assert "<b>" not in text.partition("<script")[0]
-
-
-@pytest.mark.parametrize(
-    ("args", "said"),
-    [
-        ([], "nothing to do"),
-        (["-o", "top.pdf"], "must be a file that ends in .html"),
-        (["-o", "top.html", "--g", "1e-40"], "g must be from 1e-30 to 1e30"),
-    ],
-)
-def test_bad_requests_end_in_one_line(
-    lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, args: list[str], said: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    done = lagtop("view", *args)
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert list(tmp_path.iterdir()) == []
 
 
 # --- one session of a browser

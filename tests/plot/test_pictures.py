@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from lagrange_cli.plot.pictures import (
     sampled,
     usual_span,
 )
-from lagrange_cli.plot.reports import ErrorCurve, draw_errors
+from lagrange_cli.plot.reports import draw_errors
 from lagrange_cli.plot.style import LIGHT, figure_bytes, plain, styled
 
 
@@ -128,8 +129,9 @@ def test_a_map_shows_the_number_of_each_top() -> None:
 
 def test_names_from_outside_are_plain_text() -> None:
     assert plain("a$b\x1b[31m\n") == r"a\$b [31m "
-    curve = ErrorCurve("$x_1$", np.arange(3.0), np.array([1e-3, 1e-2, np.nan]))
-    figure = draw_errors([curve], 1e-3)
+    error = np.array([1e-3, 1e-2, np.nan])
+    result = SimpleNamespace(file="$x_1$", t=np.arange(3.0), error=error, step=None)
+    figure = draw_errors([result], 1e-3)
     legend = figure.axes[0].get_legend()
     assert legend
     assert legend.get_texts()[0].get_text() == r"\$x_1\$"
@@ -203,13 +205,16 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
         (["sphere", "--animate", "x.avi"], "must end in .gif or .mp4"),
         (["sphere", "--animate", "x.gif", "--duration", "500"], "duration must be in"),
         (["sphere", "looping-top", "wavy-top", "--animate", "x.gif"], "films one scene"),
+        (["view"], "nothing to do"),
+        (["view", "-o", "top.pdf"], "must be a file that ends in .html"),
+        (["view", "-o", "top.html", "--r0", "1e40"], "r0 must be from 1e-30 to 1e30"),
     ],
 )
 def test_bad_requests_end_in_one_line(
     lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, args: list[str], said: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = lagtop("plot", *args)
+    done = lagtop(*args) if args[0] == "view" else lagtop("plot", *args)
     assert done.exit_code in {1, 2, 65, 74}
     assert said in done.stderr
     assert done.stderr.count("\n") == 1
