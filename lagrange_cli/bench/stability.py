@@ -145,8 +145,8 @@ class Row(NamedTuple):
 
 FIELDS = fields_of(
     Row._fields,
-    Field("kind", "kind", is_text=True, names_the_row=True),
-    Field("method", "method", is_text=True, names_the_row=True),
+    Field("kind", "kind", is_text=True),
+    Field("method", "method", is_text=True),
     Field("periods", "periods", "{:g}".format),
     Field("error_rad", "error", short),
     Field("input_rounding", "input rounding", short),

@@ -66,9 +66,9 @@ class Row(NamedTuple):
 
 
 FIELDS = [
-    Field("scene", "scene", is_text=True, names_the_row=True),
-    Field("method", "method", is_text=True, names_the_row=True),
-    Field("setting", "setting", names_the_row=True),
+    Field("scene", "scene", is_text=True),
+    Field("method", "method", is_text=True),
+    Field("setting", "setting"),
     Field("periods", "periods", "{:g}".format),
     Field("error_rad", "error", short),
     Field("ns_per_sample", "ns/sample", "{:.0f}".format),

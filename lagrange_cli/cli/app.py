@@ -22,7 +22,13 @@ NAMES = (
     *("jacobi", "eta", "bench", "stability"),
 )
 """The commands, in the order of the help."""
-_MODULES = {"view": "plot", "scenes": "explain", "find": "sweep", "stability": "bench"}
+_MODULES = {
+    "view": "plot",
+    "scenes": "explain",
+    "find": "sweep",
+    "eta": "jacobi",
+    "stability": "bench",
+}
 """Commands that share the module of another command."""
 _COMPLETION = "_LAGTOP_COMPLETE"
 

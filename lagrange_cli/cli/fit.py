@@ -50,7 +50,8 @@ def _parse_up(text: str) -> str:
 @opt.option("--by", metavar="COLUMN", help="Column that names the recording of each row.")
 @opt.option(
     "--align",
-    type=opt.Parsed("up=AXIS", _parse_up),
+    metavar="up=AXIS",
+    type=opt.Parsed("AXIS", _parse_up),
     default="up=z",
     help="Axis of space that points up in the file.",
 )

@@ -2,25 +2,36 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from fractions import Fraction
 from os.path import splitext
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
-from ..arithmetic.text import parse_number
+from ..arithmetic.text import quoted
 from ..errors import LagtopError
+from ..inputs.input_keys import DECLARED
+from ..inputs.units import factor_of
+from ..inputs.values import Value, parse_range, parse_value
 from ..output.destination import opened
 from ..output.terminal import is_screen, with_progress
 from ..plot import KINDS, SHEET
-from ..plot.style import DARK, FORMATS, LEAST_DPI, LIGHT, MOST_DPI, check_picture
+from ..plot.style import (
+    DARK,
+    FORMATS,
+    LEAST_DPI,
+    LIGHT,
+    MOST_DPI,
+    check_picture,
+    figure_bytes,
+    styled,
+)
 from . import shared as opt
+from .table import angle_stds
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from ..inputs.values import Value
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
 
@@ -81,16 +92,17 @@ def plot_command(
         raise LagtopError(f"--animate films one scene, got {', '.join(scenes)}")
     if dpi is not None and not LEAST_DPI <= dpi <= MOST_DPI:
         raise LagtopError(f"--dpi must be in [{LEAST_DPI:g}, {MOST_DPI:g}], got {float(dpi):g}")
-    fmt = _format_of(output)
-    film = None if animate is None else check_picture(animate, ("gif", "mp4"))
-    eye = None if camera is None else _camera(camera, top.radians)
+    if output is not None and is_screen(output):
+        raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
+    fmt = "svg" if output in (None, "-") else check_picture(output, FORMATS)
+    film = check_picture(animate, ("gif", "mp4")) if animate else ""
+    eye = _camera(camera, top.radians) if camera else None
     from ..plot.film import SECONDS, film_bytes
-    from ..plot.pictures import Options
-    from .table import angle_stds
+    from ..plot.pictures import Options, figure_of
 
     others = {} if t_max is None else {"t_max": t_max}
     founds = [top._replace(scene=name or None).given(others) for name in scenes or [""]]
-    motions = {name: opt.motion_of(x) for name, x in zip(scenes or [""], founds, strict=True)}
+    motions = [opt.motion_of(found) for found in founds]
     options = Options(
         t_max=founds[0].others.get("t_max"),
         radians=top.radians,
@@ -101,16 +113,23 @@ def plot_command(
         y=_axis("--y", y, top),
         progress=with_progress,
         unit=founds[0].system.named if founds[0].system else str,
+        stds=angle_stds(founds[0], motions[0]) if len(founds) == 1 else None,
     )
-    if len(founds) == 1:
-        options = options._replace(stds=angle_stds(founds[0], *motions.values()))
     with ExitStack() as stack:
-        if animate and film:
-            motion, resolution = next(iter(motions.values())), float(dpi or FILM_DPI)
+        if animate:
             stream, seconds = stack.enter_context(opened(animate)), float(duration or SECONDS)
-            stream.write(film_bytes(motion, film, options, seconds, resolution))
+            resolution = float(dpi or FILM_DPI)
+            stream.write(film_bytes(motions[0], film, options, seconds, resolution))
         if output is not None:
-            picture = _picture(motions, kinds, options, (fmt, float(dpi or PAGE_DPI)))
+            named = dict(zip(scenes or [""], motions, strict=True))
+            title = f"Lagrange top: {', '.join(kinds)}"
+            text = "; ".join(
+                f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.options()}"
+                for name, motion in named.items()
+            )
+            with styled(options.look):
+                figure = figure_of(named, kinds, options)
+                picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), title, text)
             stack.enter_context(opened(output)).write(picture)
 
 
@@ -121,35 +140,18 @@ def _kinds(names: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(kinds))
 
 
-def _format_of(output: str | None) -> str:
-    """Return `png`, `svg` or `pdf`, the extension of the file; standard output takes SVG."""
-    if output is not None and is_screen(output):
-        raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
-    return "svg" if output in (None, "-") else check_picture(output, FORMATS)
-
-
 def _camera(text: str, radians: bool) -> tuple[float, float]:
     """Return azimuth and elevation (radians) of a text such as `30,-15`."""
-    unit = unit_in_radians(radians=radians)
     try:
-        azimuth, elevation = (float(parse_number(part)) * unit for part in text.split(","))
+        azimuth, elevation = opt.parse_numbers(text)
     except ValueError:  # of a number, or of another count of numbers
-        azimuth, elevation = math.inf, math.inf
-    if abs(azimuth) > 2 * math.pi or abs(elevation) > math.pi / 2:
-        turn, quarter, name = ("2π", "π/2", "rad") if radians else ("360", "90", "deg")
-        raise LagtopError(
-            f"--camera must be AZIMUTH,ELEVATION in [-{turn}, {turn}] and [-{quarter}, {quarter}]"
-            f" {name}, got {text!r}"
-        )
-    return azimuth, elevation
+        raise LagtopError(f"--camera must be AZIMUTH,ELEVATION, got {quoted(text)}") from None
+    unit = unit_in_radians(radians=radians)
+    return azimuth * unit, elevation * unit
 
 
 def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Array] | None:
     """Return the input and the values of a text such as `r0=log:5:120:40` or `r0=60:600:40 rpm`."""
-    from ..inputs.input_keys import DECLARED
-    from ..inputs.units import factor_of
-    from ..inputs.values import parse_range, parse_value
-
     if text is None:
         return None
     name, _, grid = text.partition("=")
@@ -161,24 +163,7 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Arra
             value = value.scaled(factor_of(name, value.unit, wanted))
     except LagtopError as error:
         raise LagtopError(f"{option} {error}") from None
-    points: Any = value.number
-    return name, next(points.blocks())
-
-
-def _picture(
-    motions: Mapping[str, Any], kinds: Sequence[str], options: Any, file: tuple[str, float]
-) -> bytes:
-    """Return a picture as a file of a format, with pixels per inch."""
-    from ..plot.pictures import figure_of
-    from ..plot.style import figure_bytes, styled
-
-    text = "; ".join(
-        f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.options()}"
-        for name, motion in motions.items()
-    )
-    with styled(options.look):
-        figure = figure_of(motions, kinds, options)
-        return figure_bytes(figure, *file, f"Lagrange top: {', '.join(kinds)}", text)
+    return name, next(value.number.blocks())
 
 
 @opt.command(
@@ -199,8 +184,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     if not (output or opens):
         raise LagtopError("nothing to do: give -o FILE.html or --open")
     if output == "-" and (opens or is_screen("-")):
-        why = "to open" if opens else "for a terminal"
-        raise LagtopError(f"a page on standard output is not {why}: give -o FILE.html")
+        raise LagtopError("a page on standard output needs a pipe: give -o FILE.html")
     if splitext(output or "")[1].lower() not in {"", ".html", ".htm"}:
         raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
     from ..plot.browser.view import open_page, view

@@ -37,10 +37,6 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
     def __init__(self, metavar: str, parse: Callable[[str], Any]) -> None:
         self.name, self.parse = metavar, parse
 
-    def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str:
-        """Return the placeholder of the value as it is; click would write it in capitals."""
-        return self.name
-
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the value; click may pass it a second time, when it is already converted."""
         if not isinstance(value, str):
@@ -48,7 +44,8 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         try:
             return self.parse(value)
         except LagtopError as error:
-            raise LagtopError(f"{param.opts[-1] if param else ''} {error}") from None
+            name, text = param.opts[-1] if param else "", str(error)
+            raise LagtopError(f"{name} {text.removeprefix(f'{error.key} ')}") from None
 
 
 def count(most: float = 1e9) -> Parsed:
@@ -83,12 +80,6 @@ def parse_numbers(text: str) -> list[float]:
     return [float(parse_number(part)) for part in split_names(text)]
 
 
-def _parse_mark(text: str) -> str:
-    if text not in {"point", "comma", ".", ",", ""}:
-        raise LagtopError(f"must be point, comma or the character, got {quoted(text)}")
-    return {"point": ".", "comma": ","}.get(text, text)
-
-
 NUMBER = Parsed("X", parse_number)
 LIST = Parsed("NAME,...", split_names)
 TIME = values()
@@ -102,9 +93,9 @@ keys = option("--keys", type=LIST, help="Compute and print only these keys (see 
 plot = option("--plot", metavar="FILE", help="Also draw the report: FILE.png, .svg or .pdf.")
 decimal = option(
     "--decimal",
-    default="",
-    show_default=False,
-    type=Parsed("MARK", _parse_mark),
+    metavar="MARK",
+    type=click.Choice(["point", "comma", ".", ","]),
+    callback=lambda _, __, mark: {None: "", "point": ".", "comma": ","}.get(mark, mark),
     help="Decimal mark of the input: point or comma.  [default: detected]",
 )
 columns = option(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError
 from ..inputs.names import check_names
 from ..motion.numbers import record_in_range
@@ -92,7 +93,7 @@ def solve_command(
     if get is not None:
         record = _chosen_values(motion, record, get)
         if out.fmt == "table":
-            out.values(record.values())
+            out.text("".join(f"{value_text(value)}\n" for value in record.values()))
             return
     elif derivation:
         shown = _keys_by_step(shown, radians)

@@ -14,7 +14,6 @@ from ..inputs.files import shown_path
 from ..inputs.scenes import is_scene_file
 from ..inputs.values import parse_number_or_span, parse_values
 from ..output.terminal import with_progress
-from ..sweep.workers import in_order, parse_jobs
 from . import shared as opt
 from .app import complain
 
@@ -35,6 +34,12 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
+def _parse_jobs(text: str) -> int:
+    from ..sweep.workers import parse_jobs  # start-up of help
+
+    return parse_jobs(text)
+
+
 @opt.command(
     "sweep",
     "sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv",
@@ -47,7 +52,12 @@ def _parse_shard(text: str) -> tuple[int, int]:
     is_scene=is_scene_file,
 )
 @opt.keys
-@opt.option("--jobs", type=opt.Parsed("N|auto", parse_jobs), help="Processes; auto: one per core.")
+@opt.option(
+    "--jobs",
+    metavar="N|auto",
+    type=opt.Parsed("N", _parse_jobs),
+    help="Processes; auto: one per core.",
+)
 @opt.option("--parts", metavar="DIR", help="Write one file per part into this folder.")
 @opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")
 @opt.option("--dask", metavar="ADDRESS", help="Use the Dask cluster of this scheduler.")
@@ -82,6 +92,7 @@ def sweep_command(
     """
     from ..sweep.parts import Parts
     from ..sweep.plan import ErrorCount, plan
+    from ..sweep.workers import in_order
 
     opt.exclude(jobs=jobs, dask=dask)
     opt.exclude(parts=parts, output=out.path != "-")

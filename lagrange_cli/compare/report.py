@@ -16,7 +16,7 @@ from .differences import Alignment, Trajectory
 
 _WRONG_NORM = 1e-6
 _COLUMNS = (
-    Field("file", "file", one_line, is_text=True, names_the_row=True),
+    Field("file", "file", one_line, is_text=True),
     Field("step", "step", "{:g}".format),
     Field("verdict", "verdict", is_text=True),
     Field("rows", "rows"),

@@ -338,7 +338,7 @@ def fit_report(
         return Report(conditions, fields, rows, [decay_text(outcomes)])
     fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
     if any(x.recording.name for x in outcomes):
-        fields = [Field("name", "recording", is_text=True, names_the_row=True), *fields]
+        fields = [Field("name", "recording", is_text=True), *fields]
     rows = [
         SimpleNamespace(
             name=x.recording.name, key=key, value=uncertain_text(*number), meaning=x.meanings[key]

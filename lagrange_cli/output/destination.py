@@ -1,7 +1,7 @@
 """Destination of output: a file that is replaced only on success, or standard output.
 
-`Output` is a destination with a format; it writes values, a record, rows or a report.  Formats of
-rows and reports are imported when they are needed, because `lagtop solve` starts often.
+`Output` is a destination with a format; it writes a text, a record or rows.  Formats of
+rows and tables are imported when they are needed, because `lagtop solve` starts often.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
-from ..arithmetic.text import csv_text, value_text
-from ..errors import CannotWriteError
+from ..arithmetic.text import NumberText, csv_text, json_text, value_text
+from ..errors import CannotWriteError, LagtopError
 from .terminal import is_screen, printable, width_of
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .formats import Texts
-    from .report import Keys, Report
+    from .report import Keys
 
 
 class Output(NamedTuple):
@@ -38,12 +38,10 @@ class Output(NamedTuple):
         with opened(self.path) as stream:
             stream.write((printable(text) if is_screen(self.path) else text).encode())
 
-    def values(self, values: Iterable[Any]) -> None:
-        """Write bare values, one per line."""
-        self.text("".join(f"{value_text(value)}\n" for value in values))
-
     def record(self, record: Mapping[str, Any], keys: Callable[[], Keys]) -> None:
-        """Write one record; a table shows it by its `keys`."""
+        """Write one record; a table shows it by its `keys`.  Raises LagtopError for Parquet."""
+        if self.fmt == "parquet":
+            raise LagtopError("--format parquet holds tables: use json or csv for constants")
         if self.fmt in {"json", "ndjson"}:
             self.text(f"{_json_value(record)}\n")
         elif self.fmt == "csv":
@@ -57,9 +55,15 @@ class Output(NamedTuple):
 
     def table(self, names: Sequence[str], blocks: Iterable[Array | Texts]) -> None:
         """Write rows in blocks: arrays, or lists of numbers as text."""
-        from .formats import block_text, text_columns
+        from .formats import block_text
 
-        columns = (text_columns(x) if isinstance(x, list) else [x] for x in blocks if len(x))
+        columns = (
+            [[*map(NumberText, x)] for x in zip(*rows, strict=True)]
+            if isinstance(rows, list)
+            else [rows]
+            for rows in blocks
+            if len(rows)
+        )
         self.blocks(names, (block_text(x, names, self.fmt) for x in columns))
 
     def blocks(self, names: Sequence[str], blocks: Iterable[bytes]) -> None:
@@ -81,13 +85,6 @@ class Output(NamedTuple):
         columns = [[row.get(key) for row in rows] for key in keys]
         self.blocks(names or keys, [block_text(columns, keys, self.fmt)])
 
-    def report(self, find: Callable[[], Report]) -> Report:
-        """Write what `find` returns, and return it; the destination is opened first."""
-        with opened(self.path) as stream:
-            report = find()
-            stream.write(report.text(self.fmt, width_of(self.path)))
-        return report
-
 
 def _json_value(value: Any) -> str:
     """Return a value as orjson would write it, with numbers that are written out already."""
@@ -95,11 +92,8 @@ def _json_value(value: Any) -> str:
         members = [f'"{key}":{_json_value(x)}' for key, x in value.items()]
         return f"{{{','.join(members)}}}"
     if type(value) is str:
-        if value.isprintable() and not set(value) & {'"', "\\"}:
-            return f'"{value}"'  # start-up: nearly all are plain words
-        from json import dumps
-
-        return dumps(value, ensure_ascii=False)
+        is_plain = value.isprintable() and not set(value) & {'"', "\\"}
+        return f'"{value}"' if is_plain else json_text(value)  # start-up: nearly all are plain
     return value_text(value) or "null"
 
 

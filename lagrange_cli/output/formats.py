@@ -32,17 +32,12 @@ and JSON values.
 Names = Sequence[str]
 
 
-def text_columns(rows: Texts) -> list[list[NumberText]]:
-    """Return the columns of rows of numbers as text."""
-    return [list(map(NumberText, column)) for column in zip(*rows, strict=True)]
-
-
 def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
     """Return a block of rows in a format; NaN, None and an empty number are missing values."""
     if not len(columns[0]):
         return b""
     if fmt == "parquet":
-        return _arrow(columns, names)
+        return _parquet_file(columns, names)
     if fmt in {"json", "ndjson"}:
         rows = _json_rows(columns, names)
         return b",\n".join(rows) if fmt == "json" else b"".join(row + b"\n" for row in rows)
@@ -125,9 +120,6 @@ def part_file(fmt: str, names: Names, number: int, text: bytes) -> bytes:
     The concatenation of CSV or NDJSON files is the output of `write`: only part 0 begins with the
     header.  A Parquet file is complete by itself.
     """
-    if fmt == "parquet":
-        write(stream := BytesIO(), names, [text], fmt)
-        return stream.getvalue()
     return text if number or fmt != "csv" else _csv_header(names) + text
 
 
@@ -145,9 +137,10 @@ def check_parquet() -> None:
         ) from None
 
 
-def _arrow(columns: Columns, names: Names) -> bytes:
-    """Return columns as one Arrow stream: numbers with null for NaN, and texts."""
+def _parquet_file(columns: Columns, names: Names) -> bytes:
+    """Return columns as a Parquet file: numbers with null for NaN, and texts."""
     import pyarrow as pa
+    from pyarrow import parquet
 
     arrays = []
     for column in columns:
@@ -157,19 +150,16 @@ def _arrow(columns: Columns, names: Names) -> bytes:
         else:
             numbers = column.reshape(len(column), -1).T.copy()
             arrays += [pa.array(x, from_pandas=True) for x in numbers]
-    table = pa.table(arrays, names=list(names))
-    with pa.BufferOutputStream() as stream:
-        with pa.ipc.new_stream(stream, table.schema) as writer:
-            writer.write_table(table)
-        return bytes(stream.getvalue())
+    parquet.write_table(pa.table(arrays, names=list(names)), file := BytesIO())
+    return file.getvalue()
 
 
 def _write_parquet(stream: BinaryIO, names: Names, blocks: Iterable[bytes]) -> None:
-    """Write Arrow streams as one Parquet file, a row group per stream."""
+    """Write Parquet files as one, a row group per file."""
     import pyarrow as pa
     from pyarrow import parquet
 
-    tables = (pa.ipc.open_stream(block).read_all() for block in blocks)
+    tables = (parquet.read_table(BytesIO(block)) for block in blocks)
     first = next(tables, pa.table({name: pa.nulls(0) for name in names}))
     # closed in any case, because a writer that is collected later writes to a closed file
     with parquet.ParquetWriter(stream, first.schema) as writer:

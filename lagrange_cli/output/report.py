@@ -30,7 +30,6 @@ class Field(NamedTuple):
     """Heading in a table; a field without a heading is not shown in tables."""
     show: Callable[[Any], str] = str
     is_text: bool = False
-    names_the_row: bool = False
 
     def cell(self, row: Any) -> str:
         """Return the text in a table, for the object of a row."""

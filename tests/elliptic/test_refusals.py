@@ -73,7 +73,7 @@ ETA = [
     ("--delta 1 --delta-star 0 --gap-below 1 --g 0", "--g must be > 0, got 0.0"),
     ("--delta 1 --delta-star 0 --gap-below 1 --tau 0:1:0", "--tau must have"),
     ("--delta 1 --delta-star 0 --p 0 --q xi", "--q must be a finite number, complex as"),
-    ("--delta 1 --delta-star 0 --p 0 --q 1+i", "--q must be real, or imaginary as 0.7i, got"),
+    ("--delta 1 --delta-star 0 --p 0 --q 1+i", "--q must be >= 0, or imaginary as 0.7i, got"),
     ("--delta 1 --delta-star 0 --p 3 --q 2", "makes the period infinite (k1 = 1), got 1.0"),
     ("--delta 1 --delta-star 0 --columns h1", "--columns needs --tau"),
 ]

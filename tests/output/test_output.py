@@ -24,7 +24,7 @@ from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.motion.record import shown_keys
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
-from lagrange_cli.output.formats import block_text, part_file, text_columns, write
+from lagrange_cli.output.formats import block_text, part_file, write
 from lagrange_cli.output.report import Field, Report, drawn, record_text, uncertain_text
 
 NAMES = ["a", "text", 'b,"', "c", "more"]
@@ -76,10 +76,10 @@ def test_arrays_read_back_as_the_same_doubles(width: int) -> None:
 
 
 def test_numbers_that_are_written_out_keep_their_digits() -> None:
-    columns = text_columns([["1.50", ""], ["", "2e-9"]])
+    columns = [[NumberText("1.50"), NumberText("")], [NumberText(""), NumberText("2e-9")]]
     assert text_of("csv", ["a", "b"], columns) == "a,b\n1.50,\n,2e-9\n"
     assert text_of("json", ["a", "b"], columns) == '[{"a":1.50,"b":null},\n{"a":null,"b":2e-9}]\n'
-    assert text_of("csv", ["a"], text_columns([[""]])) == 'a\n""\n'
+    assert text_of("csv", ["a"], [[NumberText("")]]) == 'a\n""\n'
     assert text_of("csv", ["a", "b"]) == "a,b\n"
     assert text_of("json", ["a"]) == "[]\n"
     assert text_of("ndjson", ["a"]) == ""
