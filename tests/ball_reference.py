@@ -33,6 +33,7 @@ FIRST_BITS, MOST_BITS = 160, 20_000
 GOOD_BITS = 90
 """Relative accuracy of a key that is good enough to tell a double from its neighbours."""
 
+Numbers = dict[str, arb | None]
 T = TypeVar("T")
 
 
@@ -68,33 +69,29 @@ class BallReference:
             bits *= 2
         raise Undecided(f"{self.scene}")
 
+    def _sharp(self, compute: Callable[[Requested], Numbers]) -> Numbers:
+        """Return numbers by key, each to 90 bits or proved to be below 2^-1100."""
+        return self._raised(
+            compute, lambda found: all(x is None or _sharp(x) for x in found.values()), FIRST_BITS
+        )
+
     @cached_property
-    def record(self) -> dict[str, arb | None]:
-        """The numbers of the record by key, each to 90 bits or proved to be below 2^-1100."""
+    def record(self) -> Numbers:
+        """The numbers of the record."""
+        return self._sharp(Motion.record)
 
-        def good(record: dict[str, arb | None]) -> bool:
-            return all(value is None or _sharp(value) for value in record.values())
-
-        return self._raised(Motion.record, good, FIRST_BITS)
+    @cached_property
+    def requested(self) -> Numbers:
+        """The numbers on request."""
+        return self._sharp(Requested.requested)
 
     def numbers(self) -> dict[str, Any]:
         """Return the numbers of the record as numbers of mpmath, to 27 digits or more."""
         return {key: many_digits(x) for key, x in self.record.items() if x is not None}
 
-    @cached_property
-    def requested(self) -> dict[str, arb | None]:
-        """The numbers on request by key, each to 90 bits or proved to be below 2^-1100."""
-
-        def good(found: dict[str, arb | None]) -> bool:
-            return all(value is None or _sharp(value) for value in found.values())
-
-        return self._raised(Requested.requested, good, FIRST_BITS)
-
     def exact(self, key: str) -> arb | None:
         """Return a number of the record or, where that has none of the name, one on request."""
-        if key in self.record:
-            return self.record[key]
-        return self.requested.get(key)
+        return self.record[key] if key in self.record else self.requested.get(key)
 
     @cached_property
     def half_parts(self) -> tuple[arb, arb] | None:
@@ -164,19 +161,13 @@ class BallReference:
 
     def errors(self, t: float, computed: tuple[float, ...]) -> list[float]:
         """Return the errors of theta, phi, psi and the four parts of the quaternion in units."""
-        state = self.at(t)
-        return _errors(computed, _with_units(state))
+        return _errors(computed, _with_units(self.at(t)))
 
     def wrapped_errors(self, t: float, computed: tuple[float, float]) -> list[float]:
         """Return the errors of phi and psi (radians) without whole turns, in units."""
         state, errors = self.at(t), []
         with arb_bits(8 * FIRST_BITS):
-            for value, exact, rate in zip(
-                computed,
-                (state.phi, state.psi),
-                (state.phi_rate, state.psi_rate),
-                strict=True,
-            ):
+            for value, exact, rate in zip(computed, state[1:3], state[4:6], strict=True):
                 turns = (arb(value) - exact) / (2 * arb.pi())
                 away = 2 * arb.pi() * (turns - (turns + 0.5).floor())
                 unit = EPS * (arb.max(arb(1), abs(arb(value))) + abs(state.tau * rate))
@@ -250,10 +241,9 @@ def _with_units(state: State, *, wrapped: bool = False) -> list[tuple[arb, arb]]
 
     For `wrapped` angles, whose whole turns do not count, it is eps (1 + |tau rate|).
     """
-    rates = (state.theta_rate, state.phi_rate, state.psi_rate)
     pairs = [
         (value, EPS * (arb.max(arb(1), arb(0) if wrapped else abs(value)) + abs(state.tau * rate)))
-        for value, rate in zip((state.theta, state.phi, state.psi), rates, strict=True)
+        for value, rate in zip(state[:3], state[3:6], strict=True)
     ]
     spread = EPS * (1 + abs(state.tau * state.quaternion_rate))
     return pairs + [(part, spread) for part in state.quaternion]

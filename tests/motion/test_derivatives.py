@@ -131,11 +131,6 @@ def test_derivatives_in_a_plane_are_those_of_the_tilt(excess: float) -> None:
         assert row == pytest.approx(exact, rel=1e-4, abs=1e-6 * (1 + max(map(abs, exact))))
 
 
-def test_an_unknown_key_is_named() -> None:
-    with pytest.raises(LagtopError, match="did you mean 'T_nutation'"):
-        sensitivities(Top(), ["T_nutatoin"])
-
-
 @pytest.mark.parametrize("scene", QUICK)
 def test_derivatives_of_the_angles_are_right_at_any_time(scene: str) -> None:
     """Errors are over the condition number of the angle.
