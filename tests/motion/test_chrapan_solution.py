@@ -215,40 +215,28 @@ def with_rate(rate: int, *only: Any) -> Iterator[tuple[Motion, Any, Any]]:
         yield top, t, top.rates(t)[rate]
 
 
-RATES: dict[str, tuple[Callable[[Motion, Any, Any], tuple[Any, Any]], int, int]] = {
-    "(4,2)": (
-        lambda top, t, rate: (
-            top.A * (top.rates(t)[0] ** 2 + rate**2 * (1 - top.u(t) ** 2)),
-            2 * top.mgs * (top.u1 - top.u(t)),
-        ),
-        *(2, 1),
+OF_PRECESSION = {
+    "(4,2)": lambda top, t, rate: (
+        top.A * (top.rates(t)[0] ** 2 + rate**2 * (1 - top.u(t) ** 2)),
+        2 * top.mgs * (top.u1 - top.u(t)),
     ),
-    "(4,3)": (
-        lambda top, t, rate: (
-            top.A * (1 - top.u(t) ** 2) * rate,
-            top.C * top.r0 * (top.u1 - top.u(t)),
-        ),
-        *(2, 1),
+    "(4,3)": lambda top, t, rate: (
+        top.A * (1 - top.u(t) ** 2) * rate,
+        top.C * top.r0 * (top.u1 - top.u(t)),
     ),
-    "(4,7)": (
-        lambda top, t, rate: (rate, top.b * (top.u1 - top.u(t)) / (1 - top.u(t) ** 2)),
-        *(2, 1),
-    ),
-    "(4,8)": (
-        lambda top, t, rate: (
-            rate,
-            top.r0 - top.b * top.u(t) * (top.u1 - top.u(t)) / (1 - top.u(t) ** 2),
-        ),
-        *(1, 2),
-    ),
+    "(4,7)": lambda top, t, rate: (rate, top.b * (top.u1 - top.u(t)) / (1 - top.u(t) ** 2)),
 }
-"""Sides with a rate of spin (1) or precession (2): the right side, and the printed one."""
-
-for _name, (_sides, _right, _printed) in RATES.items():
-    chrapan.each(partial(with_rate, _right), {_name: _sides})
-    chrapan.each_as_printed(
-        partial(with_rate, _printed, RIGHT, PARTS[0] * RIGHT.T), {_name: _sides}
+OF_SPIN = {
+    "(4,8)": lambda top, t, rate: (
+        rate,
+        top.r0 - top.b * top.u(t) * (top.u1 - top.u(t)) / (1 - top.u(t) ** 2),
     )
+}
+"""Sides with a rate; printed is that of the other angle."""
+
+for _sides, _right, _printed in ((OF_PRECESSION, 2, 1), (OF_SPIN, 1, 2)):
+    chrapan.each(partial(with_rate, _right), _sides)
+    chrapan.each_as_printed(partial(with_rate, _printed, RIGHT, PARTS[0] * RIGHT.T), _sides)
 
 
 def cubic(top: Motion, u: Any) -> Any:
