@@ -13,6 +13,7 @@ from ..arithmetic.points import ListedPoints
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError, UnavailableError
 from .files import LARGEST_FILE, read_bytes, shown_path
+from .names import repeated
 from .text_tables import Table, parts, read_table
 from .trajectory_columns import (
     QUANTITIES,
@@ -139,8 +140,7 @@ def _read_arrays(content: bytes, name: str, kind: str) -> Table:
         raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
-        article = "a" if kind == "Parquet" else "an"
-        raise DataError(f"{name}: not {article} {kind} file: {why}") from None
+        raise DataError(f"{name}: bad {kind} file: {why}") from None
     real = {x: y for x, y in found.items() if y.dtype.kind in "iuf" and y.ndim in {1, 2}}
     time = next((x for x in real if "t" in quantities_in([x])), next(iter(real), None))
     if time is None:
@@ -180,6 +180,8 @@ def _parquet(content: bytes) -> Mapping[str, Any]:
     _check_size(8 * file.metadata.num_rows * file.metadata.num_columns)
     found: dict[str, Any] = {}
     table = file.read()
+    if twice := repeated(table.column_names):
+        raise ValueError(f"two columns are named {twice!r}")
     for name, column in zip(table.column_names, table.columns, strict=True):
         size = getattr(column.type, "list_size", 0)
         rows = [x or [None] * size for x in column.to_pylist()] if size else column.to_numpy()

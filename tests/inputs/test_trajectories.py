@@ -157,6 +157,13 @@ def saved(save: Callable[..., object], **arrays: Any) -> bytes:
     return stream.getvalue()
 
 
+def twice() -> bytes:
+    """Return a Parquet file with two columns of one name."""
+    stream = io.BytesIO()
+    parquet.write_table(pa.table([[0.0], [1.0], [2.0]], ["t", "theta", "theta"]), stream)
+    return stream.getvalue()
+
+
 HUGE = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000, 2)}"
 HOSTILE = [  # pickles are not loaded, and no memory is taken for the size that a header claims
     saved(np.save, arr=np.array([{"t": 0}], dtype=object)),
@@ -183,9 +190,10 @@ HOSTILE = [  # pickles are not loaded, and no memory is taken for the size that 
         (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
         (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
         (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
-        (b"\x93NUMPY\x01\x00\xff\xff", "not an npy file"),
-        (b"PK\x03\x04", "not an npz file"),
-        (b"PAR1", "not a Parquet file"),
+        (b"\x93NUMPY\x01\x00\xff\xff", "bad npy file"),
+        (b"PK\x03\x04", "bad npz file"),
+        (b"PAR1", "bad Parquet file"),
+        (twice(), "bad Parquet file: two columns are named 'theta'"),
         (b"t,theta (furlongs)\n0,0\n", ": theta must have a unit as in 30deg or 0.5rad, got the"),
         (b"t,x [m],y [m],z [cm]\n0,0,0,0\n", ": the parts of position must have one unit, got 'x"),
         (b"t,q_w (m),q_x (m),q_y (m),q_z (m)\n", ": quaternion must have no unit, got 'm'"),
