@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
 
 from ..errors import LagtopError
+from ..output.destination import Output
 from ..output.terminal import with_progress
 from . import shared as opt
-
-if TYPE_CHECKING:
-    from ..output.destination import Output
 
 MOST_TIMES, MOST_SCENES, MOST_PERIODS = 10_000_000, 1000, 1e6
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -63,7 +60,6 @@ def bench_command(
     from ..inputs.given import read_scene
     from ..motion.solve import solve
 
-    opt.check_plot(plot, out.path)
     motions = {name: solve(read_scene(name)) for name in scenes or ["chrapan-1952"]}
     opt.write_report(
         out,
@@ -100,7 +96,6 @@ def stability_command(
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     from ..bench.stability import failures, stability, stability_figure
 
-    opt.check_plot(plot, out.path)
     report = opt.write_report(
         out,
         lambda: stability(kinds, samples, seed, with_progress),

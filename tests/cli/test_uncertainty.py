@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from conftest import Lagtop, Solved, assert_one_line
-from lagtop import Top, solve
+from lagtop import Top
 
 from lagrange_cli.inputs.values import parse_value
 from lagrange_cli.motion.uncertainty import by_given
@@ -67,15 +67,8 @@ def test_the_record_carries_uncertainties(lagtop: Lagtop, solved: Solved) -> Non
     assert record["m_std"] == 2
     assert record["g_std"] == 0.981
     assert record["A_std"] == 0
-    exact = record["T_nutation"]
-    slopes = {
-        name: (solve(Top(**{name: value + step})).T_nutation - exact) / step
-        for name, value, step in (("s", 4, 1e-6), ("g", 981, 1e-4), ("theta0_deg", 30, 1e-5))
-    }
-    parts = [2 * -6.07547e-05, 0.01 * slopes["s"], 0.981 * slopes["g"], slopes["theta0_deg"]]
-    assert record["T_nutation_std"] == pytest.approx(math.hypot(*parts), rel=1e-5)
     shown = lagtop("solve", *BODY, "--theta0", "30(1)").stdout
-    assert uncertain_text(exact, record["T_nutation_std"]) in shown
+    assert uncertain_text(record["T_nutation"], record["T_nutation_std"]) in shown
     assert "1587.0(2.0)" in shown
     radians = solved(*BODY, "--rad", "--theta0", "0.5(1)")
     assert radians["theta_min_rad_std"] == pytest.approx(0.1)
@@ -146,9 +139,10 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
 def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "top.toml"
     scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
-    line = "Warning: the uncertainty of m is not used: solve, table and plot angles use it\n"
-    for words in (("view", scene, "-o", tmp_path / "top.html"),):
-        assert line in lagtop(*words).stderr, words
+    said = lagtop("view", scene, "-o", tmp_path / "top.html").stderr
+    assert (
+        said == "Warning: the uncertainty of m is not used: solve, table and plot angles use it\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -189,10 +183,9 @@ def test_a_number_without_an_uncertainty_is_named(lagtop: Lagtop) -> None:
     assert by_spin.stderr == ""
 
 
-def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: object) -> None:
-    scene = f"{tmp_path}/top.toml"
-    with open(scene, "w", encoding="utf-8") as file:
-        file.write('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
+def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = tmp_path / "top.toml"
+    scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
     assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
     assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
 
