@@ -55,12 +55,12 @@ def of_errors(steps: tuple[float | None, ...]) -> Figure:
     return draw_errors(results, 1e-3, [x and x**4 for x in steps])
 
 
-def of_fit() -> Figure:
+def of_fit(count: int) -> Figure:
     t = np.linspace(0, 1, 9)
     curve = {"t": t, "data": t**2, "residual": t**3, "fine_t": t, "curve": 2 * t}
     curves = [SimpleNamespace(name=f"{x}: psi", **curve) for x in ("first", "second")]
     outcome: Any = SimpleNamespace(curves=lambda: curves, angle="deg", title="good")
-    return draw_fits([outcome])
+    return draw_fits([outcome] * count)
 
 
 NAMES = "looping-top cusped-top hanging-still plane-pendulum sleeping-top spherical-pendulum"
@@ -80,7 +80,8 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     "film": of_film,
     "errors": partial(of_errors, (None,)),
     "errors over steps": partial(of_errors, (0.1, 0.05, 0.025)),
-    "fit": of_fit,
+    "fit": partial(of_fit, 1),
+    "fits": partial(of_fit, 4),
 }
 
 
@@ -114,7 +115,7 @@ def described(figure: Figure) -> Iterator[str]:
             case Collection():
                 faces, edges = numbers(artist.get_facecolor()), numbers(artist.get_edgecolor())
                 points = [path.vertices for path in artist.get_paths()]
-                place = numbers(np.concatenate(points)) if points else "none"
+                place = numbers(np.concatenate(points) if points else getattr(artist, "U", ()))
                 yield f"{kind} {numbers(artist.get_linewidth())} {faces} {edges} {place}"
 
 

@@ -118,6 +118,8 @@ def test_a_map_shows_the_number_of_each_top() -> None:
     axes = figure.axes[0]
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
     assert axes.get_ylabel().endswith("(rad)")
+    legend: Any = axes.get_legend()
+    assert [x.get_text() for x in legend.get_texts()] == ["this scene"]  # all below the border
     lines: Any = axes.collections[1]
     found = [(x, path.vertices) for x, path in zip(lines.levels, lines.get_paths(), strict=True)]
     exact = {x: solve(Top(r0=at[0][0], theta0_rad=at[0][1])) for x, at in found if len(at)}
