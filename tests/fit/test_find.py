@@ -208,6 +208,7 @@ LAB += ["--g", "9.81 m/s^2", "--theta0", "60deg", "--r0", "1000:20000 rpm"]
     [
         ("T_precession=5000ms", "T_precession=5"),
         ("mean_precession_rate=12rpm", f"mean_precession_rate={0.4 * math.pi}"),
+        ("theta_max=0.175turn", "theta_max=63"),
         ("theta_max=1.1rad", f"theta_max={math.degrees(1.1)}"),
         ("Lz=0.06 kg m^2/s", "Lz=0.06"),
     ],
@@ -223,8 +224,6 @@ def test_units_that_do_not_belong(lagtop: Lagtop) -> None:
     assert_one_line(lagtop("find", *LAB, "T_nutation=50rad"), 2, message)
     message = "--r0 must have a unit such as '50 rad/s' or 480rpm, as a time"
     assert_one_line(lagtop("find", "--r0", "10:200", "T_precession=500ms"), 2, message)
-    tilts = [lagtop("find", "--r0", "10:60", f"theta_max={x}") for x in ("90deg", "0.25turn")]
-    assert tilts[0].stdout == tilts[1].stdout != ""
 
 
 def test_quantities_of_pint() -> None:
@@ -235,11 +234,6 @@ def test_quantities_of_pint() -> None:
     (found,) = find(period, r0=unit.Quantity((100, 1900), "rpm"), scan=100, **known)
     (plain,) = find({"T_precession": 2}, r0=(10, 200), scan=100)
     assert (found.top.r0, found.top.m) == pytest.approx((plain.top.r0, 1.587), rel=1e-12)
-
-
-def test_bad_commands(lagtop: Lagtop) -> None:
-    result = lagtop("find", "none.toml", "--r0", "1:2", "T_nutation=1")
-    assert_one_line(result, 65, "none.toml: No such file")
 
 
 def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:

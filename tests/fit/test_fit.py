@@ -192,6 +192,12 @@ def test_the_sample_gives_the_body() -> None:
     exact = solve(recordings.TOP)
     keys = ["T_nutation", "mean_precession_rate", "mean_spin_rate", "theta_max_deg"]
     assert_true(outcome, {key: getattr(exact, key) for key in keys}, least=4)
+    count = sum(x.y.size for x in outcome.residuals.values())
+    assert outcome.dof == count - 8  # a, b, r0, three of the start, two zeros
+    sigma = {x: y.rms * (count / outcome.dof) ** 0.5 for x, y in outcome.residuals.items()}
+    again = fit(t, theta=theta, psi=psi, phi=phi, sigma=sigma)
+    assert again.chi2_dof == pytest.approx(1, rel=1e-3)
+    assert again.numbers["b"] == pytest.approx(outcome.numbers["b"], rel=1e-3)
     off = outcome.numbers["precession_rate_elementary_percent"]
     elementary = 1.587 * 9.81 * 0.04 / (1.7458e-3 * 50)  # mgs/(C r0)
     true = 100 * (elementary / exact.mean_precession_rate - 1)
@@ -230,6 +236,7 @@ def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
     t, seen = recorded("theta", "psi", seed=9)
     sure, unsure = (fitted(t, seen, known=LAB | {"C": c}).numbers for c in (2.5e-3, "0.0025(1)"))
     assert unsure["r0"][1] == pytest.approx(52.36 * 0.04, rel=0.01)
+    assert "C" not in unsure  # the recording does not improve it
     for key in ("T_nutation", "mean_precession_rate", "b", "A"):
         assert unsure[key] == pytest.approx(sure[key], rel=1e-5)
 
@@ -498,9 +505,10 @@ def test_the_command(lagtop: Lagtop, tmp_path: Path) -> None:
     path = written(tmp_path / "data.csv", recorded("theta", "psi", seed=20))
     scene = tmp_path / "top.toml"
     known = "--m 0.5 --g 9.81 --s 0.08 --C 0.0025".split()
-    result = lagtop("fit", path, *known, "-o", scene)
+    result = lagtop("fit", path, *known, "--sigma", 0.3, "-o", scene)
     assert result.exit_code == 0, result.stderr
-    for text in ("Verdict: good.", "RMS residual (deg): theta 0.", "Correlation: a and b "):
+    shown = "Verdict: good.", "chi2/dof = ", "RMS residual (deg): theta 0.", "Correlation: a and b "
+    for text in shown:
         assert text in result.stdout
     top = read_scene(scene)
     assert (float(top.A), float(top.r0)) == pytest.approx((4.45e-3, 52.36), rel=0.01)
