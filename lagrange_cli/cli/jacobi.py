@@ -4,26 +4,22 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from ..arithmetic.key import Key
-from ..arithmetic.points import ExactComplex, ListedPoints, looks_complex, parse_complex
+from ..arithmetic.points import ExactComplex, ListedPoints, Points, looks_complex, parse_complex
 from ..arithmetic.text import quoted
 from ..elliptic.eta import ETA_COLUMNS, EtaTable, Quadrature, eta_record
 from ..elliptic.function_table import ComplexPoints, FunctionRequest, FunctionTable
 from ..elliptic.incomplete import AmplitudeTable
 from ..elliptic.modulus import ModulusInput, constants_record
 from ..elliptic.nome_series import SeriesTable
+from ..elliptic.tables import TableOfFunctions
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.values import listed_multiples, parse_multiple, parse_multiples, parse_values
+from ..output.destination import Output
 from ..output.terminal import with_progress
 from . import shared as opt
-
-if TYPE_CHECKING:
-    from ..arithmetic.points import Points
-    from ..elliptic.tables import TableOfFunctions
-    from ..output.destination import Output
 
 MOST_TERMS = 10_000
 _FAMILIES = ("am", "theta", "zeta", "omega", "pi")

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ..arithmetic.key import Key
 from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError
 from ..inputs.names import check_names
 from ..motion.numbers import record_in_range
 from ..motion.quantity import unit_name
 from ..motion.record import all_keys, record_keys, shown_keys
+from ..motion.solve import Motion
+from ..output.destination import Output
 from . import shared as opt
 from .app import complain
-
-if TYPE_CHECKING:
-    from ..arithmetic.key import Key
-    from ..motion.solve import Motion
-    from ..output.destination import Output
 
 
 @opt.command(

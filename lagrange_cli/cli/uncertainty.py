@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
+from ..inputs.given import Given
 from ..inputs.input_keys import STANDS_FOR
 from ..inputs.names import check_names
 from ..motion.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
 from ..motion.quantity import degree_name, unit_name
 from ..motion.record import shown_keys
+from ..motion.solve import Motion
 from ..motion.uncertainty import Contribution, FirstOrder, stds_of
+from ..output.destination import Output
 from ..output.report import Field, Report, uncertain_text, with_unit
 from .app import complain
 from .shared import write_report
-
-if TYPE_CHECKING:
-    from ..inputs.given import Given
-    from ..motion.solve import Motion
-    from ..output.destination import Output
 
 
 def check(found: Given, **options: object) -> None:
