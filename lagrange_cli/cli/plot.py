@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from contextlib import ExitStack
 from fractions import Fraction
@@ -9,7 +10,6 @@ from os.path import splitext
 from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
-from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..inputs.input_keys import DECLARED
 from ..inputs.units import factor_of
@@ -142,12 +142,16 @@ def _kinds(names: Sequence[str]) -> list[str]:
 
 def _camera(text: str, radians: bool) -> tuple[float, float]:
     """Return azimuth and elevation (radians) of a text such as `30,-15`."""
-    try:
-        azimuth, elevation = opt.parse_numbers(text)
-    except ValueError:  # of a number, or of another count of numbers
-        raise LagtopError(f"--camera must be AZIMUTH,ELEVATION, got {quoted(text)}") from None
     unit = unit_in_radians(radians=radians)
-    return azimuth * unit, elevation * unit
+    try:
+        azimuth, elevation = (x * unit for x in opt.parse_numbers(text))
+    except ValueError:  # of a number, or of another count of numbers
+        azimuth, elevation = math.inf, math.inf
+    if abs(azimuth) > 2 * math.pi or abs(elevation) > math.pi / 2:
+        turn, quarter, name = ("2π", "π/2", "rad") if radians else ("360", "90", "deg")
+        bounds = f"[-{turn}, {turn}] and [-{quarter}, {quarter}] {name}"
+        raise LagtopError(f"--camera must be AZIMUTH,ELEVATION in {bounds}, got {text!r}")
+    return azimuth, elevation
 
 
 def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Array] | None:
