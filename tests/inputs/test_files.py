@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
 from fractions import Fraction
 from pathlib import Path
 
-import numpy as np
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
 from lagtop import LagtopError, Top
@@ -15,7 +13,6 @@ from lagtop import LagtopError, Top
 import lagrange_cli
 from lagrange_cli.errors import SceneError
 from lagrange_cli.inputs.given import read_scene
-from lagrange_cli.inputs.tops_file import read_tops
 
 
 def scene(folder: Path, text: str) -> str:
@@ -80,12 +77,20 @@ def test_standard_input_is_read_once(lagtop: Lagtop) -> None:
     assert "not both" in result.stderr
 
 
-def test_a_scene_without_inputs_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
-    path = scene(tmp_path, "# nothing yet\n")
-    for words in (["solve", path, "--get", "r0"], ["sweep", path, "--keys", "r0"]):
+def test_files_without_inputs_or_tops_are_told(tmp_path: Path, lagtop: Lagtop) -> None:
+    path, tops = scene(tmp_path, "# nothing yet\n"), tmp_path / "tops.csv"
+    tops.write_text("r0\n")
+    for words, stdout, said in (
+        (["solve", path, "--get", "r0"], "50.0\n", "no inputs: using the worked example"),
+        (["sweep", path, "--keys", "r0"], "r0\n50.0\n", "no inputs: using the worked example"),
+        (["sweep", tops, "--keys", "k"], "k,error\n", "no tops"),
+        (["sweep", tops, "--keys", "k", "--format", "json"], "[]\n", "no tops"),
+    ):
         result = lagtop(*words)
-        assert result.exit_code == 0
-        assert result.stderr == (f"Warning: {path} has no inputs: using the worked example\n")
+        assert (result.exit_code, result.stdout) == (0, stdout)
+        assert result.stderr.startswith(f"Warning: {words[1]} h")
+        assert result.stderr.endswith(f" {said}\n")
+    assert lagtop("sweep", tops, "--shard", "2/2").stderr == ""
 
 
 @pytest.mark.parametrize(
@@ -110,52 +115,3 @@ def test_a_time_out_of_reach(tmp_path: Path, lagtop: Lagtop) -> None:
     path.write_text("1\n2\n1e30\n")
     result = lagtop("table", "--times", path)
     assert_one_line(result, 65, f"{path}: t must be finite and within 2^50 periods")
-
-
-# Tables as text: one grammar for tops, times and trajectories
-
-
-@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
-def test_extra_columns_are_copied_with_any_delimiter(
-    delimiter: str, tmp_path: Path, lagtop: Lagtop
-) -> None:
-    path = tmp_path / "file"
-    rows = [["r0", "theta0_deg", "id"], ["40", "30", '"x, y; z"'], ["50", "60", "w"]]
-    lines = [delimiter.join(row) for row in rows]
-    path.write_text("\ufeff# measured\r\n" + "\r\n\r\n# more\r\n".join(lines))
-    assert lagtop("sweep", path, "--keys", "r0,theta0_deg").stdout == (
-        'id,r0,theta0_deg,error\n"x, y; z",40.0,30.0,\nw,50.0,60.0,\n'
-    )
-
-
-# Tops
-
-
-def test_a_file_without_tops_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
-    path = tmp_path / "tops.csv"
-    path.write_text("r0\n")
-    for words, header in (
-        (["sweep", path, "--keys", "k"], "k,error\n"),
-        (["sweep", path, "--keys", "k", "--format", "json"], "[]\n"),
-    ):
-        result = lagtop(*words)
-        assert (result.exit_code, result.stdout) == (0, header)
-        assert result.stderr == f"Warning: {path} holds no tops\n"
-    shard = lagtop("sweep", path, "--shard", "2/2")
-    assert (shard.exit_code, shard.stderr) == (0, "")
-
-
-def test_keys_of_json_rows_may_differ(tmp_path: Path) -> None:
-    path = tmp_path / "tops.ndjson"
-    rows = [{"id": 4, "r0": 4}, {"id": 5, "r0": 5, "T_nutation": 1}, {"theta0_deg": 6, "name": "x"}]
-    path.write_text("".join(json.dumps(row) + "\n" for row in rows))
-    file = read_tops(str(path), {"T_nutation"})
-    assert file.carried == ["id", "name"]
-    shared = {"r0": 9.0, "theta0_rad": 1.0}
-    first, second = (block.arrays(shared) for block in file.blocks(2))
-    assert (first.lines, second.lines) == ([1, 2], [3])
-    assert (first.carried, second.carried) == ([(4, 5), (None, None)], [(None,), ("x",)])
-    given = {name: float(np.asarray(x)[0]) for name, x in second.inputs.items()}
-    merged = {name: x for name, x in given.items() if not np.isnan(x)}
-    assert merged == {"r0": 9.0, "theta0_deg": 6.0}
-    assert np.asarray(first.inputs["r0"]).tolist() == [4, 5]

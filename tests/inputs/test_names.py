@@ -55,20 +55,6 @@ def test_commands_name_the_option_of_a_wrong_list(words: str, lagtop: Lagtop) ->
         assert_one_line(result, 2, f"{option} must ")
 
 
-@pytest.mark.parametrize(
-    ("wrong", "meant"),
-    [
-        ("period", "'T_nutation', 'T_spin' or 'T_precession'"),
-        ("precession", "'T_precession', 'mean_precession_rate' or 'precession_rate_start'"),
-        ("theta_max", "'theta_max_deg'"),
-    ],
-)
-def test_keys_are_suggested_by_symbols_and_words(wrong: str, meant: str, lagtop: Lagtop) -> None:
-    result = lagtop("solve", "--get", wrong)
-    assert_one_line(result, 2, "--get must be among ")
-    assert f"got {wrong!r} (did you mean {meant}?): regime, a, b, " in result.stderr
-
-
 def test_an_unknown_scene_names_the_shipped_ones(lagtop: Lagtop) -> None:
     unknown = lagtop("solve", "nosuch")
     assert_one_line(unknown, 65, "nosuch: No such file or directory (the built-in scenes are ")

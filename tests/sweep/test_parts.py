@@ -16,6 +16,7 @@ def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
         assert lagtop(*GRID, "--shard", f"{i}/3", "--parts", tmp_path).exit_code == 0
         assert (tmp_path / f"part-{i - 1:06}.csv").exists()
     assert joined(tmp_path) == whole
+    assert whole.splitlines()[-1].startswith(b"9.0,")
     alone = [lagtop(*GRID, "--shard", f"{i}/3").stdout.splitlines() for i in (1, 2, 3)]
     assert {lines[0] for lines in alone} == {"r0,K"}
     assert sum(len(lines) - 1 for lines in alone) == 9000
