@@ -134,7 +134,7 @@ export function motionOf(scene) {
   } else if (period && toTop > (u1 - u2) / 2) since = period / 2;
   if (thetadot0 < 0) since = -since;
   function place(t) {
-    if (!period) return fromTop(t);
+    if (!period) return isVertical ? places[0] : fromTop(t);
     const turns = Math.round((t + since) / period);
     const rest = t + since - turns * period;
     const { theta, plus, minus } = fromTop(Math.abs(rest));
@@ -159,13 +159,13 @@ export function motionOf(scene) {
   const away = (degree) => Math.min(degree, 180 - degree);
   const most = Math.max(away(degrees(u1)), away(degrees(u2)), away(tilt));
   const k = Math.sqrt(1 - kPrime ** 2);
-  const isNear = (tilt && away(tilt) < 0.01) || most < 0.05;
+  const isNear = (tilt && away(tilt) < 0.03) || most < 0.05;
   const [high, low, isSwinging] = isVertical ? [u0, u0, false] : [u1, u2, Boolean(a)];
   return {
     scene,
     angles,
     span,
-    isSketch: Boolean(!isVertical && (isNear || (a && 1 - k < 2e-8))),
+    isSketch: Boolean(!isVertical && (isNear || (a && 1 - k < 5e-8))),
     f: (u) => (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2,
     precession: (u) => (beta - b * u) / (1 - u * u),
     record: {
