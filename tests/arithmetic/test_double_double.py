@@ -1,8 +1,9 @@
-"""Whole periods of a time, checked by fractions, and arrays in the order of a parity."""
+"""Pairs of doubles and whole periods, checked by fractions, and the order of a parity."""
 
 from __future__ import annotations
 
 import math
+import operator
 import random
 from fractions import Fraction
 
@@ -11,6 +12,7 @@ import pytest
 
 from lagrange_cli.arithmetic.arrays import order_by_parity, placed, taken
 from lagrange_cli.arithmetic.double_double import (
+    DoubleDouble,
     Period,
     fraction_of_product,
     period_of,
@@ -18,6 +20,31 @@ from lagrange_cli.arithmetic.double_double import (
 )
 from lagrange_cli.arithmetic.rounding import Pair, pair, triple
 from lagrange_cli.arithmetic.types import Array
+
+
+def exact(x: DoubleDouble | float) -> list[Fraction]:
+    """Return the exact values of ten numbers."""
+    if isinstance(x, DoubleDouble):
+        return [Fraction(a) + Fraction(b) for a, b in zip(x.high, x.low, strict=True)]
+    return [Fraction(x)] * 10
+
+
+def test_pairs_of_doubles_compute_in_30_digits() -> None:
+    rng = np.random.default_rng(30)
+    x, y = (
+        DoubleDouble(rng.choice([-1, 1], 10) * rng.uniform(1, 2, 10), rng.normal(size=10) / 2**55)
+        for _ in range(2)
+    )
+    for compute in (operator.add, operator.sub, operator.mul, operator.truediv):
+        for one, other in ((x, y), (x, 0.3), (0.3, y)):
+            pairs = zip(exact(one), exact(other), exact(compute(one, other)), strict=True)
+            assert all(abs(compute(a, b) - found) < Fraction(1, 2**100) for a, b, found in pairs)
+    roots = zip(exact(abs(x)), exact(abs(x).sqrt()), strict=True)
+    assert all(abs(a - root * root) < Fraction(1, 2**100) for a, root in roots)
+    beside = DoubleDouble(x.high, np.where(rng.random(10) < 0.4, x.low, -x.low))
+    for compare in (operator.lt, operator.le, operator.gt, operator.ge):
+        for other in (y, beside):
+            assert [*compare(x, other)] == [*map(compare, exact(x), exact(other))]
 
 
 def random_period(rng: random.Random) -> tuple[Fraction, Period]:

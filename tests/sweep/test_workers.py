@@ -37,8 +37,7 @@ def test_invalid_numbers_of_jobs_are_refused(text: str, lagtop: Lagtop) -> None:
     assert len(result.stderr) < 200
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("jobs", [2, 3, 0])
+@pytest.mark.parametrize("jobs", [2, *(pytest.param(x, marks=pytest.mark.slow) for x in (3, 0))])
 def test_bytes_are_those_of_one_process(jobs: int, tmp_path: Path) -> None:
     """Without jobs, on a cluster."""
     file = tmp_path / "tops.csv"
