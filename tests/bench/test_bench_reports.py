@@ -7,13 +7,11 @@ import math
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from conftest import Lagtop
 from lagtop import Top, solve
 
 from lagrange_cli.bench import stability as hard
-from lagrange_cli.bench import work_precision
 from lagrange_cli.bench.methods import METHODS, Run, problem_of
 from lagrange_cli.bench.reference import inputs_of, rotation_angle
 from lagrange_cli.bench.work_precision import (
@@ -65,19 +63,6 @@ def test_spans_use_the_tightest_setting() -> None:
         ("lagtop", "quaternion", 2),
         ("RK4", 800, 2),
     ]
-
-
-def test_only_the_method_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The conversion to attitudes is no part of a run."""
-
-    def slow(columns: Any) -> Any:
-        return np.tile([1.0, 0, 0, 0], (sum(i * 0 for i in range(300_000)) + len(columns), 1))
-
-    method = METHODS["RK4"]._replace(prepare=lambda *_: lambda t, _: (t, None))
-    monkeypatch.setitem(METHODS, "RK4", method)
-    monkeypatch.setattr(work_precision, "attitudes", slow)
-    report = bench(WORKED, ["RK4"], count=10)
-    assert report.rows[0].ns_per_sample < 1e5
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from engines import Body
 from lagtop import LagtopError, Top, solve
-from scipy.integrate import solve_ivp
 
 from lagrange_cli.bench.methods import METHODS, Run, SlowError, attitudes, fixed_steps
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
@@ -43,17 +41,6 @@ def test_the_tightest_setting_agrees_with_the_reference(name: str) -> None:
     exact = [reference.attitude(t) for t in times.tolist()]
     error = max(map(rotation_angle, found.tolist(), exact))
     assert 0 < error < ERRORS[name]
-
-
-@pytest.mark.parametrize("name", ["RK45", "DOP853", "LSODA"])
-def test_scipy_runs_as_in_a_plain_call(name: str) -> None:
-    body, times = Body.of(MOTION.top), np.linspace(0, 1.5, 30)
-    plain = solve_ivp(
-        lambda _, y: body.slope(y), (0, 1.5), body.state, name, times, rtol=1e-7, atol=1e-7
-    )
-    columns, evaluations = run(name, 1e-7, times)
-    assert evaluations == pytest.approx(plain.nfev, rel=0.05)
-    assert np.abs(attitudes(columns) - plain.y[:4].T).max() < 1e-6
 
 
 @pytest.mark.parametrize("name", ["RK4", "MuJoCo-RK4"])

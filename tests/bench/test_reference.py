@@ -10,7 +10,7 @@ import pytest
 from ball_reference import BallReference
 from balls.scene import many_digits
 from hard_scenes import HARD_KINDS, nutating
-from lagtop import Top, solve
+from lagtop import Top
 
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle, viete_roots
 
@@ -56,9 +56,3 @@ def test_roots_by_cosines() -> None:
     with mpmath.workdps(30):
         found = viete_roots(mpmath.mpf(-2), mpmath.mpf(-1), mpmath.mpf(2))
         assert all(abs(x - y) < 1e-25 for x, y in zip(found, (-1, 1, 2), strict=True))
-
-
-def test_the_period_is_that_of_the_record() -> None:
-    for top in (Top(), Top(r0=30, theta0_deg=110, thetadot0=-2, psidot0=3)):
-        period = solve(top).T_nutation
-        assert float(Reference(inputs_of(top)).T) == period

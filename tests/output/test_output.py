@@ -16,15 +16,13 @@ from typing import Any
 import numpy as np
 import pytest
 from lagtop import LagtopError, Top, solve
-from pyarrow import parquet
 
-from lagrange_cli.arithmetic.key import Key
 from lagrange_cli.arithmetic.text import NumberText
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.motion.record import shown_keys
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
-from lagrange_cli.output.formats import block_text, part_file, write
+from lagrange_cli.output.formats import block_text, write
 from lagrange_cli.output.report import Field, Report, drawn, record_text, uncertain_text
 
 NAMES = ["a", "text", 'b,"', "c", "more"]
@@ -64,39 +62,16 @@ def test_two_blocks_read_back_as_the_rows() -> None:
                 assert json.loads(cell) == value
 
 
-@pytest.mark.parametrize("width", [1, 2, 9])
-def test_arrays_read_back_as_the_same_doubles(width: int) -> None:
-    numbers = np.random.default_rng(width).normal(size=(50, width)) * 1e-7
-    numbers[::7, 0] = np.nan
-    names = [f"x{i}" for i in range(width)]
-    text = text_of("csv", names, [numbers])
-    assert len(text.split()) == 51  # a reader would skip an empty line
-    cells = [[float(x or "nan") for x in row] for row in csv.reader(text.splitlines()[1:])]
-    assert np.array_equal(np.array(cells), numbers, equal_nan=True)
-
-
 def test_numbers_that_are_written_out_keep_their_digits() -> None:
     columns = [[NumberText("1.50"), NumberText("")], [NumberText(""), NumberText("2e-9")]]
     assert text_of("csv", ["a", "b"], columns) == "a,b\n1.50,\n,2e-9\n"
     assert text_of("json", ["a", "b"], columns) == '[{"a":1.50,"b":null},\n{"a":null,"b":2e-9}]\n'
     assert text_of("csv", ["a"], [[NumberText("")]]) == 'a\n""\n'
+    assert text_of("csv", ["a"], [np.array([[math.nan], [1e-7]])]) == 'a\n""\n1e-7\n'
+    assert text_of("csv", ["a", "b"], [np.array([[math.nan, 2], [3, 4]])]) == "a,b\n,2.0\n3.0,4.0\n"
     assert text_of("csv", ["a", "b"]) == "a,b\n"
     assert text_of("json", ["a"]) == "[]\n"
     assert text_of("ndjson", ["a"]) == ""
-
-
-def test_parquet_holds_numbers_and_texts(tmp_path: Path) -> None:
-    (columns, rows), file = rows_of(40), tmp_path / "x.parquet"
-    block = block_text(columns, NAMES, "parquet")
-    file.write_bytes(part_file("parquet", NAMES, 1, block))
-    found = [[*row.values()][:4] for row in parquet.read_table(file).to_pylist()]
-    assert found == [row[:4] for row in rows]
-
-
-def test_parts_of_csv_are_one_file() -> None:
-    blocks = [block_text([np.eye(2)], ["a", "b"], "csv")] * 2
-    files = [part_file("csv", ["a", "b"], i, block) for i, block in enumerate(blocks)]
-    assert b"".join(files).decode() == text_of("csv", ["a", "b"], [np.eye(2)], [np.eye(2)])
 
 
 RECORD = {"name": 'a "b"\\\tθ', "a": 1e-7, "b": None, "c": NumberText("1.50"), "u": {"x": "y"}}
@@ -128,15 +103,6 @@ def test_a_table_cuts_no_digit_however_narrow_the_terminal() -> None:
 def test_brackets_in_cells_are_no_markup_and_control_characters_are_escaped() -> None:
     shown = drawn(["[bold]x"], [["[red]y\x1b[31m\x9b\u202e"]], (), None)
     assert shown.split() == ["[bold]x", "─" * 24, "[red]y\\x1b[31m\\x9b\\u202e"]
-
-
-def test_keys_of_a_record_have_groups() -> None:
-    keys = {"a": Key("One", "α", "first"), "b": Key("Two", "β", "second", "kg", "(1)")}
-    shown = record_text({"a": 1.0, "b": 2.0, "remark": "note", "summary": "Sum."}, keys, None)
-    summary, _, _, *lines, remark = [line.split() for line in shown.splitlines() if line]
-    assert (summary, remark) == (["Sum."], ["note"])
-    rows = [["α", "first", "1.0"], ["β", "second", "2.0", "kg", "(1)"]]
-    assert lines == [["One"], rows[0], ["Two"], rows[1]]
 
 
 def test_a_report_in_every_format() -> None:
