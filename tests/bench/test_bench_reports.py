@@ -70,6 +70,7 @@ def test_spans_use_the_tightest_setting() -> None:
     [
         (["bench", "sleeping-top"], "must nutate, got sleeping"),
         (["bench", "--methods", "euler"], "--methods must be among lagtop"),
+        (["bench", "--spans", "0,1"], "--spans must increase from above 0"),
         (["bench", "--spans", "1,0"], "--spans must increase from above 0"),
         (["bench", "nothing"], "nothing"),
         (["stability", "--kinds", "hard"], "--kinds must be among fast-spin"),

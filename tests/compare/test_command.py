@@ -49,6 +49,12 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert "rad off, its rates by 2.1e-07 (relative)." in strict.stdout
 
 
+def test_the_worked_example_is_not_assumed_in_silence(lagtop: Lagtop, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("t,theta\n0,30\n")
+    done = lagtop("compare", tmp_path / "run.csv")
+    assert done.stderr == "Warning: no scene and no inputs: compared with the worked example\n"
+
+
 @pytest.mark.slow
 def test_pictures(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
     sizes = []
