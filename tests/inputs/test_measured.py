@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import random
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -14,66 +13,39 @@ import pytest
 from conftest import Lagtop, assert_one_line
 from lagtop import LagtopError, Top, solve, sweep
 
-TILTS = (0.0, 1e-9, 30.0, 60.0, 90.0, 90.00000001, 120.0, 179.9)
-
-
-def mp_spin(inputs: dict[str, Any]) -> Any:
-    """Return phi' + psi' cos(theta0) in 60 digits."""
-    with mpmath.workdps(60):
-        if "theta0_rad" in inputs:
-            tilt = mpmath.mpf(inputs["theta0_rad"])
-        else:
-            tilt = mpmath.mpf(inputs["theta0_deg"]) * mpmath.pi / 180
-        total = mpmath.mpf(inputs["phidot0"]) + mpmath.mpf(inputs["psidot0"]) * mpmath.cos(tilt)
-        return total if abs(total) > 1e-50 else mpmath.mpf(0)
-
-
-def random_body(rng: random.Random) -> dict[str, float]:
-    """Return a body with a moment about its mass centre."""
-    return {
-        "m": rng.uniform(0.1, 10),
-        "A_cm": 10 ** rng.uniform(-4, 2),
-        "C": 1e-5,
-        "s": rng.choice([0.0, rng.uniform(0, 3)]),
-        "g": 9.81,
-    }
-
 
 def test_parallel_axes_are_exact_and_rounded_once() -> None:
-    rng = random.Random(1)
-    bodies = [random_body(rng) for _ in range(200)]
-    tops = [Top(**body) for body in bodies]
-    for body, top in zip(bodies, tops, strict=True):
-        exact = Fraction(body["A_cm"]) + Fraction(body["m"]) * Fraction(body["s"]) ** 2
-        assert top.A == float(exact)
-    arrays: dict[str, Any] = {name: np.array([body[name] for body in bodies]) for name in bodies[0]}
-    assert sweep(keys=["A"], **arrays)["A"].tolist() == [top.A for top in tops]
+    rng = np.random.default_rng(1)
+    columns: dict[str, Any] = {"m": rng.uniform(0.1, 10, 200), "s": rng.uniform(0, 3, 200)}
+    columns |= {"A_cm": 10 ** rng.uniform(-4, 2, 200), "C": np.full(200, 1e-5), "g": np.ones(200)}
+    columns["s"][:50] = 0
+    bodies = [dict(zip(columns, x, strict=True)) for x in zip(*columns.values(), strict=True)]
+    exact = [Fraction(x["A_cm"]) + Fraction(x["m"]) * Fraction(x["s"]) ** 2 for x in bodies]
+    assert [Top(**body).A for body in bodies] == list(map(float, exact))
+    assert sweep(keys=["A"], **columns)["A"].tolist() == list(map(float, exact))
 
 
-def start(rng: random.Random) -> dict[str, float]:
-    """Return a start with a rate of phi, now and then one that cancels the precession."""
-    inputs: dict[str, float] = {"psidot0": rng.choice([0.0, rng.uniform(-9, 9)])}
-    if rng.random() < 0.5:
-        inputs["theta0_deg"] = rng.choice([*TILTS[1:], rng.uniform(0, 180)])
-    else:
-        inputs["theta0_rad"] = rng.uniform(0, 3)
-    inputs["phidot0"] = rng.uniform(-30, 30)
-    if rng.random() < 0.3:
-        inputs["phidot0"] -= float(mp_spin(inputs))
-    return inputs
-
-
-def test_the_rate_of_phi_gives_the_nearest_total_rate() -> None:
-    rng = random.Random(2)
-    starts = [start(rng) for _ in range(200)]
-    tops = [Top(**inputs) for inputs in starts]
-    assert [top.r0 for top in tops] == [float(mp_spin(inputs)) for inputs in starts]
-    for unit in ("theta0_deg", "theta0_rad"):
-        some = [inputs for inputs in starts if unit in inputs]
-        arrays: dict[str, Any] = {name: np.array([x[name] for x in some]) for name in some[0]}
-        assert sweep(keys=["r0"], **arrays)["r0"].tolist() == [Top(**x).r0 for x in some]
-    motion = solve(tops[0])
-    assert motion.spin_rate_start == pytest.approx(starts[0]["phidot0"], rel=1e-15)
+@pytest.mark.parametrize("unit", ["theta0_deg", "theta0_rad"])
+def test_the_rate_of_phi_gives_the_nearest_total_rate(unit: str) -> None:
+    """Rates of phi that cancel the precession are among them."""
+    rng = np.random.default_rng(2)
+    tilts = np.r_[1e-9, 30, 60, 90, 90.00000001, 120, 179.9, rng.uniform(0, 180, 93)]
+    columns = {unit: tilts if unit == "theta0_deg" else tilts / 60, "psidot0": np.zeros(100)}
+    columns["psidot0"][::3] = rng.uniform(-9, 9, 34)
+    columns["phidot0"] = rng.uniform(-30, 30, 100)
+    cancel = columns["psidot0"] * np.cos(np.radians(tilts) if unit == "theta0_deg" else tilts / 60)
+    columns["phidot0"][::2] = -cancel[::2]
+    starts = [dict(zip(columns, x, strict=True)) for x in zip(*columns.values(), strict=True)]
+    exact = []
+    with mpmath.workdps(60):
+        for tilt, precession, spin in zip(*(x.tolist() for x in columns.values()), strict=True):
+            cos = mpmath.cos(tilt * mpmath.pi / 180 if unit == "theta0_deg" else tilt)
+            total = spin + mpmath.mpf(precession) * cos
+            exact.append(float(total) if abs(total) > 1e-50 else 0.0)
+    assert [Top(**inputs).r0 for inputs in starts] == exact
+    assert sweep(keys=["r0"], **columns)["r0"].tolist() == exact
+    start = solve(Top(**starts[1])).spin_rate_start
+    assert start == pytest.approx(starts[1]["phidot0"], rel=1e-15)
 
 
 def test_what_is_rational_is_exact() -> None:

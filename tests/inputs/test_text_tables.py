@@ -51,14 +51,11 @@ TABLES = {
     '"FIRST";"SECOND"\n"0,5";"30"\n1,5;40\n': [0.5, 1.5],
     "mass A\nFIRST,SECOND\n0.5,30\n1.5,40\n": [0.5, 1.5],
     "run 5 of 7;;\n\n# x\nFIRST;SECOND;\n0,5;30;\n1,5;40;\n": [0.5, 1.5],
-    "sep=;\nFIRST;SECOND\n0,5;30\n1,5;40\n": [0.5, 1.5],
     "FIRST;SECOND;note, more\n0,5;30;x\n1,5;40;y, z\n": [0.5, 1.5],
     "FIRST;SECOND\n1,234;30\n0,5;40\n": [1.234, 0.5],
     "FIRST;SECOND\n1.234;30\n2.345;40\n": [1.234, 2.345],
     '{"FIRST":0.5,"SECOND":30}\n\n{"FIRST":1.5,"SECOND":40}\n': [0.5, 1.5],
     '[\n {"FIRST":0.5,\n"SECOND":30},{"FIRST":1.5,"SECOND":40}\n]\n': [0.5, 1.5],
-    "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n\n"
-    "Channels\t1\n***End_of_Header***\nFIRST\tSECOND\n0,5\t30\n1,5\t40\n": [0.5, 1.5],
     "FIRST   SECOND\n\u2500\u2500\u2500\u2500\n0.5   30\n1.5   40\n": [0.5, 1.5],
 }
 

@@ -48,18 +48,11 @@ def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
     assert refused.value.key in (*inputs, "A", "C")
 
 
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("theta0", "a top has no input 'theta0' (did you mean 'theta0_deg' or 'theta0_rad'?)"),
-        ("phidot", "a top has no input 'phidot' (did you mean 'phidot0'?)"),
-    ],
-)
-def test_an_unknown_input_is_named(name: str, message: str) -> None:
-    for make in (Top, Top().replace):
-        with pytest.raises(TypeError) as refused:
-            make(**{name: 30.0})
-        assert str(refused.value) == message
+@pytest.mark.parametrize("make", [Top, Top().replace])
+def test_an_unknown_input_is_named(make: Any) -> None:
+    message = r"no input 'theta0' \(did you mean 'theta0_deg' or 'theta0_rad'\?\)$"
+    with pytest.raises(TypeError, match=message):
+        make(theta0=30.0)
 
 
 @pytest.mark.parametrize("value", [3, 3.0, Fraction(3), Decimal(3), np.float32(3), np.int8(3)])
@@ -89,12 +82,8 @@ def test_no_way_around_the_guards() -> None:
         top.m = -1  # type: ignore[misc]
     assert not hasattr(top, "__dict__")
     assert Top(**top.as_dict()) == copy.deepcopy(top) == pickle.loads(pickle.dumps(top)) == top
-
-
-def test_replace() -> None:
-    top = Top(theta0_deg=40, r0=7)
     assert top.replace(r0=60) == Top(theta0_deg=40, r0=60)
-    assert top.replace(theta0_rad=1) == Top(theta0_rad=1, r0=7)
+    assert top.replace(theta0_rad=1) == Top(theta0_rad=1)
 
 
 def test_nothing_depends_on_the_decimal_context_of_the_host() -> None:

@@ -12,7 +12,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, process, wait_until
@@ -128,41 +127,30 @@ def test_workers_end_with_their_parent(tmp_path: Path) -> None:
 
 
 @contextmanager
-def ended(*command: str, **extra: Any) -> Iterator[subprocess.Popen[bytes]]:
-    """Start a process, and kill it at the end if it runs then."""
-    with subprocess.Popen([sys.executable, *command], stderr=subprocess.PIPE, **extra) as running:
-        try:
-            yield running
-        finally:
-            running.kill()
-
-
-@contextmanager
 def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
     """Start a scheduler and some workers; yield its address, and the processes in this order."""
-    file = folder / "scheduler.json"
-    module = "distributed.cli.dask_"
-    options = ["--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
-    with ended("-m", f"{module}scheduler", *options) as scheduler:
-        address = ""
-        while not address:
-            assert scheduler.poll() is None
-            time.sleep(0.01)
-            with suppress(FileNotFoundError, ValueError):  # not there yet, or half of it
-                address = json.loads(file.read_text())["address"]
-        command = ["-m", f"{module}worker", address, "--no-nanny", "--no-dashboard"]
-        started = [
-            subprocess.Popen(
-                [sys.executable, *command, "--nthreads", "1"], stderr=subprocess.DEVNULL, cwd=folder
-            )
-            for _ in range(workers)
-        ]
-        try:
-            yield address, [scheduler, *started]
-        finally:
-            for one in started:
-                one.kill()
-                one.wait()
+    file, started = folder / "scheduler.json", list[subprocess.Popen[bytes]]()
+
+    def start(name: str, *options: str) -> None:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *options]
+        more = ["--no-dashboard"]
+        started.append(subprocess.Popen([*command, *more], stderr=subprocess.DEVNULL, cwd=folder))
+
+    def address() -> str:
+        with suppress(FileNotFoundError, ValueError):  # not there yet, or half of it
+            return str(json.loads(file.read_text())["address"])
+        return ""
+
+    try:
+        start("scheduler", "--port", "0", "--scheduler-file", str(file))
+        wait_until(address, started[0])
+        for _ in range(workers):
+            start("worker", address(), "--no-nanny", "--nthreads", "1")
+        yield address(), started
+    finally:
+        for one in reversed(started):
+            one.kill()
+            one.wait()
 
 
 @pytest.mark.slow
@@ -171,10 +159,10 @@ def test_a_killed_scheduler_or_worker(who: str, tmp_path: Path) -> None:
     """Another worker computes the parts of a lost one; without its scheduler a sweep ends."""
     options = ["sweep", "--r0", "1:100:150000", "--keys", "r0,K,E,nome"]
     out = tmp_path / "out"
-    with (
-        cluster(tmp_path, 2) as (address, processes),
-        ended("-m", "lagrange_cli", *options, "--dask", address, "--parts", str(out)) as running,
-    ):
+    command = [*LAGTOP, *options, "--parts", str(out), "--dask"]
+    with cluster(tmp_path, 2) as (address, processes):
+        running = subprocess.Popen([*command, address], stderr=subprocess.PIPE)
+        processes.append(running)  # is killed with them if the test fails
         wait_until(lambda: len(list(out.glob("part-*"))) >= 2, running)
         processes[who == "worker"].kill()
         said = running.communicate(timeout=60)[1]
