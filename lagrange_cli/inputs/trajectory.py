@@ -201,7 +201,7 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     cannot be read, and for a row without a time.
     """
     table = read_table(read_bytes(path), shown_path(path), known_quantities, decimal)
-    names = table.headings or ["t"] * (table.width < 2)
+    names = ["t"] * (table.width < 2) if table.headings is None else table.headings
     found = quantities_in(names).get("t")
     if found is None:
         shown = shortened(", ".join(map(repr, names))) or f"{table.width} columns without headings"

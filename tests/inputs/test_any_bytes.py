@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from conftest import ROOT
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pyarrow import parquet
 
@@ -86,6 +86,7 @@ def read_by_all(path: str) -> None:
 @pytest.mark.parametrize("count", [60, pytest.param(20_000, marks=pytest.mark.slow)])
 def test_any_bytes_end_in_rows_or_in_one_line(count: int, tmp_path: Path) -> None:
     @given(CONTENTS)
+    @example(b"{}")
     @settings(max_examples=count, derandomize=count == 60)
     def read_any(content: bytes) -> None:
         (tmp_path / "file").write_bytes(content)
