@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection, Mapping
 from fractions import Fraction
 from types import MappingProxyType, NoneType
@@ -181,7 +182,9 @@ def system_of(inputs: Mapping[str, Value], *, asked: bool = False) -> System | N
     bare = [x for x in named if not (inputs[x].unit or _is_zero(inputs[x].number))]
     if bare and (united or asked):
         why = f"as {united[0]} has" if united else "as a time or a condition has"
-        example = units.EXAMPLES[units.UNIT_OF[bare[0]]]
+        number, example = inputs[bare[0]].number, units.EXAMPLES[units.UNIT_OF[bare[0]]]
+        if isinstance(number, Fraction) and number != 1:  # a heading of a file counts as 1
+            example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
         raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
     return units.SI if united or asked else None
 

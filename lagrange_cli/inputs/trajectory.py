@@ -60,6 +60,8 @@ class Trajectory:
             raise DataError(f"{self.name} {wrong}")
         if twice := named_twice(self.names, found):
             wrong = f"must name each quantity once, got {twice[0]!r} and {twice[1]!r}"
+            if columns is not None:
+                raise LagtopError(f"columns {wrong}", "columns")
             remedy = "name the columns with --columns, and one of them _"
             raise DataError(f"{self.name} {wrong}: {remedy}")
         try:

@@ -7,11 +7,13 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from conftest import Lagtop
 from lagtop import Top, solve
 
 from lagrange_cli.bench import stability as hard
+from lagrange_cli.bench import work_precision
 from lagrange_cli.bench.methods import METHODS, Run, problem_of
 from lagrange_cli.bench.reference import inputs_of, rotation_angle
 from lagrange_cli.bench.work_precision import (
@@ -20,6 +22,7 @@ from lagrange_cli.bench.work_precision import (
     conclusions,
     exact_motion,
     marked,
+    methods_figure,
 )
 
 WORKED = {"worked": solve(Top())}
@@ -159,3 +162,28 @@ def test_a_wrong_lagtop_is_seen(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch)
 def test_lagtop_is_at_rounding_level(kinds: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(hard, "COMPARED", ("lagtop",))
     assert hard.failures(hard.stability(kinds, 2 if kinds else 3, 7)) == []
+
+
+def test_only_the_method_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The conversion to attitudes is no part of a run."""
+
+    def slow(columns: Any) -> Any:
+        return np.tile([1.0, 0, 0, 0], (sum(i * 0 for i in range(300_000)) + len(columns), 1))
+
+    method = METHODS["RK4"]._replace(prepare=lambda *_: lambda t, _: (t, None))
+    monkeypatch.setitem(METHODS, "RK4", method)
+    monkeypatch.setattr(work_precision, "attitudes", slow)
+    report = bench(WORKED, ["RK4"], count=10)
+    assert report.rows[0].ns_per_sample < 1e5
+
+
+@pytest.mark.slow
+def test_pictures_draw_each_method(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr(hard, "COMPARED", ("lagtop", "Taylor"))
+    report = bench(WORKED, ["lagtop", "RK45"], count=5)
+    _, curve = methods_figure(report).axes[0].get_lines()[-2:]
+    errors = sorted(x.error_rad for x in report.rows if x.method == "RK45")
+    assert sorted(np.asarray(curve.get_xdata()).tolist()) == errors
+    figure = hard.stability_figure(hard.stability(["near-hanging"], 0))
+    assert [axes.get_title() for axes in figure.axes] == ["span of 1 T", "span of 100 T"]

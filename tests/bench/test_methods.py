@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import Body
 from lagtop import LagtopError, Top, solve
+from scipy.integrate import solve_ivp
 
 from lagrange_cli.bench.methods import METHODS, Run, SlowError, attitudes, fixed_steps
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
@@ -92,3 +94,14 @@ def test_the_figures_of_the_worked_example() -> None:
     assert rows["RK4", 800].error_rad == pytest.approx(5.8e-7, rel=0.1)
     assert rows["RK4", 50].evaluations < rows["RK4", 200].evaluations / 3
     assert rows["lagtop", "quaternion"].error_rad < 2e-15
+
+
+@pytest.mark.parametrize("name", ["RK45", "DOP853", "LSODA"])
+def test_scipy_runs_as_in_a_plain_call(name: str) -> None:
+    body, times = Body.of(MOTION.top), np.linspace(0, 1.5, 30)
+    plain = solve_ivp(
+        lambda _, y: body.slope(y), (0, 1.5), body.state, name, times, rtol=1e-7, atol=1e-7
+    )
+    columns, evaluations = run(name, 1e-7, times)
+    assert evaluations == pytest.approx(plain.nfev, rel=0.05)
+    assert np.abs(attitudes(columns) - plain.y[:4].T).max() < 1e-6

@@ -185,3 +185,47 @@ def test_zeros_of_the_constants_are_exact(of: Quadrature, zeros: str) -> None:
     in_digits, in_doubles = eta_record(of, 20), eta_record(of)
     assert {key for key, text in in_digits.items() if text == "0.0"} == set(zeros.split())
     assert {key for key, x in in_doubles.items() if x == 0} == set(zeros.split())
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "p", "height"),
+    [
+        ("-0.5", "0.6", "0.1", "1e-60"),
+        ("-0.5", "0.6", "1e40", "3"),
+        ("0.6", "0.6000000000000000000000000000000000000001", "0.6", "1e-50"),
+    ],
+)
+def test_complex_pair_with_digits(lower: str, upper: str, p: str, height: str) -> None:
+    """Constants by (3.2.3), (3.2.5) with a minus, (3.2.8) and (3.2.12), cancelling in 300 digits.
+
+    Roots are next to the band, far from it, and next to an end of a narrow band.
+    """
+    shown = eta_record(quadrature(lower, upper, f"{p} {p}", height=height), 30)
+    with mpmath.workdps(300):
+        low, high, middle, far = map(mpmath.mpf, (lower, upper, p, height))
+        m1, m2 = mpmath.hypot(high - middle, far), mpmath.hypot(low - middle, far)
+        k2 = ((m1 - m2) ** 2 - (high - low) ** 2) / (4 * m1 * m2)
+        sigma1, K1 = mpmath.sqrt(m1 * m2 * (1 + k2)), mpmath.ellipk(k2 / (1 + k2))
+        exact = {
+            **{"m_prime": m1, "m_double_prime": m2, "sigma1": sigma1, "K1": K1},
+            **{"k_imag": mpmath.sqrt(-k2), "k1_imag": mpmath.sqrt(-k2 / (1 + k2))},
+            **{"k1_prime": 1 / mpmath.sqrt(1 + k2), "period": 4 * K1 / sigma1},
+            **{"tau3": -K1 / sigma1, "d": (m2 - m1) / (m1 + m2)},
+        }
+        for name, value in exact.items():
+            assert abs(mpmath.mpf(shown[name]) - value) <= 1e-29 * abs(value), name
+
+
+def test_constants_that_nearly_vanish_have_their_digits() -> None:
+    """d = (m''^2 - m'^2)/(m' + m'')^2 with m'^2 = 1 + x and m''^2 = 1 exactly: about -x/4."""
+    x = Fraction("1e-80")
+    of = Quadrature(Fraction(0), x, (Fraction(-1), 1 + 2 * x))
+    lower, upper, outer = of.lower, of.upper, of.outer
+    square1 = abs((upper - outer[0]) * (upper - outer[1]))
+    square2 = abs((lower - outer[0]) * (lower - outer[1]))
+    with mpmath.workdps(200):
+        first, second, difference = (
+            mpmath.mpf(y.numerator) / y.denominator for y in (square1, square2, square2 - square1)
+        )
+        exact = difference / (mpmath.sqrt(first) + mpmath.sqrt(second)) ** 2
+        assert abs(mpmath.mpf(eta_record(of, 20)["d"]) / exact - 1) < 1e-19

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import io
+import subprocess
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pytest
-from conftest import ROOT
+from conftest import LAGTOP, ROOT
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pyarrow import parquet
@@ -93,3 +95,23 @@ def test_any_bytes_end_in_rows_or_in_one_line(count: int, tmp_path: Path) -> Non
         read_by_all(str(tmp_path / "file"))
 
     read_any()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", ["sweep", "table --times", "compare", "fit", "solve", "sweep -"])
+def test_a_file_without_end_is_refused(words: str) -> None:
+    with open("/dev/zero", "rb") as zeros:
+        command = [*LAGTOP, *words.split(), *([] if words.endswith("-") else ["/dev/zero"])]
+        done = subprocess.run(command, stdin=zeros, capture_output=True, check=False)
+    assert (done.returncode, done.stdout) == (65, b"")
+    assert done.stderr.count(b"\n") == 1
+    assert b"must have at most" in done.stderr
+
+
+@pytest.mark.slow
+def test_many_columns_are_read_at_once(tmp_path: Path) -> None:
+    """The time must not grow with the square of their number: it took minutes."""
+    path, start = tmp_path / "file", time.process_time()
+    path.write_text("r0,t," + ",".join(f"x{i}" for i in range(100_000)) + "\n")
+    read_by_all(str(path))
+    assert time.process_time() - start < 60

@@ -15,6 +15,7 @@ from lagtop import Top, solve
 from scenes import UNIT
 
 from lagrange_cli.arithmetic.ball import balls
+from lagrange_cli.motion.over_time import series
 from lagrange_cli.motion.over_time.series import evaluate, theta_series
 
 DIGITS = 120
@@ -55,3 +56,18 @@ def test_a_series_cut_short_holds_the_truth(name: str, terms: int) -> None:
             for one, whole in ((short[1], long[1]), (short[3], long[3])):
                 assert one.x.overlaps(whole.x)
                 assert whole.x.rad() < 1e-60
+
+
+def test_the_bound_of_the_series_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    weights = series._weights
+
+    def bare(ar: Any, *rest: Any) -> Any:
+        return [x.middle for x in weights(ar, *rest)]
+
+    monkeypatch.setattr(series, "_weights", bare)
+    missed = 0
+    with balls(DIGITS):
+        for name in ("k^2 = 0.46", "k^2 = 0.73"):
+            for short, long, _ in evaluations(TOPS[name], 3):
+                missed += not short[1].x.overlaps(long[1].x)
+    assert missed >= 5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import re
 import signal
@@ -15,8 +16,10 @@ from pathlib import Path
 
 import pytest
 from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, process, wait_until
+from lagtop import LagtopError
 
-from lagrange_cli.sweep.workers import parse_jobs
+from lagrange_cli.errors import UnavailableError
+from lagrange_cli.sweep.workers import in_order, parse_jobs
 
 LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1"]
 LOST = rb"Error: a process that shared the work was lost \(killed, or out of memory\).*\n"
@@ -193,3 +196,23 @@ def test_no_cluster(address: str, code: int) -> None:
     done = process("sweep", "--dask", address, check=False)
     assert (done.returncode, done.stdout, done.stderr.count(b"\n")) == (code, b"", 1)
     assert done.stderr.startswith(b"Error: ")
+
+
+def refuse(x: int) -> None:
+    """Fail."""
+    raise LagtopError(f"{x} is too large")
+
+
+def lose(x: int) -> int:
+    """Kill the process that has the item 5."""
+    if x == 5 and multiprocessing.parent_process() is not None:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return x
+
+
+@pytest.mark.slow
+def test_errors_of_the_work_and_lost_processes_are_raised() -> None:
+    with pytest.raises(LagtopError, match="0 is too large"):
+        list(in_order(refuse, range(9), 2))
+    with pytest.raises(UnavailableError, match="was lost"):
+        list(in_order(lose, range(9), 2))
