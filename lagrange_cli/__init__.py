@@ -28,21 +28,21 @@ __all__ = [
 ]
 
 _MODULES = {
-    "Comparison": "compare.compare",
+    "Comparison": "comparison.compare",
     "LagtopError": "errors",
     "MixedBodyWarning": "errors",
-    "Motion": "motion.solve",
-    "Regime": "motion.regime",
-    "Top": "inputs.top",
-    "compare": "compare.compare",
+    "Motion": "solver.solve",
+    "Regime": "solver.regime",
+    "Top": "top.top",
+    "compare": "comparison.compare",
     "draw": "plot",
     "draw_outcome": "plot.reports",
-    "find": "find",
-    "fit": "fit.fit",
-    "read_scene": "inputs.given",
-    "sensitivities": "motion.derivatives",
-    "solve": "motion.solve",
-    "sweep": "sweep.records",
+    "find": "inverse.find",
+    "fit": "inverse.fit",
+    "read_scene": "top.given",
+    "sensitivities": "solver.derivatives",
+    "solve": "solver.solve",
+    "sweep": "sweeps.records",
     "view": "plot.browser.view",
 }
 """The module of each public name; it is imported when the name is first used.

@@ -12,9 +12,9 @@ import pytest
 from lagtop import Top
 from ours import ManyDigits
 
-from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
-from lagrange_cli.motion.over_time.tables import ProvedTable
-from lagrange_cli.motion.solve import solve
+from lagrange_cli.solver.columns import DEFAULT_COLUMNS
+from lagrange_cli.solver.solve import solve
+from lagrange_cli.solver.tables import ProvedTable
 
 
 def rows_of(

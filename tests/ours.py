@@ -10,10 +10,10 @@ from flint import acb, arb
 from mpmath.ctx_mp import MPContext
 
 from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.arithmetic.points import ExactComplex
 from lagrange_cli.elliptic import incomplete, modulus
 from lagrange_cli.elliptic.enclosures import exact, rational
 from lagrange_cli.elliptic.functions import Functions, Point, nearest
+from lagrange_cli.top.ranges import ExactComplex
 
 
 class ManyDigits(MPContext):  # type: ignore[misc]

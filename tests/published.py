@@ -19,7 +19,7 @@ from conftest import ROOT
 from lagtop import Motion, read_scene, solve
 from ours import ManyDigits, Ours
 
-from lagrange_cli.motion.over_time.tables import ProvedTable
+from lagrange_cli.solver.tables import ProvedTable
 
 Many = Any
 """An mpf with many digits."""

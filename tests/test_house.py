@@ -16,8 +16,8 @@ PACKAGE = ROOT / "lagrange_cli"
 FILES = sorted(set(PACKAGE.rglob("*.py")) - {PACKAGE / "alias.py"})
 
 LAYERS = [
-    *("__main__", "cli", "bench compare", "plot", "find fit", "sweep"),
-    *("motion", "elliptic inputs output", "arithmetic", "errors"),
+    *("__main__", "cli", "bench comparison", "plot", "inverse", "sweeps", "solver"),
+    *("elliptic files output", "top", "names file_bytes", "arithmetic", "errors"),
 ]
 """A subpackage imports only from the lines below its own."""
 LEVEL = {name: i for i, line in enumerate(LAYERS) for name in line.split()}

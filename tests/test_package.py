@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from lagrange_cli.sweep.results import Results
+from lagrange_cli.sweeps.results import Results
 
 
 @pytest.mark.parametrize("name", dir(lagtop))

@@ -19,12 +19,12 @@ from errata import errata_table, figures_table
 from published import published_table
 
 from lagrange_cli.cli.app import main
-from lagrange_cli.compare.compare import COMPARISON_KEYS, VERDICTS
-from lagrange_cli.compare.differences import WORDS
-from lagrange_cli.inputs.input_keys import DECLARED, TILT
-from lagrange_cli.inputs.trajectory_columns import QUANTITIES
-from lagrange_cli.motion.explanation import listed
-from lagrange_cli.motion.record import NUMBER_KEYS, number_key, requested_keys
+from lagrange_cli.comparison.compare import COMPARISON_KEYS, VERDICTS
+from lagrange_cli.comparison.differences import WORDS
+from lagrange_cli.files.columns import QUANTITIES
+from lagrange_cli.solver.explanation import listed
+from lagrange_cli.solver.record import NUMBER_KEYS, number_key, requested_keys
+from lagrange_cli.top.inputs import DECLARED, TILT
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -171,12 +171,12 @@ TABLES: list[tuple[Callable[[], list[str]], str]] = [
     (errata_table, "tests"),
     (figures_table, "tests"),
     *(
-        (partial(keys_table, kind, heading), "lagrange_cli/motion")
+        (partial(keys_table, kind, heading), "lagrange_cli/solver")
         for kind, heading in KINDS_OF_KEYS.items()
     ),
     (published_table, "tests"),
     *(
-        (partial(two_columns, *heads, rows), "lagrange_cli/compare")
+        (partial(two_columns, *heads, rows), "lagrange_cli/comparison")
         for heads, rows in COMPARE_TABLES.items()
     ),
 ]

@@ -22,7 +22,7 @@ UNNUMBERED = 64
 """How many equations without a number of their own are in a register: none may be lost."""
 MODULES = [
     *("elliptic/test_aksenov", "elliptic/test_chrapan_functions"),
-    *("motion/test_chrapan_solution", "motion/test_chrapan_angles"),
+    *("solver/test_chrapan_solution", "solver/test_chrapan_angles"),
 ]
 """The modules with a register."""
 

@@ -21,8 +21,8 @@ import numpy as np
 from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.top import Top
-from ..motion.solve import Motion, solve
+from ..solver.solve import Motion, solve
+from ..top.top import Top
 
 TIGHTEST = 3e-14
 """Least relative tolerance that SciPy accepts."""

@@ -17,7 +17,7 @@ from typing import Any
 import mpmath
 
 from ..errors import LagtopError
-from ..inputs.top import Top
+from ..top.top import Top
 
 DIGITS, ROOT_DIGITS = 50, 1000
 """Digits of the motion, and of the roots: differences of roots may be as small as 1e-600."""

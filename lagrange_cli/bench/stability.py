@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import mpmath
 
-from ..inputs.names import check_names
-from ..inputs.top import Top
-from ..motion.regime import Regime
-from ..motion.solve import Motion, solve
+from ..names import check_names
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import Progress, silent
+from ..solver.regime import Regime
+from ..solver.solve import Motion, solve
+from ..top.top import Top
 from .methods import METHODS
 from .reference import ROOT_DIGITS, Reference, inputs_of, rotation_angle
 from .work_precision import ERROR, LOOKS, drawn, machine, measure, panels_of, task_of

@@ -15,11 +15,11 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.names import check_names
-from ..motion.regime import Regime
-from ..motion.solve import Motion
+from ..names import check_names
 from ..output.report import Field, Report, short
 from ..output.terminal import Progress, silent
+from ..solver.regime import Regime
+from ..solver.solve import Motion
 from .methods import METHODS, SlowError, attitudes
 from .reference import Attitude, Reference, inputs_of, rotation_angle
 

@@ -13,7 +13,7 @@ import click
 
 from .. import __version__
 from ..errors import CannotWriteError, LagtopError, UnavailableError
-from ..inputs.names import suggestion
+from ..names import suggestion
 from ..output.terminal import one_line
 
 NAMES = (

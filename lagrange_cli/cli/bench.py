@@ -57,8 +57,8 @@ def bench_command(
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
     from ..bench.work_precision import PERIODS, bench, methods_figure
-    from ..inputs.given import read_scene
-    from ..motion.solve import solve
+    from ..solver.solve import solve
+    from ..top.given import read_scene
 
     motions = {name: solve(read_scene(name)) for name in scenes or ["chrapan-1952"]}
     opt.write_report(

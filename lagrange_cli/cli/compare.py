@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import LagtopError
-from ..inputs.scenes import is_scene_file
+from ..top.scenes import is_scene_file
 from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..compare.compare import Convergence
+    from ..comparison.compare import Convergence
     from ..output.destination import Output
     from ..output.report import Report
 
@@ -79,10 +79,10 @@ def compare_command(
 
     The exit code is 1 unless the verdict on every trajectory is fine.
     """
-    from ..compare.compare import compared
-    from ..compare.differences import Alignment
-    from ..compare.report import comparison_report, read, sentence
-    from ..inputs.observed import Conventions
+    from ..comparison.compare import compared
+    from ..comparison.differences import Alignment
+    from ..comparison.report import comparison_report, read, sentence
+    from ..files.observed import Conventions
     from ..plot.reports import draw_errors
 
     if not words:

@@ -6,13 +6,13 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.text import value_text
-from ..inputs.scenes import scene_names, scene_remark
 from ..output.report import Field, Report
+from ..top.scenes import scene_names, scene_remark
 from . import shared as opt
 
 if TYPE_CHECKING:
-    from ..motion.explanation import Explained
     from ..output.destination import Output
+    from ..solver.explanation import Explained
 
 
 @opt.command(
@@ -31,7 +31,7 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     others are computed if you name them.  Keys go to solve --get, sweep --keys, find --keys and
     plot --key; columns go to table --columns.
     """
-    from ..motion.explanation import explanations, listed
+    from ..solver.explanation import explanations, listed
 
     found, radians = top.given(), top.radians
     named = found.system.named if found.system else str

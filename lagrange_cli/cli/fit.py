@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import json_text
 from ..errors import LagtopError, SomeFailedError
-from ..inputs.names import split_names
+from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import with_progress
 from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
-    from ..fit.outcome import Outcome
+    from ..inverse.outcome import Outcome
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
@@ -85,10 +85,10 @@ def fit_command(
     and the mean rates are fitted.  The exit code is 0 if the verdict is good, and 1 if not: the
     last line then says why, and what to try.  With -o FILE.toml a good fit is written as a scene.
     """
-    from ..fit.fit import best_fit, fit_windows
-    from ..fit.recording import known_inputs, read_recordings
-    from ..inputs.files import shown_path
-    from ..inputs.observed import Conventions
+    from ..file_bytes import shown_path
+    from ..files.observed import Conventions
+    from ..inverse.fit import best_fit, fit_windows
+    from ..inverse.recording import known_inputs, read_recordings
     from ..plot.reports import draw_fits
     from ..plot.style import report_bytes
 
@@ -137,7 +137,7 @@ def fit_command(
 
 def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out: Output) -> None:
     """Write a report, or one record for each recording."""
-    from ..fit.outcome import decay_of, decay_text, fit_report
+    from ..inverse.outcome import decay_of, decay_text, fit_report
 
     if out.fmt == "table":
         opt.write_report(out, lambda: fit_report(found, source, units, is_windows=is_windows))

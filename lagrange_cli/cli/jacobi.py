@@ -6,7 +6,6 @@ import re
 from fractions import Fraction
 
 from ..arithmetic.key import Key
-from ..arithmetic.points import ExactComplex, ListedPoints, Points, looks_complex, parse_complex
 from ..arithmetic.text import quoted
 from ..elliptic.eta import ETA_COLUMNS, EtaTable, Quadrature, eta_record
 from ..elliptic.function_table import ComplexPoints, FunctionRequest, FunctionTable
@@ -15,10 +14,11 @@ from ..elliptic.modulus import ModulusInput, constants_record
 from ..elliptic.nome_series import SeriesTable
 from ..elliptic.tables import TableOfFunctions
 from ..errors import LagtopError
-from ..inputs.names import check_names
-from ..inputs.values import listed_multiples, parse_multiple, parse_multiples, parse_values
+from ..names import check_names
 from ..output.destination import Output
 from ..output.terminal import with_progress
+from ..top.ranges import ExactComplex, ListedPoints, Points, looks_complex, parse_complex
+from ..top.values import listed_multiples, parse_multiple, parse_multiples, parse_values
 from . import shared as opt
 
 MOST_TERMS = 10_000

@@ -11,9 +11,6 @@ from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError
-from ..inputs.input_keys import DECLARED
-from ..inputs.units import factor_of
-from ..inputs.values import Value, parse_range, parse_value
 from ..output.destination import opened
 from ..output.terminal import is_screen, with_progress
 from ..plot import KINDS, SHEET
@@ -27,6 +24,9 @@ from ..plot.style import (
     figure_bytes,
     styled,
 )
+from ..top.inputs import DECLARED
+from ..top.units import factor_of
+from ..top.values import Value, parse_range, parse_value
 from . import shared as opt
 from .table import angle_stds
 

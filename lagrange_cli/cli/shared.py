@@ -12,19 +12,19 @@ import click
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError, SomeFailedError
-from ..inputs.input_keys import DECLARED, example_options, remark_on
-from ..inputs.names import split_names
-from ..inputs.values import Value, parse_value
+from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
+from ..top.inputs import DECLARED, example_options, remark_on
+from ..top.values import Value, parse_value
 from .app import complain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..inputs.given import Given
-    from ..motion.solve import Motion
     from ..output.report import Report
+    from ..solver.solve import Motion
+    from ..top.given import Given
 
 F = TypeVar("F", bound=Callable[..., Any])
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
@@ -121,7 +121,7 @@ euler_sequence = option(
 
 def _scenes_or_files(ctx: click.Context, param: click.Parameter, begun: str) -> list[Any]:
     """Return the shipped scenes that begin with a word, or a request for files."""
-    from ..inputs.scenes import scene_names
+    from ..top.scenes import scene_names
 
     scenes = [name for name in scene_names() if name.startswith(begun)]
     return scenes or list(click.Path().shell_complete(ctx, param, begun))
@@ -169,7 +169,7 @@ class TopOptions(NamedTuple):
 
         `others` are further values that are converted to the same units, such as times.
         """
-        from ..inputs.given import gather  # start-up of commands without a top
+        from ..top.given import gather  # start-up of commands without a top
 
         return gather(self.inputs, self.scene, others=others or {})
 
@@ -180,7 +180,7 @@ def is_scene(word: str) -> bool:
     Scenes are `-`, shipped scenes, words that end in `.toml`, and words with a dot or a slash that
     are no condition.
     """
-    from ..inputs.scenes import is_scene_file
+    from ..top.scenes import is_scene_file
 
     is_path = bool(set(word) & set("./")) and not set(word) & set("=<>")
     return word == "-" or is_path or is_scene_file(word)
@@ -241,7 +241,7 @@ def _help_of(name: str, *, shows_default: bool) -> str:
 
 def motion_of(found: Given, *, exact: bool = False, uses_stds: bool = True) -> Motion:
     """Return the motion of some inputs, kept as decimals if `exact`, after warnings about them."""
-    from ..motion.solve import solve  # start-up of commands without a top
+    from ..solver.solve import solve  # start-up of commands without a top
 
     motion = solve(found.top(exact=exact))
     warn(found, uses_stds=uses_stds)

@@ -9,12 +9,12 @@ from typing import Any
 from ..arithmetic.key import Key
 from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError
-from ..inputs.names import check_names
-from ..motion.numbers import record_in_range
-from ..motion.quantity import unit_name
-from ..motion.record import all_keys, record_keys, shown_keys
-from ..motion.solve import Motion
+from ..names import check_names
 from ..output.destination import Output
+from ..solver.numbers import record_in_range
+from ..solver.quantity import unit_name
+from ..solver.record import all_keys, record_keys, shown_keys
+from ..solver.solve import Motion
 from . import shared as opt
 from .app import complain
 
@@ -79,7 +79,7 @@ def solve_command(
         record["remark"] = found.system.in_words(record["remark"])
     sentence = {}
     if wanted is None and out.fmt != "csv":
-        from ..motion.summary import summary
+        from ..solver.summary import summary
 
         with suppress(TypeError):  # a number beyond the range of doubles is None
             sentence["summary"] = summary(record, motion.exact.facts, named)
@@ -126,7 +126,7 @@ def _chosen_values(motion: Motion, record: dict[str, Any], keys: Sequence[str]) 
 
 def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
-    from ..motion.paper.requested import derivation_keys
+    from ..solver.requested import derivation_keys
 
     if motion.roots_sum is None:
         top = motion.top
@@ -140,7 +140,7 @@ def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
 
 def _keys_by_step(keys: dict[str, Key], radians: bool) -> dict[str, Key]:
     """Return the keys of the steps of section 8, in order and grouped by step."""
-    from ..motion.paper.requested import CHAIN
+    from ..solver.requested import CHAIN
 
     chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
     return {name: keys[name]._replace(group=step) for name, step in chain.items()}

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from ..inputs.files import shown_path
-from ..inputs.scenes import is_scene_file
-from ..inputs.values import parse_number_or_span, parse_values
+from ..file_bytes import shown_path
 from ..output.terminal import with_progress
+from ..top.scenes import is_scene_file
+from ..top.values import parse_number_or_span, parse_values
 from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
-    from ..inputs.units import System
     from ..output.destination import Output
-    from ..sweep.plan import NumberedBlock
+    from ..sweeps.plan import NumberedBlock
+    from ..top.units import System
 
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
@@ -35,7 +35,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
 
 
 def _parse_jobs(text: str) -> int:
-    from ..sweep.workers import parse_jobs  # start-up of help
+    from ..sweeps.workers import parse_jobs  # start-up of help
 
     return parse_jobs(text)
 
@@ -90,9 +90,9 @@ def sweep_command(
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.
     """
-    from ..sweep.parts import Parts
-    from ..sweep.plan import ErrorCount, plan
-    from ..sweep.workers import in_order
+    from ..sweeps.parts import Parts
+    from ..sweeps.plan import ErrorCount, plan
+    from ..sweeps.workers import in_order
 
     opt.exclude(jobs=jobs, dask=dask)
     opt.exclude(parts=parts, output=out.path != "-")
@@ -136,8 +136,8 @@ def _headings(
     """Return the headings of keys: with units in a table for people, if inputs have units."""
     if system is None or fmt != "table":
         return names
-    from ..motion.record import shown_keys
     from ..output.report import with_unit
+    from ..solver.record import shown_keys
 
     keys = shown_keys(radians=radians, named=system.named, requested=True)
     return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
@@ -170,10 +170,10 @@ def find_command(
     With one unknown, find returns every solution that the scan brackets.  With several, it follows
     the best points of the scan and can miss solutions.  The exit code is 1 if no solution is found.
     """
-    from ..find import find_tops, search_of
-    from ..inputs.names import check_names
-    from ..motion.numbers import record_in_range
-    from ..motion.record import all_keys, record_keys
+    from ..inverse.find import find_tops, search_of
+    from ..names import check_names
+    from ..solver.numbers import record_in_range
+    from ..solver.record import all_keys, record_keys
 
     chosen = record_keys(radians=top.radians)
     if keys is not None:

@@ -12,10 +12,10 @@ from .app import complain
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from ..inputs.given import Given
-    from ..inputs.values import Value
-    from ..motion.solve import Motion
     from ..output.destination import Output
+    from ..solver.solve import Motion
+    from ..top.given import Given
+    from ..top.values import Value
 
 MAX_DRAWN_ROWS = 10_000
 """Largest number of rows that are drawn: nobody reads more."""
@@ -59,10 +59,10 @@ def table_command(
     max(1 rad, |angle|), or more if the axis passes near the vertical.  If inputs are uncertain, the
     last columns are the uncertainties of the angles.
     """
-    from ..inputs.files import shown_path
-    from ..inputs.trajectory import read_times
-    from ..motion.over_time.columns import DEFAULT_COLUMNS
-    from ..motion.over_time.tables import ProvedTable, grid, rows
+    from ..file_bytes import shown_path
+    from ..files.trajectory import read_times
+    from ..solver.columns import DEFAULT_COLUMNS
+    from ..solver.tables import ProvedTable, grid, rows
 
     opt.exclude(n=n, dt=dt)
     for name, value in {"t_max": t_max, "t_min": t_min, "n": n, "dt": dt}.items():
@@ -101,8 +101,8 @@ def angle_stds(found: Given, motion: Motion) -> Callable[[Array], Array] | None:
     """
     if not found.stds:
         return None
-    from ..motion.derivatives import NO_DERIVATIVE  # for few tops only
-    from ..motion.uncertainty import AngleStds
+    from ..solver.derivatives import NO_DERIVATIVE  # for few tops only
+    from ..solver.uncertainty import AngleStds
 
     stds = AngleStds(motion, found.stds, found.inputs.keys())
     if stds.derivatives.missing:
@@ -112,8 +112,8 @@ def angle_stds(found: Given, motion: Motion) -> Callable[[Array], Array] | None:
 
 def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> list[str]:
     """Return the headings of a table for people, with units that are not part of the names."""
-    from ..motion.over_time.columns import chosen_columns
     from ..output.report import with_unit
+    from ..solver.columns import chosen_columns
 
     named = found.system.named if found.system is not None else str
     chosen = chosen_columns(names).values()

@@ -7,16 +7,16 @@ from typing import Any
 
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
-from ..inputs.given import Given
-from ..inputs.input_keys import STANDS_FOR
-from ..inputs.names import check_names
-from ..motion.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
-from ..motion.quantity import degree_name, unit_name
-from ..motion.record import shown_keys
-from ..motion.solve import Motion
-from ..motion.uncertainty import Contribution, FirstOrder, stds_of
+from ..names import check_names
 from ..output.destination import Output
 from ..output.report import Field, Report, uncertain_text, with_unit
+from ..solver.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
+from ..solver.quantity import degree_name, unit_name
+from ..solver.record import shown_keys
+from ..solver.solve import Motion
+from ..solver.uncertainty import Contribution, FirstOrder, stds_of
+from ..top.given import Given
+from ..top.inputs import STANDS_FOR
 from .app import complain
 from .shared import write_report
 

@@ -19,9 +19,9 @@ from typing import Any, NamedTuple
 from flint import arb
 
 from ..arithmetic.ball import balls
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..arithmetic.rounding import FIRST_DIGITS, equal_digits
 from ..errors import LagtopError
+from ..top.ranges import MAX_PERIODS, MAX_TIME, Points, check_reach
 from .enclosures import Value, exact, record
 from .functions import Functions, Point
 from .modulus import Kind, Modulus

@@ -9,9 +9,9 @@ from typing import NamedTuple
 from flint import acb, arb
 
 from ..arithmetic.ball import balls
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, Points, check_reach
 from ..arithmetic.rounding import FIRST_DIGITS
 from ..errors import LagtopError
+from ..top.ranges import MAX_PERIODS, MAX_TIME, ExactComplex, Points, check_reach
 from .enclosures import Value, exact, rational
 from .functions import INDICES, THIRD, Functions, Point
 from .modulus import AnyModulus, Kind, check_modulus, numbers_of, reduced, split

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from flint import acb, arb
 
-from ..arithmetic.points import MAX_PERIODS, Points, check_reach
+from ..top.ranges import MAX_PERIODS, Points, check_reach
 from .enclosures import Value, exact
 from .functions import nearest as nearest_integer
 from .modulus import Modulus, ModulusInput, quarter_period, second_kind

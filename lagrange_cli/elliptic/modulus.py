@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 
 from flint import acb, arb
 
-from ..arithmetic.points import ExactComplex
 from ..arithmetic.rounding import equal_digits
 from ..errors import LagtopError
+from ..top.ranges import ExactComplex
 from .enclosures import Value, exact, record
 
 

@@ -18,9 +18,9 @@ from typing import NamedTuple
 from flint import arb
 
 from ..arithmetic.ball import balls
-from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.text import NumberText
 from ..errors import LagtopError
+from ..top.ranges import MAX_PERIODS
 from .enclosures import cell, exact
 from .functions import Functions, Point
 from .modulus import Modulus, ModulusInput, nome, quarter_period

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..motion.solve import Motion
+    from ..solver.solve import Motion
 
 KINDS = "sphere", "angles", "cubic", "phase", "map"
 """The kinds of picture."""
@@ -43,8 +43,8 @@ def draw(
     3
     """
     from ..errors import LagtopError, check_type  # start-up
-    from ..inputs.names import check_names  # start-up
-    from ..motion.solve import Motion  # start-up
+    from ..names import check_names  # start-up
+    from ..solver.solve import Motion  # start-up
     from .style import DARK, LIGHT, require_matplotlib  # start-up
 
     check_type("motion", motion, Motion)

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
-from ..inputs.rotations import rotated
-from ..motion.solve import Motion
+from ..files.rotations import rotated
+from ..solver.solve import Motion
 from .pictures import Options, camera_of, draw_globe, last_time, project, sampled, usual_span
 from .style import Look, scale, styled
 

@@ -22,15 +22,15 @@ from numpy.typing import ArrayLike
 from ..arithmetic.numbers import Number, angle_unit
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.input_keys import DECLARED, NINE
-from ..inputs.names import check_names
-from ..inputs.top import Top
-from ..motion.quantity import degree_name
-from ..motion.record import NUMBER_KEYS, number_key, requested_keys
-from ..motion.regime import Regime
-from ..motion.solve import Motion
+from ..names import check_names
 from ..output.terminal import Progress, silent
-from ..sweep.records import sweep
+from ..solver.quantity import degree_name
+from ..solver.record import NUMBER_KEYS, number_key, requested_keys
+from ..solver.regime import Regime
+from ..solver.solve import Motion
+from ..sweeps.records import sweep
+from ..top.inputs import DECLARED, NINE
+from ..top.top import Top
 from .style import LIGHT, Look, plain, scale
 
 MOST_PERIODS = 1000

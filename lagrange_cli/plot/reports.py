@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..fit.outcome import Outcome
+    from ..inverse.outcome import Outcome
 
 MOST_RECORDINGS = 3
 """Most recordings on one sheet."""

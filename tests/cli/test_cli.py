@@ -19,9 +19,9 @@ from scenes import SAMPLES
 from lagrange_cli import errors
 from lagrange_cli.cli.app import NAMES as COMMANDS
 from lagrange_cli.cli.shared import is_scene
-from lagrange_cli.motion.over_time.columns import COLUMNS
-from lagrange_cli.motion.record import KEYS as SHOWN
-from lagrange_cli.motion.record import NUMBER_KEYS, all_keys
+from lagrange_cli.solver.columns import COLUMNS
+from lagrange_cli.solver.record import KEYS as SHOWN
+from lagrange_cli.solver.record import NUMBER_KEYS, all_keys
 
 KEYS = """
     m A C s g r0 theta0_deg thetadot0 psidot0 regime a b u1 u2 u3 k k_prime modular_angle_deg nome

@@ -13,9 +13,9 @@ import pytest
 from conftest import Lagtop, Solved, assert_one_line
 from lagtop import Top
 
-from lagrange_cli.inputs.values import parse_value
-from lagrange_cli.motion.uncertainty import by_given
 from lagrange_cli.output.report import uncertain_text
+from lagrange_cli.solver.uncertainty import by_given
+from lagrange_cli.top.values import parse_value
 
 uncertainties = pytest.importorskip("uncertainties")
 

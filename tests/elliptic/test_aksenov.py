@@ -13,9 +13,9 @@ from equations import EquationTests, Register, once, pairs, slightly_wrong
 from errata import misprints
 from ours import ar, fraction, incomplete_f, jacobi, nome, ours, quarter_period
 
-from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.eta import EtaConstants, EtaTable, Quadrature, eta_constants
 from lagrange_cli.elliptic.nome_series import k_series, nome_series
+from lagrange_cli.top.ranges import ListedPoints
 
 aksenov = Register()
 MODULI = [ar.mpf(x) for x in ("0.03", "0.5", "0.9", "0.9999")]

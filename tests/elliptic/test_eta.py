@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from conftest import Lagtop
 
-from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.eta import EtaTable, Quadrature, eta_record
+from lagrange_cli.top.ranges import ListedPoints
 
 
 def quadrature(

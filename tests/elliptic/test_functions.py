@@ -19,12 +19,12 @@ from function_reference import NUMBER, Reference
 from lagtop import LagtopError
 
 from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.arithmetic.points import ExactComplex, ListedPoints, parse_complex
 from lagrange_cli.elliptic import functions
 from lagrange_cli.elliptic.enclosures import rounded
 from lagrange_cli.elliptic.function_table import ComplexPoints, FunctionRequest, FunctionTable
 from lagrange_cli.elliptic.functions import Functions, Point
 from lagrange_cli.elliptic.modulus import AnyModulus, ModulusInput
+from lagrange_cli.top.ranges import ExactComplex, ListedPoints, parse_complex
 
 EVERY = ("am", "theta", "zeta", "omega", "pi")
 MODULI = ["0.3", "0.8", "0.95", "0.999", "0.7071067811865476", "0.05i", "0.8i", "20i", "1.01", "2"]

@@ -11,9 +11,9 @@ import mpmath
 import pytest
 from conftest import Lagtop
 
-from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.incomplete import AmplitudeTable
 from lagrange_cli.elliptic.modulus import ModulusInput
+from lagrange_cli.top.ranges import ListedPoints
 
 
 def exact(name: str, value: float, phi: float, degrees: bool) -> tuple[Any, Any]:

@@ -12,8 +12,8 @@ import pytest
 from conftest import Lagtop
 from lagtop import LagtopError
 
-from lagrange_cli.arithmetic.points import parse_complex
-from lagrange_cli.inputs.values import Multiple, parse_multiple
+from lagrange_cli.top.ranges import parse_complex
+from lagrange_cli.top.values import Multiple, parse_multiple
 
 DIGITS = pytest.mark.parametrize("digits", ["", " --digits 20"])
 

@@ -21,8 +21,8 @@ from conftest import ROOT
 from hard_scenes import HARD_KINDS, in_doubles
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
 
-from lagrange_cli.inputs.scenes import scene_names
 from lagrange_cli.plot.style import DARK, LIGHT
+from lagrange_cli.top.scenes import scene_names
 
 MOTION_JS = ROOT / "lagrange_cli" / "plot" / "browser" / "motion.js"
 KINDS = ("generic", "from rest", "slow", "near a pole", "near steady", "no spin")

@@ -44,13 +44,13 @@ from flint import arb
 from hard_scenes import KINDS, Scene, as_decimals
 from lagtop import LagtopError, Motion, Top, solve, sweep
 
-from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench import reference as reference_module
 from lagrange_cli.bench.reference import Reference, rotation_angle
 from lagrange_cli.bench.reference import inputs_of as inputs_in_mpmath
 from lagrange_cli.errors import OutOfRangeError
-from lagrange_cli.motion.over_time.tables import rows
-from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
+from lagrange_cli.solver.record import NUMBER_KEYS, requested_keys
+from lagrange_cli.solver.tables import rows
+from lagrange_cli.top.ranges import ListedPoints
 
 UNITS, WRAPPED, HALF_ULP, SWEEP_EPS = 4.0, 5.0, 0.5 + 1e-9, 10.0
 """The bounds: of an angle or a part of the quaternion, of an angle without whole turns, of a key of

@@ -36,7 +36,7 @@ from engines import Array, Body, dop853
 from lagtop import LagtopError, Top, fit
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.fit.outcome import FAILED, Outcome
+from lagrange_cli.inverse.outcome import FAILED, Outcome
 
 CHANNELS = [("theta", "phi", "psi"), ("theta", "psi"), ("theta", "phi"), ("phi", "psi")]
 FAR = 5.0

@@ -13,13 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import LagtopError, check_type
-from ...inputs.given import read_scene
-from ...inputs.input_keys import DECLARED
-from ...inputs.scenes import scene_names
-from ...motion.explanation import listed
-from ...motion.notebook import Document
-from ...motion.record import KEYS
-from ...motion.solve import Motion, solve
+from ...solver.explanation import listed
+from ...solver.notebook import Document
+from ...solver.record import KEYS
+from ...solver.solve import Motion, solve
+from ...top.given import read_scene
+from ...top.inputs import DECLARED
+from ...top.scenes import scene_names
 
 SHOWN = (
     "a b u1 u2 u3 k T_nutation T_spin T_precession theta_min_deg theta_max_deg mean_spin_rate "

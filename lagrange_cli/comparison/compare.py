@@ -1,0 +1,263 @@
+"""`compare`: a trajectory against the exact motion, its verdict, and the order of convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
+from itertools import repeat
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import DataError, LagtopError, check_type
+from ..file_bytes import shown_path, utf8_path
+from ..files.columns import QUANTITIES
+from ..files.observed import Conventions, quantities_of
+from ..names import ANGLES, check_names
+from ..solver.notebook import HasRecord
+from ..solver.solve import Motion, solve
+from ..top.top import Top
+from .causes import likely_cause
+from .differences import Alignment, Trajectory, differences
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
+
+LIMIT = 1e-3
+"""The error in radians up to which a trajectory is fine by default."""
+VERDICTS = {
+    "fine": "the errors of attitude and rates stay below the limit, 1e-3 or --max-error",
+    "drifts": "the first row is right, but an error grows beyond the limit",
+    "another top": "an error exceeds the limit and does not fall with the step, or has a cause",
+    "off from the start": "the first row already exceeds the limit: another start, other frames",
+    "lost": "a row is not finite",
+}
+"""The verdicts with their meanings; if several apply, the last one."""
+LOST_PHASE, ROUNDING = 0.3, 1e-8
+"""Errors beyond which no order can be measured, and below which an error need not fall."""
+LEAST_ORDER = 0.5
+"""Least order of a method that converges."""
+_SURE = 2.0
+"""Largest change of a difference from row to row, in radians, for whole turns to be counted."""
+_COMPARED = {"attitude": "attitude", "axis": "axis", **dict.fromkeys(ANGLES, "angles")}
+_KEYS = {"error": "error_max", "norm": "norm_error", "energy": "energy_drift", "Lz": "Lz_drift"}
+"""Keys of greatest differences; the others end in `_error_max`."""
+
+
+def _key(meaning: str, default: Any = None) -> Any:
+    """Return the field of a key of the record, with its meaning."""
+    return field(default=default, metadata={"meaning": meaning})
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Comparison(HasRecord):
+    """The comparison of one trajectory; angles are in radians, and an unknown number is None.
+
+    >>> compare(Top(), [0.0], theta=[0.5]).verdict
+    'off from the start'
+    """
+
+    file: str | None = _key("the file, `-` for standard input")
+    step: float | None = _key("step size of the trajectory (--step-sizes)")
+    verdict: str = _key("verdict on the trajectory", "fine")
+    rows: int = _key("the number of rows", 0)
+    compared: str = _key("the quantity of the error: attitude, axis, angles or rates", "")
+    error_max: float | None = _key("greatest error of that quantity")
+    error_final: float | None = _key("its error in the last row")
+    attitude_error_max: float | None = _key("greatest angle between the given and exact attitude")
+    axis_error_max: float | None = _key("greatest angle between the figure axes")
+    theta_error_max: float | None = _key("greatest difference of the tilt")
+    phi_error_max: float | None = _key("greatest difference of the spin, in (-pi, pi]")
+    psi_error_max: float | None = _key("greatest difference of the precession, in (-pi, pi]")
+    rates_error_max: float | None = _key("greatest error of the angular velocity, over its size")
+    theta_drift: float | None = _key("growth of the tilt's difference per unit of time, fitted")
+    phi_drift: float | None = _key("the same of the spin")
+    psi_drift: float | None = _key("the same of the precession")
+    norm_error: float | None = _key(
+        "greatest distance from 1: of the norm of a quaternion or axis, of the matrix R R^T, or "
+        "of the mass centre's distance divided by s"
+    )
+    energy_drift: float | None = _key("greatest change of energy, over its size at the start")
+    Lz_drift: float | None = _key("greatest change of the vertical angular momentum, likewise")
+    lost_at: float | None = _key("time of the first row that is not finite")
+    order: float | None = _key("order of convergence of all files (--step-sizes)")
+    cause: str | None = _key("the most likely cause of the error")
+    cause_error: float | None = _key("greatest error with this cause corrected")
+
+    error_start: float = field(default=0.0, compare=False)
+    """Error of the first row, or of its rates."""
+    t: Array = field(default_factory=lambda: np.empty(0), compare=False)
+    """Times of the rows."""
+    error: Array = field(default_factory=lambda: np.empty(0), compare=False)
+    """Errors of the rows; NaN where the trajectory is lost."""
+
+    def record(self) -> dict[str, Any]:
+        """Return the comparison by key."""
+        return {name: getattr(self, name) for name in COMPARISON_KEYS}
+
+    def plot(self, figure: Figure | None = None) -> Figure:
+        """Draw the error over time, on a figure of matplotlib or a new one, and return it."""
+        from ..plot.reports import draw_errors, new_figure  # start-up: matplotlib
+
+        return draw_errors([self], LIMIT, figure=figure or new_figure())
+
+    def __repr__(self) -> str:
+        return f"<Comparison: {self.verdict}, error_max = {self.error_max}, {self.rows} rows>"
+
+
+COMPARISON_KEYS: dict[str, str] = {
+    x.name: x.metadata["meaning"] for x in fields(Comparison) if "meaning" in x.metadata
+}
+"""The keys of a record with their meanings."""
+
+
+def compare(
+    top: Top | Motion,
+    t: ArrayLike,
+    *,
+    quaternion_order: str = "wxyz",
+    euler_sequence: str = "xyz",
+    rates_frame: str = "body",
+    align: Sequence[str] = (),
+    max_error: float = LIMIT,
+    **arrays: ArrayLike | None,
+) -> Comparison:
+    """Compare a trajectory of n rows, at the times t, with the exact motion of a top.
+
+    Pass any of the following arrays by name.  The attitude: `quaternion` (n, 4) from body to space,
+    `matrix` (n, 3, 3) or (n, 9), or a rotation vector `rotvec` (n, 3).  Angles: `theta`, `phi`,
+    `psi` (n,), or `euler` (n, 3), angles about coordinate axes with a sequence in scipy's notation.
+    Directions: the figure axis `axis` (n, 3), or the `position` (n, 3) of the centre of mass from
+    the pivot.  Rates: angular velocity `rates` (n, 3) in the frame of the `body` or of `space`, or
+    `angle_rates` (n, 3), the rates of theta, phi, psi.
+
+    Angles are in radians; a masked element is a missing number.  `align` changes the trajectory
+    first, as in `lagtop compare`.  A trajectory is fine up to `max_error` radians.
+
+    Raises LagtopError for a bad argument, and for times that are not finite or not monotonic.
+
+    >>> motion, t = solve(Top()), np.linspace(0, 1, 50)
+    >>> found = compare(motion, t, theta=motion.angles(t).theta + 1e-4)
+    >>> found.verdict, f"{found.error_max:.0e}", found.record()["rows"]
+    ('fine', '1e-04', 50)
+    >>> figure, keys = found.plot(), found.to_dict().keys()
+    """
+    check_type("top", top, Top, Motion)
+    given = {key: x for key, x in arrays.items() if x is not None}
+    if not given:
+        raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
+    check_names("arrays", [*given], [x for x in QUANTITIES if x != "t"])
+    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
+    trajectory = Trajectory(quantities_of(t, given), conventions, Alignment.of(align))
+    times = trajectory.given["t"]
+    before, after = times[:-1], times[1:]
+    if not len(times):
+        raise LagtopError("t must have at least one row, got none", "t")
+    if not np.isfinite(times).all() or not ((before < after).all() or (before > after).all()):
+        raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
+    motion = top if isinstance(top, Motion) else solve(top)
+    return compared(motion, [trajectory], max_error)[0][0]
+
+
+@np.errstate(all="ignore")  # rows that are not finite raise no warnings
+def compared(
+    motion: Motion,
+    trajectories: Sequence[Trajectory],
+    limit: float = LIMIT,
+    step_sizes: Sequence[float] | None = None,
+) -> tuple[list[Comparison], Convergence | None]:
+    """Return the comparison of each trajectory, and their convergence if there are step sizes.
+
+    Causes are tried for a trajectory that exceeds the limit, unless the error falls with the step:
+    then the top is right.  Raises LagtopError for bad step sizes, DataError for times that are
+    too late in a file.
+    """
+    if step_sizes is not None and len(step_sizes) != len(trajectories):
+        wanted = f"one number per trajectory ({len(trajectories)})"
+        raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
+    if wrong := [step for step in step_sizes or [] if not step > 0]:
+        raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
+    steps = step_sizes or repeat(None)
+    results = [_measured(motion, x, step) for x, step in zip(trajectories, steps, strict=False)]
+    found = convergence(results) if step_sizes else None
+    for i, (x, trajectory) in enumerate(zip(results, trajectories, strict=True)):
+        verdict, cause = "fine", None
+        if max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit:
+            cause = None if found and found.falls else likely_cause(motion, trajectory, limit)
+            is_known = cause is not None and cause[1] <= limit
+            verdict = "another top" if is_known or (found and not found.falls) else "drifts"
+        verdict = "off from the start" if x.error_start > limit else verdict
+        verdict = "lost" if x.lost_at is not None else verdict
+        name, remaining = cause or (None, None)
+        order = found and found.order
+        results[i] = replace(x, verdict=verdict, order=order, cause=name, cause_error=remaining)
+    return results, found
+
+
+def _measured(motion: Motion, trajectory: Trajectory, step: float | None) -> Comparison:
+    """Return a comparison without its verdict and its cause."""
+    run = trajectory.align.aligned(trajectory.observed(), motion)
+    try:
+        found = differences(motion, run)
+    except LagtopError as wrong:
+        if trajectory.file is None or wrong.key != "t":
+            raise
+        raise DataError(f"{shown_path(trajectory.file)}: {wrong}") from None
+    error, t, known = found["error"], run.t, dict[str, Any]()
+    for name, values in found.items():
+        finite = np.isfinite(values)
+        if finite.any():
+            known[_KEYS.get(name, f"{name}_error_max")] = float(abs(values[finite]).max())
+        if name in ANGLES and finite.sum() > 2:
+            times, angle = t[finite] - t[finite].mean(), np.unwrap(values[finite])
+            if abs(np.diff(angle)).max() <= _SURE:
+                known[f"{name}_drift"] = float(np.polyfit(times, angle, 1)[0])
+    lost = np.flatnonzero(np.isnan(error))
+    return Comparison(
+        file=trajectory.file and utf8_path(trajectory.file),
+        step=step,
+        rows=t.size,
+        compared=next((word for name, word in _COMPARED.items() if name in found), "rates"),
+        error_final=None if np.isnan(error[-1]) else float(error[-1]),
+        lost_at=float(t[lost[0]]) if lost.size else None,
+        error_start=float(max(error[0], found.get("rates", error)[0])),
+        t=t,
+        error=error,
+        **known,
+    )
+
+
+class Convergence(NamedTuple):
+    """The dependence of the error on the step."""
+
+    order: float | None
+    """Fitted exponent; None if there are fewer than two errors to fit."""
+    falls: bool
+    """Whether the error depends on the step, or is a rounding error."""
+    errors: Sequence[float]
+    """Greatest error of each trajectory, up to the time at which the first one loses the phase."""
+
+
+def convergence(results: Sequence[Comparison]) -> Convergence | None:
+    """Return how the errors of trajectories fall with their steps, or None for fewer than two.
+
+    The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
+    rad.  Steps finer than the step of the least error do not count, because rounding grows there.
+    """
+    if len({x.step for x in results}) < 2:
+        return None
+    curves = [
+        (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf))) for x in results
+    ]
+    until = min(t[max(np.searchsorted(error, LOST_PHASE) - 1, 0)] for t, error in curves)
+    errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
+    step, error = np.array(sorted((x.step, y) for x, y in zip(results, errors, strict=True))).T
+    least = error.min()
+    falls = least < ROUNDING or error.max() >= least * (step[-1] / step[0]) ** LEAST_ORDER
+    usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
+    if len({*step[usable]}) < 2:
+        return Convergence(None, bool(falls), errors)
+    slope = np.polyfit(np.log(step[usable]), np.log(error[usable]), 1)[0]
+    return Convergence(float(slope), bool(falls), errors)

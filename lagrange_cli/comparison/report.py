@@ -1,0 +1,102 @@
+"""Trajectories in files, and the report on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ..errors import DataError, LagtopError
+from ..file_bytes import shown_path
+from ..files.observed import Conventions
+from ..files.trajectory import read_trajectory
+from ..output.report import Field, Report, fields_of, short
+from ..output.terminal import one_line
+from ..solver.solve import Motion
+from .compare import COMPARISON_KEYS, LEAST_ORDER, LIMIT, Comparison, Convergence
+from .differences import Alignment, Trajectory
+
+_WRONG_NORM = 1e-6
+_COLUMNS = (
+    Field("file", "file", one_line, is_text=True),
+    Field("step", "step", "{:g}".format),
+    Field("verdict", "verdict", is_text=True),
+    Field("rows", "rows"),
+    Field("error_max", "max error", short),
+    Field("error_final", "at the end", short),
+    Field("energy_drift", "energy", short),
+)
+"""The columns of the table."""
+
+
+def read(
+    path: str,
+    conventions: Conventions,
+    align: Alignment,
+    columns: Sequence[str] | None = None,
+    decimal: str = "",
+) -> Trajectory:
+    """Return the trajectory in a file, or on standard input for `-`.
+
+    `columns` names all columns from the left; `decimal` is the decimal mark.  Raises DataError for
+    a bad or unreadable file.
+    """
+    file = read_trajectory(path, columns, decimal)
+    rows = file.values(radians=conventions.radians)
+    if not len(rows["t"]):
+        raise DataError(f"{file.name}: t must have at least one row")
+    file.check_times(rows["t"][:, 0])
+    trajectory = Trajectory(rows, file.conventions(conventions), align, path)
+    try:
+        trajectory.observed()
+    except LagtopError as error:
+        raise DataError(f"{file.name}: {error}") from None
+    return trajectory
+
+
+def comparison_report(
+    motion: Motion, results: Sequence[Comparison], found: Convergence | None, limit: float = LIMIT
+) -> Report:
+    """Return the report on trajectories."""
+    shown = [x for x in _COLUMNS if any(getattr(row, x.key) is not None for row in results)]
+    conditions = {
+        "scene": motion.top.options(),
+        "regime": motion.regime,
+        "errors": f"radians, those of rates relative; greatest of all rows; fine up to {limit:g}",
+    }
+    lines = [line for x in results for line in _conclusions(x, limit, found)]
+    if found is not None:
+        lines.append(_order(results, found))
+    return Report(conditions, fields_of([*COMPARISON_KEYS], *shown), results, lines)
+
+
+def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iterator[str]:
+    yield f"{sentence(x)}."
+    if x.compared == "attitude" and (x.norm_error or 0.0) > _WRONG_NORM:
+        yield f"The norm of its quaternion or matrix is up to {x.norm_error:.1e} off 1."
+    if x.cause is not None and x.cause_error is not None:
+        words = "Most likely cause" if x.cause_error <= limit else "Partly explained"
+        yield f"{words}: {x.cause}. With that corrected, the error is at most {x.cause_error:.1e}."
+    elif x.verdict not in {"fine", "lost"} and not (found and found.falls):
+        hint = ": check the step with --step-sizes" if x.verdict == "drifts" and not found else ""
+        yield f"None of the known causes explains the error{hint}."
+
+
+def sentence(x: Comparison) -> str:
+    """Return the verdict on a trajectory with its errors."""
+    verdict = f"lost at t = {x.lost_at}" if x.verdict == "lost" else x.verdict
+    unit = "of the rates" if x.compared == "rates" else "rad"
+    errors = [] if x.error_max is None else [f"at most {x.error_max:.1e} {unit} off"]
+    if x.rates_error_max is not None and x.compared != "rates":
+        errors.append(f"its rates by {x.rates_error_max:.1e} (relative)")
+    return ", ".join([f"{one_line(shown_path(x.file or ''))}: {verdict}", *errors])
+
+
+def _order(results: Sequence[Comparison], found: Convergence) -> str:
+    if not found.falls:
+        is_fine = all(x.verdict == "fine" for x in results)
+        why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
+        return f"The error does not fall with the step: {why}."
+    if found.order is None:
+        return "The errors are too small or too large to show an order of convergence."
+    if found.order < LEAST_ORDER:
+        return "The error depends on the step, but shows no order: give runs of one method."
+    return f"The error falls with the step; the order of convergence is {found.order:.2f}."

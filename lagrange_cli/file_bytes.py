@@ -1,0 +1,108 @@
+"""Input files, or standard input for `-`: their names, bytes and text.
+
+Every error in reading an input file is a DataError, even if the file does not exist.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from io import BytesIO
+from typing import Any
+
+from .errors import CannotWriteError, DataError, LagtopError
+
+LARGEST_FILE = 1 << 30
+"""Most bytes of an input file after decompression, because files are held in memory."""
+_AT_ONCE = 1 << 20
+_GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
+
+
+def read_bytes(path: str, most: int = LARGEST_FILE) -> bytes:
+    """Return the contents of a file, or of standard input for `-`; gzip is decompressed.
+
+    Raises DataError for a file that cannot be read, or that has more than `most` bytes.
+    """
+    try:
+        with _opened(path) as file:
+            content = _read_whole(file, most)
+        if content[:2] == _GZIP:
+            import gzip  # for few files only, like zlib
+            import zlib
+
+            try:
+                with gzip.open(BytesIO(content)) as file:
+                    content = _read_whole(file, most)
+            except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+                raise OSError(f"not a gzip file: {error}") from None
+    except OSError as error:
+        raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
+    return content
+
+
+@contextmanager
+def _opened(path: str) -> Iterator[Any]:
+    """Open a file for reading bytes.  Standard input waits for all of its bytes."""
+    if path != "-":
+        with open(path, "rb") as file:
+            yield file
+        return
+    if sys.stdin is None:
+        raise OSError("it is closed: give a file in place of -")
+    with suppress(OSError):  # stand-ins of a test have no descriptor
+        os.set_blocking(sys.stdin.fileno(), True)
+    yield sys.stdin.buffer
+
+
+def _read_whole(file: Any, most: int) -> bytes:
+    """Return the bytes of a file.  Raises OSError for more than `most` of them."""
+    content = bytearray()
+    while chunk := file.read(_AT_ONCE):
+        content += chunk
+        if len(content) > most:
+            raise OSError(f"it must have at most {most} bytes, has more")
+    return bytes(content)
+
+
+def decoded(content: bytes, name: str) -> str:
+    r"""Return UTF-8 text, or marked UTF-16 text, with `\n` as the only line end.
+
+    Raises DataError for other bytes, with their line.
+    """
+    try:
+        text = content.decode("utf-16" if content[:2] in _UTF16 else "utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        wrong = "the text must be UTF-8 or UTF-16: save the file as UTF-8"
+        raise DataError(f"{name}, line {line}: {wrong}") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+
+
+def utf8_path(path: str) -> str:
+    """Return the name of a file, with bytes that are not UTF-8 escaped."""
+    return path.encode("utf-8", "backslashreplace").decode()
+
+
+def shown_path(path: str) -> str:
+    """Return the name of a file for messages."""
+    return "standard input" if path == "-" else utf8_path(path) or "''"
+
+
+def digest_of(path: str) -> str:
+    """Return the SHA-256 digest of a file.  Raises LagtopError for standard input."""
+    from hashlib import sha256  # for sweeps in parts only
+
+    if path == "-":
+        raise LagtopError("--parts needs a file of tops that can be read again, got -")
+    return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
+
+
+@contextmanager
+def temporary_files() -> Iterator[None]:
+    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
+    try:
+        yield
+    except OSError as error:
+        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None

@@ -1,0 +1,1 @@
+"""Input files of many rows: text tables, trajectories by other programs, files of tops."""

@@ -1,0 +1,240 @@
+"""The columns of a trajectory by name: their quantities, and the conventions that names imply.
+
+To add a name or a quantity, add a line to a table.  The help of `lagtop compare` and the table in
+the README of `compare` are generated from them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..arithmetic.text import quoted
+from ..errors import LagtopError
+from ..names import ANGLES, suggestion
+from ..top.inputs import declared
+from .headings import name_and_unit
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+SKIPPED = "_"
+"""The name of an ignored column."""
+
+
+class Quantity(NamedTuple):
+    """A quantity that columns of a trajectory may hold."""
+
+    meaning: str
+    shown: str
+    """Examples of names, for help texts."""
+    unit: str
+    """`angle`, `time` or `rad/time`, which are converted; or the only unit, empty for none."""
+    spellings: Sequence[tuple[Sequence[str], str]]
+    """Plain names of its parts in each spelling, and a convention that they imply, if any."""
+
+    @property
+    def size(self) -> int:
+        """The number of columns."""
+        return len(self.spellings[0][0])
+
+
+class FoundQuantity(NamedTuple):
+    """A quantity that was found in a trajectory."""
+
+    columns: Sequence[int]
+    """The indices of the columns of its parts."""
+    says: str = ""
+    unit: str | None = None
+    """The unit in its headings."""
+    factor: Fraction | None = None
+    """The factor that converts its numbers to the units in use, if any."""
+
+
+_QUANTITIES = """
+t | time | time | t, time, timestamp
+quaternion | | quaternion from body to space
+    | quaternion_w ..., qw qx qy qz; by number: quaternion_0 ..., q0 ...
+matrix | | rotation matrix from body to space, row by row
+    | matrix_0 ..., r11 r12 ... r33, R00 ... R22
+theta | angle | tilt | theta, theta_deg, theta_rad, θ, tilt; elevation: 90 degrees minus the tilt
+phi | angle | spin | phi, phi_deg, phi_rad, φ, spin
+psi | angle | precession | psi, psi_deg, psi_rad, ψ, precession
+euler | angle | three angles of turns about coordinate axes | euler_0 ..., roll pitch yaw
+rotvec | rad | rotation vector from body to space, in radians | rotvec_x ..., rv0 rv1 rv2
+axis | | figure axis in space | axis_x axis_y axis_z
+position | m | mass centre in space, from the pivot; read if nothing above is given
+    | x y z, com_x ..., tx ty tz
+rates | rad/time | angular velocity in radians per unit of time
+    | p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz
+angle_rates | rad/time | rates of tilt, spin and precession in radians per unit of time
+    | thetadot phidot psidot
+"""
+"""The name of each quantity, its unit, its meaning, and examples of columns."""
+
+_SPELLINGS = """
+t | t time timestamp times simtime xvalue | |
+quaternion | quaternion quat q orientation attitude xquat rot rotation | w x y z | wxyz
+quaternion | | w x y z | wxyz
+quaternion | quaternion quat q orientation attitude | 0 1 2 3 |
+quaternion | qpos u | 3 4 5 6 | wxyz
+quaternion | bodyq | 3 4 5 6 | xyzw
+quaternion | qpos xquat ep eulerparameters | 0 1 2 3 | wxyz
+matrix | matrix rotationmatrix rotation xmat rot r m
+    | 0 1 2 3 4 5 6 7 8; 11 12 13 21 22 23 31 32 33; 00 01 02 10 11 12 20 21 22;
+    xx xy xz yx yy yz zx zy zz |
+theta | theta tilt | |
+theta | elevation | | elevation
+phi | phi spin | |
+psi | psi precession | |
+euler | euler rpy | 0 1 2 |
+euler | | roll pitch yaw | xyz
+euler | rotxyz | 0 1 2 | XYZ
+rotvec | rotvec rotationvector rv | x y z; 0 1 2 |
+axis | axis figureaxis director | x y z; 0 1 2 |
+position | position com pos p t | x y z; 0 1 2 |
+position | | x y z |
+rates | | p q r | body
+rates | omega w angularvelocity gyro rates | x y z; 0 1 2 |
+rates | omegabody omegalocal angularvelocitylocal wbody qvel | x y z; 0 1 2 | body
+rates | omegaspace omegaworld omegaglobal wspace | x y z; 0 1 2 | space
+angle_rates | | thetadot phidot psidot |
+angle_rates | | dtheta dphi dpsi |
+angle_rates | anglerates | 0 1 2 |
+"""
+"""The quantity of some columns, possible prefixes and endings, and the convention they imply.
+
+The plain name of a column is a prefix followed by an ending: `qw` for the prefix q, the ending w.
+"""
+
+
+def _spellings_of(key: str) -> list[tuple[Sequence[str], str]]:
+    """Return the declared spellings of a quantity, one for each prefix and set of endings."""
+    return [
+        ([prefix + ending for ending in some.split() or [""]], says)
+        for quantity, prefixes, endings, says in declared(_SPELLINGS)
+        if quantity == key
+        for some in endings.split(";")
+        for prefix in prefixes.split() or [""]
+    ]
+
+
+QUANTITIES = {
+    key: Quantity(meaning, shown, unit, _spellings_of(key))
+    for key, unit, meaning, shown in declared(_QUANTITIES)
+}
+"""The quantities by name, in the order of preference for the attitude."""
+
+_BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITIES.items()}
+
+_NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
+"""Units that mean those of the scene, as in a drawn table."""
+
+
+def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
+    """Return the quantities of some columns; a column belongs to the first quantity that fits."""
+    plain = [plain_name(name) for name in names]
+    words = {word: i for i, (word, _) in reversed([*enumerate(plain)])}
+    found: dict[str, FoundQuantity] = {}
+    for key, quantity in QUANTITIES.items():
+        for spelling, says in quantity.spellings:
+            if key not in found and all(name in words for name in spelling):
+                columns = [words.pop(name) for name in spelling]
+                found[key] = FoundQuantity(columns, says, plain[columns[0]][1])
+    return found
+
+
+def known_quantities(names: Sequence[str]) -> int:
+    """Return the number of quantities that some headings name; 0 without a time."""
+    found = quantities_in(names)
+    return len(found) if "t" in found else 0
+
+
+def named_twice(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> tuple[str, str] | None:
+    """Return two names of the same part of a quantity, or of the same angle, or None."""
+    plain = [plain_name(name)[0] for name in names]
+    for key, quantity in found.items():
+        angle = {x[0] for x, _ in QUANTITIES[key].spellings} if key in ANGLES else set()
+        for i in quantity.columns:
+            for other, word in enumerate(plain):
+                if other != i and word in {plain[i], *angle}:
+                    return names[i], names[other]
+    return None
+
+
+def plain_name(name: str) -> tuple[str, str | None]:
+    """Return a name in lower-case letters and digits only, and its unit.
+
+    The name of an angle may end in its unit, as in `theta_deg`.  Only the last two parts of the
+    path of a ROS message count, as in `/imu/orientation/x`.
+    """
+    text, unit = name_and_unit(name)
+    text = text.lower()
+    if text.startswith("/"):
+        text = "/".join(text.split("/")[-2:])
+    match = re.fullmatch(r"(.+?)[\s_.]*(deg|rad)(?:rees|ians)?", text)
+    if not unit and match and not match[2].startswith(match[1]):
+        text, unit = match[1], match[2]
+    return re.sub(r"[^a-z0-9]", "", text), unit or None
+
+
+def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
+    """Return a quantity with the factor that converts it, to s, m, rad/s, rad or degrees.
+
+    `names` are those of all columns.  Raises LagtopError for a unit that the quantity cannot have,
+    and for parts in different units.
+    """
+    named = [names[i] for i in found.columns]
+    if len({plain_name(part)[1] for part in named}) > 1:
+        shown = " and ".join(map(repr, named[:2]))
+        raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
+    own, unit = QUANTITIES[key].unit, found.unit
+    if unit in {*_NO_UNITS, own}:
+        return found._replace(unit=None)
+    if own == "angle" and unit in {"deg", "rad"}:
+        return found
+    if not own:
+        raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
+    from ..top.units import factor_of  # for few files only
+
+    into = "rad" if own == "angle" else own
+    return found._replace(unit=into, factor=factor_of(key, str(unit), into))
+
+
+def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -> Array:
+    """Return the numbers of a quantity in known units, all angles in radians.
+
+    Angles without a unit are in degrees, or else in `radians`.
+    """
+    import numpy as np
+
+    if found.factor is not None:
+        size = float(max(found.factor, 1 / found.factor))
+        values = values * size if found.factor > 1 else values / size  # by a whole number, if it is
+    if QUANTITIES[key].unit != "angle":
+        return values
+    radians = radians if found.unit is None else found.unit == "rad"
+    if found.says == "elevation":  # from the horizontal
+        values = (np.pi / 2 if radians else 90.0) - values
+    return values if radians else np.asarray(np.radians(values))
+
+
+def expanded(names: Sequence[str]) -> list[str]:
+    """Return the names of columns, groups expanded: `quaternion` becomes quaternion_0 and so on.
+
+    Raises LagtopError for an unknown name.
+    """
+    single: list[str] = []
+    for name in names:
+        word, unit = plain_name(name)
+        quantity = _BY_PLAIN_NAME.get(word)
+        size, ending = quantity.size if quantity else 1, f"_{unit}" if unit else ""
+        single += [name] if size == 1 else [f"{word}{i}{ending}" for i in range(size)]
+    used = {single[i] for quantity in quantities_in(single).values() for i in quantity.columns}
+    if unknown := [name for name in single if name not in {*used, SKIPPED}]:
+        wanted = f"columns must be among {', '.join(QUANTITIES)}, all parts of one of them (such as"
+        got = f"{quoted(unknown[0])}{suggestion(unknown[0], QUANTITIES)}"
+        raise LagtopError(f"{wanted} qw,qx,qy,qz) or {SKIPPED}, got {got}", "columns")
+    return single

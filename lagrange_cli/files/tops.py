@@ -1,0 +1,203 @@
+"""Many tops: the combinations of some values, or a file with a top in each row.
+
+A file has a table with headings, or JSON objects.  A row that cannot be read becomes an error of
+its own and does not affect other rows.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.text import quoted
+from ..errors import DataError, LagtopError
+from ..file_bytes import read_bytes, shown_path
+from ..names import repeated
+from ..top.given import Given, converted, gather
+from ..top.inputs import TILT, checked_double, one_of_each, overridden
+from ..top.ranges import MOST_POINTS, Points
+from ..top.top import INPUTS
+from ..top.values import STEADY_WORDS, Value, steady_refused
+from .headings import name_and_unit
+from .text_tables import Table, read_table
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+
+class Tops(NamedTuple):
+    """The inputs of some tops, with the columns, lines and errors of each."""
+
+    size: int
+    """The number of tops."""
+    inputs: Mapping[str, Array | float]
+    """For each input an array, or one number for all tops; NaN for a top without the input."""
+    carried: Sequence[Sequence[Any]] = ()
+    """The extra columns, which are copied to the output."""
+    lines: Sequence[int] | None = None
+    """The line number of each top, if the tops come from a file."""
+    errors: Mapping[int, str] = {}
+    """Messages of the errors found so far, by row."""
+
+
+class Product(NamedTuple):
+    """Combinations of the values of several inputs; the last input varies fastest."""
+
+    axes: Mapping[str, Points]
+    """The values of each input, by its name."""
+    first: int = 0
+    """The number of the first combination."""
+    stop: int | None = None
+    """One more than the number of the last combination; None for all combinations."""
+
+    @property
+    def size(self) -> int:
+        """The number of combinations.  Raises LagtopError for more than 1e9 of them."""
+        stop = prod(x.count for x in self.axes.values()) if self.stop is None else self.stop
+        if stop > MOST_POINTS:
+            raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {stop:.4g}")
+        return stop - self.first
+
+    def blocks(self, size: int) -> Iterator[Product]:
+        """Yield all combinations, `size` at a time."""
+        for first in range(0, self.size, size):
+            yield Product(self.axes, first, min(first + size, self.size))
+
+    def arrays(self, shared: Mapping[str, float]) -> Tops:
+        """Return the inputs of the combinations; `shared` holds those that do not vary."""
+        numbers = np.arange(self.first, self.first + self.size)
+        _, *places = np.unravel_index(
+            numbers, (MOST_POINTS, *(x.count for x in self.axes.values()))
+        )
+        found = {name: x.at(i) for (name, x), i in zip(self.axes.items(), places, strict=True)}
+        return Tops(self.size, {**shared, **found})
+
+
+class TopsFile(NamedTuple):
+    """A file of tops, or a block of its rows, whose numbers have not been read yet."""
+
+    columns: Sequence[str]
+    """The keys of inputs, and the other headings as they are written."""
+    carried: Sequence[str]
+    """The extra columns, which are copied to the output, in their order."""
+    units: Mapping[str, Value]
+    """The value 1 in the unit of its heading, for each column of an input, without conversion."""
+    factors: Mapping[str, Fraction]
+    """The conversion factor of each column whose heading has a unit."""
+    table: Table
+
+    def shared(self, inputs: Mapping[str, Any], scene: str | None) -> Given:
+        """Return the inputs given in addition to the file.
+
+        Raises DataError for a heading that lacks a unit, and the errors of `gather`.
+        """
+        try:
+            return gather(inputs, scene, varying=self.columns, others=self.units)
+        except LagtopError as error:
+            if error.key in self.units and error.key not in inputs:
+                raise DataError(f"{self.table.name}, heading {error.key}: {error}") from None
+            raise
+
+    @property
+    def size(self) -> int:
+        """The number of tops."""
+        return len(self.table.rows)
+
+    def blocks(self, size: int) -> Iterator[TopsFile]:
+        """Yield the file in blocks of `size` rows, which any process can read."""
+        for first in range(0, self.size, size):
+            yield self._replace(table=self.table.part(slice(first, first + size)))
+
+    def arrays(self, shared: Mapping[str, float]) -> Tops:
+        """Return the inputs of the tops; `shared` inputs are the defaults of rows without error."""
+        found, carried, errors = list[dict[str, float]](), list[list[Any]](), dict[int, str]()
+        for row in range(self.size):
+            values, inputs = dict[str, Any](), dict[str, float]()
+            try:
+                cells = self.table.cells(row)
+                values = dict(zip(self.columns, cells, strict=False))
+                self.table.check(cells)
+                named = [name for name in INPUTS if values.get(name) is not None]
+                given = {name: self._double(name, values[name]) for name in named}
+                one_of_each(given)
+                inputs = overridden(shared, given)
+            except LagtopError as error:
+                errors[row] = str(error)
+            found.append(inputs)
+            carried.append([values.get(name) for name in self.carried])
+        arrays = {name: np.array([x.get(name, np.nan) for x in found]) for name in INPUTS}
+        return Tops(self.size, arrays, [*zip(*carried, strict=True)], self.table.lines, errors)
+
+    def _double(self, name: str, cell: Any) -> float:
+        """Return the input in a cell.  Raises LagtopError."""
+        try:
+            number = self.table.number(cell)
+        except LagtopError as error:
+            wrong = steady_refused(cell) if cell in STEADY_WORDS else str(error)
+            if isinstance(cell, str) and re.search(r"\d\s*(\(\d|±|\+/?-)", cell):
+                wrong = f"must have no uncertainty, got {quoted(cell)}: loop over solve"
+            raise LagtopError(f"{name} {wrong}") from None
+        return checked_double(name, number * self.factors.get(name, 1))
+
+
+def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFile:
+    """Return a file of tops, or standard input for `-`.
+
+    Columns named in `computed` are neither read nor copied.  `decimal` is a point or a comma, or
+    empty if the file decides.  Raises DataError for a file that cannot be read, or that has no
+    headings of inputs.
+    """
+    table = read_table(read_bytes(path), shown_path(path), _known_inputs, decimal)
+    name, headings = table.name, table.headings or []
+    columns, units, factors = list[str](), dict[str, Value](), dict[str, Fraction]()
+    for heading in headings:
+        column, unit = _column_of(heading)
+        if unit and column != TILT and column.startswith(TILT):
+            raise DataError(f"{name}: the column {column} must be called {TILT} [{unit}]")
+        if column in INPUTS or unit:  # a tilt needs its unit in the name or in the heading
+            units[column] = Value(Fraction(1), unit)
+            try:
+                ((column, one),) = converted({column: units[column]}).items()
+            except LagtopError as error:
+                raise DataError(f"{name}, heading {heading}: {error}") from None
+            factors[column] = one.number
+        columns.append(column)
+    carried = [x for x in columns if x not in factors and x not in computed]
+    _check_spelling(carried, factors.keys(), name)
+    if (twice := repeated(columns)) is not None:
+        raise DataError(f"{name} must name each column once, got {twice!r} twice")
+    if not factors:
+        wanted = f"must begin with a header that names inputs ({' '.join(INPUTS)})"
+        raise DataError(f"{name} {wanted}, got {quoted(','.join(headings))}")
+    return TopsFile(columns, carried, units, factors, table)
+
+
+def _column_of(heading: str) -> tuple[str, str]:
+    """Return the name of a column and, for an input, its unit."""
+    name, unit = name_and_unit(heading)
+    return (name, unit) if name in {*INPUTS, TILT} else (heading, "")
+
+
+def _known_inputs(headings: Sequence[str]) -> int:
+    """Return the number of inputs that some headings name."""
+    return sum(_column_of(x)[0] in {*INPUTS, TILT} for x in headings)
+
+
+def _check_spelling(carried: Sequence[str], named: Collection[str], name: str) -> None:
+    """Raise DataError for an unread column that looks like an input missing from `named`."""
+    inputs = {_plain(known): known for known in reversed(INPUTS) if known not in named}
+    if not any(x.startswith(TILT) for x in named):
+        inputs |= dict.fromkeys(("theta", "tilt", "elevation"), "theta0_deg")
+    for column in carried:
+        if known := inputs.get(_plain(column)):
+            raise DataError(f"{name}: the column {column} must be spelt {known}")
+
+
+def _plain(column: str) -> str:
+    """Return a name without easily mistaken parts: case, underscores, the 0 of theta0, the unit."""
+    return re.sub("_|0|deg$|rad$", "", name_and_unit(column)[0].lower()) or column

@@ -1,1 +1,0 @@
-"""The inverse problem: the top behind a recording."""

@@ -1,1 +1,0 @@
-"""User input: tops, scene files, units, ranges, tables of text and trajectories."""

@@ -1,0 +1,327 @@
+"""What is given to a fit: measured angles, an axis or an attitude, and known inputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arithmetic.text import quoted
+from ..arithmetic.types import Array, Mask
+from ..errors import DataError, LagtopError
+from ..files import rotations
+from ..files.observed import Conventions, Quantities, angles_in, observe, quantities_of, rows_of
+from ..files.rotations import within_half_turn
+from ..files.trajectory import read_trajectory
+from ..names import ANGLES, check_names
+from ..top.inputs import checked_double
+from ..top.top import Top
+
+CHANNELS = {
+    "angles": ANGLES,
+    "axis": ("theta", "across"),
+    "attitude": ("theta", "across", "along"),
+}
+"""Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
+about the axis."""
+Known = Mapping[str, tuple[float, float]]
+"""Known inputs by key, theta0 in radians, with standard deviations, which may be 0."""
+LEAST_ROWS = 12
+_BEYOND = 0.2
+"""Largest tilt beyond a pole that counts as noise, in radians."""
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The measured motion of one top; missing numbers are NaN."""
+
+    name: str
+    """The word of these rows in the column of --by, or the number of a window, or empty."""
+    t: Array
+    """Times since the first row, in ascending order."""
+    t_start: float
+    kind: str
+    """A key of CHANNELS."""
+    angles: Mapping[str, Array]
+    """The known angles among theta, phi and psi in radians, up to whole turns."""
+    sigma: Mapping[str, float]
+    """Standard deviations in radians by channel; empty if they are not given."""
+    position: Array | None = None
+    """The marker in space, shape (n, 3), if the axis is known from its position."""
+    notes: tuple[str, ...] = ()
+    """How the data were interpreted."""
+
+    @property
+    def channels(self) -> list[str]:
+        """The channels that are compared with a motion."""
+        return [x for x in CHANNELS[self.kind] if x in self.angles or self.kind != "angles"]
+
+    @property
+    def present(self) -> Mask:
+        """Whether a number is present, shape (channels, times)."""
+        names = [x if self.kind == "angles" else "theta" for x in self.channels]
+        return np.stack([np.isfinite(self.angles[name]) for name in names])
+
+    @property
+    def frame(self) -> float:
+        """The usual time between two rows."""
+        steps = np.diff(self.t)
+        return float(np.median(steps[steps > 0]))
+
+    @property
+    def middle(self) -> float:
+        """The time of the middle."""
+        return self.t_start + float(self.t[-1]) / 2
+
+    def named(self, text: str) -> str:
+        """Return a text on this recording, after its name if it has one."""
+        return f"{self.name}: {text}" if self.name else text
+
+    @property
+    def mirrored(self) -> Recording:
+        """The recording with psi counted in the other direction."""
+        angles = {name: -x if name == "psi" else x for name, x in self.angles.items()}
+        note = "psi counts in the other direction: its sign was changed"
+        return replace(self, angles=angles, notes=(note,))
+
+    @property
+    def exchanged(self) -> Recording:
+        """The recording with phi and psi exchanged, as most books name them."""
+        names = {"theta": "theta", "phi": "psi", "psi": "phi"}
+        angles = {names[x]: y for x, y in self.angles.items()}
+        sigma = {names[x]: y for x, y in self.sigma.items()}
+        return replace(self, angles=angles, sigma=sigma)
+
+    def residuals(self, theta: Array, phi: Array, psi: Array) -> Array:
+        """Return recording minus motion in radians, shape (..., channels, times).
+
+        The angles of one motion have the shape (times,), those of many (tops, times).
+        """
+        motion = {"theta": theta, "phi": phi, "psi": psi}
+        off = {x: within_half_turn(seen - motion[x]) for x, seen in self.angles.items()}
+        if self.kind == "angles":
+            return np.stack([off[name] for name in self.channels], axis=-2)
+        sine, cosine = np.sin(self.angles["theta"]), np.cos(self.angles["theta"])
+        along_meridian = sine * np.cos(theta) * np.cos(off["psi"])
+        found = [along_meridian - cosine * np.sin(theta), sine * np.sin(off["psi"])]
+        if self.kind == "attitude":
+            found.append(within_half_turn(self.angles["phi"] - phi + off["psi"] * np.cos(theta)))
+        return np.stack(found, axis=-2)
+
+    def part(self, rows: Any, name: str = "") -> Recording:
+        """Return some rows, in this order, with times since the first of them."""
+        position = None if self.position is None else self.position[rows]
+        t, angles = self.t[rows], rows_of(self.angles, rows)
+        start = self.t_start + float(t[0])
+        return replace(self, name=name, t=t - t[0], t_start=start, angles=angles, position=position)
+
+    def windows(self, count: int) -> list[Recording]:
+        """Return the recording in equal windows of time.  Raises LagtopError for a bad count."""
+        if count < 2:
+            raise LagtopError(f"window must be 2 windows or more, got {count}", "window")
+        number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
+        rows = [np.flatnonzero(number == i) for i in range(count)]
+        if (least := min(x.size for x in rows)) < LEAST_ROWS:
+            text = f"window must hold {LEAST_ROWS} rows or more, got {least}: use fewer windows"
+            raise LagtopError(text, "window")
+        return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]
+
+
+def read_recordings(
+    path: str,
+    columns: Sequence[str] | None = None,
+    decimal: str = "",
+    by: str | None = None,
+    **reading: Any,
+) -> list[Recording]:
+    """Return the recordings of a file, by the words of the column `by`, as they begin.
+
+    The decimal mark may be left to the file.  `reading` are the other arguments of `recording_of`.
+    Raises LagtopError for a file that cannot be read, DataError for one that holds no recording.
+    """
+    trajectory = read_trajectory(path, columns, decimal)
+    conventions = reading["conventions"]
+    name, given = trajectory.name, trajectory.values(radians=conventions.radians)
+    reading["conventions"] = trajectory.conventions(conventions)
+    if by is None:
+        return [recording_of(name, given, **reading)]
+    if by not in trajectory.names:
+        shown = ", ".join(trajectory.names)[:100]
+        raise LagtopError(f"by must name a column of {name} ({shown}), got {quoted(by)}", "by")
+    words = np.array(trajectory.words(by))
+    found = []
+    for word in dict.fromkeys(words.tolist()):
+        rows = rows_of(given, np.flatnonzero(words == word))
+        one = recording_of(f"{name}, {by} {word}", rows, **reading)
+        found.append(replace(one, name=word))
+    return found
+
+
+def recording_from(
+    t: ArrayLike,
+    *,
+    sigma: Mapping[str, float] | float | None = None,
+    **arrays: ArrayLike | None,
+) -> Recording:
+    """Return the recording in the arguments of `fit`.  Raises LagtopError, DataError."""
+    given = {name: x for name, x in arrays.items() if x is not None}
+    if len(given) != max(sum(name in ANGLES for name in given), 1):
+        shown = ", ".join(given) or "nothing"
+        raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
+    conventions = Conventions("wxyz", radians=True)
+    return recording_of("the recording", quantities_of(t, given), conventions, sigma=sigma)
+
+
+def recording_of(
+    where: str,
+    given: Quantities,
+    conventions: Conventions,
+    *,
+    sigma: Mapping[str, float] | float | None = None,
+    up: str = "z",
+) -> Recording:
+    """Return the recording in some columns, without rows that have no number.
+
+    `sigma` are standard deviations in radians: one for all channels, or by channel.  The axis `up`
+    of space points upwards in the file.  Raises LagtopError, DataError for a bad recording.
+    """
+    t = given["t"][:, 0]
+    _check_times(where, t)
+    kind, found = _angles(given, conventions, up)
+    position = given["position"] if kind == "axis" and "axis" not in given else None
+    if not found:
+        shown = ", ".join(x for x in given if x != "t")
+        raise DataError(
+            f"{where} must have columns for angles, an axis or an attitude, such as theta and "
+            f"psi, x y z, or qw qx qy qz, got {shown}"
+        )
+    angles = {}
+    for name, values in found.items():
+        known = np.isfinite(values)
+        if 0 < known.sum() < 4:
+            raise DataError(f"{where}: {name} must have 4 numbers or more, got {known.sum()}")
+        if known.any():
+            kept = np.where(known, values, np.nan)
+            angles[name] = kept if name == "theta" else within_half_turn(kept)
+    if angles.keys() == {"phi"}:
+        raise DataError(f"{where} must have theta or psi too: phi alone does not determine a top")
+    known = np.any([np.zeros(t.size), *map(np.isfinite, angles.values())], axis=0)
+    if (count := int(known.sum())) < LEAST_ROWS:
+        raise DataError(
+            f"{where} must have {LEAST_ROWS} rows or more with a number, got {count} of {t.size}"
+        )
+    tilts = angles.get("theta", np.zeros(1))
+    if (wrong := tilts[np.abs(tilts - np.pi / 2) > np.pi / 2 + _BEYOND]).size:
+        raise DataError(
+            f"{where}: theta must be between 0 and 180 deg (pi rad), got {np.degrees(wrong[0]):.6g}"
+            " deg"
+        )
+    order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
+    if not 1e-60 < (span := float(t[order[-1]] - t[order[0]])) < 1e60:
+        raise DataError(f"{where}: t must span 1e-60 to 1e+60, got {span:g}")
+    raw = Recording("", t, 0.0, kind, angles, {}, position)
+    return replace(raw, sigma=_sigma(raw, sigma)).part(order)
+
+
+def _check_times(where: str, t: Array) -> None:
+    """Raise DataError for a time that is not finite or turns back."""
+    if not np.isfinite(t).all():
+        raise DataError(f"{where}: t must be finite numbers, got {t[~np.isfinite(t)][0]}")
+    if (back := np.flatnonzero(np.diff(t) < 0)).size and not (np.diff(t) <= 0).all():
+        before, after = t[back[0] : back[0] + 2].tolist()
+        raise DataError(
+            f"{where}: t must not turn back, got {after:g} after {before:g}: if the file holds "
+            "several recordings, name the column that separates them with --by"
+        )
+
+
+def _angles(given: Quantities, conventions: Conventions, up: str) -> tuple[str, dict[str, Array]]:
+    """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
+    alone = angles_in(given)
+    if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
+        if up != "z":
+            raise LagtopError("align needs an axis or an attitude, got angles", "align")
+        return "angles", alone
+    seen = observe(given, conventions)
+    if up != "z":
+        seen = seen.turned(rotations.to_z(up), rotations.IDENTITY)
+    if seen.quaternion is not None:
+        return "attitude", rotations.angles_of(seen.quaternion)
+    if seen.axis is not None:
+        return "axis", rotations.angles_of_axis(seen.axis)
+    return "angles", {}
+
+
+def _sigma(raw: Recording, sigma: Mapping[str, float] | float | None) -> dict[str, float]:
+    """Return standard deviations by channel.  Raises LagtopError unless all or none are given."""
+    given: Any = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, sigma)
+    found = {name: checked_double("sigma", x) for name, x in given.items() if x is not None}
+    if found and found.keys() != {*raw.channels}:
+        wanted = f"sigma must be given for all of {', '.join(raw.channels)}"
+        raise LagtopError(f"{wanted}, got {', '.join(map(str, found))}", "sigma")
+    if wrong := [x for x in found.values() if not 0 < x < np.inf]:
+        raise LagtopError(f"sigma must be > 0, got {wrong[0]:g}", "sigma")
+    return found
+
+
+def turned_up(recording: Recording, axis: str) -> Recording:
+    """Return a recording of an axis or attitude in a frame whose z axis is another one of space."""
+    theta, psi, turn = recording.angles["theta"], recording.angles["psi"], rotations.to_z(axis)
+    phi = recording.angles.get("phi", np.zeros_like(theta))
+    found = rotations.angles_of(rotations.product(turn, rotations.of_angles(theta, phi, psi)))
+    return replace(recording, angles={name: found[name] for name in recording.angles})
+
+
+def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3) -> Array | None:
+    """Return the pivot in the coordinates of the marker, if these do not begin at the pivot.
+
+    The distance of the marker from its origin grows by d.e if the origin is off by d, with the
+    direction e of the marker.  Returns None if d is below `sure` standard deviations, or if the
+    distance varies by less than `least` of itself.
+    """
+    if recording.position is None:
+        return None
+    distance = np.linalg.norm(recording.position, axis=1)
+    direction = recording.position / distance[:, np.newaxis]
+    basis = np.column_stack([np.ones(distance.size), direction - direction.mean(axis=0)])
+    offset: Array = np.linalg.lstsq(basis, distance, rcond=1e-3)[0][1:]
+    explained = basis[:, 1:] @ offset
+    rest = distance - distance.mean() - explained
+    noise = float(rest @ rest) / max(distance.size - 4, 1)
+    gain = float(explained @ explained) / (noise + 1e-30)
+    hidden = gain < sure**2 + 3 or np.ptp(explained) < least * distance.mean()
+    return None if hidden else offset
+
+
+def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
+    """Return known inputs from inputs of `Top`, and the standard deviations of some.
+
+    A_cm becomes A = A_cm + m s^2.  Raises LagtopError for an input that a fit cannot use.
+    """
+    check_names("known", [*given] or ["m"], [*Top.fields, "A_cm", "phidot0"])
+    known, spread = {name: checked_double(name, x) for name, x in given.items()}, dict(stds)
+    if "phidot0" in known:
+        raise LagtopError("phidot0 is no input of a fit: give r0", "phidot0")
+    for name in ("m", "s", "g", "A", "C", "r0"):
+        if known.get(name) == 0:
+            raise LagtopError(f"{name} must not be 0 in a fit: leave it out", name)
+    if "A_cm" in known:
+        if not {"m", "s"} <= known.keys():
+            raise LagtopError("A_cm must be given with m and s, as A = A_cm + m s^2", "A_cm")
+        m, s = known["m"], known["s"]
+        known["A"] = known.pop("A_cm") + m * s * s
+        parts = [spread.pop("A_cm", 0.0), spread.get("m", 0.0) * s * s]
+        if (std := math.hypot(*parts, spread.get("s", 0.0) * 2 * m * s)) > 0:
+            spread["A"] = std
+    moment = known.get("A", known.get("C", 1.0))
+    Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **known})
+    pairs = {name: (value, spread.get(name, 0.0)) for name, value in known.items()}
+    for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
+        if key in pairs:
+            value, std = pairs.pop(key)
+            pairs["theta0"] = value * unit, std * unit
+    return pairs

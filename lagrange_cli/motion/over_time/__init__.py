@@ -1,1 +1,0 @@
-"""Motion over time: angles and columns at given times."""

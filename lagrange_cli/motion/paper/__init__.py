@@ -1,1 +1,0 @@
-"""Further keys and what else the paper computes."""

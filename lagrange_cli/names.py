@@ -1,0 +1,72 @@
+"""Lists of names: parsing, and checks against the known names."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+from .arithmetic.text import quoted
+from .errors import LagtopError
+
+ANGLES = ("theta", "phi", "psi")
+"""Tilt, spin and precession, in the order used everywhere."""
+_MOST_CHARACTERS, _FIRST = 240, 12
+"""The most characters of a list in a message, and the number of names shown of a longer list."""
+
+
+def split_names(text: str) -> list[str]:
+    """Return the names in a comma-separated text."""
+    return [name.strip() for name in text.split(",")]
+
+
+def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[str]:
+    """Return the names of the argument `key` as a list.
+
+    Raises LagtopError for anything but a sequence of texts, for an empty sequence, and for an
+    unknown or repeated name.  The message suggests the name that was probably meant and lists known
+    names.
+    """
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise LagtopError(f"{key} must be a list of names, got {quoted(names)}", key)
+    known, names = list(known), list(names)
+    wrong = next((name for name in names or [""] if name not in known), None)
+    if wrong is not None:
+        got = f"got {quoted(wrong)}{suggestion(wrong, known)}" if names else "got an empty list"
+        if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
+            raise LagtopError(f"{key} must be among {listed}, {got}", key)
+        first = known.index("regime") if "regime" in known else 0  # the results of a record
+        some = f"{', '.join(known[first:][:_FIRST])} and {len(known) - _FIRST} more"
+        more = ", see lagtop explain" if "T_nutation" in known else ""  # a list of keys
+        raise LagtopError(f"{key} must be among {len(known)} names, {got}: {some}{more}", key)
+    if (twice := repeated(names)) is not None:
+        raise LagtopError(f"{key} must not repeat a name, got {twice!r} twice", key)
+    return names
+
+
+def repeated(names: Iterable[str]) -> str | None:
+    """Return the first repeated name, or None."""
+    return next((name for name, count in Counter(names).items() if count > 1), None)
+
+
+def suggestion(name: object, known: Iterable[str]) -> str:
+    """Return ` (did you mean 'x'?)` with the known names closest to a wrong one, or an empty text.
+
+    A name without its unit of an angle, or with its words in another order, comes first.  Then come
+    names that contain the words of the wrong one, then names that begin with it or are similar.
+    """
+    from difflib import get_close_matches
+
+    known, wrong = list(known), str(name)[:80]
+    same = [x for x in known if wrong in (f"{x}_deg", f"{x}_rad") or _words(x) == _words(wrong)]
+    words = [x for x in known if _words(wrong) <= _words(x)]
+    longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
+    nearest = same[:1] or words[:3] or longer[:1] or get_close_matches(wrong, known, 1)
+    if not nearest:
+        return ""
+    *others, last = map(repr, nearest)
+    return f" (did you mean {', '.join(others)}{' or ' if others else ''}{last}?)"
+
+
+def _words(name: str) -> set[str]:
+    """Return the words of a name; a period is T in the names of keys."""
+    return set(name.lower().replace("period", "t").split("_"))

@@ -1,0 +1,304 @@
+"""Derivatives of the numbers and of the angles of a motion by the inputs of its top.
+
+The record: each input is moved by 2^-200 of its size to either side, and the numbers have 140
+digits or more.  The difference quotient agrees with the derivative to some 60 digits.
+
+The angles: doubles of four neighbours are compared at equal phases of the nutation, so that the
+differences stay small at any time.  The derivatives of the period and of the mean rates, taken from
+the record, give the part that grows with time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from fractions import Fraction
+from functools import cache
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..arithmetic.ball import TooFewDigitsError, UndefinedError, balls, exact_fraction
+from ..arithmetic.numbers import unit_in_radians
+from ..arithmetic.rounding import decided
+from ..errors import LagtopError
+from ..names import ANGLES, check_names
+from ..top.top import Top
+from .record import NUMBER_KEYS
+from .requested import TEXTBOOK
+from .solve import Motion, solve
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]
+"""The keys that have derivatives."""
+NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist beside it"
+"""The reason why a number of a motion has no derivative by some input."""
+
+_STEPS, _DIGITS, _SHARP = 2**200, 140, 30
+_ALIKE, _NEGLIGIBLE = 1e-20, 1e-55
+_STENCILS = {-1: -0.5, 0: 0.0, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}
+_FINE_STENCILS = (
+    {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
+    {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4},
+)
+"""Weights of neighbours in a derivative, by place in steps: central, and at an end of a range."""
+_ANGLE_STEP, _FINE_ANGLE_STEP, _STEEP = 2.0**-14, 2.0**-11, 16.0
+"""Steps for angles, over the range of an input in which motions are alike; the other step is for a
+range of less than 1/16 of the input."""
+_ANGLE_NOISE = 2.0**-38
+"""Rounding errors of derivatives of angles over that range."""
+
+
+class Sensitivities(NamedTuple):
+    """Derivatives of the numbers of a record by the inputs; NaN if one does not exist."""
+
+    top: Top
+    inputs: tuple[str, ...]
+    """The nine inputs; the tilt is in degrees or radians, as given."""
+    derivatives: dict[str, dict[str, float]]
+    """Derivatives by key and input, in the units of both, without keys that the motion lacks."""
+
+
+def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivities:
+    """Return the derivatives of all numbers of the record of a top by all inputs, or of some keys.
+
+    Keys of elementary theory have derivatives if they are named.  Each derivative is the nearest
+    double; below 1e-55 of the number over the input it may be 0.  Angles are in degrees, also in
+    derivatives by `theta0_rad`.  A derivative is one-sided if the input is at the end of its range,
+    such as g = 0, and 0 if the input can have no other value.  It is NaN if the number has a kink
+    or a jump at this top, or does not exist beside it.  Raises LagtopError for an unknown key.
+
+    >>> sensitivities(Top(), ["T_nutation"]).derivatives["T_nutation"]["r0"]
+    -0.0047282954028118425
+    """
+    chosen = check_names("keys", list(NUMBER_KEYS if keys is None else keys), DIFFERENTIABLE)
+    found = Derivatives(solve(top))
+    rows = {
+        key: {name: found.nearest(key, name) for name in found.inputs}
+        for key in DIFFERENTIABLE
+        if key in chosen and found.has(key)
+    }
+    return Sensitivities(top, found.inputs, rows)
+
+
+class Derivatives:
+    """Derivatives of the numbers of one motion by the inputs of its top."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion, self.inputs = motion, inputs_of(motion.top)
+        self.of, self.neighbours = cache(self._of), cache(self._neighbours)
+
+    def has(self, key: str) -> bool:
+        """Return whether the motion has a number."""
+        return decided(key, lambda digits: self.motion.enclosure(key, digits)) is not None
+
+    def nearest(self, key: str, name: str) -> float:
+        """Return the derivative of a number by an input as a double; NaN if there is none."""
+        found = self.of(key, name)
+        return math.nan if found is None else float(found)
+
+    def _neighbours(self, name: str) -> tuple[Fraction, list[Neighbour]]:
+        size = Fraction(size_of(self.motion, name))
+        return size / _STEPS, neighbours(self.motion, name, size / _STEPS, _STENCILS)
+
+    def _of(self, key: str, name: str) -> Fraction | None:
+        """Return the derivative of a number by an input to 30 digits; None if there is none."""
+        step, beside = self.neighbours(name)
+
+        def quotient(digits: int) -> Fraction | None:
+            values = [_value(x.motion, key, digits) for x in beside]
+            if any(x is None for x in values):
+                return None
+            h = balls(digits).convert(step)
+            first, last = ((y - x) / h for x, y in pairwise(values))
+            bent = last - first
+            largest, steepest = max(x.least for x in values), max(first.greatest, last.greatest)
+            scale = (largest or 1) / (h * _STEPS)
+            limit = _ALIKE * (steepest + scale)
+            if not abs(bent) < limit or 4 * h * steepest > largest:
+                # a kink or a jump, unless the number is 0 here and its curvature is constant
+                place = 2 * beside[2].place - beside[1].place
+                beyond = moved(self.motion, name, place * step)
+                more = _value(beyond, key, digits) if beyond else None
+                if more is None:
+                    return None
+                bent = (more - values[2]) / h - last - bent
+            if abs(bent) > limit:
+                return None
+            slope: Any = sum(x * y.weight for x, y in zip(values, beside, strict=True)) / h
+            least = _NEGLIGIBLE * scale * min(float(step * _STEPS), 1.0)
+            if slope.greatest <= least:
+                return Fraction(0)
+            if not slope.is_known_to(_SHARP):
+                raise TooFewDigitsError
+            return exact_fraction(slope.middle.x)
+
+        return decided(f"a derivative of {key}", quotient, _DIGITS) if beside else Fraction(0)
+
+
+def _value(motion: Motion, key: str, digits: int) -> Any:
+    """Return a ball that holds a number; None if the number does not exist."""
+    try:
+        ball = motion.enclosure(key, digits)
+    except UndefinedError:
+        return None
+    return None if ball is None or ball.is_nan else ball
+
+
+def inputs_of(top: Top) -> tuple[str, ...]:
+    """Return the inputs of a top; the tilt is in the unit in use, and a word is no number."""
+    names = top.inputs(radians=top.theta0_deg is None)
+    return tuple(name for name in names if not (name == "psidot0" and top.steady_word))
+
+
+def moved(motion: Motion, name: str, change: Fraction) -> Motion | None:
+    """Return the motion with one input changed, or None if there is no such top."""
+    try:
+        return solve(motion.top.replace(**{name: Fraction(getattr(motion.top, name)) + change}))
+    except LagtopError:
+        return None
+
+
+class Neighbour(NamedTuple):
+    """A motion with one input moved by some steps; its weight in a derivative times the step."""
+
+    place: int
+    motion: Motion
+    weight: float
+
+
+def neighbours(
+    motion: Motion, name: str, step: Fraction, stencils: Sequence[Mapping[int, float]]
+) -> list[Neighbour]:
+    """Return neighbours on both sides or, if the input is at the end of its range, on one.
+
+    The list is empty if the input can have no other value.
+    """
+    central, ahead = stencils
+    for weights, side in ((central, 1), (ahead, 1), (ahead, -1)):
+        places = [side * i for i in weights]
+        motions = [moved(motion, name, i * step) if i else motion for i in places]
+        pairs = zip(places, motions, weights.values(), strict=True)
+        found = [Neighbour(place, x, side * weight) for place, x, weight in pairs if x]
+        if len(found) == len(weights):
+            return found
+    return []
+
+
+def size_of(motion: Motion, name: str) -> float:
+    """Return the size of an input or, for 0, a size that changes the motion."""
+    if value := float(getattr(motion.top, name)):
+        return abs(value)
+    A, C, m, s, g = (float(getattr(motion.top, x)) for x in ("A", "C", "m", "s", "g"))
+    rate = 2 * math.pi / (motion.T_nutation or 1.0)
+    if name in {"g", "s"}:
+        other = m * (s if name == "g" else g)
+        return A * rate * rate / other if other else 1.0
+    if name == "thetadot0":
+        return rate * min(sines(motion).values(), default=1.0)
+    return {"r0": rate * max(1.0, A / C), "psidot0": rate}.get(name, 1.0)
+
+
+def sines(motion: Motion) -> dict[str, float]:
+    """Return the sines of the extreme tilts that are not 0, by key."""
+    tilts = {key: getattr(motion, key) for key in ("theta_min_deg", "theta_max_deg")}
+    return {key: math.sin(math.radians(x)) for key, x in tilts.items() if x and x < 180}
+
+
+class AngleDerivatives:
+    """Derivatives of the angles of one motion over time by some inputs of its top."""
+
+    def __init__(self, motion: Motion, inputs: Sequence[str]) -> None:
+        self.motion, self.inputs, self.record = motion, tuple(inputs), Derivatives(motion)
+        self.period: float | None = motion.T_nutation
+        keys = ("T_nutation", "mean_spin_rate", "mean_precession_rate") if self.period else ()
+        self.slopes = {x: [self.record.nearest(key, x) for key in keys] for x in self.inputs}
+        """Derivatives of the period and of the mean rates of spin and precession, by input."""
+        self.steepness = {x: self._steepness(x) for x in self.inputs}
+        self.noise = {x: _ANGLE_NOISE * steepness for x, steepness in self.steepness.items()}
+        """Sizes of the rounding errors of the derivatives, by input."""
+        self.steps, self.neighbours = {}, {}
+        for x in self.inputs:
+            steep = self.steepness[x] * size_of(motion, x) > _STEEP
+            self.steps[x] = (_FINE_ANGLE_STEP if steep else _ANGLE_STEP) / self.steepness[x]
+            stencils = _FINE_STENCILS if steep else _STENCILS
+            self.neighbours[x] = neighbours(motion, x, Fraction(self.steps[x]), stencils)
+        self.missing = {x for x, slopes in self.slopes.items() if any(map(math.isnan, slopes))}
+        """The inputs by which the angles have no derivative."""
+        if not self.period:  # a neighbour that nutates departs at once
+            nutates = {x: any(y.motion.T_nutation for y in self.neighbours[x]) for x in self.inputs}
+            self.missing = {x for x in self.inputs if nutates[x]}
+
+    def _steepness(self, name: str) -> float:
+        """Return the largest relative change of a size of the motion per unit of an input.
+
+        Next to the separatrix k' is small, and next to a pole the sine of an extreme tilt.
+        """
+        sizes = {"k_prime": self.motion.k_prime, "T_nutation": self.period}
+        sizes |= {key: math.degrees(x) for key, x in sines(self.motion).items()}
+        found = [abs(self.record.nearest(key, name) / x) for key, x in sizes.items() if x]
+        known = [float(x) for x in found if not math.isnan(x)]
+        return max(1 / size_of(self.motion, name), *known, 0.0)
+
+    def at(self, t: Array) -> Array:
+        """Return derivatives of theta, phi and psi at n times, of shape (inputs, 3, n).
+
+        They are NaN after the start if they do not exist.
+        """
+        import numpy as np
+
+        from ..arithmetic.double_double import reduce_phase
+        from ..arithmetic.rounding import pair
+
+        found = np.zeros((len(self.inputs), 3, t.size))
+        if self.period:
+            now = self.motion.table(t, ["thetadot", "phidot", "psidot"])
+            means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
+            exact = self.motion.number("T_nutation", 40)
+            assert exact is not None
+            _, turns = reduce_phase(t, pair(1 / Fraction(exact.value)))
+        for i, name in enumerate(self.inputs):
+            for beside in filter(lambda x: x.weight, self.neighbours[name]):
+                sampler = beside.motion.sampler()
+                if self.period:
+                    values = sampler.waves(turns * beside.motion.T_nutation)
+                else:
+                    values = np.array(sampler.angles(t))
+                values *= beside.weight / self.steps[name]
+                found[i] += values
+            if self.period:
+                by_period, *by_rates = self.slopes[name]
+                for j, (rate, mean) in enumerate(zip(now.values(), means, strict=True)):
+                    grown = (0.0, *by_rates)[j] - (rate - mean) * (by_period / self.period)
+                    found[i, j] += grown * t
+                if self.motion.exact.facts.plane:
+                    found[i, 1:] = 0.0  # they change by half turns only
+        return self._completed(found, t)
+
+    def in_digits(self, t: Array) -> Array:
+        """Return the same as `at` from proved rows, which take some milliseconds per time."""
+        import numpy as np
+
+        from .tables import ProvedTable
+
+        found = np.zeros((len(self.inputs), 3, t.size))
+        for i, name in enumerate(self.inputs):
+            step, beside = self.record.neighbours(name)
+            exact = np.zeros((t.size, 3), dtype=object)
+            for x in beside:
+                table = ProvedTable(x.motion, ANGLES, 90, radians=True)
+                rows = [[Fraction(y.value) for y in table.row(Fraction(z))] for z in t.tolist()]
+                exact = exact + np.array(rows) * (Fraction(x.weight) / step)
+            found[i] = exact.T.astype(float)
+        return self._completed(found, t)
+
+    def _completed(self, found: Array, t: Array) -> Array:
+        """Return derivatives with those at t = 0, and NaN for those that do not exist."""
+        for i, name in enumerate(self.inputs):
+            if name in self.missing:
+                found[i] = math.nan
+            found[i][:, t == 0] = 0.0
+            if name.startswith("theta0"):
+                found[i, 0, t == 0] = unit_in_radians(radians=name == "theta0_rad")
+        return found

@@ -1,0 +1,156 @@
+"""The meaning and the formula of every key and column, for `lagtop explain`.
+
+A formula is declared once, with its key or column, in names of keys: `2*m*g*s/A`.  This module
+prints it in the symbols of the paper, and with the numbers of a motion.  Angles are named without a
+unit, `P where P = ...` defines an abbreviation, and `left = right` is an equation that the key
+satisfies.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from itertools import chain
+from typing import Any, NamedTuple
+
+from ..arithmetic.key import Key
+from ..names import check_names
+from .columns import shown_columns
+from .numbers import record_in_range
+from .quantity import unit_name
+from .record import KEYS, all_keys, shown_keys
+from .solve import Motion
+from .spin_precession import with_limits
+
+_NAME = r"[A-Za-z_]\w*"
+_WORDS = {
+    "pi": "π",
+    "acos": "arccos",
+    "asin": "arcsin",
+    "atan": "arctan",
+    "sqrt": "√",
+    "ellint_F": "F",
+    "ellint_E": "E",
+    "ellint_Pi": "Π",
+    "integral": "∫",
+    "t1": "t₁",
+}
+"""The printed forms of functions and constants."""
+
+
+class Explained(NamedTuple):
+    """A key or a column: its name, its meaning and its formula."""
+
+    name: str
+    kind: str
+    """`record`, `on request` or `column`."""
+    symbol: str
+    meaning: str
+    unit: str
+    equation: str
+    formula: str
+    """The formula in symbols."""
+    text: str
+    """The formula as declared."""
+    numbers: str = ""
+    """The formula with the numbers of a motion; empty without numbers, or if one is undefined."""
+    value: Any = None
+    missing: str = ""
+    """The numbers that the motion does not have, among the value and its formula, and why."""
+
+
+def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[Explained]:
+    """Return all keys and columns; `named` gives the names of units of a system."""
+    of_record = {unit_name(name, radians=radians) for name in KEYS}
+    symbols = _symbols()
+
+    def row(name: str, kind: str, key: Key) -> Explained:
+        shown = key.symbol, key.meaning, key.unit, key.equation, _shown(key.formula, symbols)
+        return Explained(name, kind, *shown, key.formula)
+
+    keys = shown_keys(radians=radians, named=named, requested=True)
+    columns = shown_columns(radians=radians, named=named)
+    return [
+        *(row(name, "record" if name in of_record else "on request", keys[name]) for name in keys),
+        *(row(name, "column", columns[name]) for name in columns),
+    ]
+
+
+def explanations(
+    motion: Motion,
+    names: Sequence[str],
+    *,
+    radians: bool = False,
+    named: Callable[[str], str] = str,
+) -> list[Explained]:
+    """Return some keys and columns, with formulas that show the numbers of a motion.
+
+    Raises LagtopError for an unknown name.
+    """
+    rows = listed(radians=radians, named=named)
+    check_names("KEY", names, list(dict.fromkeys(row.name for row in rows)))
+    facts = motion.exact.facts
+    chosen = [
+        row._replace(text=with_limits(row.text, facts))
+        for name in names
+        for row in rows
+        if row.name == name
+    ]
+    keys = {_bare(name): name for name in all_keys(radians=radians)}
+    parts = [[keys[x] for x in re.findall(_NAME, row.text) if x in keys] for row in chosen]
+    wanted = {*chain(names, *parts)} & {*keys.values()}
+    record, beyond = record_in_range(motion, radians=radians, keys=wanted)
+    if beyond:
+        raise beyond[0]
+    if "psidot0" in record:
+        record["psidot0"] = float(motion.top.psidot0)  # the number of a word such as steady
+    unit = "" if radians else "°"
+    texts = _symbols() | {
+        _bare(name): f"{value:.6g}{unit if name.endswith('_deg') else ''}"
+        for name, value in record.items()
+        if isinstance(value, float)
+    }
+    found = []
+    for row, used in zip(chosen, parts, strict=True):
+        own = [row.name] if row.kind != "column" else []
+        absent = [x for x in dict.fromkeys([*own, *used]) if record[x] is None and x != "remark"]
+        found.append(
+            row._replace(
+                numbers="" if absent or not used else _shown(row.text, texts, "·"),
+                value=record[row.name] if own else None,
+                missing=_reasons(motion, absent),
+            )
+        )
+    return found
+
+
+def _reasons(motion: Motion, absent: Sequence[str]) -> str:
+    """Return the names of numbers that a motion does not have, with the reason of each."""
+    names: dict[str, list[str]] = {}
+    for name in absent:
+        names.setdefault(motion.absence(name), []).append(name)
+    return "; ".join(f"{', '.join(some)}: {why}" for why, some in names.items())
+
+
+def _symbols() -> dict[str, str]:
+    """Return the symbols of names in formulas."""
+    keys = shown_keys(requested=True).items()
+    symbols = {_bare(name): key.symbol for name, key in keys if key.symbol}
+    return symbols | {name: key.symbol for name, key in shown_columns().items()} | _WORDS
+
+
+def _bare(name: str) -> str:
+    """Return the name of a key without its unit."""
+    return name.removesuffix("_deg").removesuffix("_rad")
+
+
+def _shown(formula: str, words: Mapping[str, str], times: str = " ") -> str:
+    """Return a formula with `words` for its names, sums in parentheses, and `times` for `*`."""
+
+    def word(match: re.Match[str]) -> str:
+        text = words.get(match[0], match[0])
+        is_sum = text.startswith("-") or re.search(r" [+-] ", re.sub(r"\(.*?\)", "", text))
+        return f"({text})" if is_sum else text
+
+    text = re.sub(_NAME, word, formula)
+    return text.replace("**2", "²").replace("*", times)

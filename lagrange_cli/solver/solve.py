@@ -1,0 +1,230 @@
+"""`solve(top)`: the motion of one top, whose numbers are computed on first use."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Collection, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..arithmetic.rounding import rounded
+from ..errors import LagtopError, OutOfRangeWarning
+from ..top.top import Top
+from .numbers import Numbers, record_in_range
+from .record import NUMBER_KEYS, all_keys, requested_keys
+from .regime import Regime, exact
+from .spin_precession import Nutating
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
+    from scipy.spatial.transform import Rotation
+
+    from ..arithmetic.types import Array
+    from .notebook import Document
+    from .sampling import Angles
+    from .series import Swing
+
+
+def solve(top: Top) -> Motion:
+    """Return the motion of a top.  Raises LagtopError for an impossible start.
+
+    >>> solve(Top(theta0_deg=30)).T_nutation
+    0.4292501244785477
+    """
+    return Motion(exact(top))
+
+
+class Motion(Numbers):
+    """The motion of one top: the numbers of its record as attributes, and its angles over time.
+
+    Each number is correctly rounded, as proved by an enclosure on first use.  It is None if the
+    regime has no such number.  The attributes are named like the keys of `lagtop solve`: a, b, u1,
+    u2, u3, k, T_nutation, mean_precession_rate ... `record` returns all of them.
+
+    >>> motion = solve(Top(theta0_deg=30))
+    >>> motion.regime, motion.path, motion.remark, motion.phase, motion.swing
+    (<Regime.REGULAR: 'regular'>, 'cusped', None, 0.0, None)
+    >>> motion.numbers()["k"], motion.record(digits=20, keys=["K"]), motion.top.r0
+    (0.7623941363992914, {'K': '1.9298038860786499602'}, 50.0)
+    >>> motion.angles([0.0, 0.1]).theta.shape, motion.axis([0.0, 0.1]).shape
+    ((2,), (2, 3))
+    >>> float(motion.rotation(0.0).magnitude()), list(motion.table(0.1, ["u", "phidot"]))
+    (0.5235987755982988, ['u', 'phidot'])
+    >>> axes, page = motion.plot("cubic"), motion.view()
+    """
+
+    @property
+    def path(self) -> str | None:
+        """Path of the figure axis: `cusped`, `looping` or `wavy`; None if there is no such path."""
+        return self.decide("path", lambda kind: kind.path)
+
+    @property
+    def remark(self) -> str | None:
+        """One line on special properties of the motion, or None."""
+        return self.decide("remark", lambda kind: kind.remark())
+
+    @property
+    def phase(self) -> float | None:
+        """Nutation periods from the nearest highest point of the axis to t = 0: w/2K (4,22).
+
+        The phase is in (-1/2, 1/2], and negative if the axis rises.  It is correctly rounded.  None
+        if the tilt has no period.
+        """
+        if not issubclass(self.kind_class, Nutating):
+            return None
+        from .series import phase_at_start  # start-up: not for a record
+
+        kind: Callable[[int], Any] = self.kind
+        return rounded("phase", lambda digits: phase_at_start(kind(digits)))
+
+    @property
+    def swing(self) -> Swing[float] | None:
+        """The only swing on the separatrix, with its `rate` and its `lowest` point; else None.
+
+        The cosine of the tilt is u = u2 + (1 - u2) tanh^2(rate (t - lowest)).  The rate, in radians
+        per unit of time, and the time `lowest` are correctly rounded.
+        """
+        if self.regime is not Regime.SEPARATRIX:
+            return None
+        from .series import Swing, swing_of  # start-up: not for a record
+
+        kind: Callable[[int], Any] = self.kind
+
+        def number(name: str) -> float:
+            return rounded(name, lambda digits: getattr(swing_of(kind(digits)), name))
+
+        return Swing(number("rate"), number("lowest"))
+
+    def __dir__(self) -> Sequence[str]:
+        """Return the public names: methods, and the keys of the record and on request."""
+        methods = [name for name in vars(Motion) if not name.startswith("_")]
+        return [*methods, "top", "regime", *NUMBER_KEYS, *requested_keys()]
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether `other` is the motion of the same top."""
+        return isinstance(other, Motion) and other.top == self.top
+
+    def __hash__(self) -> int:
+        return hash(self.top)
+
+    def __reduce__(self) -> tuple[Callable[[Top], Motion], tuple[Top]]:
+        """Return the constructor and the top, for copies and pickles."""
+        return solve, (self.top,)
+
+    def numbers(self) -> dict[str, float | None]:
+        """Return the numbers of the record by key, angles in degrees; see `record`."""
+        record = self.record()
+        return {name: record[name] for name in NUMBER_KEYS}
+
+    def record(
+        self,
+        *,
+        digits: int | None = None,
+        radii: bool = False,
+        radians: bool = False,
+        keys: Collection[str] | None = None,
+    ) -> dict[str, Any]:
+        """Return inputs and results by key, in the order of the paper, in degrees or `radians`.
+
+        Numbers are doubles or, with `digits`, texts with that number of significant digits; inputs
+        are then taken as decimals.  `radii` adds KEY_radius, a bound of the distance from the
+        number under KEY to its exact value.  A number beyond the range of doubles is None, and an
+        OutOfRangeWarning names it.  `keys` selects some keys; such a number then raises
+        OutOfRangeError.  Raises LagtopError for an unknown or repeated key or for no key, and if no
+        precision distinguishes a number from 0.
+        """
+        if keys is not None:
+            from ..names import check_names  # start-up: not for the whole record
+
+            keys = check_names("keys", list(keys), all_keys(radians=radians))
+        record, beyond = record_in_range(
+            self, digits=digits, radii=radii, radians=radians, keys=keys
+        )
+        if beyond and keys is not None:
+            raise beyond[0]
+        if beyond:
+            warnings.warn("; ".join(map(str, beyond)), OutOfRangeWarning, stacklevel=2)
+        return record
+
+    def __repr__(self) -> str:
+        return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
+
+    def _repr_html_(self) -> str:
+        """Return the record as a table for a notebook."""
+        from .notebook import record_html  # start-up
+
+        return record_html(self.record())
+
+    def view(self) -> Document:
+        """Return an animated page of the top, for a notebook or, with `save`, for a browser.
+
+        Raises LagtopError for inputs beyond the range of the page's arithmetic.
+        """
+        from .. import view  # the face of the package: pictures are drawn by a subpackage above
+
+        page: Document = view(self)
+        return page
+
+    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
+        """Return tilt, spin and precession (radians) at the times t, in the shape of t.
+
+        Spin and precession are unwrapped and 0 at t = 0; `wrap` reduces them to (-pi, pi].  Raises
+        LagtopError for a time that is not finite or is beyond 2^50 nutation periods.
+        """
+        return self.sampler().angles(t, wrap=wrap)
+
+    def axis(self, t: ArrayLike) -> Array:
+        """Return the unit vector along the figure axis in space, of shape (*t.shape, 3).
+
+        Raises LagtopError for a time out of range, as `angles` does.
+        """
+        import numpy as np
+
+        columns = self.table(t, ["axis"])
+        return np.stack([columns[f"axis_{x}"] for x in "xyz"], axis=-1)
+
+    def rotation(self, t: ArrayLike) -> Rotation:
+        """Return the rotations from body to space at a time, or at a list of n times.
+
+        The result is a SciPy `Rotation`, single or a stack of n.  Raises LagtopError for a time out
+        of range, and for times with more than one dimension.
+        """
+        import numpy as np
+        from scipy.spatial.transform import Rotation  # start-up: heavy
+
+        columns = self.table(t, ["quaternion"])
+        quaternion = np.stack([columns[f"quaternion_{x}"] for x in "wxyz"], axis=-1)
+        if quaternion.ndim > 2:
+            shape = quaternion.shape[:-1]
+            raise LagtopError(
+                f"t must be a number or have one dimension, got the shape {shape}", "t"
+            )
+        return Rotation.from_quat(quaternion, scalar_first=True)
+
+    def plot(self, kind: str = "sphere", ax: Any = None, **options: Any) -> list[Axes]:
+        """Draw a picture of the motion: sphere, angles, cubic, phase or map; return its axes.
+
+        `ax` is an `Axes` of matplotlib, or a list of them if the kind has several; by default a new
+        figure is made.  `options` are those of `lagtop.draw`.  Raises LagtopError for an unknown
+        kind, or if there is nothing to draw.
+        """
+        from .. import draw  # the face of the package: pictures are drawn by a subpackage above
+
+        drawn: list[Axes] = draw(self, kind, ax, **options)
+        return drawn
+
+    def table(
+        self,
+        t: ArrayLike,
+        columns: Sequence[str] = ("t", "theta", "phi", "psi"),
+        *,
+        wrap: bool = False,
+    ) -> dict[str, Array]:
+        """Return columns of `lagtop table` by name, each a float64 array in the shape of t.
+
+        Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
+        may also be named singly.  Raises LagtopError for an unknown column or a time out of range.
+        """
+        from .tables import table  # start-up
+
+        return table(self, t, columns, wrap=wrap)

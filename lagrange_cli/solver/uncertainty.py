@@ -1,0 +1,194 @@
+"""First-order propagation of uncertainties (GUM 5.1.2), for the record and for angles over time."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from decimal import Context, Decimal
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..arithmetic.ball import balls, exact_fraction, pi_to
+from ..top.top import Top
+from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, size_of
+from .quantity import degree_name
+from .record import TEXT_KEYS
+from .solve import Motion
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+_CONTEXT = Context(prec=40)
+_TWO_DIGITS, _NEGLIGIBLE = 1e-4, 1e-11
+"""Largest errors of the uncertainty of an angle: relative, and over the largest relative one of an
+input."""
+
+
+class Contribution(NamedTuple):
+    """A line of a budget: the contribution of an input to the uncertainty of a number.
+
+    The number itself has a line that ends with its uncertainty.
+    """
+
+    quantity: str
+    value: float
+    std: float
+    sensitivity: float | None = None
+    """The derivative of the number by the input."""
+    contribution: float | None = None
+    """The product of sensitivity and uncertainty, with its sign."""
+    elasticity: float | None = None
+    """The relative change of the number over the relative change of the input, or None."""
+    share: float | None = None
+    """The share of the variance, or None."""
+
+
+class FirstOrder:
+    """Standard uncertainties of the record of a top, correctly rounded.
+
+    A key in radians ends in `_rad`.
+    """
+
+    def __init__(self, motion: Motion, stds: Mapping[str, float], given: Collection[str]) -> None:
+        """Take the uncertainties of the inputs as given, and the names of all given inputs."""
+        self.motion, self.stds, self.given = motion, stds, given
+        self.derivatives = Derivatives(motion)
+        self._chain = by_given(motion.top, given)
+
+    def has(self, key: str) -> bool:
+        """Return whether a key is an input, or a number that the motion has."""
+        name = degree_name(key)
+        if name in self.motion.top.fields or name in self.given:
+            return True
+        return name in DIFFERENTIABLE and self.derivatives.has(name)
+
+    def slope(self, key: str, name: str) -> Fraction | None:
+        """Return the derivative of a key or input by a given input, or None."""
+        row, same = self._chain[name], degree_name(key)
+        if same == "theta0_deg":
+            same = tilt_of(self.motion.top)
+        if same in self.derivatives.inputs or same in self.given:
+            total = row.get(same, Fraction(0))
+        else:
+            found = {one: self.derivatives.of(same, one) for one in row}
+            if None in found.values():
+                return None
+            total = sum(((found[one] or 0) * factor for one, factor in row.items()), Fraction(0))
+        if same == key:
+            return total
+        degree = pi_to(60) / 180
+        return total * degree if key.endswith("_rad") else total / degree
+
+    def std(self, key: str) -> float | None:
+        """Return the standard uncertainty of a key or an input, or None."""
+        variance = self._variance(key) if self.has(key) else None
+        if variance is None:
+            return None
+        ratio = Decimal(variance.numerator), Decimal(variance.denominator)
+        return float(_CONTEXT.sqrt(_CONTEXT.divide(*ratio)))
+
+    def _variance(self, key: str) -> Fraction | None:
+        slopes = {name: self.slope(key, name) for name in self.stds}
+        if None in slopes.values():
+            return None
+        parts = [(slopes[name] or 0) * Fraction(std) for name, std in self.stds.items()]
+        return sum((part * part for part in parts), Fraction(0))
+
+    def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
+        """Return the contributions of the uncertain inputs to a key, the greatest first.
+
+        `given` holds the values of the inputs.  The key must have an uncertainty.
+        """
+        found = self.motion.number(degree_name(key), 40)
+        value = Fraction(found.value) if found else 0
+        variance, lines = self._variance(key) or 0, []
+        for name, std in self.stds.items():
+            slope, in_degrees = (self.slope(x, name) or 0 for x in (key, degree_name(key)))
+            part = slope * Fraction(std)
+            elasticity = float(in_degrees * Fraction(given[name]) / value) if value else None
+            share = float(part * part / variance) if variance else None
+            numbers = float(slope), float(part), elasticity, share
+            lines.append(Contribution(name, given[name], std, *numbers))
+        return sorted(lines, key=lambda line: -abs(line.contribution or 0))
+
+
+def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, Fraction]]:
+    """Return the derivatives of the inputs of a solved top by the given inputs.
+
+    The two sets differ only by A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
+    """
+    tilt, one, m, s = tilt_of(top), Fraction(1), Fraction(top.m), Fraction(top.s)
+    names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
+    chain = {name: {name: one} for name in names if not (name == "psidot0" and top.steady_word)}
+    if "A_cm" in given:
+        del chain["A"]
+        chain["A_cm"] = {"A": one}
+        chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
+    if "phidot0" in given:
+        arc = one if top.theta0_deg is None else pi_to(60) / 180
+        with balls(60) as ar:
+            tilt_now = top.tilt(ar)
+            cos, sin = (exact_fraction(x.middle.x) for x in (tilt_now.cos, tilt_now.sin))
+        del chain["r0"]
+        chain["phidot0"] = {"r0": one}
+        chain["psidot0"]["r0"] = cos
+        chain[tilt]["r0"] = -Fraction(top.psidot0) * sin * arc
+    return chain
+
+
+def tilt_of(top: Top) -> str:
+    """Return the key of the tilt in the unit in use."""
+    return "theta0_deg" if top.theta0_rad is None else "theta0_rad"
+
+
+def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
+    """Return `KEY_std` for every number of a record, in its units."""
+    return {
+        f"{name}_std": None if value is None else uncertain.std(name)
+        for name, value in record.items()
+        if not isinstance(value, str) and name not in TEXT_KEYS
+    }
+
+
+class AngleStds:
+    """Uncertainties of tilt, spin and precession of a top over time."""
+
+    def __init__(self, motion: Motion, stds: Mapping[str, float], given: Collection[str]) -> None:
+        """Take the uncertainties of the inputs as given, and the names of all given inputs."""
+        self.motion, chain = motion, by_given(motion.top, given)
+        self.changes: list[dict[str, float]] = []
+        """The change of each input by one standard deviation of each uncertain input."""
+        for name, std in stds.items():
+            changes = {one: std * float(slope) for one, slope in chain[name].items()}
+            self.changes.append({one: change for one, change in changes.items() if change})
+
+    @cached_property
+    def derivatives(self) -> AngleDerivatives:
+        """The derivatives by the uncertain inputs."""
+        names = dict.fromkeys(name for changes in self.changes for name in changes)
+        return AngleDerivatives(self.motion, list(names))
+
+    def at(self, t: Array) -> Array:
+        """Return the uncertainties in radians, of shape (3, times); NaN if they do not exist.
+
+        Where the rounding errors of differences would show, proved rows give the derivatives.
+        """
+        found, slopes = self._from(self.derivatives.at(t)), self.derivatives
+        changes = [(name, abs(x)) for row in self.changes for name, x in row.items()]
+        noise = sum(x * slopes.noise[name] for name, x in changes)
+        least = _NEGLIGIBLE * max(
+            (x / size_of(self.motion, name) for name, x in changes), default=0
+        )
+        doubtful = ((found > 0) & (noise > _TWO_DIGITS * found + least)).any(axis=0)
+        if doubtful.any():
+            found[:, doubtful] = self._from(slopes.in_digits(t[doubtful]))
+        return found
+
+    def _from(self, derivatives: Array) -> Array:
+        import numpy as np
+
+        by = dict(zip(self.derivatives.inputs, derivatives, strict=True))
+        square = np.zeros(derivatives.shape[1:])
+        for changes in self.changes:
+            square += sum(change * by[name] for name, change in changes.items()) ** 2
+        return np.asarray(np.sqrt(square))

@@ -1,0 +1,122 @@
+"""Many tops: inputs as arrays of one shape, and results for pandas and xarray."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arithmetic.arrays import doubles_of
+from ..arithmetic.types import Array
+from ..errors import LagtopError, UnavailableError
+from ..names import check_names
+from ..top.given import gather
+from ..top.inputs import EXAMPLE, overridden, warn_of
+from ..top.top import INPUTS
+from ..top.values import steady_refused, values_of
+from .top_arrays import TopArrays, top_arrays
+
+ResultColumn = Array | NDArray[np.object_]
+"""A column: numbers (NaN if a regime has none) or texts (None if there is none)."""
+
+
+class Results(dict[str, ResultColumn]):
+    """Arrays by key, in the shape to which the inputs broadcast.
+
+    >>> found = sweep(r0=[50.0, 60.0], keys=["T_nutation", "regime"])
+    >>> found["T_nutation"].shape, list(found.inputs)
+    ((2,), ['r0'])
+    >>> found.to_pandas().columns.tolist(), dict(found.to_xarray().sizes)
+    (['r0', 'T_nutation', 'regime'], {'r0': 2})
+    """
+
+    def __init__(
+        self, columns: Mapping[str, ResultColumn], inputs: Mapping[str, Array], shape: Any
+    ) -> None:
+        """Take columns of one shape, and the inputs that vary, as arrays that broadcast to it."""
+        super().__init__(columns)
+        self.inputs, self.shape = dict(inputs), tuple(shape)
+
+    def to_pandas(self) -> Any:
+        """Return a pandas DataFrame with a row for each top; inputs that vary come first.
+
+        Raises UnavailableError if pandas is not installed.
+        """
+        columns = self.inputs | self
+        return _library("pandas").DataFrame(
+            {name: np.broadcast_to(x, self.shape).reshape(-1) for name, x in columns.items()}
+        )
+
+    def to_xarray(self) -> Any:
+        """Return an xarray Dataset whose dimensions are named after the inputs of a grid.
+
+        A dimension along which several inputs vary, or none, is `top`, or `top_0`, `top_1` ...
+        Raises UnavailableError if xarray is not installed.
+        """
+        full = {
+            name: x.reshape((1,) * (len(self.shape) - x.ndim) + x.shape)
+            for name, x in self.inputs.items()
+        }
+        names = []
+        for axis, size in enumerate(self.shape):
+            alone = [name for name, x in full.items() if x.size == x.shape[axis] == size]
+            other = "top" if len(self.shape) == 1 else f"top_{axis}"
+            names.append(alone[0] if len(alone) == 1 else other)
+        coordinates = {
+            name: ([names[i] for i, size in enumerate(x.shape) if size > 1], x.squeeze())
+            for name, x in full.items()
+        }
+        variables = {name: (names, x) for name, x in self.items() if name not in coordinates}
+        return _library("xarray").Dataset(variables, coordinates)
+
+
+def _library(name: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError:
+        raise UnavailableError(f"{name} is not installed: pip install {name}") from None
+
+
+class SweepInputs:
+    """Inputs of `Top`, numbers or arrays, broadcast to one shape, from which blocks are taken."""
+
+    def __init__(self, inputs: Mapping[str, Any]) -> None:
+        """Raise LagtopError for an unknown input, and for inputs that do not fit together."""
+        check_names("inputs", list(inputs) or ["m"], INPUTS)
+        if isinstance(word := inputs.get("psidot0"), str):
+            raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
+        for name, x in inputs.items():
+            if getattr(x, "dims", ()):
+                raise LagtopError(f"{name} has named dimensions: pass {name}.to_numpy()", name)
+        read = gather(values_of(inputs))
+        if read.stds:
+            name = min(read.stds)
+            why = "is uncertain: a sweep does not propagate uncertainties; loop over solve"
+            raise LagtopError(f"{name} {why}", name)
+        if read.missing:
+            warn_of(read.missing, stacklevel=4)
+        own = {name: doubles_of(name, x) for name, x in read.inputs.items()}
+        given = overridden(EXAMPLE | dict(read.body), own)
+        try:
+            arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in given.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {x.shape}" for name, x in own.items() if x.ndim)
+            raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
+        self.shape, self.size = arrays[0].shape, arrays[0].size
+        self._varying = {name: x for name, x in own.items() if x.size > 1}
+        self._flat: dict[str, Any] = {
+            name: x if x.ndim == 1 else x.flat for name, x in zip(given, arrays, strict=True)
+        }
+
+    def part(self, rows: slice) -> TopArrays:
+        """Return some of the tops; only these rows are copied."""
+        count = len(range(*rows.indices(self.size)))
+        return top_arrays({name: x[rows] for name, x in self._flat.items()}, count)
+
+    def results(self, columns: Mapping[str, ResultColumn]) -> Results:
+        """Return flat columns in the shape of the inputs."""
+        shaped = {key: x.reshape(self.shape) for key, x in columns.items()}
+        return Results(shaped, self._varying, self.shape)

@@ -1,0 +1,1 @@
+"""The inputs of one top: values, units, ranges and scenes."""

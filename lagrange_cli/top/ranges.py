@@ -1,0 +1,229 @@
+"""Numbers that are kept exact and rounded once: points on a line, and complex numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from decimal import Context, Decimal, localcontext
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..arithmetic.text import is_decimal, own_context, parse_number
+from ..errors import LagtopError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ..arithmetic.types import Array
+
+    Index = NDArray[np.intp]
+
+POINTS_AT_ONCE = 1 << 14
+MOST_POINTS = 10**9
+
+MAX_PERIODS = 2.0**50
+"""Number of periods beyond which neighbouring doubles are too far apart to determine a phase."""
+
+MAX_TIME = 1e290
+"""Largest time: the product of a time and a rate can still be computed exactly."""
+
+_DIGITS_OF_LOG_POINTS = own_context(30, [])
+
+
+class Points:
+    """Points on a line; subclasses define their places."""
+
+    count: int
+    """The number of points; 0 if it is unknown until the end of a file."""
+
+    def at(self, index: Index) -> Array:
+        """Return the doubles nearest to the points with these indices."""
+        raise NotImplementedError
+
+    def decimals(self) -> Iterator[Fraction]:
+        """Yield every point exactly, or as a double if it is not a fraction."""
+        return (Fraction(x) for block in self.blocks() for x in block.tolist())
+
+    def bounds(self) -> list[float]:
+        """Return the two outermost points, or an empty list if they are not known yet."""
+        import numpy as np
+
+        first, last = self.at(np.array([0, self.count - 1]))
+        return [float(first), float(last)]
+
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor > 0."""
+        raise NotImplementedError
+
+    def blocks(self) -> Iterator[Array]:
+        """Yield all points as arrays of at most `POINTS_AT_ONCE`."""
+        import numpy as np
+
+        for first in range(0, self.count, POINTS_AT_ONCE):
+            yield self.at(np.arange(first, min(first + POINTS_AT_ONCE, self.count)))
+
+
+class EvenPoints(Points):
+    """The points start + i step for i from 0 to count - 1."""
+
+    def __init__(self, start: Fraction, step: Fraction, count: int) -> None:
+        """Raise LagtopError for more than 1e9 points."""
+        if count > MOST_POINTS:
+            size = Context(prec=4, traps=[]).create_decimal(count)
+            raise LagtopError(
+                f"must have at most 1e9 rows, got {size:.4g} "
+                "(take a larger step or a smaller count)"
+            )
+        self.start, self.step, self.count = start, step, count
+
+    def __str__(self) -> str:
+        return f"{self.start}:{self.start + (self.count - 1) * self.step}:{self.count}"
+
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor."""
+        return EvenPoints(self.start * factor, self.step * factor, self.count)
+
+    def at(self, index: Index) -> Array:
+        """Return start + i step for every i of `index`, each rounded once.
+
+        Pairs of doubles decide, and exact fractions next to a tie: fractions alone would take half
+        as long again as all else of a table in CSV.
+        """
+        import numpy as np
+
+        from ..arithmetic.double_double import two_product, two_sum  # start-up
+        from ..arithmetic.rounding import pair  # start-up
+
+        start, step, i = pair(self.start), pair(self.step), index.astype(np.float64)
+        margin = 2.0**-100 * max(map(abs, self.bounds())) + 1e-300
+        with np.errstate(all="ignore"):
+            product, rest = two_product(i, step.high)
+            total, error = two_sum(product, start.high)
+            rest = rest + (error + i * step.low + start.low)
+            values: Array = total + (rest + margin)
+            sure = np.isfinite(values) & (values == total + (rest - margin))
+        unsure = np.flatnonzero(~sure)
+        values[unsure] = [float(self.start + int(i) * self.step) for i in index[unsure]]
+        return values + 0.0  # no negative zero
+
+    def decimals(self) -> Iterator[Fraction]:
+        """Yield every point exactly."""
+        return (self.start + i * self.step for i in range(self.count))
+
+    def bounds(self) -> list[float]:
+        """Return the first and the last point."""
+        return [float(self.start), float(self.start + (self.count - 1) * self.step)]
+
+
+class LogPoints(Points):
+    """Points with a constant ratio between neighbours; neither end is 0."""
+
+    def __init__(self, first: Fraction, last: Fraction, count: int) -> None:
+        self.first, self.last, self.count = first, last, count
+
+    def __str__(self) -> str:
+        return f"log:{self.first}:{self.last}:{self.count}"
+
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor > 0."""
+        return LogPoints(self.first * factor, self.last * factor, self.count)
+
+    def at(self, index: Index) -> Array:
+        """Return first (last/first)^(i/(count - 1)) for every i, computed in 30 digits."""
+        import numpy as np
+
+        distinct, where = np.unique(index, return_inverse=True)
+        with localcontext(_DIGITS_OF_LOG_POINTS):
+            first, last = (x.numerator / Decimal(x.denominator) for x in (self.first, self.last))
+            growth = (last / first).ln() / max(self.count - 1, 1)
+            values = [float(first * (growth * i).exp()) for i in distinct.tolist()]
+        return np.array(values)[where]
+
+
+class ListedPoints(Points):
+    """Points that are listed one by one."""
+
+    def __init__(self, exact: list[Fraction]) -> None:
+        self.exact, self.count = exact, len(exact)
+        self.values = [float(point) for point in exact]
+
+    def __str__(self) -> str:
+        return ",".join(map(str, self.exact))
+
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor."""
+        return ListedPoints([point * factor for point in self.exact])
+
+    def at(self, index: Index) -> Array:
+        """Return the doubles nearest to the points with these indices."""
+        import numpy as np
+
+        return np.array(self.values)[index]
+
+    def decimals(self) -> Iterator[Fraction]:
+        """Yield every point exactly."""
+        return iter(self.exact)
+
+    def bounds(self) -> list[float]:
+        """Return the least and the greatest point."""
+        return [min(self.values), max(self.values)]
+
+
+def check_reach(name: str, points: Points, limit: float) -> None:
+    """Raise LagtopError if a point is farther from 0 than the limit."""
+    farthest = max(points.bounds(), key=abs)
+    if abs(farthest) > limit:
+        raise LagtopError(
+            f"{name} must be within 2^50 periods = {limit:.3g} of 0, got {farthest} "
+            "(or give --digits)",
+            name,
+        )
+
+
+class ExactComplex(NamedTuple):
+    """A complex number with two exact parts."""
+
+    real: Fraction
+    imag: Fraction = Fraction(0)
+
+    def __str__(self) -> str:
+        """Return the number in a form that can be typed."""
+        real, imag = f"{float(self.real)}", f"{float(self.imag):+}i"
+        if not self.imag:
+            return real
+        return imag.removeprefix("+") if not self.real else real + imag
+
+    def nearest(self) -> ExactComplex:
+        """Return the number whose parts are the nearest doubles."""
+        return ExactComplex(Fraction(float(self.real)), Fraction(float(self.imag)))
+
+    def __complex__(self) -> complex:
+        """Return the nearest complex double."""
+        return complex(float(self.real), float(self.imag))
+
+
+def parse_complex(text: str) -> ExactComplex:
+    """Return the exact value of `0.3`, `0.7i`, `i` or `0.3-0.7i`.
+
+    Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
+    """
+    text = text.strip()
+    real, imag = _part_texts(text)
+    if looks_complex(text) and not (is_decimal(real) and is_decimal(imag)):
+        raise LagtopError(f"must be a finite number, complex as 0.3+0.7i, got {text!r}")
+    return ExactComplex(parse_number(real), parse_number(imag))
+
+
+def looks_complex(text: str) -> bool:
+    """Return whether a text has a letter for the imaginary unit, valid or not."""
+    return not set("ijIJ").isdisjoint(text)
+
+
+def _part_texts(text: str) -> tuple[str, str]:
+    """Return the texts of the real and the imaginary part, unparsed."""
+    if not text.endswith("i"):
+        return text, "0"
+    signs = [i for i, sign in enumerate(text) if sign in "+-" and text[i - 1 : i] not in {"e", "E"}]
+    split = signs[-1] if signs else 0
+    imag = text[split:-1]
+    return text[:split] or "0", f"{imag}1" if imag in {"", "+", "-"} else imag

@@ -1,0 +1,115 @@
+"""Scenes: files of TOML with the inputs of a top by key, and the shipped ones."""
+
+from __future__ import annotations
+
+import os
+import re
+
+from ..arithmetic.text import NumberText, parse_number, quoted, shortened
+from ..errors import DataError, LagtopError, SceneError
+from ..file_bytes import decoded, read_bytes, shown_path
+from ..names import suggestion
+from .inputs import TILT
+from .top import INPUTS
+from .values import STEADY_WORDS, Value, parse_value
+
+_MOST_BYTES = 1 << 14
+"""Most bytes of a scene file, because the run time of `tomllib` may grow with their square."""
+SCENE_KEYS = (*INPUTS, TILT)
+_ENDING = ".toml"
+
+
+def _shipped() -> str:
+    """Return the folder of the shipped scenes: inside the package, or beside it in a checkout."""
+    package = os.path.dirname(os.path.dirname(__file__))
+    inside = os.path.join(package, "scenes")
+    return inside if os.path.isdir(inside) else os.path.join(package, "..", "sample_inputs")
+
+
+def scene_names() -> list[str]:
+    """Return the names of the shipped scenes."""
+    names = os.listdir(_shipped())
+    return sorted(name.removesuffix(_ENDING) for name in names if name.endswith(_ENDING))
+
+
+def scene_path(name: str) -> str:
+    """Return the path of a scene: the given file, or the file of a shipped scene."""
+    is_word = name.replace("-", "").isalnum() and not os.path.exists(name)
+    path = os.path.join(_shipped(), name + _ENDING) if is_word else name
+    return path if os.path.exists(path) else name
+
+
+def scene_remark(name: str) -> str:
+    """Return the first line of a shipped scene, which describes it."""
+    with open(scene_path(name), encoding="utf-8") as file:
+        return file.readline().removeprefix("#").strip()
+
+
+def is_scene_file(word: str) -> bool:
+    """Return whether a word ends in `.toml` or is the name of a shipped scene."""
+    return word.endswith(_ENDING) or scene_path(word) != word
+
+
+class SceneFile:
+    """The contents of a scene file: its inputs, and the lines of errors about them."""
+
+    def __init__(self, path: str) -> None:
+        """Read a file, or standard input for `-`.  Raises SceneError."""
+        import tomllib  # start-up
+
+        self.name, self._text = shown_path(path), ""
+        try:
+            self._text = decoded(read_bytes(scene_path(path), _MOST_BYTES), self.name)
+            table = tomllib.loads(self._text, parse_float=NumberText)
+        except DataError as error:
+            hint = suggestion(path, scene_names())
+            if not hint and path.replace("-", "").isalnum():
+                hint = f" (the built-in scenes are {', '.join(scene_names())})"
+            raise SceneError(f"{error}{hint}") from None
+        except (ValueError, RecursionError) as error:  # broken TOML, or too many digits
+            at = re.search(r"at line (\d+)", str(error))
+            line = self._text.split("\n")[int(at[1]) - 1] if at else ""
+            hint = " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
+            raise SceneError(f"{self.name}: not a TOML file: {error}{hint}") from None
+        self.inputs: dict[str, Value] = {}
+        for key, value in table.items():
+            try:
+                found = _value(key, value)
+            except LagtopError as error:
+                raise self.error(LagtopError(str(error), key)) from None
+            # A tilt without a unit is in degrees, as on the command line.
+            self.inputs[f"{TILT}_deg" if key == TILT and not found.unit else key] = found
+
+    def error(self, error: LagtopError) -> SceneError:
+        """Return the error prefixed with the name of the file and the line of its key."""
+        pattern = re.compile(rf"""\s*\[*\s*["']?{re.escape(error.key or "")}\b""")
+        numbered = enumerate(self._text.split("\n"), 1)
+        line = next((i for i, text in numbered if error.key and pattern.match(text)), None)
+        place = f"{self.name}, line {line}" if line else self.name
+        return SceneError(f"{place}: {error}", error.key)
+
+
+def _value(key: str, value: object) -> Value:
+    """Return the value of a key: a number, or a text with a unit or an uncertainty."""
+    if key not in SCENE_KEYS:
+        meant, known = suggestion(key, SCENE_KEYS), ", ".join(SCENE_KEYS)
+        raise LagtopError(f"unknown key {quoted(key)}{meant} (known: {known})")
+    is_text = isinstance(value, str) and not isinstance(value, NumberText)
+    if isinstance(value, bool) or not isinstance(value, int | str):
+        raise LagtopError(f"{key} must be a finite number, got {shortened(str(value))}")
+    if not is_text and key == TILT:
+        wanted = f"have a unit, such as '30 deg', or be called {key}_deg or {key}_rad"
+        raise LagtopError(f"{key} must {wanted}")
+    try:
+        if not is_text:
+            return Value(parse_number(str(value).replace("_", "")))
+        found = parse_value(str(value), uncertain=True, steady=key == "psidot0")
+    except LagtopError as error:
+        raise LagtopError(f"{key} {error}") from None
+    if not found.unit and found.number not in STEADY_WORDS and found.std is None:
+        wanted = "must have a unit between quotes"
+        raise LagtopError(f"{key} {wanted}, got {quoted(value)}: leave out the quotes")
+    if found.unit and key.startswith(f"{TILT}_"):
+        wanted = f"must be called {TILT} if its value has a unit"
+        raise LagtopError(f"{key} {wanted}, got {quoted(value)}")
+    return found

@@ -1,0 +1,261 @@
+"""The top: its body, its initial state, and the checks on both."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import InitVar, dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+
+from ..arithmetic.angle import Angle, Tilt
+from ..arithmetic.ball import Balls, balls, pi_to
+from ..arithmetic.numbers import DOUBLES, Number, unrounded
+from ..arithmetic.rounding import text_of
+from ..errors import LagtopError
+from .inputs import (
+    BODY,
+    DECLARED,
+    EXAMPLE,
+    NINE,
+    TILT,
+    checked_double,
+    from_example,
+    one_of_each,
+    overridden,
+    warn_of,
+)
+
+if TYPE_CHECKING:
+    from ..arithmetic.numbers import Arithmetic
+
+_EPS = Fraction(1, 1 << 52)
+_LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
+_LARGEST = 1e100
+_UNITS = "choose other units"
+_OTHER_END = {"s": "a low centre of mass", "g": "upward gravity"}
+"""Causes of a negative input that turning the top over describes."""
+
+
+class Parts(NamedTuple):
+    """The inputs of a top by key: m, A, C, s and g of its body, and the others of its start."""
+
+    body: dict[str, Number]
+    start: dict[str, Number]
+
+
+_EXAMPLE: Any = None
+"""The default of an input: that of the worked example."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Top:
+    """A heavy symmetric top with a fixed point, and its state at t = 0, where phi = psi = 0.
+
+    Use any consistent units.  Inputs you omit default to the worked example of Chrapan (1952),
+    section 8, in CGS.  A MixedBodyWarning names the defaults if you give only some of m, A, C, s
+    and g.  Each input is a real number: int, float, Fraction, Decimal or a NumPy scalar.  It is
+    taken exactly: a number that is not a double, such as Decimal("0.1"), is kept as a Fraction.
+
+        m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
+        A_cm        in place of A: that moment about the centre of mass, A = A_cm + m s^2
+        s, g        distance from the pivot to the centre of mass, and gravity, >= 0
+        r0          spin: the angular velocity about the figure axis, which is constant (any sign)
+        phidot0     in place of r0: the rate of the angle phi, r0 = phidot0 + psidot0 cos(theta0)
+        theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
+        theta0_rad  or the same in radians, 0 to pi; not both
+        thetadot0   nutation rate at t = 0
+        psidot0     precession rate at t = 0; "steady" or "steady-fast" is the exact rate of
+                    smaller or larger size at which the tilt stays constant, for thetadot0 = 0
+
+    A and r0 computed from A_cm and phidot0 are rounded once, to the nearest double.  They stay
+    exact if one of the inputs they depend on is a Fraction.  Raises LagtopError for a body or a
+    start that is impossible, TypeError for an unknown input.
+
+    >>> top = Top(r0=60, theta0_deg=45)
+    >>> top.parts.start
+    {'r0': 60.0, 'theta0_deg': 45.0, 'thetadot0': 0.0, 'psidot0': 0.0}
+    >>> top.replace(r0=50) == Top(**top.parts.body, theta0_deg=45)
+    True
+    >>> top.is_released, top.caveat(), top.inputs()["m"], top.as_dict()["m"]
+    (True, None, 1587.0, 1587.0)
+    """
+
+    fields: ClassVar[tuple[str, ...]]
+    m: Number = _EXAMPLE
+    A: Number = _EXAMPLE
+    C: Number = _EXAMPLE
+    s: Number = _EXAMPLE
+    g: Number = _EXAMPLE
+    r0: Number = _EXAMPLE
+    theta0_deg: Number | None = None
+    thetadot0: Number = _EXAMPLE
+    psidot0: Any = None
+    theta0_rad: Number | None = None
+    steady_word: str | None = field(default=None, init=False)
+    """The word that was given for psidot0, which then is the nearest double; None for a number."""
+    A_cm: InitVar[Number | None] = None
+    phidot0: InitVar[Number | None] = None
+
+    def __new__(cls, **inputs: Any) -> Self:
+        """Return a new top.  Raises TypeError for an unknown input with the name that was meant."""
+        for name in inputs.keys() - set(INPUTS):
+            from ..names import suggestion  # start-up: for a misspelt name only
+
+            raise TypeError(f"a top has no input {name!r}{suggestion(name, INPUTS)}")
+        return object.__new__(cls)
+
+    def __post_init__(self, A_cm: Number | None, phidot0: Number | None) -> None:
+        """Replace missing inputs by their defaults, derive others, and check all."""
+        given = self.as_dict() | {"A_cm": A_cm, "phidot0": phidot0}
+        given = {name: x for name, x in given.items() if x is not None}
+        psidot0 = given.get("psidot0")
+        if word := psidot0 if isinstance(psidot0, str) else None:
+            given["psidot0"] = 0.0
+            if phidot0 is not None:
+                raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
+        given = {name: _checked(name, x) for name, x in given.items()}
+        one_of_each(given)
+        inputs = overridden(EXAMPLE, given)
+        if A_cm is not None or phidot0 is not None:
+            from .derived import as_solved  # for few tops only
+
+            inputs = as_solved(inputs)
+            for name in ("A", "r0"):
+                _checked(name, inputs[name])
+        for name in self.fields:
+            object.__setattr__(self, name, inputs.get(name))
+        twice = 2 * Fraction(self.A)
+        _require(
+            twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, "no rigid body has more"
+        )
+        if word:
+            from .derived import steady_rate_of  # for few tops only
+
+            object.__setattr__(self, "psidot0", steady_rate_of(self, word))
+            object.__setattr__(self, "steady_word", word)
+        if missing := from_example(given):
+            warn_of(missing, stacklevel=4)
+
+    def __repr__(self) -> str:
+        return f"Top({', '.join(f'{name}={x!r}' for name, x in self.as_dict().items())})"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the inputs by key; one of the two tilts is None."""
+        inputs = {name: getattr(self, name) for name in self.fields}
+        return inputs | {"psidot0": self.steady_word or self.psidot0}
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the top with other values of some inputs, such as `replace(r0=60)`.
+
+        A tilt in either unit replaces the present tilt, A_cm replaces A, and phidot0 replaces r0.
+        Raises LagtopError.
+        """
+        return type(self)(**overridden(self.parts.body | self.parts.start, changes))
+
+    @property
+    def parts(self) -> Parts:
+        """The inputs by key in two parts, `body` and `start`, such as for a sweep of one body."""
+        given = {name: x for name, x in self.as_dict().items() if x is not None}
+        return Parts({name: given.pop(name) for name in BODY}, given)
+
+    def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
+        """Return the nine inputs by record key, the tilt in degrees or in radians."""
+        tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
+        values = self.as_dict() | {"psidot0": self.psidot0}
+        if values[tilt] is None:
+            other: Any = self.theta0_deg if radians else self.theta0_rad
+            values[tilt] = ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
+        return {key: values[key] for key in (tilt if name == TILT else name for name in NINE)}
+
+    def tilt(self, ar: Any) -> Tilt[Any]:
+        """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
+        if isinstance(ar, Balls):
+            return self.angle.tilt(ar)
+        with balls(40) as exact:
+            return Tilt(*(float(x.middle) for x in self.angle.tilt(exact)))
+
+    @property
+    def angle(self) -> Angle:
+        """The angle theta0, exactly."""
+        return Angle.of(self.theta0_deg, self.theta0_rad)
+
+    @property
+    def is_released(self) -> bool:
+        """Whether the top starts at rest in nutation and precession, the case of the paper."""
+        return bool(self.thetadot0 == 0 and self.psidot0 == 0)
+
+    @property
+    def pole(self) -> int:
+        """1 if the axis starts upright, -1 if it hangs, else 0."""
+        if self.theta0_deg == 0 or self.theta0_rad == 0:
+            return 1
+        return -1 if self.theta0_deg == 180 else 0
+
+    def caveat(self) -> str | None:
+        """Return a line on a body that can be computed but not built, or None.
+
+        A disc passes if its A is correct to rounding.
+        """
+        offset = Fraction(self.m) * Fraction(self.s) ** 2
+        limit, rounding = 2 * (Fraction(self.A) - offset), Fraction(self.A) * _EPS
+        if limit + rounding <= 0:
+            bound = f"A > m s^2, got {float(self.A)}"
+        elif self.C > limit + rounding:
+            bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
+        else:
+            return None
+        return f"a rigid body with its mass centre at s has {bound}; computing anyway"
+
+    def options(self) -> str:
+        """Return the top as command-line options."""
+        radians = "--rad " if self.theta0_deg is None else ""
+        given = self.parts.body | self.parts.start
+        words = [
+            f"{radians if name.startswith(TILT) else ''}--{name.partition('_')[0]} {value!r}"
+            for name, value in given.items()
+            if value or name not in {"thetadot0", "psidot0"}
+        ]
+        return " ".join(words).replace("'", "")
+
+
+Top.fields = tuple(name for name in Top.__slots__ if name != "steady_word")
+INPUTS = (*Top.fields, "A_cm", "phidot0")
+"""The keys of all inputs of a top: its fields, and the alternatives to A and r0."""
+
+
+def _checked(name: str, value: Any) -> Number:
+    """Return an input as a double or as a fraction.  Raises LagtopError for an impossible one."""
+    nearest = checked_double(name, value)
+    if not math.isfinite(nearest):
+        raise LagtopError(f"{name} must be finite, got {nearest}", name)
+    if value and not nearest and not isinstance(value, Fraction):
+        raise LagtopError(f"{name} must be 0 or at least 5e-324 in size, got {value!s}", name)
+    number = unrounded(value, nearest)
+    _require(-_LARGEST <= number <= _LARGEST, name, "within 1e100 in size", number, _UNITS)
+    bound = DECLARED[name].bound if name in DECLARED else ""
+    if bound.startswith("positive"):
+        _require(number > 0, name, "> 0", number)
+        _require(number >= _SMALLEST, name, ">= 1e-100", number, _UNITS)
+    if bound == "0 or more":
+        remedy = f"for {_OTHER_END[name]} use 180 - theta0 and -r0"
+        _require(number >= 0, name, ">= 0", number, remedy)
+    if name.startswith(f"{TILT}_"):
+        exact = Fraction(number)
+        in_degrees = name.endswith("deg")
+        most = Fraction(180) if in_degrees else pi_to(exact.denominator.bit_length() + 20)
+        wanted = "in [0, 180]" if in_degrees else "in [0, pi rad]"
+        _require(0 <= exact <= most, name, wanted, number)
+        _require(not number or number >= _LEAST_TILT, name, "0 or at least 1e-150", number)
+    return number
+
+
+def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:
+    if not fine:
+        hint = f" ({remedy})" if remedy else ""
+        raise LagtopError(f"{name} must be {wanted}, got {_shown(value)}{hint}", name)
+
+
+def _shown(value: Number) -> str:
+    """Return a number as text, with enough digits to tell 180.00000000000000000001 from 180."""
+    is_double = isinstance(value, float) or (abs(value) <= _LARGEST and float(value) == value)
+    return str(float(value)) if is_double else text_of(Fraction(value), 50)

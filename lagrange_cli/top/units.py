@@ -1,0 +1,135 @@
+"""Units of inputs: a table of sizes, products and powers, and exact conversion to SI.
+
+Results are in kg, m, s and rad if inputs have units.  A tilt stays in degrees or in radians.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import NamedTuple
+
+from ..arithmetic.ball import pi_to
+from ..arithmetic.text import quoted
+from ..errors import LagtopError
+from ..names import suggestion
+from .inputs import DECLARED, TILT
+
+PI_DIGITS = 1100
+"""Digits of pi in units of angle: more than any result has."""
+
+
+class Unit(NamedTuple):
+    """A unit, or a product of units, in kg, m, s and rad."""
+
+    size: Fraction = Fraction(1)
+    """The size over that power of pi."""
+    power_of_pi: int = 0
+    dimensions: tuple[int, ...] = (0, 0, 0, 0)
+    """The powers of mass, length, time and angle."""
+
+    def times(self, other: Unit, power: int) -> Unit:
+        """Return this unit times a power of the other."""
+        sums = tuple(x + power * y for x, y in zip(self.dimensions, other.dimensions, strict=True))
+        pi = self.power_of_pi + power * other.power_of_pi
+        return Unit(self.size * other.size**power, pi, sums)
+
+
+_TABLE = """
+1 0 0 0 | 0 | mg=1e-6 g=1e-3 kg=1 oz=0.028349523125 lb=0.45359237 slug=8896443230521/609600000000
+0 1 0 0 | 0 | um=1e-6 mm=1e-3 cm=1e-2 m=1 km=1000 in=0.0254 ft=0.3048
+0 0 1 0 | 0 | us=1e-6 ms=1e-3 s=1 min=60 h=3600
+1 1 -2 0 | 0 | N=1 dyn=1e-5
+0 1 -2 0 | 0 | g_0=9.80665
+0 0 0 1 | 0 | rad=1 mrad=1e-3
+0 0 0 1 | 1 | deg=1/180 °=1/180 arcmin=1/10800 turn=2 rev=2 gon=1/200
+0 0 -1 1 | 1 | rpm=1/30
+"""
+"""The dimensions, the power of pi, and the exact sizes of units."""
+_RATE = (0, 0, -1, 1)
+
+
+UNITS: dict[str, Unit] = {
+    name: Unit(Fraction(size), int(pi), tuple(map(int, powers.split())))
+    for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().split("\n"))
+    for name, size in (pair.split("=") for pair in pairs.split())
+}
+"""The known units by name."""
+UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
+UNIT_OF |= {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}
+EXAMPLES = {"mass": "350g", "mass len²": "'3.9e-3 kg*m^2'", "len": "4cm", "m": "4cm", "time": "2s"}
+EXAMPLES |= {"len/time²": "'9.81 m/s^2'", "rad/time": "'50 rad/s' or 480rpm"}
+EXAMPLES |= dict.fromkeys(("deg", "rad"), "30deg or 0.5rad")
+"""An example of each unit of an input."""
+_RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_NAME = r"1|°|g_0|[^\W\d_]+"
+_FACTOR = re.compile(rf"\s*([*·/]?)\s*({_NAME})\s*(?:(?:\*\*|\^)?\s*(-?\d)(?!\d))?")
+"""A factor of a product: a stroke, a name, and a power of one digit."""
+_ASKED = {
+    "Hz": "turns or radians per second? write rpm, turn/s or rad/s",
+    "gr": "grain or gram? write g",
+}
+
+
+def unit_of_text(text: str) -> Unit:
+    """Return the product of units that a text names, such as `kg*m^2`, `kg m²`, `kg m2` or `1/s`.
+
+    Raises LagtopError for an unknown unit, with the nearest name and the known ones.
+    """
+    found, place, text = Unit(), 0, text.strip().translate(_RAISED)
+    while place < len(text):
+        match = _FACTOR.match(text, place)
+        name = match[2] if match else text[place:]
+        unit = Unit() if name == "1" else UNITS.get(name)
+        if match is None or unit is None:
+            raise LagtopError(_ASKED.get(name) or f"no such unit{_meant(name)}; known: {_KNOWN}")
+        found = found.times(unit, int(match[3] or 1) * (-1 if match[1] == "/" else 1))
+        place = match.end()
+    return found
+
+
+_KNOWN = f"{', '.join(UNITS)}, their products and powers"
+
+
+def _meant(name: str) -> str:
+    """Return a hint with the known unit nearest to a name, such as rpm for RPM, or nothing."""
+    usual = {unit.lower(): unit for unit in UNITS}.get(name.lower())
+    return f" (did you mean {usual!r}?)" if usual else suggestion(name, UNITS)
+
+
+def factor_of(key: str, unit: str, wanted: str | None = None) -> Fraction:
+    """Return the factor from a unit to `wanted` in SI.
+
+    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`, by default that of the input
+    `key`, or else of a time.  Raises LagtopError for a unit of other dimensions.
+    """
+    wanted = UNIT_OF.get(key, "time") if wanted is None else wanted
+    into = unit_of_text(SI.named(wanted))
+    try:
+        given = unit_of_text(unit)
+        per_time = into.dimensions == _RATE and given.dimensions == (0, 0, -1, 0)  # as 1/s
+        if given.dimensions != into.dimensions and not per_time:
+            raise LagtopError("it measures something else")
+    except LagtopError as error:
+        example = EXAMPLES.get(wanted) or repr(f"2 {SI.named(wanted)}")
+        must = f"have a unit as in {example}" if wanted else "have no unit"
+        wrong = f"{key} must {must}, got the unit {quoted(unit)} ({error})"
+        raise LagtopError(wrong, key) from None
+    powers_of_pi = given.power_of_pi - into.power_of_pi
+    return given.size / into.size * pi_to(PI_DIGITS) ** powers_of_pi
+
+
+class System:
+    """The names of the units of results: SI."""
+
+    def named(self, unit: str) -> str:
+        """Return a unit such as `mass len²` or `rad/time` with the names of its parts."""
+        names = {"mass": "kg", "len": "m", "time": "s"}
+        return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
+
+    def in_words(self, remark: str) -> str:
+        """Return a remark with `time` replaced by the second."""
+        return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)
+
+
+SI = System()

@@ -1,0 +1,316 @@
+"""Values of inputs as texts: numbers with units and uncertainties, ranges, lists and grids.
+
+number       `30`, `-1.5`, `2e-3`
+uncertain    `1587(2)`, `1587+/-2`, `1587 ± 0.1 %`, `(1.5+-0.2)e3`
+points       `1,2,3`, `start:stop:count`, `log:start:stop:count`
+unknown      `from:to`, `log:from:to`
+unit         at the end of any of them: `480 rpm`, `477(2) rpm`, `60:80:3 rpm`
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..arithmetic.text import parse_number, quoted
+from ..errors import LagtopError
+from .ranges import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
+
+LOG = "log:"
+"""Prefix of a range with equal ratios."""
+STEADY_WORDS = ("steady", "steady-fast")
+"""Words accepted as a precession rate: the steady rate of smaller or of larger size."""
+_UNIT = re.compile(r"(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*", re.DOTALL)
+"""Any text from its first letter, which begins no exponent; `1/` may precede."""
+_DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+_EXPONENT = r"(?:[eE][+-]?\d+)"
+_SPREAD = (
+    rf"(?P<number>{_DECIMAL}{_EXPONENT}?)\s*(?:\+/?-|±)"
+    rf"\s*(?P<std>{_DECIMAL}{_EXPONENT}?)\s*(?P<percent>%?)"
+)
+_UNCERTAIN = (
+    rf"(?P<number>{_DECIMAL})\((?P<last>\d+\.?\d*)\)(?P<exponent>{_EXPONENT}?)",
+    _SPREAD,
+    rf"\(\s*{_SPREAD}\s*\)(?P<exponent>{_EXPONENT}?)",
+)
+
+
+class Value(NamedTuple):
+    """An input as it was given, without any conversion."""
+
+    number: Any
+    """A real number or one of `STEADY_WORDS`; the `Points` of a sweep or the `Span` of a search."""
+    unit: str = ""
+    std: Fraction | None = None
+    """Standard uncertainty, in the same unit; None if there is none."""
+
+    def scaled(self, factor: Fraction) -> Value:
+        """Return the value multiplied by the size of its unit, without the unit."""
+        if hasattr(self.number, "scaled"):
+            number = self.number.scaled(factor)
+        else:  # arrays have doubles
+            number = self.number * (factor if isinstance(self.number, Fraction) else float(factor))
+        return Value(number, "", None if self.std is None else self.std * abs(factor))
+
+
+def parse_value(
+    text: str,
+    parse: Callable[[str], Any] = parse_number,
+    *,
+    uncertain: bool = False,
+    steady: bool = False,
+) -> Value:
+    """Parse an input; `parse` reads its number.
+
+    `uncertain` allows an uncertainty, and `steady` allows `STEADY_WORDS`.  Raises LagtopError if
+    `parse` does, with the whole text in place of the number, and for a bad uncertainty.
+    """
+    number, unit = split_unit(text)
+    if steady and number in STEADY_WORDS:
+        return Value(number)
+    got = f"got {quoted(text.strip())}"
+    try:
+        plain, std = _split_uncertainty(number)
+        if std is not None and not uncertain:
+            raise LagtopError(f"must have no uncertainty in this command, {got}: leave it out")
+        return Value(parse(plain), unit, std)
+    except LagtopError as error:
+        whole = str(error).replace(f"got {quoted(number)}", got)
+        if number in STEADY_WORDS:
+            whole = steady_refused(number)
+        elif steady and not re.search(r"\d", number):
+            whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
+        raise LagtopError(whole, error.key) from None
+
+
+def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
+    """Return the number in a text, as text, and its standard uncertainty, or None."""
+    if not re.search(r"[(±%]|\+/?-", text) or re.fullmatch(f"{_DECIMAL}{_EXPONENT}?", text):
+        return text, None
+    found = next((x for form in _UNCERTAIN if (x := re.fullmatch(form, text))), None)
+    if found is None:
+        forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
+        raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")
+    parts = {"exponent": "", **found.groupdict(default="")}
+    number, last = parts["number"], parts.get("last")
+    if last is not None:  # in units of the last digit
+        decimals = 0 if "." in last else len(number.partition(".")[2])
+        parts |= {"std": f"{last}e-{decimals}", "percent": ""}
+    std = parse_number(parts["std"]) * parse_number(f"1{parts['exponent']}")
+    if std < 0:
+        raise LagtopError(f"must have an uncertainty >= 0, got {quoted(text)}")
+    if parts["percent"]:
+        std *= abs(parse_number(number)) / 100
+    return number + parts["exponent"], std
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Return the number part of an input text and its unit, empty if it has none.
+
+    The unit begins at the first letter that is not the e of an exponent.  A text without a digit
+    before its first letter, such as `nan`, has no unit.  A range or a list has its unit at the end,
+    after a number: no colon and no comma follows or precedes it.
+    """
+    text = text.strip()
+    found = _UNIT.search(text, len(LOG) if text.startswith(LOG) else 0)
+    if found is None:
+        return text, ""
+    number, unit = text[: found.start()].rstrip(), found[0]
+    if set(unit) & {":", ","} or number.endswith((":", ",")) or not re.search(r"\d", number):
+        return text, ""
+    return number, unit
+
+
+def steady_refused(word: str) -> str:
+    """Return the message about a word for the rates of many tops, without the name of the input."""
+    keys = "steady_rate_slow and steady_rate_fast"
+    return f"must be a number unless one top is solved, got {word}: see the keys {keys}"
+
+
+def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -> Value:
+    """Return a number or an array of Python as a value.
+
+    Quantities of pint and numbers of the package uncertainties are accepted, and texts if `parse`
+    reads their numbers.  Raises LagtopError for an uncertainty that is not finite, for a quantity
+    of another kind, and if `parse` does.
+    """
+    if parse is not None and isinstance(given, str):
+        try:
+            return parse_value(given, parse, uncertain=True)
+        except LagtopError as error:
+            raise LagtopError(f"{name} {error}", name) from None
+    if isinstance(given, Value):
+        return given
+    unit = ""
+    if hasattr(given, "m_as"):  # a quantity of pint
+        unit, given = _of_pint(name, given)
+    number, std = getattr(given, "nominal_value", given), getattr(given, "std_dev", None)
+    if unit and not getattr(number, "shape", ()):
+        number = exact_number(name, number)
+    spread = None if std is None else exact_number(name, std, "the uncertainty of ")
+    return Value(number, unit, spread)
+
+
+def _of_pint(name: str, given: Any) -> tuple[str, Any]:
+    """Return the unit and the magnitude of a quantity, in SI if lagtop does not know its unit."""
+    from .units import SI, UNIT_OF, unit_of_text  # start-up
+
+    unit = f"{given.units:~C}"
+    try:
+        unit_of_text(unit)
+        return unit, given.magnitude  # which is then converted exactly
+    except LagtopError:
+        unit = SI.named(UNIT_OF.get(name, "time"))
+    try:
+        return unit, given.m_as(unit)
+    except Exception as error:  # pint has errors of many kinds
+        raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
+
+
+def values_of(inputs: Mapping[str, Any]) -> dict[str, Value]:
+    """Return the values of inputs by key.  Raises LagtopError."""
+    return {name: value_of(name, x) for name, x in inputs.items()}
+
+
+def exact_number(name: str, number: Any, what: str = "") -> Fraction:
+    """Return a real number as a fraction.  Raises LagtopError for anything else."""
+    number = number.item() if getattr(number, "shape", None) == () else number  # NumPy's overflow
+    try:
+        if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
+            float(number)
+            return Fraction(number)
+    except (ValueError, OverflowError):
+        pass
+    raise LagtopError(f"{what}{name} must be a finite number, got {quoted(number)}", name)
+
+
+class Span(NamedTuple):
+    """The interval in which an unknown input is searched for, or the ends of a range."""
+
+    first: Fraction
+    last: Fraction
+    logarithmic: bool = False
+    """Whether the interval is divided into equal ratios instead of equal steps."""
+
+    def scaled(self, factor: Fraction) -> Span:
+        """Return the interval multiplied by a factor > 0."""
+        return self._replace(first=self.first * factor, last=self.last * factor)
+
+    def __str__(self) -> str:
+        return f"{float(self.first):g} to {float(self.last):g}"
+
+
+def _ends(text: str, parts: Sequence[str], parse: Callable[[str], Fraction]) -> Span:
+    """Return the span of two ends.  Raises LagtopError if a logarithmic one contains 0."""
+    span = Span(parse(parts[0]), parse(parts[1]), text.startswith(LOG))
+    if span.logarithmic and not span.first * span.last > 0:
+        wanted = "must have two ends of one sign, not 0, in a log: range"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+    return span
+
+
+def parse_span(text: str) -> Span:
+    """Parse an interval, `from:to` or `log:from:to`.
+
+    Raises LagtopError for anything else, and unless the second end is the larger one.
+    """
+    _refuse_units_inside(text)
+    ends = text.removeprefix(LOG).split(":")
+    if len(ends) != 2:
+        raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
+    span = _ends(text, ends, parse_number)
+    if not span.first < span.last:
+        raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
+    return span
+
+
+def parse_number_or_span(text: str) -> Fraction | Span:
+    """Parse a number, or an interval `[log:]from:to`.  Raises LagtopError."""
+    return parse_span(text) if ":" in text else parse_number(text)
+
+
+def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
+    """Return the points of `start:stop:count` or, with equal ratios, of `log:start:stop:count`.
+
+    `parse` reads the two ends.  Raises LagtopError for anything else, for a count of 1 between
+    different ends, and for a logarithmic range over 0.
+    """
+    parts = text.removeprefix(LOG).split(":")
+    if len(parts) != 3:
+        raise LagtopError(f"must be a range [log:]start:stop:count, got {quoted(text)}")
+    (first, last, logarithmic), count = _ends(text, parts, parse), parse_number(parts[2])
+    if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
+        raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {quoted(text)}")
+    if count == 1 and first != last:
+        wanted = "must have a count of 2 or more between different ends"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+    size = int(count)
+    if logarithmic:
+        return LogPoints(first, last, size)
+    return EvenPoints(first, (last - first) / max(size - 1, 1), size)
+
+
+def parse_values(text: str) -> Points:
+    """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
+    _refuse_units_inside(text)
+    if ":" in text:
+        return parse_range(text)
+    return ListedPoints([parse_number(part) for part in text.split(",")])
+
+
+def _refuse_units_inside(text: str) -> None:
+    """Raise LagtopError for a range or a list with a unit in front of its last number."""
+    if re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
+        wanted = "must have its unit once, at the end, as in '60:80:3 rpm'"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+
+
+class Multiple(NamedTuple):
+    """A number or points, or factors of K."""
+
+    factor: Any
+    in_quarters: bool
+
+
+def parse_multiple(text: str) -> Multiple:
+    """Parse a number such as `0.5`, or a multiple of K such as `K`, `-2.5K`, `K/2` or `3K/4`.
+
+    Raises LagtopError for anything else.
+    """
+    if "K" not in text:
+        return Multiple(parse_number(text), False)
+    number = rf"{_DECIMAL}{_EXPONENT}?"
+    found = re.fullmatch(rf"([+-]|{number})?\s*K(?:/({number}))?", text.strip())
+    if found is None or parse_number(found[2] or "1") <= 0:
+        wanted = "must be a multiple of K such as K, -2.5K, K/2 or 3K/4"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+    before = {None: "1", "+": "1", "-": "-1"}.get(found[1], found[1])
+    return Multiple(parse_number(before) / parse_number(found[2] or "1"), True)
+
+
+def parse_multiples(text: str) -> Multiple:
+    """Parse a range whose ends are read by `parse_multiple`.
+
+    Raises LagtopError as `parse_range` does, and if only one end is in units of K.
+    """
+    ends = [parse_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
+    points = parse_range(text, lambda end: parse_multiple(end).factor)
+    mixed = f"must have both ends in units of K or none, got {quoted(text)}"
+    return Multiple(points, _in_quarters(ends, mixed))
+
+
+def listed_multiples(single: Sequence[Multiple]) -> Multiple:
+    """Return a list of multiples as one object.  Raises LagtopError for a mixture of both kinds."""
+    mixed = "u must be in units of K every time or never, got both"
+    return Multiple(ListedPoints([x.factor for x in single]), _in_quarters(single, mixed))
+
+
+def _in_quarters(multiples: Sequence[Multiple], mixed: str) -> bool:
+    """Return whether numbers are in units of K; 0 fits both kinds.  Raises LagtopError for both."""
+    kinds = {x.in_quarters for x in multiples if x.factor}
+    if len(kinds) > 1:
+        raise LagtopError(mixed, "u")
+    return True in kinds

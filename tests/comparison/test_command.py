@@ -1,0 +1,110 @@
+"""`lagtop compare`: files, options, reports, pictures and exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Lagtop, assert_one_line
+from engines import Body, Run, rk4
+from lagtop import Top
+
+from lagrange_cli.comparison.compare import COMPARISON_KEYS
+
+TOP = Top(psidot0=3)
+OPTIONS = ["--psidot0", 3]
+
+
+def write(path: Path, run: Run, header: str = "t,qw,qx,qy,qz,p,q,r") -> Path:
+    np.savetxt(path, np.column_stack(run), delimiter=",", header=header, comments="", fmt="%.17g")
+    return path
+
+
+@pytest.fixture
+def right(tmp_path: Path) -> Path:
+    """Return the file of a good trajectory."""
+    return write(tmp_path / "right.csv", rk4(Body.of(TOP), 2e-3, 0.5))
+
+
+def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
+    run = rk4(Body.of(TOP.replace(r0=-50)), 2e-3, 0.5)
+    run[1][:, :4] *= 1.00001
+    other = write(tmp_path / "other.csv", run)
+    result = lagtop("compare", right, other, *OPTIONS)
+    assert result.exit_code == 1
+    why = f"Error: 1 of 2 trajectories failed; the first: {other}: off from the start, at "
+    assert result.stderr.startswith(why)
+    assert "right.csv: fine, at most" in result.stdout
+    assert "The norm of its quaternion or matrix is up to 1.0e-05 off 1." in result.stdout
+    assert "Most likely cause: r0 has the wrong sign. With that corrected, the" in result.stdout
+    rows = json.loads(lagtop("compare", right, other, *OPTIONS, "--format", "json").stdout)["rows"]
+    assert [row["verdict"] for row in rows] == ["fine", "off from the start"]
+    assert [list(row) for row in rows] == [[*COMPARISON_KEYS]] * 2
+    assert lagtop("compare", "-", *OPTIONS, input=right.read_bytes()).exit_code == 0
+    strict = lagtop("compare", right, *OPTIONS, "--max-error", "1e-9")
+    assert (strict.exit_code, "none of the known" in strict.stdout.lower()) == (1, True)
+    assert "file verdict rows max error at the end energy ─" in " ".join(strict.stdout.split())
+    assert "rad off, its rates by 2.1e-07 (relative)." in strict.stdout
+
+
+def test_the_worked_example_is_not_assumed_in_silence(lagtop: Lagtop, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("t,theta\n0,30\n")
+    done = lagtop("compare", tmp_path / "run.csv")
+    assert done.stderr == "Warning: no scene and no inputs: compared with the worked example\n"
+
+
+@pytest.mark.slow
+def test_pictures(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
+    sizes = []
+    for how in ([], ["--step-sizes", "1e-3,2e-3"]):  # a second panel
+        command = ["compare", right, right, *OPTIONS, "--plot", tmp_path / "a.svg", *how]
+        assert lagtop(*command).exit_code == 0
+        sizes.append((tmp_path / "a.svg").stat().st_size)
+    assert sizes[0] < sizes[1]
+
+
+def test_steps(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
+    coarse = write(tmp_path / "coarse.csv", rk4(Body.of(TOP), 4e-3, 0.5))
+    shown = lagtop("compare", coarse, right, *OPTIONS, "--step-sizes", "4e-3,2e-3").stdout
+    assert "The error falls with the step; the order of convergence is 4." in shown
+    again = lagtop("compare", right, right, *OPTIONS, "--step-sizes", "4e-3,2e-3").stdout
+    assert "does not fall with the step: the numbers may have been rounded." in again
+
+
+def test_conventions_by_options(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
+    """An option overrides what p, q and r say of their frame."""
+    table = np.loadtxt(right, delimiter=",", skiprows=1)
+    np.save(tmp_path / "a.npy", np.column_stack([table[:, 0] + 3, np.roll(table[:, 1:5], -1, 1)]))
+    how = ["--columns", "t,quaternion", "--align", "time", "--quaternion-order", "xyzw"]
+    result = lagtop("compare", tmp_path / "a.npy", *OPTIONS, *how)
+    assert result.exit_code == 0
+    wrong = lagtop("compare", right, *OPTIONS, "--rates-frame", "space")
+    assert "the rates are in the frame of body: --rates-frame body" in wrong.stdout
+
+
+ROW = "t,theta\n0,30\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments", "code", "message"),
+    [
+        (ROW, "-", 2, "standard input can be read once, got - twice"),
+        (ROW, "--step-sizes 1,2", 2, "--step-sizes must have one number per trajectory (1), got 2"),
+        (ROW, "--step-sizes 0", 2, "--step-sizes must be > 0, got 0.0"),
+        (
+            "t,theta\n0,x\n",
+            "",
+            65,
+            "standard input, line 2, column 2: theta must be a finite decimal number",
+        ),
+        ("t,theta\n1e99,30\n", "", 65, "standard input: t must be finite and within 2^50 periods"),
+        ("t,thetadot,phidot,psidot\n0,0,50,0\n", "", 65, "standard input: angle_rates must come"),
+        ("t,theta\n", "", 65, "standard input: t must have at least one row"),
+    ],
+)
+def test_bad_requests_get_one_line(
+    lagtop: Lagtop, text: str, arguments: str, code: int, message: str
+) -> None:
+    assert_one_line(lagtop("compare", "-", *arguments.split(), input=text), code, message)

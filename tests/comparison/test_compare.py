@@ -1,0 +1,231 @@
+"""Trajectories of every form, errors of known size, frames, verdicts, order of convergence."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from engines import Array, Body, dop853, rk4, semi_implicit_euler, wxyz
+from lagtop import Comparison, LagtopError, Top, compare, solve
+from scipy.spatial.transform import Rotation
+
+from lagrange_cli.comparison.compare import compared
+from lagrange_cli.comparison.differences import Trajectory
+from lagrange_cli.files.observed import Conventions
+
+TOP = Top(thetadot0=1, psidot0=3)
+T = np.linspace(0, 2, 201)
+_, STATES = dop853(Body.of(TOP), T)
+Q, RATES = STATES[:, :4], STATES[:, 4:]
+TURN = Rotation.from_quat(Q, scalar_first=True)
+PHI, THETA, PSI = TURN.as_euler("ZXZ")[:, ::-1].T
+
+
+def about_z(angle: Any) -> Rotation:
+    return Rotation.from_rotvec(np.multiply.outer(angle, [0.0, 0.0, 1.0]))
+
+
+STARTS: list[dict[str, float]] = [{"r0": 0}, {"theta0_deg": 120, "thetadot0": -2, "r0": 5}]
+STARTS += [{"theta0_deg": 0, "r0": 60}, {"theta0_deg": 180, "r0": 30}, {"g": 0, "psidot0": 4}]
+
+
+@pytest.mark.parametrize("inputs", STARTS)
+def test_an_integrator_is_fine(inputs: dict[str, float]) -> None:
+    """Worst seen: 9.8e-13 rad."""
+    top = Top(**inputs)
+    _, states = dop853(Body.of(top), T)
+    found = compare(top, T, quaternion=states[:, :4], rates=states[:, 4:])
+    assert found.verdict == "fine"
+    assert (found.attitude_error_max or 0) < 5e-12
+    assert None not in (drifts := (found.energy_drift, found.Lz_drift, found.norm_error))
+    assert max(x or 0 for x in drifts) < 1e-12
+
+
+def test_keys_of_quantities_that_are_not_given_are_none() -> None:
+    for given, known in (
+        ({"euler": TURN.as_euler("XYZ"), "euler_sequence": "XYZ"}, "attitude axis theta phi psi"),
+        ({"position": TURN.apply([0, 0, 4.0])}, "axis theta psi"),
+        ({"phi": PHI, "psi": PSI + 2 * np.pi}, "phi psi"),
+        ({"rates": RATES}, "rates"),
+    ):
+        found = compare(TOP, T, **given)
+        assert (found.error_max or 0) < 2e-12  # worst seen: 9.8e-13 rad
+        errors = [key for key, x in found.record().items() if "_error_" in key and x is not None]
+        assert " ".join(x.removesuffix("_error_max") for x in errors) == known
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e-4, 3.0])
+def test_an_error_of_known_size_is_measured(size: float) -> None:
+    """The trajectory itself is 9.8e-13 rad off."""
+    spun = compare(TOP, T, quaternion=wxyz(TURN * about_z(size)))
+    turned = compare(TOP, T, quaternion=-2 * wxyz(about_z(-size) * TURN))
+    tilted = compare(TOP, T, theta=THETA - size, max_error=1e-3)
+    found = spun.attitude_error_max, spun.phi_error_max, turned.error_final, turned.psi_error_max
+    assert (*found, tilted.theta_error_max) == pytest.approx([size] * 5, abs=2e-12)
+    assert max(spun.psi_error_max or 0, spun.axis_error_max or 0) < 2e-12
+    assert (tilted.verdict == "fine") == (size < 1e-3)
+    assert compare(TOP, T, theta=THETA - size, max_error=3.1).verdict == "fine"
+
+
+def test_wrong_rates_of_a_right_attitude_are_not_fine() -> None:
+    found = compare(TOP, T, quaternion=Q, rates=RATES * np.linspace(1, 1.01, 201)[:, np.newaxis])
+    assert (found.verdict, found.cause) == ("drifts", None)
+    assert (found.error_max or 0) < 1e-11
+    fall = math.sqrt(float(TOP.m * TOP.g * TOP.s / TOP.A))
+    size = math.hypot(1, 3 * math.sin(math.pi / 6)) + 50 + fall
+    off = np.linalg.norm(RATES[-1]) * 0.01 / size
+    assert found.rates_error_max == pytest.approx(off, rel=0.01)
+    assert compare(TOP, T, quaternion=Q, rates=1.0001 * RATES).verdict == "fine"
+    assert compare(TOP, T, quaternion=Q, rates=1.01 * RATES).verdict == "off from the start"
+    assert compare(TOP, T, rates=1.01 * RATES).cause is None
+
+
+@pytest.mark.parametrize("rate", [1e-6, -0.1, 25.0])
+def test_drift_is_separated_from_oscillation(rate: float) -> None:
+    wobble = 1e-3 * np.sin(7 * T)
+    found = compare(TOP, T, phi=PHI + rate * T + wobble, theta=THETA)
+    assert found.phi_drift == pytest.approx(rate + np.polyfit(T, wobble, 1)[0], rel=1e-6)
+    last = math.remainder(rate * T[-1] + wobble[-1], 2 * math.pi)
+    assert found.error_final == pytest.approx(abs(last), rel=1e-6)
+    assert found.psi_drift is None
+    assert (compare(TOP, T, phi=PHI + 2.1 * (T > 1)).phi_drift, found.rows) == (None, 201)
+
+
+def test_drift_of_energy_momentum_and_norm_of_an_integrator() -> None:
+    body = Body.of(TOP)
+    t, states = rk4(body, 8e-3, 2)
+    found = compare(TOP, t, quaternion=states[:, :4], rates=states[:, 4:])
+    energy, moments = body.energy(states), np.array([body.A, body.A, body.C])
+    kinetic = energy[0] - body.torque * math.cos(math.radians(30))
+    change = abs(energy - energy[0]).max()
+    assert found.energy_drift == pytest.approx(change / (kinetic + body.torque), rel=1e-6)
+    up = Rotation.from_quat(states[:, :4], scalar_first=True).inv().apply([0, 0, 1])
+    Lz = (up * moments * states[:, 4:]).sum(axis=1)
+    across = body.A * math.hypot(1, 3 * math.sin(math.pi / 6))
+    size = math.hypot(across, body.C * 50) + math.sqrt(body.A * body.torque)
+    assert found.Lz_drift == pytest.approx(abs(Lz - Lz[0]).max() / size, rel=1e-6)
+    norms = np.linalg.norm(states[:, :4], axis=1)
+    assert found.norm_error == pytest.approx(abs(norms - 1).max(), rel=1e-9)
+    far = compare(TOP, T, position=TURN.apply([0, 0, 6.0]))
+    assert far.norm_error == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(("tilt", "off"), [(0, 0.15), (180, 0.35)])
+def test_upright_and_hanging_tops_have_one_angle(tilt: int, off: float) -> None:
+    """Upright, a turn about the vertical is one of the spin; hanging, it is one against it."""
+    top = Top(theta0_deg=tilt, r0=70)
+    _, states = dop853(Body.of(top), T)
+    turned = about_z(0.25) * Rotation.from_quat(states[:, :4], scalar_first=True) * about_z(-0.1)
+    found = compare(top, T, quaternion=wxyz(turned))
+    assert found.phi_error_max == pytest.approx(off, abs=1e-9)
+    assert found.attitude_error_max == pytest.approx(off, abs=1e-9)
+    assert found.psi_error_max is None
+    assert compare(top, T, quaternion=wxyz(turned), align=["start"]).verdict == "fine"
+
+
+def test_published_attitudes() -> None:
+    """EXUDYN's heavyTop.py prints it at t = 0.2; Bruels, Cardona and Arnold have y as the axis."""
+    top = Top(m=15, A=15.234375, C=0.46875, s=1, g=9.81, r0=150, theta0_deg=90, psidot0=-4.61538)
+    q = [(1, 0, 0, 0), (-0.70828, 0.43878, 0.54573, 0.0894)]
+    found = compare(top, [0, 0.2], quaternion=q, align=["axis=y", "start"])
+    assert (found.attitude_error_max or 0) < 1e-5
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "-x", "-y", "-z"])
+def test_other_axes(axis: str) -> None:
+    """The columns of a frame are the axes of ours in the coordinates of others."""
+    sign, index = (-1 if axis.startswith("-") else 1), "xyz".index(axis[-1])
+    figure, side = sign * np.eye(3)[index], np.eye(3)[(index + 1) % 3]
+    frame = Rotation.from_matrix(np.stack([side, np.cross(figure, side), figure], axis=1))
+    given = {"quaternion": wxyz(TURN * frame.inv()), "rates": frame.apply(RATES)}
+    found = compare(TOP, T, **given, align=[f"axis={axis}", "start"])
+    assert max(found.error_max or 0, found.rates_error_max or 0) < 2e-12
+    up = compare(TOP, T, quaternion=wxyz(frame * TURN), align=[f"up={axis}", "start"])
+    assert (up.error_max or 0) < 2e-12
+
+
+@pytest.mark.parametrize(("up", "rows"), [("z", [0, 1, 2]), ("y", [0, 2, 1]), ("x", [2, 1, 0])])
+def test_left_handed_frames(up: str, rows: list[int]) -> None:
+    """Rates are mirrored as angular momentum is: they turn the other way round."""
+    mirror = np.diag([1.0, -1, 1]) if up == "z" else np.eye(3)[rows]
+    turn = Rotation.from_matrix(mirror @ TURN.as_matrix() @ mirror.T)
+    for frame, rates in (("body", RATES), ("space", TURN.apply(RATES))):
+        how: dict[str, Any] = {"rates_frame": frame, "align": [f"up={up}", "left", "start"]}
+        found = compare(TOP, T, quaternion=wxyz(turn), rates=-rates @ mirror, **how)
+        of_rates = found.rates_error_max or 0, found.energy_drift or 0
+        assert max(found.error_max or 0, *of_rates) < 2e-12
+
+
+def test_zeros_that_count_from_the_first_row() -> None:
+    turned = wxyz(about_z(1.0) * TURN * about_z(-2.5))
+    turned[:3] = math.nan
+    found = compare(TOP, T + 17, quaternion=turned, align=["start", "time"])
+    assert (found.lost_at, found.verdict) == (0, "lost")
+    assert (found.error_max or 0) < 2e-12
+    late = compare(TOP, T + 17, quaternion=wxyz(about_z(1.0) * TURN), align=["time"])
+    assert "(--align start)" in (late.cause or "")
+    parts = {"phi": PHI + 2, "psi": PSI - 1}
+    assert (compare(TOP, T, **parts, align=["start"]).error_max or 0) < 2e-12
+    axis = about_z(0.7).apply(TURN.apply([0, 0, 1]))
+    assert (compare(TOP, T, axis=axis, align=["start"]).error_max or 0) < 2e-12
+
+
+def with_steps(runs: list[tuple[Array, Array]], steps: list[float]) -> list[Comparison]:
+    given = [{"t": t[:, np.newaxis], "quaternion": states[:, :4]} for t, states in runs]
+    conventions = Conventions("wxyz", radians=True)
+    return compared(solve(TOP), [Trajectory(x, conventions) for x in given], 1e-3, steps)[0]
+
+
+@pytest.mark.parametrize(
+    ("method", "steps", "order"),
+    [(rk4, [8e-3, 4e-3, 2e-3], 4), (semi_implicit_euler, [4e-3, 2e-3, 1e-3], 1)],
+)
+def test_order_of_convergence(method: Any, steps: list[float], order: int) -> None:
+    """All errors of the first-order method end beyond 0.3 rad: its order shows before."""
+    rows = with_steps([method(Body.of(TOP), h, 1) for h in steps], steps)
+    assert rows[0].order == pytest.approx(order, abs=0.5)
+    assert {row.verdict for row in rows} <= {"fine", "drifts"}
+    assert [(row.step, row.cause) for row in rows] == [(step, None) for step in steps]
+
+
+def test_the_error_of_another_top_does_not_fall() -> None:
+    other = Body.of(TOP.replace(A=39032 * 1.03))
+    rows = with_steps([rk4(other, h, 1) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
+    assert {(row.verdict, row.cause) for row in rows} == {("another top", None)}
+    other = Body.of(TOP.replace(psidot0=-3))
+    rows = with_steps([rk4(other, h, 0.5) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
+    assert {row.cause for row in rows} == {"psidot0 has the wrong sign"}
+    rounded = with_steps([(T, np.round(STATES, 6))] * 2, [1e-3, 1e-4])
+    assert {row.verdict for row in rounded} == {"fine"}
+
+
+def test_rows_that_are_not_finite() -> None:
+    for bad in (math.nan, math.inf):
+        found = compare(TOP, T, quaternion=np.where(T[:, np.newaxis] < 1.2, Q, bad))
+        assert (found.verdict, found.lost_at, found.error_final) == ("lost", T[120], None)
+    nothing = compare(TOP, T, quaternion=0 * Q)
+    assert (nothing.verdict, nothing.lost_at, nothing.error_max) == ("lost", 0, None)
+    one = compare(TOP, 0.3, theta=THETA[30] + 1)
+    assert (one.rows, one.theta_drift, one.cause) == (1, None, None)
+    masked = np.ma.masked_array(THETA, T > 1)
+    assert compare(TOP, T, theta=masked).lost_at == T[101]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({}, "compare must be given an attitude"),
+        ({"angle_rates": RATES}, "angle_rates must come with an attitude or a part of it"),
+        ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
+        ({"quaternion": Q, "align": ["up=w"]}, "align must be among axis=y"),
+        ({"theta": THETA, "align": ["left"]}, "align axis and left need the whole attitude"),
+        ({"theta": THETA, "align": ["up=y", "start"]}, "align up needs the axis or the"),
+        ({"t": [0, 1, 0.5], "theta": [0.1] * 3}, "t must be finite, and increase or decrease"),
+        ({"t": [], "theta": []}, "t must have at least one row"),
+    ],
+)
+def test_bad_arguments(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
+        compare(TOP, **({"t": T} | arguments))

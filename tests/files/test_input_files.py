@@ -1,0 +1,117 @@
+"""Scene files, files of times and files of tops: what is read, what is refused, what it costs."""
+
+from __future__ import annotations
+
+import os
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, Lagtop, assert_one_line
+from lagtop import LagtopError, Top
+
+import lagrange_cli
+from lagrange_cli.errors import SceneError
+from lagrange_cli.top.given import read_scene
+
+
+def scene(folder: Path, text: str) -> str:
+    path = folder / "scene.toml"
+    path.write_bytes(os.fsencode(text))
+    return str(path)
+
+
+# Scenes
+
+
+def test_a_scene_is_a_top(tmp_path: Path) -> None:
+    path = scene(tmp_path, "r0 = 60\ntheta0_rad = 0.1\n")
+    assert lagrange_cli.read_scene(path) == Top(r0=60, theta0_rad=0.1)
+    assert read_scene(path, {"r0": 7, "theta0_deg": 3}) == Top(r0=7, theta0_deg=3)
+    assert read_scene(path, exact=True).theta0_rad == Fraction(1, 10)
+    known = read_scene(str(ROOT / "sample_inputs" / "chrapan-1952.toml"))
+    assert known == Top()
+
+
+def test_errors_name_the_scene_file_or_the_argument(tmp_path: Path) -> None:
+    path = scene(tmp_path, "r0 = 60\nm = -1\n")
+    with pytest.raises(SceneError, match=r"scene.toml, line 2: m must be > 0, got -1.0$"):
+        read_scene(path)
+    with pytest.raises(LagtopError, match=r"^A must be > 0") as refused:
+        read_scene(path, {"m": 1, "A": -1})
+    assert not isinstance(refused.value, SceneError)
+    with pytest.raises(SceneError, match="No such file"):
+        read_scene(str(tmp_path / "nowhere.toml"))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("mm = 1", "unknown key 'mm' (did you mean 'm'?) (known: m, A, C"),
+        ("theta0 = 1", "theta0 must have a unit, such as '30 deg', or be called theta0_deg"),
+        ('r0 = "3"', "r0 must have a unit between quotes, got '3': leave out the quotes"),
+        (f"m = 1.{'0' * 5000}", "m must have at most 2000 characters"),
+        ("g = 9.81\nm = 1,5\n", "(at line 2, column 6) (write a decimal point, not a comma)\n"),
+        ("[" * 9000, "not a TOML file"),
+        ("r0 = 1\n" + "#" * 20_000, "must have at most 16384 bytes, has more"),
+        ("r0 = 1\n\udcff\udcfe\x00", "line 2: the text must be UTF-8 or UTF-16"),
+        ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
+        ("\nr0 = 'fast'\n", "line 2: r0 must be a finite decimal number, got 'fast'"),
+        ("A = 1\nC = 3\n", "line 2: C must be <= 2 A = 2.0, got 3.0"),
+        ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_rad and theta0_deg are both given"),
+    ],
+)
+def test_invalid_scene_files_are_refused(
+    text: str, message: str, tmp_path: Path, lagtop: Lagtop
+) -> None:
+    path = scene(tmp_path, text)
+    result = lagtop("solve", path)
+    assert_one_line(result, 65, path)
+    assert message in result.stderr
+    assert len(result.stderr) < 500 + len(path)
+
+
+def test_standard_input_is_read_once(lagtop: Lagtop) -> None:
+    result = lagtop("table", "-", "--times", "-", input="r0 = 1\n")
+    assert_one_line(result, 2, "")
+    assert "not both" in result.stderr
+
+
+def test_files_without_inputs_or_tops_are_told(tmp_path: Path, lagtop: Lagtop) -> None:
+    path, tops = scene(tmp_path, "# nothing yet\n"), tmp_path / "tops.csv"
+    tops.write_text("r0\n")
+    for words, stdout, said in (
+        (["solve", path, "--get", "r0"], "50.0\n", "no inputs: using the worked example"),
+        (["sweep", path, "--keys", "r0"], "r0\n50.0\n", "no inputs: using the worked example"),
+        (["sweep", tops, "--keys", "k"], "k,error\n", "no tops"),
+        (["sweep", tops, "--keys", "k", "--format", "json"], "[]\n", "no tops"),
+    ):
+        result = lagtop(*words)
+        assert (result.exit_code, result.stdout) == (0, stdout)
+        assert result.stderr.startswith(f"Warning: {words[1]} h")
+        assert result.stderr.endswith(f" {said}\n")
+    assert lagtop("sweep", tops, "--shard", "2/2").stderr == ""
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["solve FILE.toml", "sweep FILE.csv", "compare FILE.csv", "table --times FILE"],
+)
+def test_a_file_that_cannot_be_read_ends_with_65(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lagtop: Lagtop
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = line.rsplit(maxsplit=1)[-1]
+    assert_one_line(lagtop(*line.split()), 65, f"{name}: No such file or directory")
+    Path(name).mkdir()
+    assert_one_line(lagtop(*line.split()), 65, f"{name}: Is a directory")
+
+
+# Times
+
+
+def test_a_time_out_of_reach(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "times.txt"
+    path.write_text("1\n2\n1e30\n")
+    result = lagtop("table", "--times", path)
+    assert_one_line(result, 65, f"{path}: t must be finite and within 2^50 periods")

@@ -1,0 +1,196 @@
+"""The one grammar of tables as text: delimiters, decimal marks, headings and places in messages."""
+
+from __future__ import annotations
+
+import gzip
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Lagtop, assert_one_line
+
+from lagrange_cli.errors import DataError
+from lagrange_cli.files.headings import name_and_unit
+from lagrange_cli.files.tops import read_tops
+from lagrange_cli.files.trajectory import read_times, read_trajectory
+
+
+def times(path: Path, decimal: str) -> list[float]:
+    """Return the times of a file."""
+    return [float(x) for x in read_times(str(path), decimal).exact]
+
+
+def of_a_trajectory(path: Path, decimal: str) -> list[float]:
+    """Return the times of a trajectory."""
+    found: list[float] = (
+        read_trajectory(str(path), None, decimal).values(radians=True)["t"][:, 0].tolist()
+    )
+    return found
+
+
+def of_tops(path: Path, decimal: str) -> list[float]:
+    """Return the spins of tops; an error of a row is an error here."""
+    tops = read_tops(str(path), set(), decimal).arrays({})
+    for error in tops.errors.values():
+        raise DataError(error)
+    found: list[float] = np.asarray(tops.inputs["r0"]).tolist()
+    return found
+
+
+READERS = {"t": (times, of_a_trajectory), "r0": (of_tops,)}
+"""The functions that return the first column of a file whose first heading this is."""
+SECOND = {"t": "theta", "r0": "theta0_deg"}
+
+TABLES = {
+    "FIRST,SECOND\n-0.5,30\n1.5,40\n": [-0.5, 1.5],
+    "FIRST;SECOND\n0,5;30\n1,5;40\n": [0.5, 1.5],
+    "FIRST\tSECOND\n0,5\t30,25\n1,5e0\t40\n": [0.5, 1.5],
+    "FIRST   SECOND\n 0,5   30,25\n 1,5 \t 40\n": [0.5, 1.5],
+    "\ufeff# made\r\n\r\nFIRST,SECOND\r\n# more\r\n0.5,30\r\n\r\n1.5,40\r\n": [0.5, 1.5],
+    '"FIRST";"SECOND"\n"0,5";"30"\n1,5;40\n': [0.5, 1.5],
+    "mass A\nFIRST,SECOND\n0.5,30\n1.5,40\n": [0.5, 1.5],
+    "run 5 of 7;;\n\n# x\nFIRST;SECOND;\n0,5;30;\n1,5;40;\n": [0.5, 1.5],
+    "FIRST;SECOND;note, more\n0,5;30;x\n1,5;40;y, z\n": [0.5, 1.5],
+    "FIRST;SECOND\n1,234;30\n0,5;40\n": [1.234, 0.5],
+    "FIRST;SECOND\n1.234;30\n2.345;40\n": [1.234, 2.345],
+    '{"FIRST":0.5,"SECOND":30}\n\n{"FIRST":1.5,"SECOND":40}\n': [0.5, 1.5],
+    '[\n {"FIRST":0.5,\n"SECOND":30},{"FIRST":1.5,"SECOND":40}\n]\n': [0.5, 1.5],
+    "FIRST   SECOND\n\u2500\u2500\u2500\u2500\n0.5   30\n1.5   40\n": [0.5, 1.5],
+}
+
+
+@pytest.mark.parametrize("first", READERS)
+@pytest.mark.parametrize("text", TABLES)
+def test_every_reader_takes_the_same_tables(text: str, first: str, tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(text.replace("FIRST", first).replace("SECOND", SECOND[first]).encode())
+    for reader in READERS[first]:
+        assert reader(path, "") == TABLES[text]
+
+
+WRONG = {
+    "FIRST;SECOND\n0,5;30\n1.5;40\n": "got '1.5' (use --decimal point)",
+    "FIRST;SECOND\n1,234;30\n": "line 2: a comma may be a decimal mark or separate thousands",
+    "FIRST\tSECOND\n1.234.567\t30\n": "got '1.234.567'",
+    'FIRST,SECOND\n0.5,"30\n': "a quoted cell must end with its quote, and on its line",
+    'FIRST,"SECOND\n0.5,30\n': "line 1: a quoted cell must end with its quote, and on its line",
+    "FIRST,SECOND\n0.5,30,1\n": "a row must have 2 cells, got 3",
+    "FIRST,SECOND\n0.5,30\nFIRST,SECOND,A,phi\n": "a row must have 2 cells, got 4",
+    '{"FIRST":0.5}\n{"FIRST":1.5,\n': "line 2: not JSON: ",
+    '{"FIRST":0.5}\n[1]\n': "line 2: a row must be a JSON object",
+    "[" * 9000: "line 1: not JSON: ",
+    "[1, 2]": "row 1: a row must be a JSON object",
+}
+
+
+@pytest.mark.parametrize("first", READERS)
+@pytest.mark.parametrize("text", WRONG)
+def test_bad_tables_end_in_one_line(text: str, first: str, tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text(text.replace("FIRST", first).replace("SECOND", SECOND[first]))
+    for reader in READERS[first]:
+        with pytest.raises(DataError) as error:
+            reader(path, "")
+        assert WRONG[text] in str(error.value)
+        assert "\n" not in str(error.value)
+        if reader is not of_tops:
+            assert str(error.value).startswith(f"{path}, ")
+
+
+@pytest.mark.parametrize("first", READERS)
+def test_the_user_decides_about_commas(first: str, tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text(f"{first};{SECOND[first]}\n1,234;30\n")
+    for reader in READERS[first]:
+        assert reader(path, ",") == [1.234]
+        with pytest.raises(DataError, match=r"got '1,234' \(use --decimal comma\)"):
+            reader(path, ".")
+
+
+def test_a_comma_that_may_be_the_delimiter(lagtop: Lagtop) -> None:
+    words = ["table", "--times", "-", "--columns", "t"]
+    two = lagtop(*words, input="0,5\n1,0\n")
+    assert_one_line(
+        two,
+        65,
+        "standard input: the time must be a number below the heading t or time, got 2 columns",
+    )
+    assert lagtop(*words, "--decimal", "comma", input="0,5\n1,0\n").stdout == "t\n0.5\n1.0\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-be", "gzip"])
+def test_encodings(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    for first, readers in READERS.items():
+        text = f"{first},{SECOND[first]},ångström\n0.5,30,1\n"
+        raw = text.encode("utf-8" if encoding == "gzip" else encoding)
+        raw = ("\ufeff" + text).encode(encoding) if encoding == "utf-16-be" else raw
+        path.write_bytes(gzip.compress(raw) if encoding == "gzip" else raw)
+        for reader in readers:
+            assert reader(path, "") == [0.5]
+
+
+def test_a_file_beyond_the_limit_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "file"
+    path.write_text("t,theta\n0.5,30\n")
+    path.with_suffix(".gz").write_bytes(gzip.compress(path.read_bytes()))
+    monkeypatch.setattr("lagrange_cli.file_bytes.read_bytes.__defaults__", (14,))
+    for each in (path, path.with_suffix(".gz")):
+        with pytest.raises(DataError, match="must have at most 14 bytes, has more"):
+            read_times(str(each))
+    monkeypatch.setattr("lagrange_cli.file_bytes.read_bytes.__defaults__", (15,))
+    assert times(path, "") == [0.5]
+
+
+def test_times_are_exact(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    for text in (
+        '{"t":0.1}\n{"t":1e-3}\n',
+        "t\n0.1\n1e-3\n",
+        "t ms,x\n100,\n1,\n",
+        "t ms\n100\n1\n",
+    ):
+        path.write_text(text)
+        assert read_times(str(path)).exact == [Fraction(1, 10), Fraction(1, 1000)]
+
+
+def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> None:
+    """A cell in quotes, or an empty one, changes the way but no number; places stay right."""
+    path = tmp_path / "file"
+    cells = ["0.1", "-1e-320", "1.7976931348623157e308", "3.", ".5", "+7", "2e22"] * 30
+    rows = [f"{i},{x}" for i, x in enumerate(cells)]
+    path.write_text("t,theta\n" + "\n".join(rows))
+    plain = read_trajectory(str(path)).values(radians=True)["theta"][:, 0].tolist()
+    assert plain == list(map(float, cells))
+    rows[3:5] = ['"3","3."', "4,.5", "4.5,nan"]
+    path.write_text("t,theta\n# note\n" + "\n".join(rows))
+    assert read_trajectory(str(path)).values(radians=True)["theta"][:, 0].tolist()[:5] == plain[:5]
+    rows[100] = "100,x"
+    path.write_text("t,theta\n# note\n" + "\n".join(rows))
+    with pytest.raises(
+        DataError, match="line 103, column 2: theta must be a finite decimal number, got 'x'"
+    ):
+        read_trajectory(str(path)).values(radians=True)
+
+
+@pytest.mark.parametrize(
+    ("heading", "found"),
+    [
+        ("t [ms]", ("t", "ms")),
+        ("theta (deg)", ("theta", "deg")),
+        ("ϑ (°)", ("theta", "deg")),
+        ("r0 rev/min", ("r0", "rpm")),
+        ("φ'0 [rad/s]", ("phidot0", "rad/s")),
+        ("ψ\u0307", ("psidot", "")),
+        ("ϑ₀ (degrees)", ("theta0", "deg")),
+        ("g m/s^2", ("g", "m/s^2")),
+        ("omega[0]", ("omega[0]", "")),
+        ("R(1, 2)", ("R(1, 2)", "")),
+        ("angle of s", ("angle of", "s")),
+    ],
+)
+def test_names_and_units_in_headings(heading: str, found: tuple[str, str]) -> None:
+    assert name_and_unit(heading) == found

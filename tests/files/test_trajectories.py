@@ -1,0 +1,239 @@
+"""Trajectories in every form in which engines write them, and the errors for bad ones."""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+import struct
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from lagtop import LagtopError
+from pyarrow import parquet
+
+from lagrange_cli.errors import DataError
+from lagrange_cli.files import trajectory
+from lagrange_cli.files.columns import QUANTITIES, expanded, quantities_in
+from lagrange_cli.files.trajectory import read_times, read_trajectory
+
+PI, ROWS = math.pi, 50
+DATA = np.random.default_rng(1).normal(size=(ROWS, 5))
+DATA[:, 0] = np.linspace(-1, 3, ROWS)
+
+
+def read(path: Path | str, columns: list[str] | None = None) -> dict[str, Any]:
+    """Return every quantity of a file, with checked times."""
+    file = read_trajectory(str(path), columns)
+    found = file.values(radians=True)
+    file.check_times(found["t"][:, 0])
+    return found
+
+
+def structured(path: Path) -> None:
+    np.save(path, np.rec.fromarrays(DATA.T, names=["t", "qw", "qx", "qy", "qz"]))  # type: ignore[call-overload]
+
+
+def several_arrays(path: Path) -> None:
+    np.savez(path, time=DATA[:, 0], quaternion=np.asfortranarray(DATA[:, 1:]), mass=np.ones(3))
+
+
+def columns_of_parquet(path: Path) -> None:
+    quaternions = pa.FixedSizeListArray.from_arrays(pa.array(DATA[:, 1:].ravel()), 4)
+    table = pa.table({"t": DATA[:, 0], "note": ["x"] * ROWS, "quaternion": quaternions})
+    parquet.write_table(table, path, row_group_size=7)
+
+
+@pytest.mark.parametrize("write", [structured, several_arrays, columns_of_parquet])
+def test_arrays_are_read_from_every_format(write: Callable[[Path], None], tmp_path: Path) -> None:
+    path = tmp_path / ("a.npz" if write is several_arrays else "a.npy")
+    write(path)
+    found = read(path)
+    assert np.array_equal(found["t"][:, 0], DATA[:, 0])
+    assert np.array_equal(found["quaternion"], DATA[:, 1:])
+
+
+def test_a_pipe_that_does_not_wait_is_read_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second half comes later; a read would return None, which looks like the end."""
+    receiver, sender = os.pipe()
+    os.set_blocking(receiver, False)
+
+    def send() -> None:
+        os.write(sender, b"t,theta\n0,1\n1,")
+        time.sleep(0.05)
+        os.write(sender, b"2\n")
+        os.close(sender)
+
+    thread = threading.Thread(target=send)
+    with open(receiver) as pipe:
+        monkeypatch.setattr(sys, "stdin", pipe)
+        thread.start()
+        assert read("-")["t"][:, 0].tolist() == [0, 1]
+    thread.join()
+
+
+def test_columns_are_named_from_the_left(tmp_path: Path) -> None:
+    np.save(tmp_path / "a.npy", DATA)
+    assert np.array_equal(read(tmp_path / "a.npy", ["t", "quaternion"])["quaternion"], DATA[:, 1:])
+    found = read(tmp_path / "a.npy", ["t", "_", "axis"])
+    assert np.array_equal(found["axis"], DATA[:, 2:])
+
+
+def test_missing_numbers_are_nan_and_times_may_run_backwards(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("t,theta,note\n0,1,x\n-1,,y\n-2,nan,z\n")
+    assert np.isnan(read(tmp_path / "a.csv")["theta"][:, 0]).tolist() == [False, True, True]
+    (tmp_path / "a.json").write_text('{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":null}\n{"t":2}\n')
+    assert np.isnan(read(tmp_path / "a.json")["axis"]).sum(axis=1).tolist() == [0, 3, 3]
+
+
+@pytest.mark.parametrize(
+    ("header", "found"),
+    [
+        ("timestamp tx ty tz qx qy qz qw", {"quaternion": [7, 4, 5, 6], "position": [1, 2, 3]}),
+        ("t p q r w x y z", {"quaternion": [4, 5, 6, 7], "rates": [1, 2, 3]}),
+        ("time u0 u1 u2 u3 u4 u5 u6", {"quaternion": [4, 5, 6, 7]}),
+        ("t R11 R12 R13 R21 R22 R23 R31 R32 R33", {"matrix": [*range(1, 10)]}),
+        ("t qpos_0 qpos_1 qpos_2 qpos_3 qvel_0 qvel_1 qvel_2", {"quaternion": [1, 2, 3, 4]}),
+        ("t " + " ".join(f"qpos{i}" for i in range(7)), {"quaternion": [4, 5, 6, 7]}),
+        ("t roll pitch yaw", {"euler": [1, 2, 3]}),
+    ],
+)
+def test_names_of_columns(header: str, found: dict[str, list[int]]) -> None:
+    seen = quantities_in(header.split())
+    assert {key: list(seen[key].columns) for key in found} == found
+    assert "t" in seen
+
+
+def test_every_quantity_can_be_named_as_a_whole() -> None:
+    for name, quantity in QUANTITIES.items():
+        single = expanded([name])
+        assert len(single) == quantity.size
+        assert list(quantities_in(single)) == [name]
+        assert {len(names) for names, _ in quantity.spellings} == {quantity.size}
+
+
+def saved(save: Callable[..., object], **arrays: Any) -> bytes:
+    """Return the bytes that a function of NumPy writes."""
+    stream = io.BytesIO()
+    save(stream, **arrays)
+    return stream.getvalue()
+
+
+def twice() -> bytes:
+    """Return a Parquet file with two columns of one name."""
+    stream = io.BytesIO()
+    parquet.write_table(pa.table([[0.0], [1.0], [2.0]], ["t", "theta", "theta"]), stream)
+    return stream.getvalue()
+
+
+HUGE = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000, 2)}"
+HOSTILE = [  # pickles are not loaded, and no memory is taken for the size that a header claims
+    saved(np.save, arr=np.array([{"t": 0}], dtype=object)),
+    saved(np.save, arr=np.zeros((2, 2, 2))),
+    b"\x93NUMPY\x01\x00" + struct.pack("<H", len(HUGE) + 1) + HUGE + b"\n",
+    saved(np.savez, theta=np.zeros(3), x=np.zeros(2)),
+    saved(np.savez, t=np.array([None]), theta=np.array([None])),
+]
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "must hold a trajectory, got no row"),
+        (
+            b"t,theta\n0,1\n\n# c\n1,1_0\n",
+            "line 5, column 2: theta must be a finite decimal number, got '1_0'",
+        ),
+        (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
+        (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),
+        (b"t,theta\n0,1\n-1,2\n-1,3\n", "line 4: t must not repeat, got -1.0 twice"),
+        (b"0 1\n", "has no header: name its 2 columns with --columns, such as t,quaternion"),
+        (b"a,b\n0,1\n", "must have columns among the time (t, time, timestamp) and"),
+        (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column 2: theta must be a finite"),
+        (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
+        (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
+        (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
+        (b"\x93NUMPY\x01\x00\xff\xff", "bad npy file"),
+        (b"PK\x03\x04", "bad npz file"),
+        (b"PAR1", "bad Parquet file"),
+        (twice(), "bad Parquet file: two columns are named 'theta'"),
+        (b"t,theta (furlongs)\n0,0\n", ": theta must have a unit as in 30deg or 0.5rad, got the"),
+        (b"t,x [m],y [m],z [cm]\n0,0,0,0\n", ": the parts of position must have one unit, got 'x"),
+        (b"t,q_w (m),q_x (m),q_y (m),q_z (m)\n", ": quaternion must have no unit, got 'm'"),
+        *((content, "") for content in HOSTILE),
+    ],
+)
+def test_bad_files_get_one_line(content: bytes, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad"
+    path.write_bytes(content)
+    with pytest.raises(DataError) as error:
+        read(path)
+    assert str(error.value).startswith(str(path))
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_an_archive_beyond_the_limit_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A megabyte may hold a gigabyte of zeros."""
+    path = tmp_path / "a.npz"
+    np.savez_compressed(path, t=np.arange(1e4), theta=np.zeros(10_000))
+    assert read(path)["t"].size == 10_000
+    monkeypatch.setattr(trajectory, "LARGEST_FILE", 160_000)
+    with pytest.raises(DataError, match="must have at most 160000 bytes of numbers, has 160256"):
+        read(path)
+
+
+def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text('t,note,theta,note,run\n0,"a",1,b,7\n1,"c; ""d""",2,d,8.0\n')
+    file = read_trajectory(str(path))
+    assert sorted(file.quantities) == ["t", "theta"]
+    assert file.words("note") == ["a", 'c; "d"']
+    assert file.words("run") == ["7", "8.0"]
+    np.savez(tmp_path / "a.npz", t=np.arange(2.0), theta=np.zeros(2), run=np.array([7, 8]))
+    assert read_trajectory(str(tmp_path / "a.npz")).words("run") == ["7", "8"]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("t,theta_rad\n0.5,1", {"t": [0.5], "theta": [1]}),
+        ("t [ms],ϑ [°]\n500,90", {"t": [0.5], "theta": [PI / 2]}),
+        ("Time (min),Tilt (mrad)\n0.5,250", {"t": [30], "theta": [0.25]}),
+        (
+            "t;ω_x (rpm);ω_y (rpm);ω_z (rpm)\n0;30;-60;90,0",
+            {"rates": [PI, -2 * PI, 3 * PI]},
+        ),
+        ("t,x (cm),y (cm),z (cm)\n0,3,0.5,-1", {"position": [0.03, 0.005, -0.01]}),
+        (
+            "t,rotvec_x_deg,rotvec_y_deg,rotvec_z_deg\n0,180,0,90",
+            {"rotvec": [PI, 0, PI / 2]},
+        ),
+        ("t,elevation\n0,60", {"theta": [PI / 6]}),
+        ("t,elevation [rad]\n0,1", {"theta": [PI / 2 - 1]}),
+    ],
+)
+def test_units_in_headings(text: str, found: dict[str, list[float]], tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text(f"{text}\n")
+    values = read_trajectory(str(path)).values(radians=False)
+    for key, exact in found.items():
+        assert values[key][0] == pytest.approx(exact, rel=1e-15)
+    assert float(read_times(str(path)).exact[0]) == values["t"][0, 0]
+
+
+def test_bad_names_of_columns(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("0 1\n")
+    with pytest.raises(LagtopError, match=r"columns must name all 2 columns of .* got 5 names"):
+        read(tmp_path / "a.txt", ["t", "quaternion"])
+    with pytest.raises(LagtopError, match=r"got 'thta' \(did you mean 'theta'\?\)"):
+        read(tmp_path / "a.txt", ["t", "thta"])

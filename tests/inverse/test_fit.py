@@ -1,0 +1,549 @@
+"""`fit`: tops behind data that integrators made, with noise of a known size."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import recordings
+from conftest import Lagtop, assert_one_line
+from engines import Array, Body, dop853
+from lagtop import LagtopError, Top, fit, read_scene, solve
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from lagrange_cli.inverse.fit import Problem, body_numbers, fit_windows, slowest
+from lagrange_cli.inverse.motions import angles, nutating
+from lagrange_cli.inverse.outcome import CHANCE, Outcome, Residuals, chi2_bounds, decay_of
+from lagrange_cli.inverse.recording import known_inputs, recording_from, shifted_origin
+
+sys.path.append(str(Path(__file__).parents[1] / "tools"))
+DEGREE = math.pi / 180
+TOP = Top(m=0.5, A=4.45e-3, C=2.5e-3, s=0.08, g=9.81, r0=52.36, theta0_deg=75)
+"""A disc on an axle, released from rest."""
+TRUTH = {"a": 2 * 0.5 * 9.81 * 0.08 / 4.45e-3, "b": 2.5e-3 / 4.45e-3 * 52.36, "r0": 52.36}
+LAB = {"m": 0.5, "g": 9.81, "s": 0.08}
+
+
+def motion_of(top: Top, t: Array) -> dict[str, Array]:
+    """Return the angles of a top at times, by Euler's equations of a quaternion."""
+    turns = Rotation.from_quat(dop853(Body.of(top), t)[1][:, :4], scalar_first=True)
+    psi, theta, phi = turns.as_euler("ZXZ").T
+    return {"theta": theta, "phi": phi, "psi": psi}
+
+
+def recorded(
+    *names: str, top: Top = TOP, rows: int = 50, seconds: float = 0.9, noise: float = 0.3, seed: int
+) -> tuple[Array, dict[str, Array]]:
+    """Return times and noisy angles, within half a turn but for the tilt."""
+    rng, t = np.random.default_rng(seed), np.linspace(0, seconds, rows)
+    exact = motion_of(top, t)
+    found = {x: exact[x] + rng.normal(scale=noise * DEGREE, size=rows) for x in names}
+    return t, {x: y if x == "theta" else np.angle(np.exp(1j * y)) for x, y in found.items()}
+
+
+def axis_of(theta: Array, psi: Array) -> Array:
+    """Return the figure axis, shape (n, 3)."""
+    flat = np.sin(theta)
+    return np.stack([flat * np.sin(psi), -flat * np.cos(psi), np.cos(theta)], axis=-1)
+
+
+def fitted(t: Array, seen: Mapping[str, Array], **options: Any) -> Outcome:
+    """Return the fit of a recording."""
+    arrays: dict[str, Any] = dict(seen)
+    return fit(t, **arrays, **options)
+
+
+def pulls(outcome: Outcome, truth: Mapping[str, float]) -> dict[str, float]:
+    """Return how far numbers are from the truth, in standard deviations."""
+    found = outcome.numbers
+    return {x: (found[x][0] - y) / found[x][1] for x, y in truth.items() if x in found}
+
+
+def assert_true(outcome: Outcome, truth: Mapping[str, float], *, least: int = 2) -> None:
+    """Check that a fit is good, and that its numbers are right."""
+    assert outcome.verdict == "good", outcome.failures()
+    off = pulls(outcome, truth)
+    assert len(off) >= least
+    assert all(abs(x) < 4 for x in off.values()), off
+
+
+# Many tops at once
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_angles_of_many_tops_are_those_of_an_integrator(seed: int) -> None:
+    rng, t = np.random.default_rng(seed), np.linspace(0, 2, 40)
+    a, b = 10 ** rng.uniform(1, 2.5), rng.choice([-1, 1]) * 10 ** rng.uniform(0, 1.5)
+    theta, rate, turn = rng.uniform(0.01, 3.1), rng.normal(), rng.normal()
+    top = Top(m=1, s=1, g=a / 2, A=1, C=1, r0=b, theta0_rad=theta, thetadot0=rate, psidot0=turn)
+    states = np.array([[50.0, 3, 1, 0, 0], [a, b, theta, rate, turn]])
+    found, exact = angles(states, t)[:, 1], motion_of(top, t)
+    assert found[0] == pytest.approx(exact["theta"], abs=1e-9)
+    for i, name in ((1, "phi"), (2, "psi")):
+        assert np.exp(1j * found[i]) == pytest.approx(np.exp(1j * exact[name]), abs=1e-7)
+
+
+@pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[int, int]) -> None:
+    one = np.array([0.5]), np.array([1.2]), 0.4, np.array([0.3]), signs
+    a, b, beta, rate = (float(x[0]) for x in nutating(*one))
+    start = (beta - b * math.cos(0.5)) / math.sin(0.5) ** 2
+    t = np.array([0.2, 0.4, 4.0])
+    theta, _, psi = angles(np.array([[a, b, 0.5, 0.0, start]]), t)[:, 0]
+    assert theta == pytest.approx([1.2, 0.5, 0.5], abs=1e-7)
+    assert psi[2] / 4 == pytest.approx(rate, rel=1e-9)
+
+
+# Recordings of every kind
+
+
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("theta", "psi"),
+        ("theta", "phi", "psi"),
+        pytest.param(("theta", "phi"), marks=pytest.mark.slow),
+        pytest.param(("phi", "psi"), marks=pytest.mark.slow),
+    ],
+)
+def test_recorded_angles_give_the_top(names: tuple[str, ...], seed: int) -> None:
+    rows = 50 if "theta" in names and "psi" in names else 120
+    t, seen = recorded(*names, rows=rows, seconds=0.018 * rows, noise=0.2, seed=seed)
+    sigma = 0.2 * DEGREE if seed else None
+    assert_true(fitted(t, seen, sigma=sigma), TRUTH | {"theta0_deg": 75, "psidot0": 0})
+
+
+@pytest.mark.slow
+def test_either_direction_of_psi() -> None:
+    t, seen = recorded("theta", "phi", "psi", seed=3)
+    outcome = fit(t, theta=seen["theta"], phi=seen["phi"], psi=-seen["psi"])
+    assert_true(outcome, TRUTH)
+    assert outcome.notes[0] == "psi counts in the other direction: its sign was changed"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["axis", "quaternion"])
+def test_an_axis_and_an_attitude(kind: str) -> None:
+    rng, t = np.random.default_rng(4), np.linspace(0, 1.2, 70)
+    turns = Rotation.from_quat(dop853(Body.of(TOP), t)[1][:, :4], scalar_first=True)
+    noisy = turns * Rotation.from_rotvec(rng.normal(scale=0.3 * DEGREE, size=(70, 3)))
+    values = noisy.as_quat(scalar_first=True) if kind == "quaternion" else noisy.as_matrix()
+    outcome = fit(t, **{kind: values if kind == "quaternion" else values[:, :, 2]})
+    assert_true(outcome, TRUTH)
+    assert [*outcome.residuals] == ["theta", "across", *["along"] * (kind == "quaternion")]
+
+
+def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
+    """Along the meridian, across it, and about the axis: the rotation in the frame of the body."""
+    t, exact = np.linspace(0, 1, 20), motion_of(TOP, np.linspace(0, 1, 20))
+    turns = Rotation.from_euler("ZXZ", np.stack([exact[x] for x in ("psi", "theta", "phi")], 1))
+    small = np.random.default_rng(24).normal(scale=1e-4, size=(20, 3))
+    moved = (turns * Rotation.from_rotvec(small)).as_quat(scalar_first=True)
+    recording = recording_from(t, quaternion=moved)
+    problem = Problem(recording, known_inputs({}, {}), np.ones(3))
+    start = TRUTH | {"theta0": 75 * DEGREE}
+    x = np.array([[start.get(name, 0.0) for name in problem.names]])
+    theta, across, along = problem.residuals(x)[0]
+    assert along == pytest.approx(small[:, 2], abs=1e-7)
+    assert np.hypot(theta, across) == pytest.approx(np.hypot(small[:, 0], small[:, 1]), abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("name", "known"), [("theta", {"psidot0": 0}), ("psi", {"theta0_deg": 75})]
+)
+def test_one_angle_and_a_known_start(name: str, known: dict[str, float]) -> None:
+    t, seen = recorded(name, seed=5)
+    outcome = fitted(t, seen, known=known)
+    assert_true(outcome, TRUTH)
+    assert any("sign of b is not determined" in x for x in outcome.notes) == (name == "theta")
+
+
+def test_a_top_next_to_the_vertical() -> None:
+    """A nutation of a tenth of a degree about a tilt of half a degree."""
+    top = Top(m=1, s=1, g=26.9, A=1, C=1.461, r0=11.14, theta0_deg=0.5)
+    t, seen = recorded("theta", "phi", "psi", top=top, seconds=1.5, noise=0.02, seed=6)
+    assert_true(fitted(t, seen), {"a": 53.8, "b": 1.461 * 11.14, "r0": 11.14})
+
+
+@pytest.mark.slow
+def test_irregular_times_with_two_rows_per_period() -> None:
+    rng = np.random.default_rng(7)
+    t = np.concatenate([[0], np.sort(rng.uniform(0, 20, 119))])
+    top = Top(m=1, s=1, g=164, A=1, C=1.2, r0=-3.6, theta0_deg=66, thetadot0=1.3, psidot0=-2.5)
+    exact = motion_of(top, t)
+    seen = {x: np.angle(np.exp(1j * (exact[x] + rng.normal(scale=2e-3, size=120)))) for x in exact}
+    assert_true(fitted(t, seen), {"a": 328, "b": -1.2 * 3.6, "r0": -3.6})
+
+
+def test_the_sample_gives_the_body() -> None:
+    rows = np.genfromtxt(recordings.SAMPLES / "recording.csv", delimiter=",", skip_header=3)
+    t, (theta, psi, phi) = rows[::2, 0], np.radians(rows[::2, 1:].T)
+    outcome = fit(t, theta=theta, psi=psi, phi=phi, known={"m": 1.587, "g": 9.81, "s": 0.04})
+    assert_true(outcome, {"A": 3.9032e-3, "C": 1.7458e-3, "r0": 50, "theta0_deg": 41}, least=4)
+    exact = solve(recordings.TOP)
+    keys = ["T_nutation", "mean_precession_rate", "mean_spin_rate", "theta_max_deg"]
+    assert_true(outcome, {key: getattr(exact, key) for key in keys}, least=4)
+    count = sum(x.y.size for x in outcome.residuals.values())
+    assert outcome.dof == count - 8  # a, b, r0, three of the start, two zeros
+    sigma = {x: y.rms * (count / outcome.dof) ** 0.5 for x, y in outcome.residuals.items()}
+    again = fit(t, theta=theta, psi=psi, phi=phi, sigma=sigma)
+    assert again.chi2_dof == pytest.approx(1, rel=1e-3)
+    assert again.numbers["b"] == pytest.approx(outcome.numbers["b"], rel=1e-3)
+    off = outcome.numbers["precession_rate_elementary_percent"]
+    elementary = 1.587 * 9.81 * 0.04 / (1.7458e-3 * 50)  # mgs/(C r0)
+    true = 100 * (elementary / exact.mean_precession_rate - 1)
+    assert abs(off[0] - true) < 4 * off[1]
+    assert "11 % too small" in outcome.meanings["precession_rate_elementary"]
+
+
+def test_the_recordings_are_what_the_script_writes() -> None:
+    for camera in (recordings.SMALL_TOP, recordings.WHEEL):
+        assert recordings.text(camera) == (recordings.SAMPLES / camera.name).read_text()
+
+
+# Known inputs
+
+
+@pytest.mark.parametrize(
+    ("known", "truth"),
+    [
+        (LAB | {"C": 2.5e-3}, {"r0": 52.36, "A": 4.45e-3}),
+        (LAB | {"C": 2.5e-3, "A": 4.45e-3}, {"r0": 52.36, "b": TRUTH["b"]}),
+        (LAB | {"r0": 52.36}, {"C": 2.5e-3, "A": 4.45e-3}),
+        ({"r0": 52.36, "C": 2.5e-3}, {"A": 4.45e-3, "m*g*s": 0.3924}),
+        ({"A": 4.45e-3, "C": 2.5e-3, "r0": 52.36}, {"a": TRUTH["a"], "m*g*s": 0.3924}),
+        (LAB | {"A_cm": 4.45e-3 - 0.5 * 0.08**2}, {"b": TRUTH["b"], "C*r0": 2.5e-3 * 52.36}),
+        (LAB | {"theta0_deg": 75, "psidot0": 0}, {"A": 4.45e-3, "b": TRUTH["b"]}),
+    ],
+)
+def test_known_inputs_determine_others(known: dict[str, float], truth: dict[str, float]) -> None:
+    t, seen = recorded("theta", "psi", seed=8)
+    outcome = fitted(t, seen, known=known)
+    assert_true(outcome, truth)
+    assert not known.keys() & outcome.numbers.keys()
+
+
+def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
+    t, seen = recorded("theta", "psi", seed=9)
+    sure, unsure = (fitted(t, seen, known=LAB | {"C": c}).numbers for c in (2.5e-3, "0.0025(1)"))
+    assert unsure["r0"][1] == pytest.approx(52.36 * 0.04, rel=0.01)
+    assert "C" not in unsure  # the recording does not improve it
+    for key in ("T_nutation", "mean_precession_rate", "b", "A"):
+        assert unsure[key] == pytest.approx(sure[key], rel=1e-5)
+
+
+@pytest.mark.slow
+def test_a_prior_lies_between_a_known_input_and_none() -> None:
+    """The estimate of A is the mean of prior and data, weighted by their variances."""
+    t, seen = recorded("theta", "psi", seed=10)
+    value, std = fitted(t, seen, known=LAB).numbers["A"]
+    prior, spread = 4.44e-3, 3 * std
+    found = fitted(t, seen, known=LAB | {"A": f"{prior!r} +/- {spread!r}"}).numbers["A"]
+    weights = np.array([std**-2, spread**-2])
+    assert found[0] == pytest.approx(weights @ [value, prior] / weights.sum(), abs=0.02 * std)
+    assert found[1] == pytest.approx(weights.sum() ** -0.5, rel=0.02)
+
+
+def test_products_of_unknown_inputs() -> None:
+    one = dict.fromkeys(("m", "g", "s", "A", "C", "r0"), np.array([2.0]))
+    assert body_numbers(4.0, 2.0, {}) == {"C*r0/A": 2, "m*g*s/A": 4}  # type: ignore[arg-type]
+    found = body_numbers(np.array([4.0]), np.array([2.0]), {x: one[x] for x in ("g", "C", "r0")})
+    assert {x: float(y[0]) for x, y in found.items()} == {"A": 2, "m*s": 4}
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_of_spins_that_look_alike_the_slowest_possible_is_taken(sign: int) -> None:
+    found = slowest(np.array([sign * 3.0]), np.array([sign * 20.0]), 2 * math.pi / 40)
+    assert found == pytest.approx([sign * 43.0])  # C/A = 20/3 is impossible
+
+
+# Wrong, hopeless and steady recordings
+
+
+def slowed(time: float, t: Array) -> dict[str, Array]:
+    """Return the angles of TOP if friction slows its spin as exp(-t/time), by Euler's equations."""
+    half, ratio = TRUTH["a"] / 2, TRUTH["b"] / TRUTH["r0"]
+
+    def slope(now: float, state: Array) -> list[float]:
+        theta, rate, _, turn, _ = state
+        spin, u, sine = 52.36 * math.exp(-now / time), math.cos(theta), math.sin(theta)
+        up = (turn * turn * u - ratio * spin * turn + half) * sine
+        around = (ratio * spin - 2 * turn * u) * rate / sine
+        return [rate, up, turn, around, spin - turn * u]
+
+    start = [75 * DEGREE, 0.0, 0.0, 0.0, 0.0]
+    flow = solve_ivp(slope, (0, t[-1]), start, "DOP853", t, rtol=1e-10, atol=1e-10)
+    return {"theta": flow.y[0], "psi": flow.y[2], "phi": flow.y[4]}
+
+
+@pytest.mark.slow
+def test_exchanged_spin_and_precession_are_noticed() -> None:
+    t, seen = recorded("theta", "phi", "psi", seed=24)
+    outcome = fitted(t, seen | {"phi": seen["psi"], "psi": seen["phi"]})
+    assert outcome.verdict == "failed"
+    assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
+
+
+@pytest.mark.slow
+def test_friction_fails_and_windows_give_the_decay() -> None:
+    rng, t = np.random.default_rng(11), np.linspace(0, 12, 361)
+    seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=361) for x, y in slowed(60, t).items()}
+    del seen["phi"]
+    outcome = fitted(t, seen)
+    assert outcome.verdict == "failed"
+    assert "the spin may decay, try --window " in outcome.failure()
+    windows = fit_windows(
+        recording_from(t, theta=seen["theta"], psi=seen["psi"]), 12, known_inputs(LAB, {})
+    )
+    assert {x.verdict for x in windows} == {"good"}
+    decay = decay_of(windows)
+    assert decay is not None
+    assert decay.time is not None
+    assert abs(decay.time - 60) < 4 * (decay.time_std or 0) < 4
+    assert decay.quantity == "b"
+
+
+@pytest.mark.parametrize(
+    ("make", "reason"),
+    [
+        (lambda rng, t: slowed(20, t), "not noise"),
+        (
+            lambda rng, t: {x: rng.uniform(0.2, 3, t.size) for x in ("theta", "psi")},
+            "the tilt varies",
+        ),
+        (
+            lambda rng, t: {
+                "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, ::-1]
+            },
+            "use --align up=x",
+        ),
+    ],
+)
+@pytest.mark.slow
+def test_recordings_of_no_top_fail(make: Any, reason: str) -> None:
+    rng, t = np.random.default_rng(12), np.linspace(0, 3, 150)
+    seen = {x: y + rng.normal(scale=0.003, size=y.shape) for x, y in make(rng, t).items()}
+    outcome = fitted(t, seen)
+    assert outcome.verdict == "failed"
+    assert reason in outcome.record()["remark"]
+
+
+def test_an_attitude_whose_spin_is_wrong_fails() -> None:
+    """Tilt and precession are right; only the residuals about the axis show it."""
+    t, seen = recorded("theta", "phi", "psi", seed=13)
+    seen["phi"] = seen["phi"] + 0.1 * t**2 * 20
+    turns = Rotation.from_euler("ZXZ", np.stack([seen["psi"], seen["theta"], seen["phi"]], axis=1))
+    outcome = fit(t, quaternion=turns.as_quat(scalar_first=True))
+    assert outcome.verdict == "failed"
+    assert any("residuals of along" in x for x in outcome.failures())
+
+
+@pytest.mark.slow
+def test_sigma_is_tested_on_both_sides() -> None:
+    t, seen = recorded("theta", "psi", seed=14)
+    small, large = (fitted(t, seen, sigma=x * 0.3 * DEGREE) for x in (0.5, 2))
+    assert small.failures()[0].startswith("chi2/dof = ")
+    assert large.verdict == "good"
+    assert "the noise is below sigma" in large.notes[-1]
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_fast_top_has_mean_rates(way: int) -> None:
+    """The nutation of 0.02 degrees is invisible; psi may count in either direction."""
+    top = TOP.replace(r0=400)
+    t, seen = recorded("theta", "phi", "psi", top=top, rows=200, seconds=0.5, seed=15)
+    outcome = fit(t, theta=seen["theta"], phi=seen["phi"], psi=way * seen["psi"])
+    assert outcome.verdict == "good, no nutation"
+    assert outcome.inputs is None
+    assert any("only up to whole turns per frame, multiples of 2500.71" in x for x in outcome.notes)
+    exact = solve(top)
+    tilt = (exact.theta_min_deg + exact.theta_max_deg) / 2
+    truth = {"mean_precession_rate": exact.mean_precession_rate, "r0": 400, "mean_tilt_deg": tilt}
+    truth |= {"b/a": exact.b / exact.a, "C/(m*s*g)": 2.5e-3 / 0.3924}
+    off = pulls(outcome, truth)
+    assert off.keys() == truth.keys()
+    assert all(abs(x) < 4 for x in off.values()), off
+    with pytest.raises(LagtopError, match="a steady precession does not determine a top"):
+        outcome.scene("data")
+
+
+def test_the_bias_of_the_elementary_theory_is_in_the_uncertainty() -> None:
+    """Steady at 40 degrees: with little noise the bias remains, some four percent."""
+    start = {"m": 1, "s": 1, "g": 50, "A": 1, "C": 0.5, "r0": 60, "theta0_deg": 40}
+    top = Top(**start, psidot0=solve(Top(**start, psidot0="steady")).steady_rate_slow)
+    t, seen = recorded("theta", "phi", "psi", top=top, rows=100, noise=0.05, seed=16)
+    value, std = fitted(t, seen).numbers["b/a"]
+    assert 30 / 100 / value - 1 == pytest.approx(std / value, rel=0.2)
+    assert 0.03 < std / value < 0.06
+    known = {"A": 1, "C": 0.5}
+    assert fitted(t, seen, known=known).numbers["b/a"][1] == pytest.approx(std, rel=1e-9)
+
+
+def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
+    rng, t = np.random.default_rng(17), np.linspace(0, 1, 100)
+    psi = 2 * t + rng.normal(scale=0.01, size=100)
+    for theta in (1 + 0.1 * t, 1 + 0.05 * np.sin(3 * t), 1 + rng.normal(scale=0.06, size=100)):
+        outcome = fit(t, theta=theta + rng.normal(scale=0.01, size=100), psi=psi)
+        assert outcome.verdict == "failed", outcome.record()
+    hopeless = fit(t, theta=1 + rng.normal(scale=0.01, size=100), psi=rng.uniform(-3, 3, 100))
+    assert any(x.startswith("no motion of a top matches: psi is ") for x in hopeless.failures())
+    few = fit(t[:20], theta=1 + rng.normal(scale=0.01, size=20), psi=psi[:20])
+    assert few.failures()[-1].startswith("20 rows are too few to tell nutation from noise")
+
+
+def test_noise_hardly_ever_fails_a_test() -> None:
+    rng, t = np.random.default_rng(18), np.linspace(0, 1, 90)
+    faults = [bool(Residuals(t, rng.normal(size=90)).faults("x", 4.0, CHANCE)) for _ in range(500)]
+    assert sum(faults) <= 8  # 2.7 expected
+    wave = Residuals(t, rng.normal(size=90) + 1.5 * np.sin(2 * math.pi * 22.25 * t))
+    assert abs(wave.autocorrelation) < 0.2  # four rows per period
+    assert wave.faults("x", 22.25, CHANCE)[0].endswith("they drift or oscillate")
+    drift = Residuals(t, rng.normal(size=90) + 3 * t * np.sin(8 * math.pi * t))
+    assert drift.faults("x", 4.0, CHANCE)
+    low, high = chi2_bounds(100)
+    chi2 = rng.chisquare(100, size=20_000) / 100
+    assert np.mean((chi2 < low) | (chi2 > high)) == pytest.approx(CHANCE, abs=1.2e-3)
+
+
+@pytest.mark.parametrize("offset", [(0, 0, 0.05), (0.02, 0, 0), (0, 0, 0)])
+def test_a_marker_whose_origin_is_not_at_the_pivot(offset: tuple[float, ...]) -> None:
+    rng, exact = np.random.default_rng(19), motion_of(TOP, np.linspace(0, 3, 180))
+    marker = 0.15 * axis_of(exact["theta"], exact["psi"]) + rng.normal(scale=1e-3, size=(180, 3))
+    recording = recording_from(np.linspace(0, 3, 180), axis=marker)
+    found = shifted_origin(recording.__class__(**vars(recording) | {"position": marker + offset}))
+    if any(offset):
+        assert found == pytest.approx(offset, abs=0.02)
+    else:
+        assert found is None
+
+
+@pytest.mark.slow
+def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None:
+    import fuzz_fits
+
+    verdicts = [fuzz_fits.checked(seed) for seed in range(3001, 3013)]
+    assert all(x.is_right or x.word in {"failed", "refused"} for x in verdicts), verdicts
+    assert sum(x.is_right and x.word == "good" for x in verdicts) >= 10
+    sizes = np.abs([x for verdict in verdicts for x in verdict.pulls.values() if verdict.is_right])
+    assert 0.5 < np.mean(sizes < 1) < 0.85
+
+
+# Bad data and the command
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "message"),
+    [
+        ("t,theta,psi", "{t},40,10", "the precession rate is not determined"),
+        ("t,p,q,r", "{t},1,2,3", "must have columns for angles, an axis or an attitude"),
+        ("t,x,y", "{t},1,2", "z is missing"),
+        ("t,theta,psi", "0,{t},40,5,1,2", "a comma cannot both separate cells and be the decimal"),
+        ("t,phi", "{t},3", "must have theta or psi too: phi alone does not determine a top"),
+        ("t,theta", "{t},40", "theta alone does not determine a top: give --psidot0"),
+        ("t,psi", "{t},40", "psi alone does not determine a top: give --theta0"),
+        ("t,theta,psi", "0,40,{t}", "t must span"),
+        ("t,theta,psi", "{t},240,{t}", "theta must be between 0 and 180 deg"),
+        ("t,theta,psi", "-{t},,", "must have 12 rows or more with a number, got 0 of 20"),
+        ("t,theta,psi", "{back},40,10", "t must not turn back, got 0 after 4: .* --by"),
+    ],
+)
+def test_bad_data_get_a_line(
+    lagtop: Lagtop, tmp_path: Path, header: str, row: str, message: str
+) -> None:
+    path = tmp_path / "data.csv"
+    rows = [row.format(t=i, back=i % 5) for i in range(20)]
+    path.write_text("\n".join([header, *rows, ""]))
+    result = lagtop("fit", path)
+    assert result.exit_code in {1, 65}
+    assert result.stderr.splitlines()[-1].startswith("Error: ")
+    assert re.search(message, result.stderr)
+
+
+SAMPLE = str(recordings.SAMPLES / "recording.csv")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        (f"{SAMPLE} {SAMPLE}", 2, "fit takes one recording, got 2: use --by COLUMN"),
+        (f"{SAMPLE} --sigma -1", 2, "--sigma must be > 0, got -1"),
+        (f"{SAMPLE} --sigma theta=1", 2, "--sigma must be given for all of theta, phi, psi"),
+        (f"{SAMPLE} --by x", 2, "--by must name a column of"),
+        (f"{SAMPLE} --window 1", 2, "--window must be 2 windows or more, got 1"),
+        (f"{SAMPLE} --window 100", 2, "--window must hold 12 rows or more, got 1: use fewer"),
+        (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
+        (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),
+        (f"{SAMPLE} --A-cm 1", 2, "--A-cm must be given with m and s, as A = A_cm + m s^2"),
+        (f"{SAMPLE} --align up=w", 2, "--align must be up=x, up=y, up=z, up=-x"),
+        (f"{SAMPLE} --align up=y", 2, "--align needs an axis or an attitude, got angles"),
+    ],
+)
+def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:
+    assert_one_line(lagtop("fit", *words.split()), code, message)
+
+
+def written(path: Path, *parts: tuple[Array, dict[str, Array]]) -> Path:
+    """Write recordings of theta and psi in degrees, with the column trial."""
+    lines = ["t,theta,psi,trial"]
+    for number, (t, seen) in enumerate(parts):
+        columns = zip(t, np.degrees(seen["theta"]), np.degrees(seen["psi"]), strict=True)
+        lines += [f"{x:.5f},{y:.4f},{z:.4f},run {number}" for x, y, z in columns]
+    path.write_text("\n".join([*lines, ""]))
+    return path
+
+
+def test_the_command(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = written(tmp_path / "data.csv", recorded("theta", "psi", seed=20))
+    scene = tmp_path / "top.toml"
+    known = "--m 0.5 --g 9.81 --s 0.08 --C 0.0025".split()
+    result = lagtop("fit", path, *known, "--sigma", 0.3, "-o", scene)
+    assert result.exit_code == 0, result.stderr
+    shown = "Verdict: good.", "chi2/dof = ", "RMS residual (deg): theta 0.", "Correlation: a and b "
+    for text in shown:
+        assert text in result.stdout
+    top = read_scene(scene)
+    assert (float(top.A), float(top.r0)) == pytest.approx((4.45e-3, 52.36), rel=0.01)
+    assert "# r0 = 52." in scene.read_text()
+
+
+@pytest.mark.slow
+def test_the_record_and_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = written(tmp_path / "data.csv", recorded("theta", "psi", seed=20))
+    picture = tmp_path / "fit.svg"
+    words = "--m 0.5 --g 9.81 --s 0.08 --C 0.0025 --format json --plot".split()
+    record = json.loads(lagtop("fit", path, *words, picture).stdout)
+    assert record["verdict"] == "good"
+    assert picture.read_text().startswith("<?xml")
+    assert "lagtop fit: good, a = " in picture.read_text()
+    assert abs(record["r0"] - 52.36) < 4 * record["r0_std"]
+    assert record["theta_rms_deg"] == pytest.approx(0.3, rel=0.3)
+
+
+@pytest.mark.slow
+def test_several_recordings_and_windows(lagtop: Lagtop, tmp_path: Path) -> None:
+    good, (t, seen) = recorded("theta", "psi", seed=21), recorded("theta", "psi", seed=22)
+    path = written(tmp_path / "data.csv", good, (t, seen | {"theta": seen["theta"][::-1] ** 2}))
+    assert_one_line(lagtop("fit", path), 65, f"{path}: t must not turn back, got 0 after 0.9")
+    result = lagtop("fit", path, "--by", "trial", "--format", "csv")
+    assert result.exit_code == 1
+    assert [line.split(",")[0] for line in result.stdout.splitlines()] == ["name", "run 0", "run 1"]
+    last = result.stderr.splitlines()[-1]
+    assert last.startswith("Error: 1 of 2 fits failed; the first: run 1: ")
+    path = written(tmp_path / "one.csv", recorded("theta", "psi", rows=150, seconds=3, seed=23))
+    result = lagtop("fit", path, "--window", 3)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.splitlines()[-1].startswith("b does not decay: its relative rate is")
+    failed = lagtop("fit", path, "--window", 3, "--sigma", 0.1, "--format", "json")
+    assert failed.exit_code == 1
+    assert "failed" in {x["verdict"] for x in json.loads(failed.stdout)["windows"]}
+    unwritten = lagtop("fit", path, "--sigma", 0.1, "-o", tmp_path / "no.toml")
+    assert (unwritten.exit_code, (tmp_path / "no.toml").exists()) == (1, False)

@@ -1,0 +1,159 @@
+"""Symmetries, shapes and blocks of the angles over time; columns on request; threads.
+
+`test_columns` compares the numbers with the reference.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from flint import ctx
+from lagtop import LagtopError, Regime, Top, solve
+from scenes import EVERY_KIND, UNIT, period
+
+from lagrange_cli.names import ANGLES
+from lagrange_cli.solver.columns import ColumnConstants, chosen_columns
+from lagrange_cli.solver.tables import ProvedTable, Sample, columns_at
+
+T = np.linspace(-3, 40, 40_000)
+SERIES = [50, 200]
+"""Spins whose series are hyperbolic and circular."""
+
+
+@pytest.mark.parametrize("r0", [50, -50, 60, -1])
+def test_symmetries(r0: float) -> None:
+    """r0 -> -r0 turns spin and precession round; so does t -> -t; the tilt stays."""
+    half = period(solve(Top(r0=r0))) / 2
+    t = np.concatenate([np.linspace(0, 10, 301), half * np.array([1, 2, 3, 9, 1001, 1e9 + 1])])
+    plain, mirrored = solve(Top(r0=r0)).angles(t), solve(Top(r0=-r0)).angles(t)
+    for other in (mirrored, solve(Top(r0=r0)).angles(-t)):
+        np.testing.assert_array_equal(other.theta, plain.theta)
+        np.testing.assert_array_equal(other.phi, -plain.phi)
+        np.testing.assert_array_equal(other.psi, -plain.psi)
+
+
+@pytest.mark.parametrize("shape", [(), (0,), (2, 3, 4)])
+def test_shapes(shape: tuple[int, ...]) -> None:
+    for angle in solve(Top()).angles(np.ones(shape, int)):
+        assert angle.shape == shape
+        assert angle.dtype == np.float64
+    columns = solve(Top()).angles(np.arange(6).reshape(2, 3).T)
+    assert columns.theta.shape == (3, 2)
+
+
+@pytest.mark.parametrize("t", [math.nan, math.inf, 1e15, -1e300])
+def test_times_out_of_reach(t: float) -> None:
+    with pytest.raises(LagtopError, match=r"t must be finite and within 2\^50 periods"):
+        solve(Top()).angles([0.0, t])
+
+
+@pytest.mark.parametrize("thetadot0", [1e-100, 1e-7, -1e-100])
+def test_next_to_a_pole_at_times_that_are_nearly_0(thetadot0: float) -> None:
+    """Where the tilt grows along the direction of psi = 0, by hand phi = psi = r0 t/2.
+
+    On the other side of the pole both are half a turn off.
+    """
+    body = {"m": 1, "A": 2, "C": 2, "s": 1, "g": 0, "r0": 1.5, "theta0_deg": 0}
+    t = math.copysign(1, thetadot0) * np.array([5e-324, 1e-230, -1e-230])
+    _, phi, psi = solve(Top(**body, thetadot0=thetadot0)).angles(t)
+    assert np.abs([phi[:2], psi[:2]]).max() < 1e-15
+    assert abs(phi[2]) == pytest.approx(math.pi)
+    assert psi[2] == pytest.approx(-phi[2])
+
+
+@pytest.mark.parametrize("kick", [2.0, -2.0])
+def test_the_separatrix_from_the_bottom(kick: float) -> None:
+    motion = solve(Top(**UNIT, r0=0, theta0_deg=180, thetadot0=kick))
+    assert motion.regime is Regime.SEPARATRIX
+    found = motion.table(np.linspace(-1, 1, 5), ["p", "axis"])
+    assert np.sign(found["p"]).tolist() == [math.copysign(1, kick)] * 5
+    np.testing.assert_allclose(found["axis_x"], 0, atol=1e-15)
+
+
+def test_wrapped_angles_stay_in_their_interval() -> None:
+    motion = solve(Top(**(UNIT | {"g": 0}), r0=1, theta0_deg=40))
+    around = [math.nextafter(math.pi, up) for up in (0, 9)] + [math.pi, -math.pi, 3 * math.pi]
+    phi = motion.angles([*around, *(-x for x in around)], wrap=True).phi
+    assert ((phi > -math.pi) & (phi <= math.pi)).all()
+    assert motion.angles([3.0], wrap=True).phi[0] == 3.0
+
+
+def test_the_angles_of_a_start_with_many_digits() -> None:
+    """Roots that are 1e-51 apart: 40 digits decide no mean rate."""
+    start: dict[str, Any] = {"r0": 1, "theta0_deg": 90, "thetadot0": 1}
+    motion = solve(Top(**UNIT | start | {"psidot0": 1 + Fraction(1, 10**51)}))
+    for t in (0.3, 77.7):
+        proved = [x.value for x in ProvedTable(motion, ANGLES, radians=True).row(Fraction(t))]
+        np.testing.assert_allclose(np.array(motion.angles(t)), proved, rtol=2e-15)
+
+
+@pytest.mark.parametrize(
+    ("columns", "computed"),
+    [
+        ("t r", ""),
+        ("theta", "functions parts squares tilt"),
+        ("u theta psidot phidot axis_z moment Lz", "functions parts squares tilt moduli"),
+        ("thetadot energy", "functions parts squares moduli rate"),
+        ("phi psi dphi dpsi", "functions parts args"),
+        ("p", "functions parts args squares moduli rate"),
+    ],
+)
+@pytest.mark.parametrize("r0", SERIES)
+def test_columns_that_are_not_requested_are_not_computed(
+    r0: float, columns: str, computed: str
+) -> None:
+    seen: set[str] = set()
+    constants: Any = ColumnConstants(*np.ones(9))
+    for _, attitude in solve(Top(r0=r0)).sampler().attitudes(T):
+        sample = Sample(attitude, constants, False)
+        for column in chosen_columns(columns.split()):
+            getattr(sample, column)
+        seen |= vars(attitude).keys() & set("functions parts squares tilt moduli args rate".split())
+    assert seen == set(computed.split())
+
+
+def test_motions_may_be_sampled_in_turns() -> None:
+    """Blocks of several motions do not share arrays, nor leave NumPy's settings changed."""
+    one, other, before = solve(Top()), solve(Top(r0=200)), np.geterr()
+    both = (columns_at(x, ["phi"], radians=True, wrap=False)(T) for x in (one, other))
+    for (rows, mine), (_, theirs) in zip(*both, strict=True):
+        np.testing.assert_array_equal(mine[0], one.angles(T).phi[rows])
+        np.testing.assert_array_equal(theirs[0], other.angles(T).phi[rows])
+    assert np.geterr() == before
+
+
+@pytest.mark.parametrize("count", [0, 1, 16383, 16384, 16385])
+@pytest.mark.parametrize("r0", SERIES)
+def test_blocks_fit_together(r0: float, count: int) -> None:
+    motion, times = solve(Top(r0=r0)), T.copy()
+    for whole, part in zip(motion.angles(times), motion.angles(T[:count]), strict=True):
+        np.testing.assert_array_equal(whole[:count], part)
+    np.testing.assert_array_equal(times, T)
+
+
+def results(task: tuple[dict[str, Any], int | None]) -> str:
+    """Return a record with radii, a row of a table and angles, as text."""
+    scene, digits = task
+    motion = solve(Top(**scene))
+    row = [str(x.value) for x in ProvedTable(motion, ANGLES, digits).row(Fraction(7, 3))]
+    angles = [float(angle[-1]) for angle in motion.angles(T[:20_000])]
+    return json.dumps([motion.record(digits=digits, radii=True), row, angles], default=str)
+
+
+def test_results_of_eight_threads_are_those_of_one() -> None:
+    """The precision of Arb is global, and work arrays are shared by the blocks of one call."""
+    tasks = [(scene, digits) for scene in EVERY_KIND.values() for digits in (None, 60)][::3]
+    before, ctx.prec = ctx.prec, 77
+    try:
+        serial = [results(task) for task in tasks]
+        with ThreadPoolExecutor(8) as pool:
+            assert list(pool.map(results, tasks)) == serial
+        assert ctx.prec == 77
+    finally:
+        ctx.prec = before

@@ -1,0 +1,189 @@
+"""Derivatives against differences of the reference's numbers, and uncertainties.
+
+`test_frozen` compares all derivatives of fifteen records.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from ball_reference import BallReference
+from balls.scene import arb_bits, exact_arb
+from flint import arb
+from lagtop import LagtopError, Top, sensitivities, solve
+from scenes import EPS, EVERY_KIND, UNIT
+
+from lagrange_cli.solver.derivatives import AngleDerivatives, inputs_of
+from lagrange_cli.solver.uncertainty import AngleStds, FirstOrder
+
+SCENES: dict[str, dict[str, float]] = {
+    "any start": EVERY_KIND["any start"],
+    "steady": UNIT | {"r0": 1.5, "theta0_deg": 60, "psidot0": 2},
+    "in radians": UNIT | {"r0": -3, "theta0_rad": 2, "thetadot0": -1.5, "psidot0": 1},
+    "nearly steady": UNIT | {"r0": 1.5, "theta0_deg": 60, "psidot0": 2 + 1e-13},
+    "near the separatrix": UNIT
+    | {"m": 0.5, "r0": 0.75, "theta0_deg": 60, "psidot0": 0.5 + 1e-9, "thetadot0": 0.559016994},
+    "near a pole": UNIT | {"r0": 2, "theta0_deg": 90, "psidot0": 2 + 1e-9, "thetadot0": 1},
+    "tiny tilt": UNIT | {"r0": 2, "theta0_deg": 1e-9},
+    "extreme": {"m": 1e20, "A": 1e-9, "C": 1e-10, "s": 1e-9, "g": 1e-8, "psidot0": 1e3},
+    "very fast": {"r0": 1e18, "thetadot0": 1e3},
+    "cancelling": UNIT | {"C": 5e-6, "r0": 2, "theta0_deg": 130, "thetadot0": 2.2e9},
+    "torque-free": UNIT
+    | {"C": 0.5, "g": 0, "r0": 3, "theta0_deg": 50, "psidot0": 1, "thetadot0": 0.5},
+    "free and steady": UNIT | {"C": 0.5, "g": 0, "r0": 3, "theta0_deg": 50},
+}
+QUICK = [
+    pytest.param(x, marks=() if x in ("any start", "steady") else pytest.mark.slow) for x in SCENES
+]
+balls_of = cache(lambda top: BallReference(top.as_dict()))
+
+
+def slope(top: Top, name: str, value: Callable[[BallReference], arb], step: Fraction) -> float:
+    """Return the difference quotient of a number by an input, one-sided on an edge."""
+    x = Fraction(getattr(top, name))
+    values, places = [], []
+    for place in (x - step * (abs(x) or 1), x, x + step * (abs(x) or 1)):
+        try:
+            beside = top.replace(**{name: place})
+            solve(beside)
+        except LagtopError:
+            continue
+        values.append(value(balls_of(beside)))
+        places.append(place)
+    with arb_bits(600):
+        return float((values[-1] - values[0]) / exact_arb(places[-1] - places[0]))
+
+
+def angle_slope(top: Top, name: str, angle: str, t: float) -> float:
+    """Return the derivative of an angle at a time."""
+    return slope(top, name, lambda balls: getattr(balls.at(t, 90), angle), Fraction(1, 10**36))
+
+
+def test_derivatives_of_a_record_in_radians() -> None:
+    top = Top(**SCENES["in radians"])
+    keys = ["T_nutation", "theta_max_deg", "mean_spin_rate", "mean_precession_rate", "K"]
+    for key, row in sensitivities(top, keys).derivatives.items():
+        for name, found in row.items():
+            true = slope(top, name, lambda balls, key=key: balls.exact(key), Fraction(1, 10**9))  # type: ignore[misc]
+            assert found == pytest.approx(true, rel=1e-8, abs=1e-12), (key, name)
+
+
+def test_a_kink_has_no_derivative() -> None:
+    found = sensitivities(Top(**SCENES["steady"]), ["theta_max_deg", "T_nutation"]).derivatives
+    assert math.isnan(found["theta_max_deg"]["r0"])
+    assert not math.isnan(found["T_nutation"]["r0"])
+
+
+def test_a_parabola_at_0_is_no_kink() -> None:
+    """stability_factor is proportional to r0^2; the two steady rates change places at r0 = 0."""
+    top = Top(**UNIT | {"r0": 0, "theta0_deg": 120})
+    found = sensitivities(top, ["stability_factor", "steady_rate_slow"]).derivatives
+    assert found["stability_factor"]["r0"] == 0.0
+    assert math.isnan(found["steady_rate_slow"]["r0"])
+
+
+SINE = math.sin(math.radians(26))
+EXACT: list[tuple[dict[str, float], str, str, float]] = [
+    # with psidot0 the axis moves uniformly on a great circle, sin(theta0) psidot0 per time
+    ({"s": 0, "r0": 0, "theta0_deg": 26}, "mean_precession_rate", "psidot0", SINE),
+    ({"s": 0, "r0": 0, "theta0_deg": 26}, "mean_spin_rate", "r0", 1.0),
+    ({"s": 0, "r0": 0, "theta0_deg": 26}, "a", "s", 2.0),
+    # without torque over the poles T = 2 pi/theta'
+    (
+        {"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 2},
+        *("T_nutation", "thetadot0", -math.pi / 2),
+    ),
+    ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 2}, "mean_spin_rate", "r0", math.nan),
+    ({"g": 0, "r0": 3, "theta0_deg": 0}, "a", "g", 2.0),
+    ({"g": 0, "r0": 0, "theta0_deg": 180}, "a", "g", 2.0),
+    # a pendulum that turns over passes over both poles
+    ({"r0": 0, "theta0_deg": 160, "thetadot0": 3}, "theta_max_deg", "m", 0.0),
+    ({"r0": 0, "theta0_deg": 160, "thetadot0": 3}, "mean_spin_rate", "r0", math.nan),
+    # after release from rest psi'(T/2) = a/b = 2mgs/(C r0), whatever the tilt and A are
+    ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "theta0_deg", 0.0),
+    ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "A", 0.0),
+    ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "m", 1.0),
+]
+
+
+@pytest.mark.parametrize(("inputs", "key", "name", "value"), EXACT)
+def test_derivatives_by_hand(inputs: dict[str, float], key: str, name: str, value: float) -> None:
+    found = sensitivities(Top(**UNIT | inputs), [key]).derivatives[key][name]
+    assert found == pytest.approx(value, rel=EPS, abs=0, nan_ok=True)
+
+
+@pytest.mark.parametrize("excess", [-1e-7, 1e-7])
+def test_derivatives_in_a_plane_are_those_of_the_tilt(excess: float) -> None:
+    """Spin and precession change by half turns, which no input of the plane moves."""
+    top = Top(**UNIT | {"r0": 0, "theta0_deg": 90, "thetadot0": 2**0.5 * (1 + excess)})
+    period, inputs = solve(top).T_nutation, ["m", "A", "thetadot0"]
+    times = np.array([0.3 * period, -1.6 * period, 1e6 * period])
+    found = AngleDerivatives(solve(top), inputs).at(times)
+    assert not found[:, 1:].any()
+    for t, row in zip(times.tolist(), found[:, 0].T.tolist(), strict=True):
+        exact = [angle_slope(top, name, "theta", t) for name in inputs]
+        assert row == pytest.approx(exact, rel=1e-4, abs=1e-6 * (1 + max(map(abs, exact))))
+
+
+@pytest.mark.parametrize("scene", QUICK)
+def test_derivatives_of_the_angles_are_right_at_any_time(scene: str) -> None:
+    """Errors are over the condition number of the angle.
+
+    That is how far the angle moves if each input does, by its own size, and 1 rad; a rate that is
+    0 moves by a radian per period.
+    """
+    top = Top(**SCENES[scene])
+    motion, inputs = solve(top), inputs_of(top)
+    period = motion.T_nutation
+    times = np.array([0.3 * period, -1.6 * period, 1e6 * period])
+    slopes = AngleDerivatives(motion, inputs)
+    found = slopes.at(times)
+    sizes = [abs(getattr(top, name)) or 1 / period for name in inputs]
+    for i, name in enumerate(inputs):
+        if slopes.noise[name] * sizes[i] > 1e-9:  # where uncertainties take proved rows too
+            found[i] = AngleDerivatives(motion, [name]).in_digits(times)[0]
+    most = 1e-3 if scene in ("near the separatrix", "near a pole") else 5e-9
+    for i, angle in enumerate(("theta", "phi", "psi")):
+        exact = [[angle_slope(top, name, angle, t) for name in inputs] for t in times.tolist()]
+        errors = np.abs(found[:, i].T - exact) * sizes
+        condition = 1.0 + (np.abs(exact) * sizes).sum(axis=1)
+        assert (errors.max(axis=1) / condition).max() < most
+
+
+def test_derivatives_of_angles_at_the_start() -> None:
+    found = AngleDerivatives(solve(Top(thetadot0=0.5)), ["r0", "theta0_deg"]).at(np.zeros(2))
+    assert found[:, :, 0].tolist() == [[0.0, 0.0, 0.0], [math.pi / 180, 0.0, 0.0]]
+
+
+@pytest.mark.parametrize("scene", ["separatrix", "sleeping", "over the top"])
+def test_angles_have_no_derivative_if_the_neighbours_depart_at_once(scene: str) -> None:
+    found = AngleDerivatives(solve(Top(**EVERY_KIND[scene])), ["thetadot0", "psidot0"])
+    assert "thetadot0" in found.missing or scene == "over the top"
+    assert scene == "sleeping" or "psidot0" in found.missing
+    assert np.isnan(found.at(np.array([0.5]))).any()
+
+
+@pytest.mark.parametrize(
+    "scene", ["any start", pytest.param("near the separatrix", marks=pytest.mark.slow)]
+)
+def test_uncertainties_of_angles_are_right_to_the_digits_that_are_printed(scene: str) -> None:
+    top = Top(**SCENES[scene])
+    motion, stds = solve(top), {"C": 0.01, "theta0_deg": 1e-7}
+    times = np.array([0.2, 1.3, 7.7]) * motion.T_nutation
+    found: Any = AngleStds(motion, stds, list(stds)).at(times)
+    for i, angle in enumerate(("theta", "phi", "psi")):
+        for j, t in enumerate(times.tolist()):
+            by = [angle_slope(top, x, angle, t) * stds[x] for x in stds]
+            assert found[i, j] == pytest.approx(math.hypot(*by), rel=1e-3), (angle, t)
+
+
+def test_an_uncertainty_of_0_is_0() -> None:
+    """At 90 degrees r0_steady_min is 0 for every r0."""
+    motion = solve(Top(theta0_deg=90, r0=50))
+    assert FirstOrder(motion, {"r0": 2.0}, ["r0"]).std("r0_steady_min") == 0.0

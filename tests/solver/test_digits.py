@@ -1,0 +1,237 @@
+"""Numbers and angles with any digits against the reference, zeros, and the range of doubles."""
+
+from __future__ import annotations
+
+import json
+import math
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import pytest
+from ball_reference import BallReference
+from balls.scene import arb_bits, exact_arb
+from chrapan_top import rows_of
+from conftest import Lagtop
+from flint import arb
+from lagtop import LagtopError, Top, solve, sweep
+from scenes import EVERY_KIND, NAMED, UNIT
+
+from lagrange_cli.errors import OutOfRangeError, OutOfRangeWarning
+from lagrange_cli.solver.record import NUMBER_KEYS, all_keys, requested_keys
+
+SCENES = EVERY_KIND | NAMED
+HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_number_is_the_nearest_double_and_its_radius_holds(name: str) -> None:
+    top = Top(**SCENES[name])
+    motion, balls = solve(top), BallReference(top.as_dict())
+    record = motion.record(radii=True, keys=all_keys())
+    plain = motion.record()
+    assert {key: record[key] for key in plain} == plain
+    with arb_bits(400):
+        for key in (*NUMBER_KEYS, *requested_keys()):
+            exact, value = balls.exact(key), record[key]
+            assert (value is None) == (exact is None) == (record[f"{key}_radius"] is None), key
+            if exact is not None:
+                away, radius = abs(exact - exact_arb(value)), exact_arb(record[f"{key}_radius"])
+                assert not away > radius, key
+                assert radius <= abs(exact) * 2.0**-52 or away.contains(0), key
+                assert balls.ulps(key, value) <= 0.5 + 1e-9, key
+                assert str(value) != "-0.0", key
+
+
+@pytest.mark.parametrize("digits", [1, 20, 200])
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        *(EVERY_KIND[name] for name in ("worked example", "any start", "separatrix", "radians")),
+        {"r0": Fraction("50.1"), "theta0_deg": Fraction("30.1"), "psidot0": -3},
+    ],
+)
+def test_digits_are_those_of_the_reference(digits: int, inputs: dict[str, Any]) -> None:
+    top = Top(**inputs)
+    record, balls = solve(top).record(digits=digits, radii=True), BallReference(top.as_dict())
+    for key in NUMBER_KEYS:
+        if (text := record[key]) is not None:
+            unit = Fraction(10) ** (Decimal(text).adjusted() + 1 - digits)
+            away = balls.away(key, Fraction(text), digits)
+            assert away <= exact_arb(unit) / 2, key
+            assert not away > exact_arb(record[f"{key}_radius"]), key
+
+
+def test_radians_and_inputs_have_radii() -> None:
+    record = solve(Top(theta0_deg=30.0)).record(radians=True, radii=True)
+    assert record["theta0_rad"] == 0.5235987755982989
+    assert 0 < float(record["theta0_rad_radius"]) < 1.2e-16
+    assert record["m_radius"] == "0.0"
+    rounded = solve(Top(m=Fraction("1587.25"))).record(digits=4, radii=True)
+    assert (rounded["m"], rounded["m_radius"]) == ("1587.0", "0.26")
+    some = solve(Top()).record(keys=["T_nutation", "regime"], radii=True)
+    assert list(some) == ["regime", "T_nutation", "T_nutation_radius"]
+
+
+DEEP = ["worked example", "any start", "pendulum", "over the top", "sleeping", "separatrix", "cusp"]
+DEEP += ["from the upper pole", "torque-free"]
+
+
+@pytest.mark.parametrize("wrap", [False, True])
+@pytest.mark.parametrize("name", DEEP)
+def test_angles_have_the_digits_of_the_reference(name: str, wrap: bool) -> None:
+    """Forty digits; the angles of the reference are unwrapped."""
+    top, times = Top(**EVERY_KIND[name]), [0.375, -7.25, 2.0**-40, 1e3, -1e6, 1e12]
+    balls = BallReference(top.as_dict())
+    times = times[:3] if name == "separatrix" else times
+    for row in rows_of(top, times, 40, wrap=wrap, radians=True):
+        with arb_bits(600):
+            state, turn = balls.at(Fraction(row[0]), 40), 2 * arb.pi()
+            for text, exact in zip(row[1:], state[:3], strict=True):
+                away = exact - exact_arb(text)
+                if wrap:
+                    assert abs(Fraction(text)) < Fraction("3.14159265358979323846264338329")
+                    away -= turn * round(float((away / turn).mid()))
+                unit = Fraction(10) ** (Decimal(text).adjusted() - 39)
+                assert away.contains(0) or abs(away) <= exact_arb(unit) / 2, (row[0], text)
+
+
+def test_fifty_digits_on_the_command_line(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", "--digits", "50", "--format", "json").stdout
+    assert '"T_nutation":0.42925012447854773737540375001558009361' in shown
+    table = lagtop("solve", "--digits", "50").stdout
+    assert "0.42925012447854773737540375001558009361" in table
+    assert "…" not in table
+
+
+@pytest.mark.parametrize("digits", ["0", "1001", "2.5", "many"])
+def test_bad_numbers_of_digits(digits: str, lagtop: Lagtop) -> None:
+    result = lagtop("solve", "--digits", digits)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith("Error: --digits must be ")
+
+
+# Parts that cancel
+
+
+@pytest.mark.parametrize(
+    ("C", "r0"), [(1e-40, 1e40), (1e-45, 1e45), (1e-60, 1e60), (1e-80, 1e80), (1e-60, -1e60)]
+)
+def test_precession_of_a_tiny_body_that_spins_fast(C: float, r0: float) -> None:
+    """Only b = C r0/A moves the axis: psi is that of C = r0 = 1."""
+    psi = float(solve(Top(**UNIT | {"C": C, "r0": r0, "theta0_deg": 60})).angles(10).psi)
+    assert math.degrees(psi) == pytest.approx(math.copysign(347.515112335317602, r0), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "digits", "key", "text"),
+    [
+        ({"r0": 1, "thetadot0": Fraction(10) ** 20}, 1, "mean_precession_rate", "1.0e-40"),
+        ({"r0": 1, "thetadot0": 10**28}, 20, "T_precession", "6.2831853071795864769e+56"),
+        ({"psidot0": 1, "r0": HALF_AND_A_HAIR}, 5, "spin_rate_start", "1.0e-81"),
+        ({"psidot0": 1, "r0": HALF_AND_A_HAIR}, 60, "spin_rate_start", "1.0e-81"),
+        ({"psidot0": 1, "r0": Fraction(1, 2)}, 5, "spin_rate_start", "0.0"),
+    ],
+)
+def test_no_zero_is_false(inputs: dict[str, Any], digits: int, key: str, text: str) -> None:
+    motion = solve(Top(**UNIT | {"theta0_deg": 60} | inputs))
+    assert motion.record(digits=digits)[key] == text
+
+
+@pytest.mark.parametrize(
+    ("start", "t", "digits", "psi"),
+    [
+        ({"r0": 1e12, "theta0_deg": 40}, 1.0, 1, 1e-12),
+        ({"r0": 5, "theta0_deg": 30}, 1e-8, 5, 8.3333333e-25),
+        ({"r0": 5, "theta0_deg": 30}, 1e-40, 5, 8.3333333e-121),
+    ],
+)
+def test_small_angles_are_not_taken_for_zero(
+    start: dict[str, float], t: float, digits: int, psi: float
+) -> None:
+    (row,) = rows_of(Top(**(UNIT | start)), [t], digits, radians=True)
+    assert float(row[3]) == pytest.approx(psi, rel=10.0 ** (1 - digits))
+
+
+@pytest.mark.parametrize("t", [10, 10_000, 10**12])
+def test_a_tilt_that_falls_to_0_on_the_separatrix_keeps_its_digits(t: int) -> None:
+    """A pendulum by the textbook: sin(theta/2) = 1/cosh(sqrt(a/2) t - asinh 1)."""
+    motion = solve(Top(m=1, A=1, C=1, s=1, g=2, r0=0, theta0_deg=90, thetadot0=2))
+    assert motion.regime == "separatrix"
+    ((_, theta, phi, psi),) = rows_of(motion.top, [t], 30, radians=True)
+    with mpmath.workdps(60):
+        exact = 2 * mpmath.asin(mpmath.sech(mpmath.sqrt(2) * t - mpmath.asinh(1)))
+        assert abs(mpmath.mpf(theta) / exact - 1) < 1e-29
+        assert abs(mpmath.mpf(phi) / mpmath.pi - 1) < 1e-29
+    assert phi == psi
+
+
+@pytest.mark.parametrize(
+    ("theta0_deg", "thetadot0", "most"),
+    [(1e-150, 5e-324, 512), (1e-150, 1e-200, 512), (1e-100, 0, 128), (1e-12, 1e-13, 128)],
+)
+def test_tiny_tilts_take_few_digits(
+    theta0_deg: float, thetadot0: float, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The cost of an upright start is counted in digits, not in seconds."""
+    used = []
+    motion = solve(Top(**UNIT | {"r0": 2, "theta0_deg": theta0_deg, "thetadot0": thetadot0}))
+    kind = motion.kind
+
+    def counted(digits: int) -> Any:
+        used.append(digits)
+        return kind(digits)
+
+    monkeypatch.setattr(motion, "kind", counted)
+    assert motion.T_nutation is not None
+    assert max(used) <= most
+
+
+# Beyond the range of doubles
+
+SCENE: dict[str, float] = {"r0": 2e-307, "theta0_deg": 30}
+"""Almost a pendulum: it passes so close to the lower pole that it precesses there at 1e309."""
+BEYOND = ["spin_rate_half", "precession_rate_half"]
+
+
+def test_a_number_beyond_doubles_spoils_only_itself() -> None:
+    motion, pendulum = solve(Top(**SCENE)), solve(Top(r0=0))
+    with pytest.warns(OutOfRangeWarning, match=r"spin_rate_half .*; precession_rate_half"):
+        record = motion.record()
+    assert [key for key, value in record.items() if value is None] == [*BEYOND, "remark"]
+    assert (record["T_nutation"], record["u2"]) == (pendulum.T_nutation, -1)
+    assert motion.record(digits=20)["spin_rate_half"].startswith("3.56")
+    for key in BEYOND:
+        with pytest.raises(OutOfRangeError, match=f"^{key} must be within 1.8e308"):
+            getattr(motion, key)
+        with pytest.raises(LagtopError, match=f"^{key} must be within 1.8e308"):
+            motion.record(keys=["T_nutation", key])
+    found = sweep(keys=["T_nutation", *BEYOND, "error"], r0=[SCENE["r0"], 5.0], theta0_deg=30)
+    assert all(math.isnan(found[key][0]) and not math.isnan(found[key][1]) for key in BEYOND)
+    assert found["T_nutation"][0] == motion.T_nutation
+    assert str(found["error"][0]).startswith("spin_rate_half must be within 1.8e308")
+    assert found["error"][1] is None
+
+
+@pytest.mark.parametrize(("fmt", "none"), [("json", "null"), ("csv", ",,")])
+def test_a_command_warns_of_numbers_beyond_doubles(lagtop: Lagtop, fmt: str, none: str) -> None:
+    result = lagtop("solve", "--r0", "2e-307", "--format", fmt)
+    assert none in result.stdout
+    assert result.stderr.startswith("Warning: spin_rate_half must be within 1.8e308")
+    assert result.stderr.count("\n") == 1
+    assert lagtop("solve", "--r0", "2e-307", "--get", "T_nutation").stderr == ""
+    refused = lagtop("solve", "--r0", "2e-307", "--get", BEYOND[0])
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert refused.stderr.startswith("Error: spin_rate_half must be within 1.8e308")
+
+
+def test_a_number_that_underflows_is_not_printed_as_zero(lagtop: Lagtop) -> None:
+    """A printed 0 is exactly 0: what is smaller than all doubles is null, and digits print it."""
+    motion = solve(Top(r0=1e90))
+    with pytest.warns(OutOfRangeWarning, match="nome .* at least 5e-324.* got 3.975e-356: use"):
+        assert motion.record()["nome"] is None
+    assert motion.record(digits=4)["nome"] == "3.975e-356"
+    shown = lagtop("solve", "--r0", "1e90", "--format", "json")
+    assert json.loads(shown.stdout)["nome"] is None
+    assert "use --digits" in shown.stderr

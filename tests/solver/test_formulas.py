@@ -1,0 +1,220 @@
+"""The formulas that `lagtop explain` shows, evaluated by mpmath with the numbers of the record."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from lagtop import Motion, Top, solve
+from scenes import EVERY_KIND
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from lagrange_cli.solver.columns import COLUMNS, SCALARS, shown_columns
+from lagrange_cli.solver.explanation import explanations, listed
+from lagrange_cli.solver.record import TEXT_KEYS, all_keys, number_key
+
+TOPS = {
+    "worked example": Top(),
+    "loops": Top(psidot0=-8.0, theta0_deg=70.0),
+    "any start": Top(r0=-35.0, theta0_deg=100.0, thetadot0=3.0, psidot0=2.0),
+    "steady at 40 degrees": Top(r0=60.0, theta0_deg=40.0, psidot0=1.0),
+}
+WITHOUT = {"m", "A", "C", "s", "g", "r0", "theta0_deg", "thetadot0", "psidot0"}
+
+
+def functions(motion: Motion) -> dict[str, Any]:
+    """Return the functions and constants of formulas, and the time at which the axis is at u1."""
+
+    def rate(t: float, name: str = "thetadot") -> float:
+        return float(motion.table([t], [name])[name][0])
+
+    times = np.linspace(0, motion.T_nutation, 65)
+    rates = motion.table(times, ["thetadot"])["thetadot"]
+    (rises,) = np.nonzero((rates[:-1] < 0) & (rates[1:] > 0))
+    t1 = brentq(rate, times[rises[0]], times[rises[0] + 1], xtol=1e-15) if rises.size else 0.0
+    return {
+        **{name: getattr(mpmath, name) for name in "acos asin atan sqrt cos sin exp pi".split()},
+        "ellint_F": lambda phi, k: mpmath.ellipf(phi, k * k),
+        "ellint_E": lambda phi, k: mpmath.ellipe(phi, k * k),
+        "ellint_Pi": lambda n, k: mpmath.ellippi(n, k * k),
+        "sn": lambda u, k: mpmath.ellipfun("sn", u, m=k * k),
+        "integral": lambda name, low, high: quad(
+            rate, float(low), float(high), args=(name,), epsabs=1e-11, limit=200
+        )[0],
+        "abs": abs,
+        "max": max,
+        "t1": t1,
+    }
+
+
+def evaluated(formula: str, names: dict[str, Any]) -> tuple[Any, Any]:
+    """Return both sides of an equation; the left one is None if there is only a value."""
+    text, _, abbreviations = formula.partition(" where ")
+    text = re.sub(r"integral\((\w+),", r"integral('\1',", text)
+    for part in filter(None, re.split(r", (?=[A-Z] = )", abbreviations)):
+        name, _, meaning = part.partition(" = ")
+        names = names | {name: eval(meaning, {}, names)}
+    left, _, right = text.rpartition(" = ")
+    return (eval(left, {}, names) if left else None), eval(right, {}, names)
+
+
+def numbers_of(motion: Motion) -> dict[str, Any]:
+    record = motion.record(radians=True, keys=all_keys(radians=True))
+    bare = {name.removesuffix("_rad"): value for name, value in record.items()}
+    return {name: value for name, value in bare.items() if isinstance(value, float)}
+
+
+@pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
+def test_the_formula_of_a_key_gives_its_number(top: Top) -> None:
+    motion = solve(top)
+    numbers = numbers_of(motion)
+    names = functions(motion) | numbers
+    checked = set()
+    for key in all_keys():
+        name, shown = key.removesuffix("_deg"), number_key(key)
+        if shown is None or name not in numbers:
+            continue
+        left, right = evaluated(shown.formula, names)
+        value = numbers[name] if left is None else left
+        assert float(right) == pytest.approx(float(value), rel=1e-8, abs=1e-9), key
+        checked.add(key)
+    assert len(checked) >= 40
+
+
+@pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
+def test_the_formula_of_a_column_gives_its_number(top: Top) -> None:
+    motion = solve(top)
+    t = 0.3 * motion.T_nutation
+    values = {name: float(x[0]) for name, x in motion.table([t], list(COLUMNS)).items()}
+    names = functions(motion) | numbers_of(motion) | values
+    for name, column in SCALARS.items():
+        if not column.formula:
+            assert name == "t"
+            continue
+        left, right = evaluated(column.formula, names)
+        value = values[name] if left is None else left
+        if name.startswith("quaternion"):  # a quaternion and its opposite are one attitude
+            assert abs(float(right)) == pytest.approx(abs(value), abs=1e-9), name
+        else:
+            assert float(right) == pytest.approx(float(value), rel=1e-8, abs=1e-9), name
+
+
+def test_every_number_has_a_formula() -> None:
+    assert all(row.text for row in listed() if row.name not in WITHOUT | {*TEXT_KEYS, "t"})
+    assert shown_columns()["axis"].formula.count(" = ") == 3
+
+
+SHOWN = {"·": "*", "²": "**2", "√": "sqrt", "arc": "a", "F(": "ellint_F(", "E(": "ellint_E("}
+SHOWN |= {"Π": "ellint_Pi", "π": "pi", "t₁": "t1"}
+
+
+@pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
+def test_the_formula_with_numbers_gives_the_number(top: Top) -> None:
+    motion = solve(top)
+    names, checked = functions(motion), 0
+    keys = [name for name in all_keys(radians=True) if name != "remark"]
+    for row in explanations(motion, keys, radians=True):
+        if not row.numbers or "∫" in row.numbers or row.kind == "column":
+            continue
+        text = row.numbers
+        for shown, word in SHOWN.items():
+            text = text.replace(shown, word)
+        left, right = evaluated(text, names)
+        value = row.value if left is None else left
+        assert float(right) == pytest.approx(float(value), rel=2e-4, abs=2e-4), row.name
+        checked += 1
+    assert checked >= 25
+
+
+def test_a_formula_is_shown_in_symbols_and_with_numbers() -> None:
+    (row,) = explanations(solve(Top()), ["T_nutation"])
+    assert row.formula == "4 K/√(a (u3 - u2))"
+    assert row.numbers == "4·1.9298/√(319.091·(1.29042 - 0.276952))"
+    assert row.value == solve(Top()).T_nutation
+    (root,) = explanations(solve(Top()), ["u2_twice"])
+    assert root.formula == "(u3 + u2) - (u3 - u2)"
+    (tilt,) = explanations(solve(Top()), ["spin_rate_start"])
+    assert tilt.formula == "r0 - ψ'0 cos(ϑ0)"
+    assert tilt.numbers == "50 - 0·cos(30°)"
+
+
+OVER_POLES: dict[str, tuple[dict[str, float], tuple[str, ...]]] = {
+    "lower": ({"theta0_deg": 180, "r0": 20, "thetadot0": 1}, ("lower",)),
+    "upper": ({"theta0_deg": 0, "r0": 20, "thetadot0": 1}, ("upper",)),
+    "both": ({"theta0_deg": 60, "r0": 0, "thetadot0": 50}, ("upper", "lower")),
+}
+
+
+@pytest.mark.parametrize("poles", OVER_POLES)
+def test_over_a_pole_the_formula_shows_its_limit_and_no_division_by_0(poles: str) -> None:
+    inputs, limits = OVER_POLES[poles]
+    motion = solve(Top(**inputs))
+    for row in explanations(motion, ["mean_precession_rate", "mean_spin_rate"]):
+        text = row.numbers
+        for pole in limits:
+            assert f"(limit over the {pole} pole)" in text
+            text = text.replace(f" (limit over the {pole} pole)", "")
+        for shown, word in SHOWN.items():
+            text = text.replace(shown, word)
+        _, value = evaluated(text, functions(motion))
+        assert float(value) == pytest.approx(row.value, rel=2e-5)
+
+
+def test_a_missing_number_has_a_reason() -> None:
+    (period,) = explanations(solve(Top(theta0_deg=0)), ["T_nutation"])
+    assert (period.value, period.numbers) == (None, "")
+    assert period.missing == "T_nutation, K, u3: undefined in the regime 'sleeping'"
+    (period,) = explanations(solve(Top(g=0.0, psidot0=3.0)), ["T_nutation"])
+    assert period.value == solve(Top(g=0.0, psidot0=3.0)).T_nutation
+    assert period.missing == "u3: defined only if there is a torque"
+
+
+def cases(motion: Motion) -> dict[str, bool]:
+    """Return each case in which a number may not exist, and whether it is that of the motion."""
+    facts, top, record = motion.exact.facts, motion.top, motion.record()
+    nutates = record["T_nutation"] is not None and not facts.steady
+    turning = record["u_quarter"] is not None or motion.angles([0.0]).theta[0] == pytest.approx(
+        np.radians(record["theta_max_deg"]), abs=1e-12
+    )
+    at_top = record["u_quarter"] is not None
+    half_on_pole = turning and (facts.over_bottom if at_top else facts.upper_root == 1)
+    too_slow = abs(top.r0) < motion.r0_steady_min
+    level = top.theta0_deg == 90
+    moves = bool(top.g or top.r0 or top.thetadot0)
+    return {
+        "if there is a torque": top.g != 0,
+        "if r0 is not 0": top.r0 != 0,
+        "if k > 0": record["k"] not in {0, None},
+        "if the top moves": moves,
+        "if the start is at u1": at_top,
+        "if the top is released from rest": facts.at_rest,
+        "if the mean spin rate is not 0": bool(record["mean_spin_rate"]),
+        "if the mean precession rate is not 0": bool(record["mean_precession_rate"]),
+        "if the axis does not leave the vertical at the start": not (top.pole and top.thetadot0),
+        "if the axis is not vertical half a period after the start": not half_on_pole,
+        "if |r0| >= r0_steady_min and the tilt is not 90 degrees": not (too_slow or level),
+        "if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees": not (
+            too_slow or (level and not top.r0)
+        ),
+        "if the top nutates": nutates,
+        "if the top nutates after release from rest": nutates and facts.at_rest,
+        "if the top nutates and does not pass over a pole": nutates and not facts.meets_a_pole,
+        "if the top nutates, and if the axis is not vertical half a period after the start": (
+            nutates and not half_on_pole
+        ),
+    }
+
+
+@pytest.mark.parametrize("scene", EVERY_KIND.values(), ids=EVERY_KIND)
+def test_the_reason_of_a_missing_number_is_the_case_of_the_motion(scene: dict[str, Any]) -> None:
+    motion = solve(Top(**scene))
+    holds = cases(motion)
+    for name, value in motion.record(keys=all_keys()).items():
+        key = number_key(name)
+        if key is None or name in motion.kind_class.lacks or name == "u2_criterion":
+            continue
+        assert (value is None) == (bool(key.only) and not holds[key.only]), name

@@ -1,0 +1,133 @@
+"""Proved columns that are rational, and radii in the commands; `test_columns` checks the others."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import pytest
+from conftest import Lagtop
+from lagtop import Top, solve
+from scenes import UNIT
+
+from lagrange_cli.solver.tables import ProvedTable
+
+
+@pytest.mark.parametrize("method", ["start", "steady"])
+def test_ties_and_zeros_are_found(method: str) -> None:
+    """Ties are rounded to even."""
+    scene = UNIT | {"m": 5, "theta0_deg": 30, "r0": 2.5, "psidot0": 0.25, "thetadot0": 0.75}
+    columns = ["theta", "thetadot", "psidot", "p", "q", "r", "moment"]
+    expected = ["30.0", "0.8", "0.2", "0.8", "0.1", "2.0", "2.0"]
+    if method == "steady":
+        scene = UNIT | {"g": 0, "theta0_deg": 60, "r0": 2.5}
+        columns = ["u", "thetadot", "psidot", "phidot", "p", "q", "moment", "energy", "Lz"]
+        expected = ["0.5", "0.0", "0.0", "2.0", "0.0", "0.0", "0.0", "3.0", "1.0"]
+    t = Fraction(0 if method == "start" else 7)
+    table = ProvedTable(solve(Top(**scene)), columns, 1)
+    assert [x.value for x in table.row(t)] == expected
+
+
+TENTH = Fraction(1, 10)
+STANDS = {"m": Fraction(1, 9), "C": 1.5, "r0": Fraction(1, 3), "theta0_deg": 60}
+STANDS |= {"psidot0": Fraction(2, 3)}
+"""A steady precession whose spin rate is 0."""
+ROUND = {"r0": 0, "theta0_deg": 31, "thetadot0": 9}
+"""A pendulum that turns over."""
+FREE = {"g": 0, "r0": 0, "theta0_deg": 90, "psidot0": 2.5}
+
+
+@pytest.mark.parametrize(
+    ("inputs", "t", "column", "expected"),
+    [
+        # at all times: discs, spheres, planes
+        ({"C": 2, "r0": 3, "theta0_deg": 31}, "7/3", "q", "0.0"),
+        ({"C": 2, "r0": 6 * TENTH, "theta0_deg": 31, "psidot0": Fraction(5, 3)}, 7, "p", "0.0"),
+        ({"r0": 0.625, "theta0_deg": 90, "psidot0": -0.625}, "7/3", "quaternion_z", "0.0"),
+        (
+            {"r0": 0.625, "theta0_deg": 90, "psidot0": 0.625, "thetadot0": 5},
+            *("-2/5", "quaternion_y", "0.0"),
+        ),
+        (
+            {"m": 3.25, "r0": -2.25, "theta0_deg": 60, "thetadot0": -1.25, "psidot0": -1.5},
+            *("7/3", "quaternion_y", "0.0"),
+        ),
+        *((ROUND, "7/3", x, "0.0") for x in ("q", "axis_x", "quaternion_y", "quaternion_z")),
+        (
+            {"m": 0.5, "C": 0.25, "r0": -3, "theta0_deg": 120, "psidot0": 2},
+            *("-2/5", "quaternion_z", "0.0"),
+        ),
+        ({"g": 0, "r0": 3, "theta0_deg": 31, "thetadot0": 2.5}, "7/3", "p", "2.0"),
+        ({"g": 0, "r0": 3, "theta0_deg": 31, "thetadot0": 2.5}, "7/3", "q", "0.0"),
+        (FREE, "7/3", "p", "0.0"),
+        (FREE, "7/3", "q", "2.0"),
+        # at some times
+        ({"r0": 3, "theta0_deg": 31}, 0, "q", "0.0"),
+        ({"r0": 3 * TENTH, "theta0_deg": 0, "thetadot0": 5}, 0, "phidot", "0.2"),
+        ({"r0": 3 * TENTH, "theta0_deg": 0, "thetadot0": 5}, 0, "psidot", "0.2"),
+        ({"r0": 3 * TENTH, "theta0_deg": 180, "thetadot0": 5}, 0, "psidot", "-0.2"),
+        ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 25 * TENTH}, 1, "theta", "2.0"),
+        ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 15 * TENTH}, -1, "thetadot", "-2.0"),
+        ({"g": 0, "r0": 0, "theta0_rad": 0.5, "thetadot0": -1.25}, 0.6, "theta", "0.2"),
+        (ROUND, 0.01, "dphi", "0.0"),
+        ({"r0": 0.25, "theta0_deg": 30, "m": 0.1, "A": 0.5}, 0, "phidot", "0.2"),
+        ({"m": 0.125, "r0": 0.5, "theta0_deg": 90, "psidot0": 0.25}, 0, "q", "0.2"),
+        (STANDS, 7, "phi", "0.0"),
+        (STANDS, 7, "p", "0.0"),
+    ],
+)
+def test_rational_columns(
+    inputs: dict[str, Any], t: float | str, column: str, expected: str
+) -> None:
+    """Ties among them: 0.15 and 2.5 in one digit."""
+    table = ProvedTable(solve(Top(**UNIT | inputs)), [column], 1, radians=True)
+    assert table.row(Fraction(str(t)))[0].value == expected
+
+
+def test_commands_write_radii(lagtop: Lagtop) -> None:
+    solved = json.loads(lagtop("solve", "--certify", "--format", "json").stdout)
+    assert 0 < solved["T_nutation_radius"] < 2.8e-17
+    assert list(solved).index("m_radius") == list(solved).index("remark") + 1
+    plain = json.loads(lagtop("solve", "--format", "json").stdout)
+    assert {key: solved[key] for key in plain} == plain
+    texts = {"regime", "path", "remark", "summary"}
+    assert solved.keys() - plain.keys() == {f"{key}_radius" for key in plain.keys() - texts}
+    assert str(solved["T_nutation_radius"]) in lagtop("solve", "--certify").stdout
+    row = json.loads(
+        lagtop("table", "--certify", "--t-min", 1e9, "--n", 1, "--format", "json").stdout
+    )
+    assert list(row[0])[3:6] == ["psi_deg", "t_radius", "theta_deg_radius"]
+    assert 0 < row[0]["phi_deg_radius"] <= row[0]["phi_deg"] * 2.0**-52
+
+
+def test_the_separatrix_is_decided_at_once_at_any_time(lagtop: Lagtop) -> None:
+    """The tilt falls as exp(-t), below the exponents of decimals; what stays finite is printed."""
+    top = "--m 1 --A 1 --C 1 --s 1 --g 1 --r0 0 --theta0 60 --thetadot0 1".split()
+    args = [*top, "--t-min", "1e20", "--t-max", "1e20", "--n", "1", "--digits", "20"]
+    refused = lagtop("table", *args, "--format", "csv", "--columns", "theta")
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "the size of a value is not within 1e-990000000000000000 and" in refused.stderr
+    shown = lagtop("table", *args, "--format", "csv", "--columns", "phi,psi,axis_z,quaternion_w")
+    assert shown.stdout.splitlines()[1:] == ["180.0,180.0,1.0,-1.0"]
+
+
+def test_what_time_alone_makes_small_is_not_zero(lagtop: Lagtop) -> None:
+    """On the separatrix the nutation rate falls as exp(-rate t), here by 5,000 digits.
+
+    With h = rate t + h0 it is -2 rate Y sech h tanh h/sqrt(X^2 + Y^2 tanh^2 h), by mpmath.
+    """
+    top = "--m 1 --A 1 --C 1 --s 1 --g 1 --r0 1.5 --theta0 60 --thetadot0 .5 --psidot0 1".split()
+    args = [*top, "--t-min", "1e4", "--n", "1", "--digits", "10", "--columns", "thetadot"]
+    motion = solve(Top(m=1, A=1, C=1, s=1, g=1, r0=1.5, theta0_deg=60, thetadot0=0.5, psidot0=1))
+    assert motion.regime == "separatrix"
+    with mpmath.workdps(60):
+        # a = 2, b = 3/2, energy = 1: u2 = 1/8 by (4,9), and rate^2 = a (1 - u2)/4
+        X, Y = mpmath.mpf(3) / 4, mpmath.sqrt(mpmath.mpf(7)) / 4
+        rate = Y
+        h = -mpmath.acosh(Y / mpmath.sin(mpmath.pi / 6)) + rate * 10000
+        exact = 2 * rate * Y * mpmath.sech(h) * mpmath.tanh(h)
+        exact = -exact / mpmath.sqrt(X**2 + (Y * mpmath.tanh(h)) ** 2)
+        text = mpmath.nstr(exact, 10, min_fixed=-5, max_fixed=16)
+    assert lagtop("table", *args, "--format", "csv").stdout == f"thetadot\n{text}\n"

@@ -1,0 +1,243 @@
+"""`lagtop sweep`: the numbers of `solve`, for many tops, from grids and from files."""
+
+from __future__ import annotations
+
+import csv
+import decimal
+import io
+import json
+import math
+import tracemalloc
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Lagtop
+from lagtop import Top, solve, sweep
+from scenes import EVERY_KIND, UNIT
+
+from lagrange_cli.sweeps.records import column_keys
+
+Record = dict[str, Any]
+
+
+def table(text: str) -> list[Record]:
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+SPECIAL: list[dict[str, Any]] = [
+    *EVERY_KIND.values(),
+    *({}, {"theta0_rad": 0, "r0": 40}, {"theta0_rad": 3.141592, "thetadot0": -2, "psidot0": 1}),
+    *({"m": 1e-40, "A": 1e-40, "C": 1e-40}, {"r0": 1e70}, {"theta0_deg": 1e-100}),
+    *(UNIT | {"r0": r0, "theta0_deg": 30} for r0 in (10.0, math.nextafter(10.0, 0.0), -1e9)),
+    *({"psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151},),
+]
+
+
+@pytest.mark.parametrize("radians", [False, True])
+@pytest.mark.parametrize("inputs", SPECIAL)
+def test_every_regime_as_solve(inputs: dict[str, Any], radians: bool) -> None:
+    exact = solve(Top(**inputs)).record(radians=radians)
+    found = sweep(**inputs, radians=radians)
+    assert list(found) == [*exact, "error"]
+    assert found["error"].item() is None
+    for key, value in exact.items():
+        if isinstance(value, float):
+            assert float(found[key]) == pytest.approx(value, rel=2e-15, abs=1e-15), key
+        else:
+            assert value == found[key].item() or (value is None and np.isnan(found[key])), key
+
+
+def test_a_number_smaller_than_all_doubles_is_missing_and_named() -> None:
+    """The nome of a top with r0 = 1e90 is 3.975e-356, not 0."""
+    found = sweep(r0=1e90)
+    assert math.isnan(found["nome"])
+    assert "nome must be 0 or at least 5e-324" in str(found["error"].item())
+
+
+def test_the_reason_of_a_bad_top_is_not_lost(lagtop: Lagtop) -> None:
+    """The results have `error` if a top has one; the command names the key that shows it."""
+    bad = sweep(m=[1587, -1, math.nan], theta0_deg=[[30], [181]], keys=["T_nutation"])
+    assert list(bad) == ["T_nutation", "error"]
+    assert np.isfinite(bad["T_nutation"]).tolist() == [[True, False, False], [False] * 3]
+    reasons = [None, "m must be > 0, got -1.0", "m must be finite, got nan"]
+    assert bad["error"][0].tolist() == reasons
+    assert bad["error"][1, 0] == "theta0_deg must be in [0, 180], got 181.0"
+    assert sweep(r0=[])["nome"].shape == (0,)
+    late = sweep(m=9000 * [1587] + [-1], keys=["T_nutation"])["error"]
+    assert np.flatnonzero(late).tolist() == [9000]
+    assert list(sweep(m=[1587], keys=["T_nutation"])) == ["T_nutation"]
+    assert list(sweep(m=[-1], keys=["error", "a"])) == ["error", "a"]
+    shown = lagtop("sweep", "--m", "1,-1,-2", "--keys", "T_nutation,error")
+    assert shown.stderr.endswith("the first: m must be > 0, got -1.0\n")
+
+
+def test_settings_of_the_host_program_change_no_bit() -> None:
+    tilts, rates = [0, 1e-150, 179.9999999, 30], [[[0]], [[1]]]
+    inputs: Any = {"theta0_deg": tilts, "r0": [[0], [50]], "psidot0": rates}
+    context = decimal.Context(prec=1, Emin=-1, Emax=1, traps=[decimal.Inexact, decimal.Rounded])
+    for keys in (None, ["steady_rate_fast", "f_upright", "Lz"]):
+        usual = sweep(**inputs, keys=keys)
+        with np.errstate(all="raise"), decimal.localcontext(context):
+            found = sweep(**inputs, keys=keys)
+        for key, column in usual.items():
+            np.testing.assert_array_equal(column, found[key])
+
+
+def test_keys_of_a_grid_are_all_that_is_printed(lagtop: Lagtop) -> None:
+    result = lagtop("sweep", "--r0", "0,50", "--keys", "T_nutation,spin_rate_half")
+    header, *rows = csv.reader(io.StringIO(result.stdout))
+    assert header == ["T_nutation", "spin_rate_half"]
+    assert [bool(cell) for row in rows for cell in row] == [True, False, True, True]
+    failed = lagtop("sweep", "--r0", "50", "--theta0", "30,-1", "--keys", "k")
+    assert failed.exit_code == 1
+    assert failed.stdout.splitlines()[::2] == ["k", '""']
+    assert failed.stderr == (
+        "Error: 1 of 2 tops have an error; the first: theta0_deg must be in [0, 180], got -1.0"
+        "; add error to --keys to see every reason\n"
+    )
+
+
+def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
+    grid, absent = ["sweep", "--r0", "0:60:7", "--theta0", "0,30", "--format"], {"nan", "None"}
+    exact = sweep(r0=np.repeat(np.arange(0, 61, 10), 2), theta0_deg=np.tile([0, 30], 7))
+    objects = json.loads(lagtop(*grid, "json").stdout)
+    assert objects == [json.loads(line) for line in lagtop(*grid, "ndjson").stdout.splitlines()]
+    for i, (row, cells) in enumerate(zip(objects, table(lagtop(*grid, "csv").stdout), strict=True)):
+        assert list(row) == list(cells) == column_keys()
+        for key, value in row.items():
+            assert cells[key] == ("" if value is None else str(value))
+            assert value == exact[key][i] or (value is None and str(exact[key][i]) in absent)
+
+
+def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
+    pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    text = tmp_path / "tops.csv"
+    text.write_text("id,r0\n7,0\n8,40\n9,x\n")
+    rows = lagtop("sweep", text, "--format", "json").stdout
+    whole, parts = tmp_path / "x.parquet", tmp_path / "parts"
+    for options in (["-o", whole], ["--parts", parts]):
+        assert lagtop("sweep", text, "--format", "parquet", *options).exit_code == 1
+    for file in (whole, parts / "part-000000.parquet"):
+        assert parquet.read_table(file).to_pylist() == json.loads(rows)
+    empty = tmp_path / "empty.parquet"
+    lagtop("sweep", "-", "--format", "parquet", "-o", empty, input="r0\n")
+    assert parquet.read_table(empty).num_rows == 0
+
+
+def test_a_bad_shared_input_is_a_usage_error(lagtop: Lagtop) -> None:
+    for options in (["--m", "-1"], ["--m", "-1", "--r0", "1:5:5"], ["--A", "1", "--C", "3"]):
+        result = lagtop("sweep", *options)
+        assert (result.exit_code, result.stdout) == (2, "")
+    assert lagtop("sweep", "--C", "1,1e6").exit_code == 1
+
+
+def test_scene_and_grid(lagtop: Lagtop) -> None:
+    keys = ["--keys", "m,r0,theta0_rad"]
+    shown = lagtop("sweep", "sample_inputs/simo-wong-1991.toml", "--r0", "1,2", *keys, "--rad")
+    assert [row["r0"] for row in table(shown.stdout)] == ["1.0", "2.0"]
+    assert len({row["m"] for row in table(shown.stdout)}) == 1
+    assert lagtop("sweep", "nowhere.toml").exit_code == 65
+    assert lagtop("sweep", "a.csv", "b.csv").exit_code == 2
+
+
+def test_rows_of_csv(tmp_path: Path, lagtop: Lagtop) -> None:
+    file = tmp_path / "tops.csv"
+    file.write_bytes(
+        b"\xef\xbb\xbfname,r0,theta0_deg,T_nutation\r\n"
+        b'"a, ""b""",50,30,9\r\n\r\n=x,5_0,30,9\r\nc,7\r\n'
+        b'd,"40",1e400,9\r\n"e,1,2\r\nf,-60,20,9\r\n'
+    )
+    result = lagtop("sweep", file, "--keys", "r0,T_nutation", "--psidot0", "0")
+    assert result.exit_code == 1
+    assert result.stderr == (
+        "Error: 4 of 6 tops have an error; the first: line 4: r0 must be a finite decimal number, "
+        "got '5_0' (leave out the underscores)\n"
+    )
+    rows = table(result.stdout)
+    assert [row["name"] for row in rows] == ['a, "b"', "=x", "c", "d", "", "f"]
+    where = ["", *(f"line {i}" for i in range(4, 8)), ""]
+    assert [row["error"].partition(":")[0] for row in rows] == where
+    assert float(rows[-1]["T_nutation"]) == pytest.approx(
+        solve(Top(r0=-60, theta0_deg=20)).T_nutation, rel=1e-15
+    )
+
+
+def test_a_tilt_in_radians_over_one_in_degrees(lagtop: Lagtop) -> None:
+    keys = ["--rad", "--keys", "theta0_rad", "sample_inputs/simo-wong-1991.toml"]
+    assert lagtop("sweep", "--theta0", "0.25", *keys).stdout == "theta0_rad\n0.25\n"
+    found = lagtop("sweep", *keys, "-", input="theta0_deg\n180\n").stdout
+    assert found == f"theta0_rad,error\n{math.pi},\n"
+
+
+def test_rows_of_json(lagtop: Lagtop) -> None:
+    text = '{"id": 1, "r0": 40}\n{"id": {"x": [2]}, "theta0_rad": 1, "r0": 7}\n{"r0": true}\n'
+    result = lagtop(
+        "sweep", "-", "--keys", "r0,theta0_deg,error", "--format", "ndjson", "--theta0", "20",
+        input=text,
+    )  # fmt: skip
+    rows = list(map(json.loads, result.stdout.splitlines()))
+    assert [row["id"] for row in rows] == [1, {"x": [2]}, None]
+    assert [row["theta0_deg"] for row in rows[:2]] == [20, math.degrees(1)]
+    assert [bool(row["error"]) for row in rows] == [False, False, True]
+    assert rows[2]["error"] == "line 3: r0 must be a finite number, got true"
+    assert result.exit_code == 1
+
+
+def test_what_a_sweep_wrote_can_be_swept_again(tmp_path: Path, lagtop: Lagtop) -> None:
+    once, twice = tmp_path / "once.csv", tmp_path / "twice.csv"
+    lagtop("sweep", "--r0", "0:100:50", "--theta0", "0,10,180", "-o", once)
+    lagtop("sweep", once, "-o", twice)
+    assert once.read_bytes() == twice.read_bytes()
+
+
+def test_a_range_and_a_file_exclude_each_other(lagtop: Lagtop) -> None:
+    assert lagtop("sweep", "-", "--m", "1,2", input="r0\n1\n").exit_code == 2
+
+
+@pytest.mark.parametrize("text", ["r0\n500(5)\n", '{"r0": "500(5)"}\n'])
+def test_an_uncertain_cell_is_refused(text: str, lagtop: Lagtop) -> None:
+    result = lagtop("sweep", "-", "--keys", "K", input=text)
+    assert result.exit_code == 1
+    assert "r0 must have no uncertainty, got '500(5)': loop over solve" in result.stderr
+    assert lagtop("sweep", "--r0", "500(5)").stderr.startswith("Error: --r0 must have no unc")
+
+
+def peak_over_result(**inputs: Any) -> float:
+    """Return the peak memory of a sweep over the size of its result."""
+    tracemalloc.start()
+    try:
+        records = sweep(**inputs)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    return peak / sum(column.nbytes for column in records.values())
+
+
+GRID = {"r0": np.linspace(1, 100, 200)[:, None]}
+
+
+STARTS = {"theta0_deg": np.linspace(1, 179, 60_000), "psidot0": np.linspace(-5, 5, 60_000)}
+
+
+BODY = {"m": 1587.0, "C": 17458.0, "s": 4.0, "g": 981.0}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        GRID | {"theta0_deg": np.linspace(1, 179, 1500), "keys": ["r0", "T_nutation"]},
+        GRID | {"theta0_deg": np.linspace(1, 179, 100)},
+        STARTS | {"thetadot0": np.full(60_000, 2.0), "keys": ["T_nutation"]},
+        STARTS | {"phidot0": np.full(60_000, 50.0), "keys": ["T_nutation", "Lz"]},
+        STARTS | BODY | {"A_cm": np.full(60_000, 13640.0), "keys": ["T_nutation"]},
+    ],
+    ids=",".join,
+)
+def test_memory_of_a_sweep_is_little_more_than_its_result(inputs: dict[str, Any]) -> None:
+    """Measured 1.3 to 2.1 times the result: inputs that are one number for all take no room."""
+    assert peak_over_result(**inputs) < 2.5

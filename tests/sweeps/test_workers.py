@@ -1,0 +1,218 @@
+"""Work shared by processes or a cluster: the bytes of one process, and nothing left behind."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext, suppress
+from pathlib import Path
+
+import pytest
+from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, process, wait_until
+from lagtop import LagtopError
+
+from lagrange_cli.errors import UnavailableError
+from lagrange_cli.sweeps.workers import in_order, parse_jobs
+
+LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1"]
+LOST = rb"Error: a process that shared the work was lost \(killed, or out of memory\).*\n"
+
+
+def test_jobs(lagtop: Lagtop) -> None:
+    assert parse_jobs("3") == 3
+    assert parse_jobs("auto") >= 1
+    refused = lagtop("sweep", "--jobs", 2, "--dask", "tcp://127.0.0.1:9")
+    assert_one_line(refused, 2, "use --jobs or --dask, not both")
+
+
+@pytest.mark.parametrize("text", ["0", "-1", "1.5", "many", "1025", "²", "9" * 5000])
+def test_invalid_numbers_of_jobs_are_refused(text: str, lagtop: Lagtop) -> None:
+    result = lagtop("sweep", f"--jobs={text}")
+    assert_one_line(result, 2, "--jobs must be auto or in [1, 1024], got")
+    assert len(result.stderr) < 200
+
+
+@pytest.mark.parametrize("jobs", [2, *(pytest.param(x, marks=pytest.mark.slow) for x in (3, 0))])
+def test_bytes_are_those_of_one_process(jobs: int, tmp_path: Path) -> None:
+    """Without jobs, on a cluster."""
+    file = tmp_path / "tops.csv"
+    file.write_text("id,r0\n" + "".join(f"{i},{'x' if i % 999 == 5 else i}\n" for i in range(9000)))
+    grid = ["sweep", "--r0", "0:90:301", "--theta0", "0:180:31", "--keys", "r0,regime,K,error"]
+    with nullcontext() if jobs else cluster(tmp_path, 2) as found:
+        how = ["--dask", found[0]] if found else ["--jobs", str(jobs)]
+        for options in (grid, ["sweep", str(file), "--keys", "T_nutation"]):
+            alone, shared = (process(*options, *more, check=False) for more in ([], how))
+            assert shared.returncode == alone.returncode == (options is not grid)
+            assert (shared.stdout, shared.stderr) == (alone.stdout, alone.stderr)
+        process(*grid, *how, "--parts", str(tmp_path / "parts"))
+    assert joined(tmp_path / "parts") == process(*grid).stdout
+
+
+@pytest.mark.slow
+def test_no_module_of_the_current_folder_is_run(tmp_path: Path) -> None:
+    script = "from lagrange_cli.__main__ import main; main()"
+    names = "signal pickle socket selectors tempfile logging random struct lagrange_cli".split()
+    for name in names:
+        (tmp_path / f"{name}.py").write_text(f"open('RAN-{name}', 'w')\nraise SystemExit\n")
+    line = [sys.executable, "-P", "-c", script, "sweep", "--r0", "1:9:20000", "--keys", "r0"]
+    done = subprocess.run([*line, "--jobs", "2"], cwd=tmp_path, capture_output=True, check=False)
+    assert (done.returncode, done.stderr, done.stdout.count(b"\n")) == (0, b"", 20_001)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(f"{x}.py" for x in names)
+
+
+def children(process: int) -> dict[int, str]:
+    """Return the command lines of the processes that a process has started."""
+    found = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    return {int(pid): Path(f"/proc/{pid}/cmdline").read_text() for pid in found}
+
+
+@contextmanager
+def sharing(folder: Path, *options: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a long sweep in a process group of its own, and wait until it writes results."""
+    running = subprocess.Popen(
+        ["env", "--default-signal=HUP,INT,QUIT", *LAGTOP, *LONG, "-o", f"{folder}/o.csv", *options],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        start_new_session=True,
+        env=os.environ | {"TMPDIR": str(folder)},
+    )
+    try:
+        wait_until(lambda: any(x.stat().st_size for x in folder.glob(".lagtop-*")), running)
+        yield running
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("send", [os.kill, os.killpg], ids=["process", "group"])
+@pytest.mark.parametrize("name", ["INT", "TERM", "HUP"])
+def test_a_signal_ends_all_processes(
+    name: str, send: Callable[[int, int], None], tmp_path: Path
+) -> None:
+    """A terminal that is closed and a batch system send it to the whole group."""
+    number = getattr(signal, f"SIG{name}")
+    with sharing(tmp_path, "--jobs", "3") as running:
+        begun = time.monotonic()
+        send(running.pid, number)
+        said = running.communicate(timeout=60)[1]
+        assert_gone(running.pid)
+    assert running.returncode in (-number, 128 + number)
+    assert said == b""
+    assert list(tmp_path.iterdir()) == []
+    assert time.monotonic() - begun < 10  # measured: 0.2 to 0.5
+
+
+@pytest.mark.slow
+def test_a_killed_worker_ends_the_sweep(tmp_path: Path) -> None:
+    with sharing(tmp_path, "--jobs", "3") as running:
+        pids = [pid for pid, line in children(running.pid).items() if "spawn_main" in line]
+        os.kill(pids[0], signal.SIGKILL)
+        said = running.communicate(timeout=60)[1]
+        assert_gone(running.pid)
+    assert (running.returncode, bool(re.fullmatch(LOST, said))) == (69, True), said
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_workers_end_with_their_parent(tmp_path: Path) -> None:
+    with sharing(tmp_path, "--jobs", "3") as running:
+        running.kill()
+        running.communicate(timeout=60)
+        assert_gone(running.pid)
+
+
+@contextmanager
+def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """Start a scheduler and some workers; yield its address, and the processes in this order."""
+    file, started = folder / "scheduler.json", list[subprocess.Popen[bytes]]()
+
+    def start(name: str, *options: str) -> None:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *options]
+        more = ["--no-dashboard"]
+        started.append(subprocess.Popen([*command, *more], stderr=subprocess.DEVNULL, cwd=folder))
+
+    def address() -> str:
+        with suppress(FileNotFoundError, ValueError):  # not there yet, or half of it
+            return str(json.loads(file.read_text())["address"])
+        return ""
+
+    try:
+        start("scheduler", "--port", "0", "--scheduler-file", str(file))
+        wait_until(address, started[0])
+        for _ in range(workers):
+            start("worker", address(), "--no-nanny", "--nthreads", "1")
+        yield address(), started
+    finally:
+        for one in reversed(started):
+            one.kill()
+            one.wait()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("who", ["scheduler", "worker"])
+def test_a_killed_scheduler_or_worker(who: str, tmp_path: Path) -> None:
+    """Another worker computes the parts of a lost one; without its scheduler a sweep ends."""
+    options = ["sweep", "--r0", "1:100:150000", "--keys", "r0,K,E,nome"]
+    out = tmp_path / "out"
+    command = [*LAGTOP, *options, "--parts", str(out), "--dask"]
+    with cluster(tmp_path, 2) as (address, processes):
+        running = subprocess.Popen([*command, address], stderr=subprocess.PIPE)
+        processes.append(running)  # is killed with them if the test fails
+        wait_until(lambda: len(list(out.glob("part-*"))) >= 2, running)
+        processes[who == "worker"].kill()
+        said = running.communicate(timeout=60)[1]
+    if who == "worker":
+        assert (running.returncode, joined(out)) == (0, process(*options).stdout)
+    else:
+        assert running.returncode == 69
+        assert re.fullmatch(rb"Error: .*lost.*\n", said)
+    assert list(out.glob(".lagtop-*")) == []
+
+
+@pytest.mark.slow
+def test_workers_of_another_version_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "lagrange_cli").mkdir()
+    (tmp_path / "lagrange_cli" / "__init__.py").write_text("__version__ = '0.0.9'")
+    with cluster(tmp_path, 1) as (address, _):
+        done = process("sweep", "--dask", address, check=False)
+    assert (done.returncode, done.stdout) == (69, b"")
+    assert re.fullmatch(rb"Error: the worker .* needs lagtop .*, has 0\.0\.9\n", done.stderr)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("address", "code"),
+    [("nowhere", 2), ("http://127.0.0.1:9", 2), ("", 2), ("tcp://127.0.0.1:9", 69)],
+)
+def test_no_cluster(address: str, code: int) -> None:
+    done = process("sweep", "--dask", address, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count(b"\n")) == (code, b"", 1)
+    assert done.stderr.startswith(b"Error: ")
+
+
+def refuse(x: int) -> None:
+    """Fail."""
+    raise LagtopError(f"{x} is too large")
+
+
+def lose(x: int) -> int:
+    """Kill the process that has the item 5."""
+    if x == 5 and multiprocessing.parent_process() is not None:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return x
+
+
+@pytest.mark.slow
+def test_errors_of_the_work_and_lost_processes_are_raised() -> None:
+    with pytest.raises(LagtopError, match="0 is too large"):
+        list(in_order(refuse, range(9), 2))
+    with pytest.raises(UnavailableError, match="was lost"):
+        list(in_order(lose, range(9), 2))

@@ -1,0 +1,110 @@
+"""Guards of `Top`: what is refused, with which message, and that there is no way around them."""
+
+from __future__ import annotations
+
+import copy
+import decimal
+import json
+import math
+import pickle
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from lagtop import LagtopError, Top, solve
+
+from lagrange_cli.arithmetic.rounding import text_of
+from lagrange_cli.top.ranges import EvenPoints
+from lagrange_cli.top.values import parse_values
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        ({"m": True}, "m must be a real number, got True"),
+        ({"r0": np.True_}, "r0 must be a real number, got "),
+        ({"m": np.ma.masked}, "m must be a real number"),
+        ({"m": Decimal("sNaN")}, "m must be a real number"),
+        ({"r0": Decimal("1e-999999999")}, "r0 must be 0 or at least 5e-324 in size, got 1E-99"),
+        ({"r0": Decimal("-1e400")}, "r0 must be finite, got -inf"),
+        ({"m": math.nan}, "m must be finite, got nan"),
+        ({"m": 10**400}, "m must be at most 1.8e308 in size"),
+        ({"m": Fraction(1, 10**400)}, "m must be >= 1e-100, got 1.0e-400"),
+        ({"A": Fraction(1, 3)}, "C must be <= 2 A = 0.6666666666666666666666666666666666"),
+        ({"theta0_deg": 180 + Fraction(1, 10**20)}, "got 180.00000000000000000001"),
+        ({"A_cm": -1}, "A_cm must be >= 0, got -1.0"),
+        ({"A_cm": 0, "s": 0}, "A must be > 0, got 0.0"),
+        ({"phidot0": 1e99, "psidot0": 1e101}, "must be within 1e100"),
+        ({"phidot0": 1, "psidot0": 1, "theta0_deg": 1e99}, "theta0_deg must be in [0, 180]"),
+    ],
+)
+def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
+    with pytest.raises(LagtopError) as refused:
+        Top(**inputs)
+    assert message in str(refused.value)
+    assert len(str(refused.value)) < 200
+    assert refused.value.key in (*inputs, "A", "C")
+
+
+@pytest.mark.parametrize("make", [Top, Top().replace])
+def test_an_unknown_input_is_named(make: Any) -> None:
+    message = r"no input 'theta0' \(did you mean 'theta0_deg' or 'theta0_rad'\?\)$"
+    with pytest.raises(TypeError, match=message):
+        make(theta0=30.0)
+
+
+@pytest.mark.parametrize("value", [3, 3.0, Fraction(3), Decimal(3), np.float32(3), np.int8(3)])
+def test_numbers_of_many_types(value: Any) -> None:
+    assert Top(r0=value).r0 == 3
+
+
+@pytest.mark.parametrize("value", [Decimal("0.1"), 2**60 + 1, np.int64(2**60 + 1)])
+def test_numbers_that_are_not_doubles_are_not_rounded(value: Any) -> None:
+    exact = Fraction(value if isinstance(value, Decimal) else int(value))
+    third: Any = np.longdouble(1) / 3
+    top = Top(r0=value, thetadot0=third)
+    assert top.r0 == exact != float(value)
+    assert isinstance(top.r0, Fraction)
+    longer = np.finfo(np.longdouble).nmant > 52
+    assert (top.thetadot0 != 1 / 3) == longer
+    motion = solve(top)
+    assert motion.record(digits=25, keys=["r0"])["r0"] == text_of(exact, 25)
+    assert json.dumps(motion.record(keys=["r0"])) == json.dumps({"r0": float(exact)})
+
+
+def test_no_way_around_the_guards() -> None:
+    top = Top(theta0_deg=40)
+    with pytest.raises(LagtopError, match="m must be > 0"):
+        top.replace(m=-1)
+    with pytest.raises(AttributeError):
+        top.m = -1  # type: ignore[misc]
+    assert not hasattr(top, "__dict__")
+    assert Top(**top.as_dict()) == copy.deepcopy(top) == pickle.loads(pickle.dumps(top)) == top
+    assert top.replace(r0=60) == Top(theta0_deg=40, r0=60)
+    assert top.replace(theta0_rad=1) == Top(theta0_rad=1)
+
+
+def test_nothing_depends_on_the_decimal_context_of_the_host() -> None:
+    inputs: dict[str, Any] = {"theta0_deg": Fraction(100, 3), "r0": Fraction(1, 7), "psidot0": 0.1}
+    record = solve(Top(**inputs)).record()
+    points = parse_values("log:1:1e4:7").at(np.arange(7))
+    with decimal.localcontext(decimal.Context(prec=1, Emax=1, Emin=-1)):
+        with pytest.raises(LagtopError) as refused:
+            Top(theta0_deg=180 + Fraction(1, 3))
+        assert str(refused.value).endswith(f"got 180.{'3' * 47}")
+        with pytest.raises(LagtopError, match=r"at most 1e9 rows, got 1.000e\+12"):
+            EvenPoints(Fraction(0), Fraction(1), 10**12)
+        assert solve(Top(**inputs)).record() == record
+        assert parse_values("log:1:1e4:7").at(np.arange(7)).tolist() == points.tolist()
+
+
+def test_the_limits_of_inputs_are_taken_as_decimals_and_as_doubles() -> None:
+    for tilt in (1e-150, Fraction(1, 10**150)):
+        assert Top(theta0_deg=tilt).theta0_deg == tilt
+    for m in (1e-100, Fraction(1, 10**100)):
+        assert Top(m=m).m == m
+    for wrong in ({"theta0_deg": Fraction(9, 10**151)}, {"m": Fraction(9, 10**101)}):
+        with pytest.raises(LagtopError, match=r"at least 1e-150|>= 1e-100"):
+            Top(**wrong)

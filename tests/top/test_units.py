@@ -1,0 +1,230 @@
+"""Units: what they mean, that conversion is exact, that all inputs have them or none."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import pint
+import pytest
+from conftest import Lagtop, assert_one_line
+from lagtop import Top, read_scene
+
+from lagrange_cli.top.given import gather
+from lagrange_cli.top.units import UNITS, factor_of, unit_of_text
+from lagrange_cli.top.values import Value, parse_value
+
+PAPER = "--m 1587g --A 39032g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
+BODY = {"m": "350g", "A": "8.5e-4 kg m²", "C": "4000 g*cm^2", "s": "3cm", "g": "9.81 m/s^2"}
+WORDS = [word for name, text in BODY.items() for word in (f"--{name}", text)]
+
+
+def read(inputs: dict[str, str]) -> dict[str, Value]:
+    """Return inputs as they are read from their texts."""
+    return {name: parse_value(text) for name, text in inputs.items()}
+
+
+@pytest.mark.parametrize(
+    ("key", "unit", "size"),
+    [
+        ("m", "slug", Fraction(45359237, 10**8) * Fraction(980665, 10**5) / Fraction("0.3048")),
+        ("A", "lb*in^2", Fraction(45359237, 10**8) * Fraction(254, 10**4) ** 2),
+        ("A", "N·m·s²", Fraction(1)),
+        ("A_cm", "kg m2", Fraction(1)),
+        ("g", "g_0", Fraction(980665, 10**5)),
+        ("g", "ft s⁻²", Fraction(3048, 10**4)),
+        ("r0", "/s", Fraction(1)),
+    ],
+)
+def test_definitions_are_exact(key: str, unit: str, size: Fraction) -> None:
+    assert factor_of(key, unit) == size
+
+
+@pytest.mark.parametrize(
+    ("unit", "turns"),
+    [("rpm", "1/60"), ("turn/s", "1"), ("rev/min", "1/60"), ("deg/s", "1/360"), ("°/s", "1/360")],
+)
+def test_turns_have_pi_in_all_digits(unit: str, turns: str) -> None:
+    with mpmath.workdps(1150):
+        factor = factor_of("r0", unit)
+        size = mpmath.mpf(factor.numerator) / factor.denominator
+        exact = 2 * mpmath.pi * mpmath.mpf(Fraction(turns).numerator) / Fraction(turns).denominator
+        assert abs(size - exact) < mpmath.mpf(10) ** -1098
+
+
+REGISTRY: Any = pint.UnitRegistry(non_int_type=Fraction)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [*UNITS, "kg*m^2", "oz*in**2", "N*m*s^2", "turn/min", "1 / ms"],
+)
+def test_units_have_the_dimensions_and_sizes_of_pint(text: str) -> None:
+    known = REGISTRY.parse_units(text.replace("rev", "turn")) * Fraction(1)
+    exact, found = known.to_base_units(), unit_of_text(text)
+    size = found.size * Fraction(math.pi) ** found.power_of_pi
+    assert float(size) == pytest.approx(float(exact.magnitude), rel=1e-14)
+    powers = {str(x): y for x, y in exact.unit_items()}
+    named = [powers.get(x, 0) for x in ("kilogram", "meter", "second", "radian")]
+    assert list(found.dimensions) == named
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "value"),
+    [
+        ("30deg", "theta0_deg", Fraction(30)),
+        ("0.5 rad", "theta0_rad", Fraction(1, 2)),
+        ("0.25turn", "theta0_deg", Fraction(90)),
+    ],
+)
+def test_a_tilt_stays_exact_in_degrees_or_in_radians(text: str, key: str, value: Fraction) -> None:
+    found = gather(read({"theta0": text}))
+    assert (found.inputs, found.system) == ({key: value}, None)
+
+
+def test_inputs_are_the_nearest_doubles_in_si() -> None:
+    found = gather(read(BODY | {"r0": "12000 rpm", "psidot0": "30 deg/s", "theta0": "60deg"}))
+    assert found.top() == Top(
+        m=0.35, A=8.5e-4, C=4e-4, s=0.03, g=9.81, r0=1256.6370614359173, theta0_deg=60,
+        psidot0=0.5235987755982989,
+    )  # fmt: skip
+    ounce = read({"m": "0.1 oz", "A": "1e9g m²", "C": "1e9 g m²", "s": "1m", "g": "1g_0"})
+    assert gather(ounce).top(exact=True).m == Fraction(45359237, 16 * 10**9)
+
+
+def test_the_worked_example_in_si(solved: Any) -> None:
+    plain, si = solved("--r0", 50), solved(*PAPER, "--r0", "50rad/s")
+    sizes = {"m": 1e3, "A": 1e7, "C": 1e7, "s": 1e2, "g": 1e2}
+    for key, value in plain.items():
+        if isinstance(value, float):
+            assert si[key] * sizes.get(key, 1) == pytest.approx(value, rel=1e-13), key
+    units = si["units"]
+    named = [units[key] for key in ("A", "mean_spin_rate", "theta_max_deg")]
+    assert named == ["kg m²", "rad/s", "deg"]
+
+
+def test_units_are_named_in_tables_and_remarks(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", *WORDS, "--r0", "200turn/s").stdout
+    assert "kg m²" in shown
+    assert "rad/s" in shown
+    assert "time" not in shown
+    words = ["table", *WORDS, "--t-max", "1ms", "--n", "2"]
+    table = lagtop(*words, "--format", "table", "--columns", "t,r,Lz")
+    assert all(unit in table.stdout for unit in ("t [s]", "r [rad/s]", "Lz [kg m²/s]"))
+    assert "0.0156 s;" in lagtop("solve", *PAPER, "--r0", "900rad/s", "--get", "remark").stdout
+    assert "0.0156 time;" in lagtop("solve", "--r0", "900", "--get", "remark").stdout
+
+
+def test_r0_from_phidot0_with_units_is_rounded_once(lagtop: Lagtop) -> None:
+    """The sum phi' + psi' cos(theta0) = 16.4 pi rad/s, from exact numbers of turns."""
+    rates = ["--phidot0", "477 rpm", "--psidot0", "30 rpm", "--theta0", "60", "--get", "r0"]
+    assert lagtop("solve", *WORDS, *rates).stdout == "51.52211951887261\n"
+    body = [*WORDS[:2], "--A-cm", "5350g*cm^2", *WORDS[4:]]
+    assert lagtop("solve", *body, "--get", "A").stdout == "0.00085\n"
+
+
+def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("".join(f'{name} = "{text}"\n' for name, text in BODY.items()))
+    with path.open("a") as file:
+        file.write('r0 = "480rpm"\ntheta0 = "0.5 rad"\n')
+    top = read_scene(str(path))
+    assert (top.m, top.r0, top.theta0_rad) == (0.35, 50.26548245743669, 0.5)
+    assert lagtop("solve", path, "--s", "1in", "--get", "s").stdout == "0.0254\n"
+    assert lagtop("solve", path, "--psidot0", "0", "--theta0", "20", "--get", "m").exit_code == 0
+    bare = lagtop("solve", path, "--r0", "50")
+    assert_one_line(bare, 2, "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has")
+    other = lagtop("solve", "sample_inputs/fast-gyroscope.toml", "--r0", "50rpm")
+    assert_one_line(other, 65, "sample_inputs/fast-gyroscope.toml, line 2: m must have a unit")
+    path.write_text('theta0_deg = "0.5 rad"\n')
+    assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: theta0_deg must be called theta0")
+    path.write_text('m = "350 s"\n')
+    assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: m must have a unit as in 350g")
+
+
+def test_what_is_missing_of_a_body_is_typed_with_units(lagtop: Lagtop) -> None:
+    said = lagtop("solve", "--m", "350g", "--r0", "9rpm", "--get", "A")
+    assert said.stdout == "0.0039032\n"
+    assert said.stderr.endswith(
+        ": --A '39032 g*cm^2' --C '17458 g*cm^2' --s '4 cm' --g '981 cm/s^2'\n"
+    )
+
+
+def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
+    keys = ["--keys", "m,r0,error"]
+    grid = lagtop("sweep", *WORDS[2:], "--m", "1,2 lb", "--r0", "log:60:6000:2 rpm", *keys)
+    assert grid.stdout.splitlines()[1:] == [
+        f"{m},{r0}," for m in (0.45359237, 0.90718474) for r0 in (2 * math.pi, 200 * math.pi)
+    ]
+    even = lagtop("sweep", "--r0", "60:180:3 rpm", "--keys", "r0").stdout.split()[1:]
+    assert even == [str(2 * turns * math.pi) for turns in (1, 2, 3)]
+    path = tmp_path / "tops.csv"
+    path.write_text("id,m [g],theta0 [mrad],r0 [rpm]\na,350,500,480\nb,5O,500,480\n")
+    rows = lagtop("sweep", path, *WORDS[2:], "--keys", "m,r0,theta0_rad", "--rad")
+    assert rows.stdout.splitlines()[1] == "a,0.35,50.26548245743669,0.5,"
+    assert "line 3: m must be a finite decimal number, got '5O'" in rows.stdout
+
+
+@pytest.mark.parametrize(
+    ("header", "options", "message"),
+    [
+        ("m,r0 [rpm]", WORDS, "standard input, heading m: m must have a unit such as 350g, as"),
+        ("m [g]", ["--r0", "50"], "--r0 must have a unit"),
+        ("m [rpm]", WORDS, "standard input, heading m [rpm]: m must have a unit as in 350g"),
+        ("m [g],m", WORDS, "standard input must name each column once"),
+        ("theta0", [], "standard input: the column theta0 must be spelt theta0_deg"),
+        ('{"R0": 1}', [], "standard input: the column R0 must be spelt r0"),
+        ("theta0_deg [rad]", [], "standard input: the column theta0_deg must be called theta0 [r"),
+    ],
+)
+def test_wrong_headings(header: str, options: list[str], message: str, lagtop: Lagtop) -> None:
+    options = [word for word in options if word not in {"--m", "350g"}]
+    result = lagtop("sweep", "-", *options, input=f"{header}\n")
+    assert_one_line(result, 65 if message.startswith("standard input") else 2, message)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("--m 350s", "--m must have a unit as in 350g, got the unit 's' (it measures something"),
+        ("--m 3fathom", "got the unit 'fathom' (no such unit; known: mg, g, kg, oz, lb, slug, um"),
+        ("--r0 480RPM", "got the unit 'RPM' (no such unit (did you mean 'rpm'?); known: "),
+        ("--m 1.8Kg", "got the unit 'Kg' (no such unit (did you mean 'kg'?); known: "),
+        ("--m 9kg^99999999", "--m must have a unit as in 350g, got the unit 'kg^99999999'"),
+        ("--r0 3Hz", "'Hz' (turns or radians per second? write rpm, turn/s or rad/s)"),
+        ("--m 1800gr", "got the unit 'gr' (grain or gram? write g)"),
+        ("--theta0 1m", "--theta0 must have a unit as in 30deg or 0.5rad, got the unit 'm'"),
+        ("--m 350g --r0 50", "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
+    ],
+)
+def test_bad_units(options: str, message: str, lagtop: Lagtop) -> None:
+    result = lagtop("solve", *options.split())
+    assert_one_line(result, 2, "--")
+    assert message in result.stderr
+
+
+def test_times_with_units_ask_for_units_of_all(lagtop: Lagtop) -> None:
+    ask = ["table", "--n", "2", "--columns", "t"]
+    assert lagtop(*ask, "--t-max", "2min").stdout == "t\n0.0\n120.0\n"
+    assert lagtop(*ask, *PAPER, "--t-max", "2").stdout == "t\n0.0\n2.0\n"
+    assert_one_line(lagtop(*ask, "--r0", "3", "--t-max", "2s"), 2, "--r0 must have a unit")
+    assert_one_line(lagtop(*ask, "--t-max", "2m"), 2, "--t-max must have a unit as in 2s")
+
+
+def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, solved: Any) -> None:
+    rest = ["--C", "4000g*cm^2", "--s", "3cm", "--g", "9.81m/s^2"]
+    found = solved("--m", "350(2) g", "--A-cm", "5350 ± 1 % g*cm^2", *rest, "--theta0", "30(1)deg")
+    assert (found["m"], found["m_std"], found["theta0_deg_std"]) == (0.35, 0.002, 1.0)
+    slopes = 5.35e-6, 0.03**2 * 0.002  # of A by A_cm and by m
+    assert found["A_std"] == pytest.approx(math.hypot(*slopes), rel=1e-12)
+    path = tmp_path / "scene.toml"
+    path.write_text('m = "350(2) g"\nA_cm = "5350+/-1% g*cm^2"\ntheta0 = "30(1) deg"\n')
+    assert solved(path, *rest) == found
+    path.write_text('r0 = "50(1)"\ntheta0 = "30(1)"\n')  # degrees, as by the option
+    found = solved(path)
+    assert (found["r0_std"], found["theta0_deg_std"]) == (1, 1)
+    path.write_text('theta0 = "30"\n')
+    assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: theta0 must have a unit between")

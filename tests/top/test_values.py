@@ -1,0 +1,199 @@
+"""Inputs as people write them: numbers, uncertainties, units, ranges, and objects of libraries."""
+
+from __future__ import annotations
+
+import math
+import random
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pint
+import pytest
+import xarray
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from lagtop import LagtopError
+from uncertainties import ufloat
+
+from lagrange_cli.top.ranges import POINTS_AT_ONCE, EvenPoints
+from lagrange_cli.top.values import (
+    Value,
+    parse_range,
+    parse_value,
+    parse_values,
+    split_unit,
+    value_of,
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "unit"),
+    [
+        (" -1.5e-3 ", "-1.5e-3", ""),
+        ("2e3eV", "2e3", "eV"),
+        ("2e g", "2", "e g"),
+        ("50/s", "50", "/s"),
+        ("-30°/s", "-30", "°/s"),
+        ("1587(2)e-3kg", "1587(2)e-3", "kg"),
+        ("1587 ± 0.1 % g", "1587 ± 0.1 %", "g"),
+        ("(1.587 +/- 0.002)e3 g", "(1.587 +/- 0.002)e3", "g"),
+        ("log:1:1e4:50 rpm", "log:1:1e4:50", "rpm"),
+        ("1kg,2kg", "1kg,2kg", ""),
+        ("log:1:2: x", "log:1:2: x", ""),
+        ("nan", "nan", ""),
+        ("5O", "5", "O"),
+    ],
+)
+def test_the_unit_begins_at_the_first_letter(text: str, number: str, unit: str) -> None:
+    assert split_unit(text) == (number, unit)
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "std"),
+    [
+        ("73.9(12)", "73.9", "1.2"),
+        ("73.9(1.2)", "73.9", "1.2"),
+        ("-0.4293(48)", "-0.4293", "0.0048"),
+        ("1.587(2)e3", "1587", "2"),
+        ("1587±2", "1587", "2"),
+        ("1587 +- 2", "1587", "2"),
+        (" 1587 +/- 0.1 % ", "1587", "1.587"),
+        ("(-1.5+/-0.1)e3", "-1500", "100"),
+    ],
+)
+def test_uncertain_numbers_are_exact(text: str, number: str, std: str) -> None:
+    assert parse_value(text, uncertain=True) == Value(Fraction(number), "", Fraction(std))
+    points = parse_value(text, parse_values, uncertain=True)
+    assert (points.number.exact, points.std) == ([Fraction(number)], Fraction(std))
+    with pytest.raises(LagtopError, match="must have no uncertainty in this command, got "):
+        parse_value(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        *((x, "must be a number, or an uncertain one as 1587(2)") for x in ("1(2", "1+/-", "5%")),
+        ("1+/--2", "must have an uncertainty >= 0"),
+        ("3,5 g", "got '3,5 g' (write a decimal point, not a comma)"),
+        ("steady", "must be a number unless one top is solved"),
+    ],
+)
+def test_other_texts_are_refused(text: str, wrong: str) -> None:
+    with pytest.raises(LagtopError) as found:
+        parse_value(text, uncertain=True)
+    assert wrong in str(found.value)
+
+
+UNIT: Any = pint.UnitRegistry()
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "value"),
+    [
+        ("m", 50, Value(50)),
+        ("m", ufloat(50, 0.5), Value(50.0, "", Fraction(1, 2))),
+        ("m", UNIT.Quantity(500, "g"), Value(Fraction(500), "g")),
+        ("m", UNIT.Quantity(0.5, "tonne"), Value(Fraction(500), "kg")),
+        ("A", UNIT.Quantity(np.int64(3), "kg m^2"), Value(Fraction(3), "kg*m**2")),
+        ("theta0_deg", UNIT.Quantity(ufloat(50, 0.5), "degree"), Value(50, "deg", Fraction(1, 2))),
+        ("s", UNIT.Quantity(np.array(0.25), "m"), Value(Fraction(1, 4), "m")),
+    ],
+)
+def test_objects_of_other_libraries_are_values(key: str, given: Any, value: Value) -> None:
+    found = value_of(key, given)
+    assert found == value
+    assert isinstance(found.number, Fraction) == bool(value.unit)
+
+
+def test_arrays_keep_their_type() -> None:
+    found = value_of("r0", UNIT.Quantity([30.0, 60.0], "rpm"))
+    assert (found.unit, found.number.tolist()) == ("rpm", [30.0, 60.0])
+    assert found.scaled(Fraction(1, 4)).number.tolist() == [7.5, 15.0]
+    labelled = xarray.DataArray([1.0, 2.0], dims="x", attrs={"units": "kg"})
+    assert value_of("m", labelled).number is labelled
+
+
+@pytest.mark.parametrize(
+    ("given", "wrong"),
+    [
+        (UNIT.Quantity(float("nan"), "kg"), "m must be a finite number, got nan"),
+        (UNIT.Quantity(1, "parsec"), "m must have a unit such as kg: Cannot convert from 'parsec'"),
+        (ufloat(1, float("inf")), "the uncertainty of m must be a finite number, got inf"),
+    ],
+)
+def test_objects_that_are_no_input_are_refused(given: Any, wrong: str) -> None:
+    with pytest.raises(LagtopError) as found:
+        value_of("m", given)
+    assert str(found.value).startswith(wrong)
+    assert found.value.key == "m"
+
+
+# Ranges
+
+
+def exact_points(points: EvenPoints) -> list[float]:
+    return [float(points.start + i * points.step) for i in range(points.count)]
+
+
+numbers = st.one_of(
+    st.floats(allow_nan=False, allow_infinity=False).map(Fraction),
+    st.fractions(-(10**6), 10**6, max_denominator=10**4),
+    st.decimals(-1000, 1000, places=3).map(Fraction),
+)
+
+
+@settings(max_examples=30)
+@given(numbers, numbers, st.integers(2, 40))
+@example(Fraction(0), Fraction(1.797e308), 33)
+@example(Fraction(0), Fraction(-5e-324), 3)
+@example(Fraction(1), Fraction(1) + Fraction(2999, 2**53), 3000)  # half way between two doubles
+@example(Fraction("-0.5"), Fraction("0.5"), 9001)  # over 0
+@example(Fraction("-1e-310"), Fraction("1e-310"), 9001)
+def test_every_point_is_rounded_once(first: Fraction, last: Fraction, count: int) -> None:
+    points = EvenPoints(first, (last - first) / (count - 1), count)
+    values = points.at(np.arange(count)).tolist()
+    assert values == exact_points(points)
+    assert [math.copysign(1, x) for x in values] == [math.copysign(1, x or 1) for x in values]
+
+
+def test_blocks_and_bounds() -> None:
+    points = parse_range(f"1:{3 * POINTS_AT_ONCE}:{3 * POINTS_AT_ONCE}")
+    assert [block.size for block in points.blocks()] == [POINTS_AT_ONCE] * 3
+    assert points.bounds() == [1, 3 * POINTS_AT_ONCE]
+    assert parse_values("3,1,2").bounds() == [1, 3]
+    assert parse_values("log:-4:-1:3").bounds() == [-4, -1]
+    assert [str(parse_values(x)) for x in ("log:1:1e2:3", "0.5,2")] == ["log:1:100:3", "1/2,2"]
+
+
+def test_logarithmic_points_have_equal_ratios() -> None:
+    """Against 60 digits, rounded once."""
+    rng = random.Random(5)
+    for _ in range(50):
+        first, last = 10 ** rng.uniform(-300, 300), 10 ** rng.uniform(-300, 300)
+        count = rng.randrange(2, 30)
+        points = parse_range(f"log:{first!r}:{last!r}:{count}")
+        with localcontext(prec=60):
+            ratio = (Decimal(repr(last)) / Decimal(repr(first))).ln() / (count - 1)
+            exact = [float(Decimal(repr(first)) * (ratio * i).exp()) for i in range(count)]
+        assert points.at(np.arange(count)).tolist() == exact
+        assert [float(x) for x in points.decimals()] == exact
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    {
+        "0:10:1": "must have a count of 2 or more between different ends, got '0:10:1'",
+        "0:1": "must be a range [log:]start:stop:count, got '0:1'",
+        "0:1:2.5": "must have a whole count of 1 to 1e9 in its range",
+        "0:1:1e10": "must have a whole count of 1 to 1e9 in its range",
+        "0:x:2": "must be a finite decimal number, got 'x'",
+        "log:0:1:3": "must have two ends of one sign, not 0, in a log: range",
+        "60rpm:80rpm:3": "must have its unit once, at the end, as in '60:80:3 rpm', got",
+    }.items(),
+)
+def test_bad_ranges(text: str, wrong: str) -> None:
+    with pytest.raises(LagtopError) as found:
+        parse_values(text)
+    assert str(found.value).startswith(wrong)
