@@ -7,33 +7,22 @@ from importlib import import_module
 from typing import Any
 
 __version__ = "0.1.0"
-__all__ = [
-    "Comparison",
-    "LagtopError",
-    "MixedBodyWarning",
-    "Motion",
-    "Regime",
-    "Top",
-    "__version__",
-    "compare",
-    "draw",
-    "draw_outcome",
-    "find",
-    "fit",
-    "read_scene",
-    "sensitivities",
-    "solve",
-    "sweep",
-    "view",
-]
-
 _MODULES = {
+    "AbsentError": "errors",
+    "CannotWriteError": "errors",
     "Comparison": "comparison.compare",
+    "DataError": "errors",
     "LagtopError": "errors",
     "MixedBodyWarning": "errors",
     "Motion": "solver.solve",
+    "Outcome": "inverse.outcome",
+    "OutOfRangeError": "errors",
+    "OutOfRangeWarning": "errors",
     "Regime": "solver.regime",
+    "Results": "sweeps.results",
+    "SceneError": "errors",
     "Top": "top.top",
+    "UnavailableError": "errors",
     "compare": "comparison.compare",
     "draw": "plot",
     "draw_outcome": "plot.reports",
@@ -50,16 +39,15 @@ _MODULES = {
 Methods that draw, such as `Motion.plot`, take their functions from here: only this table may name a
 subpackage above theirs.
 """
+__all__ = [*_MODULES, "__version__"]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name.
-
-    Import it from `lagtop`: here `sweep`, `find`, `fit` and `compare` are also subpackages.
-    """
+    """Return a public name; its module is imported on first use."""
     if name not in _MODULES:
         raise AttributeError(f"module 'lagtop' has no attribute {name!r}")
-    return getattr(import_module(f".{_MODULES[name]}", __name__), name)
+    value = globals()[name] = getattr(import_module(f".{_MODULES[name]}", __name__), name)
+    return value
 
 
 def __dir__() -> list[str]:

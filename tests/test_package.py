@@ -18,16 +18,38 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from lagrange_cli.sweeps.results import Results
+import lagrange_cli
+from lagrange_cli import errors
 
 
-@pytest.mark.parametrize("name", dir(lagtop))
-def test_every_public_name_is_there(name: str) -> None:
-    assert getattr(lagtop, name) is not None
+def test_a_public_name_is_one_object_at_every_use() -> None:
+    code = """
+import importlib, pkgutil, lagrange_cli, lagtop
+first = {name: getattr(lagrange_cli, name) for name in lagrange_cli.__all__}
+for module in pkgutil.iter_modules(lagrange_cli.__path__):
+    if module.ispkg:
+        importlib.import_module(f"lagrange_cli.{module.name}")
+for name, value in first.items():
+    assert value is getattr(lagrange_cli, name) is getattr(lagtop, name) is not None, name
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
-EXAMPLES = {name: getattr(lagtop, name) for name in dir(lagtop) if name != "__version__"} | {
-    "Results": Results
+def test_every_error_of_the_package_is_public() -> None:
+    made = {x for x in vars(errors).values() if isinstance(x, type) and issubclass(x, Exception)}
+    assert {x.__name__ for x in made} - {"SomeFailedError"} <= {*dir(lagtop)}
+
+
+def test_the_stubs_name_what_is_public() -> None:
+    stubs = (ROOT / "lagrange_cli" / "alias.pyi").read_text()
+    named = re.findall(r"^from lagrange_cli\.(\S+) import (\w+) as \2$", stubs, re.MULTILINE)
+    assert {name: module for module, name in named} == lagrange_cli._MODULES
+
+
+EXAMPLES = {
+    name: getattr(lagtop, name)
+    for name in dir(lagtop)
+    if name != "__version__" and ">>> " in getattr(lagtop, name).__doc__
 }
 NAMES = {"np": np, "warnings": warnings, **EXAMPLES}
 
@@ -40,6 +62,11 @@ def test_examples_in_docstrings_run(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("always", lagtop.MixedBodyWarning)
         assert doctest.DocTestRunner().run(test).failed == 0
+
+
+def test_only_errors_have_no_example() -> None:
+    without = {*dir(lagtop)} - {*EXAMPLES, "__version__", "Outcome"}
+    assert all(issubclass(getattr(lagtop, name), Exception | Warning) for name in without)
 
 
 def test_an_unknown_name_is_no_attribute() -> None:
