@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import LagtopError
-from .double_double import PI, DoubleDouble
-from .rounding import pair
+from .pairs import PI, DoubleDouble, pair
 from .text import quoted
 from .types import Array
 

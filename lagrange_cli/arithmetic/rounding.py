@@ -1,6 +1,6 @@
 """Proved rounding: more digits, until both ends of an enclosure round alike (Ziv 1991).
 
-A number is rounded to a double, to N digits, or to a sum of two or three doubles.
+A number is rounded to a double or to N digits.
 
 Two numbers that agree to D digits are equal.  D is 1,200, plus ten times the digits of the longest
 input or of the output, whichever has more.  Nine doubles hold less than 180 digits: numbers
@@ -15,14 +15,11 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from decimal import ROUND_UP, Context, Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ..errors import LagtopError, OutOfRangeError
 from .ball import BITS, Ball, TooFewDigitsError, balls
 from .text import NumberText, own_context
-
-if TYPE_CHECKING:
-    from .types import Array
 
 S = TypeVar("S")
 
@@ -230,34 +227,3 @@ def _distance(end: DecimalOrFraction, value: float | NumberText) -> Decimal:
         return _OUTWARDS.subtract(end, Decimal(value)).copy_abs()
     away = abs(end - Fraction(value))
     return _OUTWARDS.divide(Decimal(away.numerator), Decimal(away.denominator))
-
-
-class Pair(NamedTuple):
-    """A number, or an array of numbers, to twice the precision of doubles."""
-
-    high: float | Array
-    low: float | Array
-
-
-class Triple(NamedTuple):
-    """A number to three times the precision of doubles."""
-
-    high: float | Array
-    middle: float | Array
-    low: float | Array
-
-
-def pair(value: Ball | Fraction) -> Pair:
-    """Return a number as two doubles; raise TooFewDigitsError for a ball that is too wide."""
-    high = float(value)
-    return Pair(high, float(_less(value, high)))
-
-
-def triple(value: Ball | Fraction) -> Triple:
-    """Return a number as three doubles; raise TooFewDigitsError for a ball that is too wide."""
-    high = float(value)
-    return Triple(high, *pair(_less(value, high)))
-
-
-def _less(value: Any, part: float) -> Any:
-    return value - (Fraction(part) if isinstance(value, Fraction) else part)

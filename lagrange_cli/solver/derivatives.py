@@ -248,8 +248,7 @@ class AngleDerivatives:
         """
         import numpy as np
 
-        from ..arithmetic.double_double import reduce_phase
-        from ..arithmetic.rounding import pair
+        from ..arithmetic.pairs import pair, reduce_phase
 
         found = np.zeros((len(self.inputs), 3, t.size))
         if self.period:

@@ -27,18 +27,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, order_by_parity, placed, taken
-from ..arithmetic.double_double import (
+from ..arithmetic.numbers import power
+from ..arithmetic.pairs import (
     MANY,
     PI,
+    Pair,
     Period,
+    Triple,
     fraction_of_product,
+    pair,
     period_of,
+    triple,
     two_product,
     two_sum,
     whole_periods,
 )
-from ..arithmetic.numbers import power
-from ..arithmetic.rounding import Pair, Triple, pair, triple
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, MAX_TIME

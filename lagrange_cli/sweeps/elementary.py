@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arithmetic.arrays import PAIRS
-from ..arithmetic.double_double import DoubleDouble, two_sum
+from ..arithmetic.pairs import DoubleDouble, two_sum
 from ..arithmetic.types import Array, Mask
 from .top_arrays import PAIR_EPS, TopArrays
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import ARRAYS, PAIRS
-from ..arithmetic.double_double import DoubleDouble
+from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..solver.any_start import gaps_from_start
 from ..solver.gaps import Gaps

@@ -17,8 +17,8 @@ import numpy as np
 
 from ..arithmetic.angle import Tilt
 from ..arithmetic.arrays import PAIRS
-from ..arithmetic.double_double import DoubleDouble, two_sum
 from ..arithmetic.numbers import R, polynomial
+from ..arithmetic.pairs import DoubleDouble, two_sum
 from ..arithmetic.types import Array, Mask
 from ..solver.gaps import State
 from ..solver.regime import FAST, Facts, Regime, regimes

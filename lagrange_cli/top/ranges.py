@@ -91,8 +91,7 @@ class EvenPoints(Points):
         """
         import numpy as np
 
-        from ..arithmetic.double_double import two_product, two_sum  # start-up
-        from ..arithmetic.rounding import pair  # start-up
+        from ..arithmetic.pairs import pair, two_product, two_sum  # start-up
 
         start, step, i = pair(self.start), pair(self.step), index.astype(np.float64)
         margin = 2.0**-100 * max(map(abs, self.bounds())) + 1e-300

@@ -15,7 +15,7 @@ import pytest
 
 from lagrange_cli.arithmetic.arrays import ARRAYS, PAIRS
 from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.arithmetic.double_double import DoubleDouble
+from lagrange_cli.arithmetic.pairs import DoubleDouble
 from lagrange_cli.elliptic import complete
 from lagrange_cli.elliptic.carlson import carlson_rf
 

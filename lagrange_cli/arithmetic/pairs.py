@@ -8,18 +8,50 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .ball import pi_to
-from .rounding import Pair, Triple, triple
 from .types import Array, Mask
 
 _ZERO = np.zeros(())
-PI = triple(pi_to(50))
 MANY = 2.0**26
 _LESS_THAN_1 = 1 - 2.0**-20
+
+
+class Pair(NamedTuple):
+    """A number, or an array of numbers, as the sum of two doubles."""
+
+    high: float | Array
+    low: float | Array
+
+
+class Triple(NamedTuple):
+    """A number as the sum of three doubles."""
+
+    high: float | Array
+    middle: float | Array
+    low: float | Array
+
+
+PI = Triple(3.141592653589793, 1.2246467991473532e-16, -2.9947698097183397e-33)
+
+
+def pair(value: Any) -> Pair:
+    """Return a fraction or a ball as the sum of two doubles."""
+    high = float(value)
+    return Pair(high, float(_less(value, high)))
+
+
+def triple(value: Any) -> Triple:
+    """Return a fraction or a ball as the sum of three doubles."""
+    high = float(value)
+    return Triple(high, *pair(_less(value, high)))
+
+
+def _less(value: Any, part: float) -> Any:
+    return value - (Fraction(part) if isinstance(value, Fraction) else part)
 
 
 def two_product(x: float | Array, y: float | Array) -> tuple[Array, Array]:

@@ -11,14 +11,16 @@ import numpy as np
 import pytest
 
 from lagrange_cli.arithmetic.arrays import order_by_parity, placed, taken
-from lagrange_cli.arithmetic.double_double import (
+from lagrange_cli.arithmetic.pairs import (
     DoubleDouble,
+    Pair,
     Period,
     fraction_of_product,
+    pair,
     period_of,
+    triple,
     whole_periods,
 )
-from lagrange_cli.arithmetic.rounding import Pair, pair, triple
 from lagrange_cli.arithmetic.types import Array
 
 
