@@ -18,6 +18,7 @@ import pytest
 from errata import errata_table, figures_table
 from published import published_table
 
+import lagrange_cli
 from lagrange_cli.cli.app import main
 from lagrange_cli.comparison.compare import COMPARISON_KEYS, VERDICTS
 from lagrange_cli.comparison.differences import WORDS
@@ -202,6 +203,11 @@ def test_every_option_and_key_is_explained() -> None:
     ) == set()
     words = set(re.findall(r"\w+", text))
     assert {*NUMBER_KEYS, *requested_keys(), "regime", "path", "remark"} <= words
+
+
+def test_every_public_name_is_on_the_page_of_the_library() -> None:
+    words = set(re.findall(r"\w+", (ROOT / "lagrange_cli" / "README.md").read_text()))
+    assert {*lagrange_cli.__all__} - words == set()
 
 
 def test_ci_runs_the_test_command_of_the_readme() -> None:
