@@ -1,0 +1,374 @@
+"""Balls of Arb: numbers with proved error bounds, rounded once their ball is narrow enough.
+
+A ball of python-flint is an `arb`.  The precision of Arb is global, and only `at_precision` of this
+module sets it.  `decided` asks a question with more and more digits until they decide it (Ziv
+1991).  A question that the digits leave open raises TooFewDigitsError.
+
+Two numbers that agree to D digits are equal.  D is 1,200, plus ten times the digits of the longest
+input or of the output, whichever has more (`equal_digits`).  Nine doubles hold less than 180
+digits: numbers computed from them that differ at all differ, for all practical purposes, within
+some hundreds of digits.  A sign that D digits leave open is 0 (`sign_to`).  A number that they
+cannot round is the simplest fraction in its ball: 0, or a tie between two roundings (`settled`).
+
+How to use it:
+
+    at_precision(40, lambda: arb(2).sqrt())          # a value computed in 40 digits
+    sign(x), root(x), nearest(x)                     # in a computation: decide, or ask for more
+    sign_to(lambda digits: x(digits), most=D)        # a sign, 0 only if D digits leave it open
+    settled("k", lambda digits: x(digits), None, D)  # the nearest double; 20 in place of None: text
+    decided(lambda digits: ..., most=D)              # any other question
+
+Rules for code that uses balls:
+
+- Never act on the False of a comparison such as `x > 0`: it may mean "not decided".  Ask `sign(x)`,
+  or `x.is_zero()` for the exact zeros that formulas produce.  A test forbids the operators.
+- Read a ball (`lower`, `upper`, `float`) inside the precision it was computed at.
+
+Threads: one computation runs at a time.  If the host program changes the precision of Arb during a
+computation, the computation is repeated.  The precision of the host is restored afterwards, also
+after an exception, Ctrl-C or a fork.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator
+from decimal import ROUND_UP, Context, Decimal
+from fractions import Fraction
+from functools import partial
+from threading import RLock
+from typing import Any, NamedTuple, TypeVar
+
+from flint import arb, ctx, fmpq
+
+from ..errors import LagtopError, OutOfRangeError
+from .text import NumberText, own_context
+
+T = TypeVar("T")
+Exact = Decimal | Fraction
+
+BITS = 3.3219280948873626
+"""Bits per decimal digit."""
+LARGEST_EXPONENT = 990_000_000_000_000_000
+"""The greatest size of an exponent of a number that is printed in decimal."""
+_EQUAL_DIGITS = 1_200
+"""Least number of digits that equal numbers have in common."""
+_LEAST_DIGITS, _GUARD = 16, 16
+"""Digits of a double, and the extra digits of the first enclosure."""
+_REPEATS = 20
+"""How often a computation is repeated if the host changes the precision during it."""
+
+
+class TooFewDigitsError(Exception):
+    """A question that cannot be decided with the digits in use."""
+
+
+# The precision of Arb
+
+
+class _Precision:
+    """The precision of Arb in bits: that of the computation in progress, and that of the host."""
+
+    lock = RLock()
+    own = 0
+    """0 if nothing is computed."""
+    host = 0
+
+
+_lock = _Precision.lock
+
+
+def at_precision(digits: int, compute: Callable[[], T]) -> T:
+    """Return `compute()`, evaluated with balls of `digits` digits.
+
+    It is evaluated again if another thread changed the precision meanwhile.  Calls may be nested.
+    """
+    with _lock:
+        outer = _Precision.own
+        try:  # without a call before it and in its `finally`: Ctrl-C arrives at calls
+            if not outer:
+                _Precision.host = ctx.prec
+            _Precision.own = own = int(digits * BITS) + 2
+            for _ in range(_REPEATS):
+                ctx.prec = own
+                try:
+                    found = compute()
+                except TooFewDigitsError:
+                    if ctx.prec == own:
+                        raise
+                else:
+                    if ctx.prec == own:
+                        return found
+                _Precision.host = ctx.prec
+            return compute()
+        finally:
+            if ctx.prec != _Precision.own:
+                _Precision.host = ctx.prec
+            _Precision.own = outer
+            ctx.prec = outer or _Precision.host
+
+
+if hasattr(os, "register_at_fork"):  # a child of another thread has the precision of the host
+    os.register_at_fork(
+        before=_lock.acquire, after_in_parent=_lock.release, after_in_child=_lock.release
+    )
+
+
+# Balls
+
+
+def exact(x: Fraction | float) -> arb:
+    """Return a ball that holds a number; its radius is 0 if the number is a double."""
+    if isinstance(x, int | float):
+        return arb(x)
+    return arb(fmpq(x.numerator, x.denominator))
+
+
+def fraction(x: arb) -> Fraction:
+    """Return the value of a ball of radius 0, such as `x.mid()`."""
+    ratio = x.fmpq()
+    return Fraction(int(ratio.p), int(ratio.q))
+
+
+def sign(x: arb) -> int:
+    """Return the sign of a number; raise TooFewDigitsError if its ball leaves it open."""
+    if x.is_zero():
+        return 0
+    if x > 0:
+        return 1
+    if x < 0:
+        return -1
+    raise TooFewDigitsError
+
+
+def root(x: arb) -> arb:
+    """Return the square root of a number that is known not to be negative."""
+    return x.nonnegative_part().sqrt() if x.contains(0) else x.sqrt()
+
+
+def nearest(x: arb) -> int:
+    """Return an integer within 3/4 of all numbers in a ball; raise TooFewDigitsError if none is."""
+    if not (x.is_finite() and x.rad() <= 0.25):
+        raise TooFewDigitsError
+    return round(fraction(x.mid()))
+
+
+def pi_to(digits: int) -> Fraction:
+    """Return pi to `digits` significant digits or a few more."""
+    return at_precision(digits + 4, lambda: fraction(arb.pi().mid()))
+
+
+# Questions
+
+
+def equal_digits(numbers: Iterable[Fraction], digits: int = 0) -> int:
+    """Return D for numbers computed from some exact inputs, and printed with `digits` digits."""
+    bits = max(max(x.numerator.bit_length(), x.denominator.bit_length()) for x in numbers)
+    return _EQUAL_DIGITS + 10 * max(int(bits / BITS), digits)
+
+
+def decided(
+    compute: Callable[[int], T],
+    most: int,
+    *,
+    digits: int | None = 0,
+    lost: int = 0,
+    otherwise: Callable[[], T] | None = None,
+) -> T:
+    """Return the first `compute(working)` that does not raise TooFewDigitsError.
+
+    It runs with `working` digits: first some more than the output has, at last `most` + `lost`.
+    `lost` is a number of digits that are lost in any case, for example to whole turns.  If `most`
+    digits do not decide, the result is that of `otherwise`, in the last precision, or
+    TooFewDigitsError is raised.
+    """
+    least = max(digits or 0, _LEAST_DIGITS)
+    for working in _precisions(least, most):
+        try:
+            return at_precision(working + lost, partial(compute, working + lost))
+        except TooFewDigitsError:
+            continue
+    if otherwise is None:
+        raise TooFewDigitsError
+    return at_precision(most + lost, otherwise)
+
+
+def _precisions(least: int, most: int) -> Iterator[int]:
+    """Yield the digits of enclosures to try, at most `most`.
+
+    The last one is tried again with a digit more, because the host may have disturbed it.
+    """
+    more = _GUARD
+    while least + more < most:
+        yield least + more
+        more *= 4
+    yield from (most, most + 1)
+
+
+def sign_to(number: Callable[[int], arb], most: int) -> int:
+    """Return the sign of a number from its balls; 0 if `most` digits leave it open."""
+    return decided(lambda digits: sign(number(digits)), most, otherwise=lambda: 0)
+
+
+class Rounded(NamedTuple):
+    """A number as it is printed, and the ball or the fraction that it is rounded from."""
+
+    value: Any
+    """A double, or a text with the digits that were requested."""
+    exact: arb | Fraction
+
+    @property
+    def radius(self) -> NumberText:
+        """Largest possible distance of the exact value from the number, rounded up to two digits.
+
+        It is rounded up so far that the double read from the text is not smaller.
+        """
+        ends = ends_of(self.exact) if isinstance(self.exact, arb) else (self.exact,)
+        away = max(_distance(end, self.value) for end in ends)
+        return text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec)
+
+
+def settled(
+    what: str,
+    number: Callable[[int], arb | None],
+    digits: int | None,
+    most: int,
+    *,
+    lost: int = 0,
+) -> Rounded | None:
+    """Return a number as the nearest double, or with `digits` significant digits; None for None.
+
+    `number` returns a ball of a number of digits.  A ball of `most` digits that still cannot be
+    rounded stands for the simplest fraction in it.  Raises LagtopError for a ball that is wide even
+    then, and OutOfRangeError for a number that no double holds; both name the number by `what`.
+    """
+    last: list[arb] = []
+
+    def attempt(working: int) -> Rounded | None:
+        last.clear()
+        ball = number(working)
+        if ball is None:
+            return None
+        last.append(ball)
+        return Rounded(_alike(what, ball, digits), ball)
+
+    def tie() -> Rounded:
+        if not last or last[0].rel_one_accuracy_bits() <= most:
+            raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
+        value = simplest_between(fraction(last[0].lower()), fraction(last[0].upper()))
+        return Rounded(rounded(what, value, digits), value)
+
+    return decided(attempt, most, digits=digits, lost=lost, otherwise=tie)
+
+
+def _alike(what: str, ball: arb, digits: int | None) -> Any:
+    """Return the number to which both ends of a ball are rounded; it is 0 only for an exact 0.
+
+    Raises TooFewDigitsError if the ends differ, or do not determine the size of the number.
+    """
+    if not ball.is_finite() or (ball.contains(0) and not ball.is_zero()):
+        raise TooFewDigitsError
+    if digits is None:
+        low, high = float(ball.lower()), float(ball.upper())
+        if low == high and low and math.isfinite(low):
+            return low
+    if ball.rel_accuracy_bits() < 2:
+        raise TooFewDigitsError
+    low, high = (rounded(what, end, digits) for end in ends_of(ball))
+    if low != high:
+        raise TooFewDigitsError
+    return low
+
+
+# Decimal numbers
+
+
+_EXACT = own_context(1_000_000, [])
+"""More digits than any ball has."""
+_OUTWARDS, _SHORT = own_context(20, [], ROUND_UP), own_context(2, [], ROUND_UP)
+_A_HAIR_MORE = Decimal("1.000000000001")
+
+
+def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
+    """Return decimals below and above all numbers in a finite ball.
+
+    Raises OutOfRangeError for a number whose size is not within 1e-990000000000000000 and
+    1e+990000000000000000.
+    """
+    bits = ball.bits() if ball.is_exact() else max(ball.bits(), ball.rel_accuracy_bits())
+    middle, radius, exponent = map(int, ball.mid_rad_10exp(int(bits / BITS) + 8))
+    if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
+        raise OutOfRangeError(
+            "the size of a value is not within 1e-990000000000000000 and 1e+990000000000000000, "
+            "the limits of --digits: take a smaller argument"
+        )
+    low, high = Decimal(middle - radius), Decimal(middle + radius)
+    return _EXACT.scaleb(low, exponent), _EXACT.scaleb(high, exponent)
+
+
+def rounded(what: str, value: Exact, digits: int | None) -> Any:
+    """Return a number as the nearest double, or as a text with `digits` significant digits.
+
+    Raises OutOfRangeError for a number beyond the doubles, or smaller than all doubles but 0.
+    """
+    if digits is not None:
+        return text_of(value, digits)
+    try:
+        found = float(value) + 0.0  # never -0.0
+    except OverflowError:  # of a fraction; a decimal becomes infinite
+        found = math.inf
+    if math.isinf(found) or (value and not found):
+        bound = "0 or at least 5e-324" if not found else "within 1.8e308"
+        remedy = "use --digits" if not found else "change the units"
+        raise OutOfRangeError(f"{what} must be {bound} in size, got {_brief(value)}: {remedy}")
+    return found
+
+
+def text_of(value: Exact, digits: int) -> NumberText:
+    """Return a number with `digits` significant digits, in full if its size is ordinary."""
+    context = own_context(digits, [])
+    found = _decimal(value, context)
+    if not found:
+        return NumberText("0.0")
+    found = found.normalize(context)
+    style = "f" if -5 < found.adjusted() < 16 else "e"
+    figures, e, exponent = f"{found:{style}}".partition("e")
+    point = "" if "." in figures else ".0"
+    return NumberText(f"{figures}{point}{e}{exponent}")
+
+
+def _brief(value: Exact) -> str:
+    """Return a number with four digits, for a message."""
+    return f"{_decimal(value, own_context(20, [])):.3e}"
+
+
+def _decimal(value: Exact, context: Context) -> Decimal:
+    """Return a number as a decimal, rounded in a context."""
+    if isinstance(value, Fraction):
+        return context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return context.plus(value)
+
+
+def _distance(end: Exact, value: float | NumberText) -> Decimal:
+    """Return the distance of two numbers in 20 digits, rounded up."""
+    if isinstance(end, Fraction):
+        return _decimal(abs(end - Fraction(value)), _OUTWARDS)
+    shown = Decimal(value) if isinstance(value, str) else Decimal.from_float(value)
+    return _OUTWARDS.subtract(end, shown).copy_abs()
+
+
+def simplest_between(low: Fraction, high: Fraction) -> Fraction:
+    """Return the fraction with the smallest denominator in an interval, by continued fractions."""
+    if low <= 0 <= high:
+        return Fraction(0)
+    if high < 0:
+        return -simplest_between(-high, -low)
+    terms = []
+    while math.ceil(low) > high:
+        terms.append(math.floor(low))
+        low, high = 1 / (high - terms[-1]), 1 / (low - terms[-1])
+    value = Fraction(math.ceil(low))
+    for term in reversed(terms):
+        value = term + 1 / value
+    return value
