@@ -98,6 +98,10 @@ def _filled(text: str, width: int | None, indent: int = 0) -> str:
     return fill(text, width, subsequent_indent=" " * indent, break_on_hyphens=False)
 
 
+WIDE = 110
+"""Width of a terminal, in columns, from which on the table of a record has the names too."""
+
+
 def record_text(record: Mapping[str, Any], keys: Keys, width: int | None) -> str:
     """Return a record as a table: its summary, a line for each key with a value, and its remark.
 
@@ -105,16 +109,21 @@ def record_text(record: Mapping[str, Any], keys: Keys, width: int | None) -> str
     """
     from rich.text import Text
 
+    shown = ["Key", "Symbol", "Name", "Value", "Unit", "Equation"]
+    if (width or 0) < WIDE:
+        shown.remove("Name")
     rows: list[list[str | Text]] = []
     group = None
     for name, key in keys.items():
         if record.get(name) is not None and name != "remark":
             if key.group != group:
                 group = key.group
-                rows.append(["", Text(group, "bold"), "", "", ""])
-            last = record.get(f"{name}_radius") or key.equation
-            rows.append([key.symbol, key.meaning, value_text(record[name]), key.unit, last])
-    table = drawn(("Symbol", "Name", "Value", "Unit", "Equation"), rows, (2,), width)
+                rows.append([Text(group, "bold"), *[""] * (len(shown) - 1)])
+            cells = {"Key": name, "Symbol": key.symbol, "Name": key.meaning, "Unit": key.unit}
+            cells["Value"] = value_text(record[name])
+            cells["Equation"] = record.get(f"{name}_radius") or key.equation
+            rows.append([cells[heading] for heading in shown])
+    table = drawn(shown, rows, (shown.index("Value"),), width)
     summary, remark = record.get("summary"), record.get("remark")
     texts = [summary and fill(summary, width or 80), table.rstrip("\n"), remark and f"{remark}"]
     return "\n\n".join(filter(None, texts)) + "\n"

@@ -19,6 +19,7 @@ from scenes import SAMPLES
 from lagrange_cli import errors
 from lagrange_cli.cli.app import NAMES as COMMANDS
 from lagrange_cli.cli.shared import is_scene
+from lagrange_cli.output.report import record_text
 from lagrange_cli.solver.columns import COLUMNS
 from lagrange_cli.solver.record import KEYS as SHOWN
 from lagrange_cli.solver.record import NUMBER_KEYS, all_keys
@@ -71,8 +72,16 @@ def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> Non
     assert "…" not in shown
     assert max(map(len, shown.splitlines())) <= 80
     groups = dict.fromkeys(key.group for name, key in SHOWN.items() if name != "remark")
-    order = [shown.index(f" {group}\n") for group in groups]
+    order = [shown.index(f"\n{group}\n") for group in groups]
     assert order == sorted(order)
+    assert {key for key, value in solved().items() if value is not None} - words == {"summary"}
+
+
+def test_a_wide_table_has_the_names_too() -> None:
+    keys = {"K": SHOWN["K"]}
+    narrow, wide = (record_text({"K": 1.5}, keys, width) for width in (109, 110))
+    assert "first kind" in wide
+    assert "first kind" not in narrow
 
 
 def test_tables_of_ordinary_tops_fit_80_columns(lagtop: Lagtop) -> None:
