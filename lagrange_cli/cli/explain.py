@@ -34,7 +34,7 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     from ..solver.explanation import explanations, listed
 
     found, radians = top.given(), top.radians
-    named = found.system.named if found.system else str
+    named = found.named
     if not words:
         rows = listed(radians=radians, named=named)
         opt.write_report(out, lambda: Report({}, _LISTED, rows, []))

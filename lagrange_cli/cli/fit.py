@@ -112,7 +112,7 @@ def fit_command(
     )
     given = top.given()
     known, source = known_inputs(given.inputs, given.stds), shown_path(words[0])
-    units = " (in kg, m and s)" if given.system else ""
+    units = " (in kg, m and s)" if given.si else ""
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"a scene holds one top, got {len(recordings)}: fit one recording")
     if window is not None:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from fractions import Fraction
 from os.path import splitext
-from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError
@@ -25,13 +24,9 @@ from ..plot.style import (
     styled,
 )
 from ..top.inputs import DECLARED
-from ..top.units import factor_of
 from ..top.values import Value, parse_range, parse_value
 from . import shared as opt
 from .table import angle_stds
-
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
 
@@ -100,19 +95,19 @@ def plot_command(
     from ..plot.film import SECONDS, film_bytes
     from ..plot.pictures import Options, figure_of
 
-    others = {} if t_max is None else {"t_max": t_max}
-    founds = [top._replace(scene=name or None).given(others) for name in scenes or [""]]
+    axes = {"x": _axis("--x", x, top), "y": _axis("--y", y, top)}
+    others = {"t_max": t_max} | dict(filter(None, axes.values()))
+    founds = [top._replace(scene=name or None).given(**others) for name in scenes or [""]]
     motions = [opt.motion_of(found) for found in founds]
     options = Options(
-        t_max=founds[0].others.get("t_max"),
+        t_max=t_max and t_max.number,
         radians=top.radians,
         camera=eye,
         look=DARK if dark else LIGHT,
         key=key,
-        x=_axis("--x", x, top),
-        y=_axis("--y", y, top),
+        **{x: y and (y[0], next(y[1].number.blocks())) for x, y in axes.items()},
         progress=with_progress,
-        unit=founds[0].system.named if founds[0].system else str,
+        unit=founds[0].named,
         stds=angle_stds(founds[0], motions[0]) if len(founds) == 1 else None,
     )
     with ExitStack() as stack:
@@ -154,20 +149,17 @@ def _camera(text: str, radians: bool) -> tuple[float, float]:
     return azimuth, elevation
 
 
-def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Array] | None:
+def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Value] | None:
     """Return the input and the values of a text such as `r0=log:5:120:40` or `r0=60:600:40 rpm`."""
     if text is None:
         return None
     name, _, grid = text.partition("=")
+    is_tilt = name in DECLARED and DECLARED[name].unit == "angle"
+    angle = "rad" if top.radians else "deg"
     try:
-        value = parse_value(grid, parse_range)
-        if value.unit and name in DECLARED:
-            angle = "rad" if top.radians else "deg"
-            wanted = angle if DECLARED[name].unit == "angle" else None
-            value = value.scaled(factor_of(name, value.unit, wanted))
+        return name, parse_value(name, grid, parse_range, wanted=angle if is_tilt else None)
     except LagtopError as error:
-        raise LagtopError(f"{option} {error}") from None
-    return name, next(value.number.blocks())
+        raise LagtopError(f"{option} {str(error).removeprefix(f'{name} ')}") from None
 
 
 @opt.command(
@@ -194,7 +186,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     from ..plot.browser.view import open_page, view
 
     found = top.given()
-    page = view(opt.motion_of(found, uses_stds=False), found.system.named if found.system else str)
+    page = view(opt.motion_of(found, uses_stds=False), found.named)
     if output:
         with opened(output) as stream:
             stream.write(page.encode())

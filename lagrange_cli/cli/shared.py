@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
-from functools import wraps
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
@@ -16,7 +16,7 @@ from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
 from ..top.inputs import DECLARED, example_options, remark_on
-from ..top.values import Value, parse_value
+from ..top.values import Value, parse_value, tilt_key
 from .app import complain
 
 if TYPE_CHECKING:
@@ -34,15 +34,16 @@ REPORT_FORMATS = ("table", "csv", "json", "ndjson")
 class Parsed(click.ParamType):  # type: ignore[type-arg]
     """A parameter type whose value a function parses; errors begin with the option's name."""
 
-    def __init__(self, metavar: str, parse: Callable[[str], Any]) -> None:
-        self.name, self.parse = metavar, parse
+    def __init__(self, metavar: str, parse: Callable[..., Any], *, keyed: bool = False) -> None:
+        """Take a function of the text or, if `keyed`, of the name of the parameter and the text."""
+        self.name, self.parse, self.keyed = metavar, parse, keyed
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the value; click may pass it a second time, when it is already converted."""
         if not isinstance(value, str):
             return value
         try:
-            return self.parse(value)
+            return self.parse(*([param.name] if param and self.keyed else []), value)
         except LagtopError as error:
             name, text = param.opts[-1] if param else "", str(error)
             raise LagtopError(f"{name} {text.removeprefix(f'{error.key} ')}") from None
@@ -62,9 +63,9 @@ def count(most: float = 1e9) -> Parsed:
     return Parsed("N", parse)
 
 
-def values(parse: Callable[[str], Any] = parse_number, **allowed: bool) -> Parsed:
+def values(parse: Callable[[str], Any] = parse_number, **allowed: Any) -> Parsed:
     """Return the type of an input that may have a unit; `parse` reads its numbers."""
-    return Parsed("X", lambda text: parse_value(text, parse, **allowed))
+    return Parsed("X", partial(parse_value, parse=parse, **allowed), keyed=True)
 
 
 def parse_positive(text: str) -> float:
@@ -164,14 +165,14 @@ class TopOptions(NamedTuple):
     radians: bool
     scene: str | None
 
-    def given(self, others: Mapping[str, Value] | None = None) -> Given:
+    def given(self, **others: Value | None) -> Given:
         """Return the inputs of the scene, if any, overridden by the options.
 
-        `others` are further values that are converted to the same units, such as times.
+        Inputs must have units if one of the `others`, such as a time, has one.
         """
         from ..top.given import gather  # start-up of commands without a top
 
-        return gather(self.inputs, self.scene, others=others or {})
+        return gather(self.inputs, self.scene, others={x: y for x, y in others.items() if y})
 
 
 def is_scene(word: str) -> bool:
@@ -207,8 +208,7 @@ def top(
         def run(rad: bool, words: Any, **others: Any) -> None:
             given = {x: others.pop(x) for x in [*others] if x in names}  # as on the command line
             inputs = {x: value for x, value in given.items() if value is not None}
-            tilt = "theta0_rad" if rad else "theta0_deg"
-            inputs = {x if x != "theta0" or y.unit else tilt: y for x, y in inputs.items()}
+            inputs = {tilt_key(x, y, radians=rad): y for x, y in inputs.items()}
             if several:
                 scenes = [word for word in words if is_scene and is_scene(word)]
                 if len(scenes) > 1:
@@ -255,7 +255,7 @@ def warn(found: Given, *, uses_stds: bool = False) -> None:
     if found.empty is not None:
         complain(f"Warning: {found.empty} has no inputs: using the worked example")
     if found.missing:
-        words = example_options(found.missing, units=found.system is not None)
+        words = example_options(found.missing, units=found.si)
         complain(f"Warning: {remark_on(found.missing, words)}")
     if found.stds and not uses_stds:
         used = "solve, table and plot angles use it"

@@ -74,9 +74,9 @@ def solve_command(
         raise beyond[0]
     if beyond:
         complain("Warning: " + "; ".join(map(str, beyond)))
-    named = found.system.named if found.system else str
-    if found.system and record.get("remark"):
-        record["remark"] = found.system.in_words(record["remark"])
+    named = found.named
+    if "remark" in record:
+        record["remark"] = found.remark(record["remark"])
     sentence = {}
     if wanted is None and out.fmt != "csv":
         from ..solver.summary import summary
@@ -96,7 +96,7 @@ def solve_command(
     elif derivation:
         shown = _keys_by_step(shown, radians)
         record = {x: record[x] for x in [*shown, *record]}
-    elif found.system and out.fmt in {"json", "ndjson"}:
+    elif found.si and out.fmt in {"json", "ndjson"}:
         record["units"] = {x: key.unit for x, key in shown.items() if x in record and key.unit}
     out.record(record, lambda: shown)
 

@@ -20,7 +20,7 @@ from .app import complain
 if TYPE_CHECKING:
     from ..output.destination import Output
     from ..sweeps.plan import NumberedBlock
-    from ..top.units import System
+    from ..top.given import Given
 
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
@@ -121,7 +121,7 @@ def sweep_command(
         if folder:
             folder.write(done)
         else:
-            names = _headings(sweep.header, sweep.system, out.fmt, radians=top.radians)
+            names = _headings(sweep.header, todo.given, out.fmt, radians=top.radians)
             out.blocks(names, (part.text for part in done))
     if folder and folder.found:
         complain(f"Resumed: {folder.found} parts were already in {parts}")
@@ -130,16 +130,14 @@ def sweep_command(
         complain(f"Warning: {shown_path(path)} holds no tops")
 
 
-def _headings(
-    names: Sequence[str], system: System | None, fmt: str, *, radians: bool
-) -> Sequence[str]:
+def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) -> Sequence[str]:
     """Return the headings of keys: with units in a table for people, if inputs have units."""
-    if system is None or fmt != "table":
+    if not given.si or fmt != "table":
         return names
     from ..output.report import with_unit
     from ..solver.record import shown_keys
 
-    keys = shown_keys(radians=radians, named=system.named, requested=True)
+    keys = shown_keys(radians=radians, named=given.named, requested=True)
     return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
 
 
@@ -184,6 +182,6 @@ def find_command(
     complain(f"{len(motions)} found; {looked}")
     records = [record_in_range(motion, radians=top.radians, keys=chosen)[0] for motion in motions]
     for record in records:
-        if given.system is not None and record.get("remark"):
-            record["remark"] = given.system.in_words(record["remark"])
-    out.rows(records, chosen, _headings(chosen, given.system, out.fmt, radians=top.radians))
+        if "remark" in record:
+            record["remark"] = given.remark(record["remark"])
+    out.rows(records, chosen, _headings(chosen, given, out.fmt, radians=top.radians))

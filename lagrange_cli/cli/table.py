@@ -69,16 +69,17 @@ def table_command(
         opt.exclude(**{"times": times, name: value})
     if top.scene == times == "-":
         raise LagtopError("standard input holds the scene or --times, not both")
-    given = {name: x for name, x in (("t_min", t_min), ("t_max", t_max), ("dt", dt)) if x}
-    found, proved = top.given(given), digits is not None or certify
+    given = {"t_min": t_min, "t_max": t_max, "dt": dt}
+    found, proved = top.given(**given), digits is not None or certify
     if found.stds and proved:
         raise LagtopError("--digits and --certify take inputs without uncertainties")
     motion = opt.motion_of(found, exact=digits is not None)
     names = DEFAULT_COLUMNS if columns is None else columns
     how = {"radians": top.radians, "wrap": wrap}
     parts: Iterable[Any]
+    bounds = {name: x.number for name, x in given.items() if x is not None}
     try:
-        at = read_times(times, decimal) if times else grid(motion, n=n, **found.others)
+        at = read_times(times, decimal) if times else grid(motion, n=n, **bounds)
         if out.fmt == "table" and at.count > MAX_DRAWN_ROWS:
             raise LagtopError(f"--format table shows at most {MAX_DRAWN_ROWS} rows, got {at.count}")
         if proved:
@@ -115,8 +116,7 @@ def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> li
     from ..output.report import with_unit
     from ..solver.columns import chosen_columns
 
-    named = found.system.named if found.system is not None else str
     chosen = chosen_columns(names).values()
-    units = ["" if column.unit == "angle" else named(column.unit) for column in chosen]
+    units = ["" if column.unit == "angle" else found.named(column.unit) for column in chosen]
     texts = [with_unit(x, unit) for x, unit in zip(header, units, strict=False)]
     return [*texts, *header[len(texts) :]]

@@ -88,9 +88,9 @@ def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Out
 
 def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
     """Return the units of inputs and of keys of the record, if inputs have units."""
-    if found.system is None:
+    if not found.si:
         return {}
-    named = found.system.named
+    named = found.named
     shown = shown_keys(named=named) | shown_keys(named=named, radians=True)
     solved = {key: shown.get(STANDS_FOR.get(key, key)) for key in keys}
     return {key: x.unit for key, x in solved.items() if x is not None and x.unit}

@@ -18,11 +18,11 @@ from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError
 from ..file_bytes import read_bytes, shown_path
 from ..names import repeated
-from ..top.given import Given, converted, gather
+from ..top.given import Given, gather
 from ..top.inputs import TILT, checked_double, one_of_each, overridden
 from ..top.ranges import MOST_POINTS, Points
 from ..top.top import INPUTS
-from ..top.values import STEADY_WORDS, Value, steady_refused
+from ..top.values import STEADY_WORDS, Value, steady_refused, tilt_key
 from .headings import name_and_unit
 from .text_tables import Table, read_table
 
@@ -86,9 +86,7 @@ class TopsFile(NamedTuple):
     carried: Sequence[str]
     """The extra columns, which are copied to the output, in their order."""
     units: Mapping[str, Value]
-    """The value 1 in the unit of its heading, for each column of an input, without conversion."""
-    factors: Mapping[str, Fraction]
-    """The conversion factor of each column whose heading has a unit."""
+    """The number 1 in the unit of its heading, for each column of an input."""
     table: Table
 
     def shared(self, inputs: Mapping[str, Any], scene: str | None) -> Given:
@@ -122,7 +120,7 @@ class TopsFile(NamedTuple):
                 cells = self.table.cells(row)
                 values = dict(zip(self.columns, cells, strict=False))
                 self.table.check(cells)
-                named = [name for name in INPUTS if values.get(name) is not None]
+                named = [name for name in self.units if values.get(name) is not None]
                 given = {name: self._double(name, values[name]) for name in named}
                 one_of_each(given)
                 inputs = overridden(shared, given)
@@ -142,7 +140,7 @@ class TopsFile(NamedTuple):
             if isinstance(cell, str) and re.search(r"\d\s*(\(\d|±|\+/?-)", cell):
                 wrong = f"must have no uncertainty, got {quoted(cell)}: loop over solve"
             raise LagtopError(f"{name} {wrong}") from None
-        return checked_double(name, number * self.factors.get(name, 1))
+        return checked_double(name, number * self.units[name].number)
 
 
 def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFile:
@@ -154,27 +152,27 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     """
     table = read_table(read_bytes(path), shown_path(path), _known_inputs, decimal)
     name, headings = table.name, table.headings or []
-    columns, units, factors = list[str](), dict[str, Value](), dict[str, Fraction]()
+    columns, units = list[str](), dict[str, Value]()
     for heading in headings:
         column, unit = _column_of(heading)
         if unit and column != TILT and column.startswith(TILT):
             raise DataError(f"{name}: the column {column} must be called {TILT} [{unit}]")
         if column in INPUTS or unit:  # a tilt needs its unit in the name or in the heading
-            units[column] = Value(Fraction(1), unit)
             try:
-                ((column, one),) = converted({column: units[column]}).items()
+                one = Value(Fraction(1)).given_in(unit, column)
             except LagtopError as error:
                 raise DataError(f"{name}, heading {heading}: {error}") from None
-            factors[column] = one.number
+            column = tilt_key(column, one)
+            units[column] = one
         columns.append(column)
-    carried = [x for x in columns if x not in factors and x not in computed]
-    _check_spelling(carried, factors.keys(), name)
+    carried = [x for x in columns if x not in units and x not in computed]
+    _check_spelling(carried, units.keys(), name)
     if (twice := repeated(columns)) is not None:
         raise DataError(f"{name} must name each column once, got {twice!r} twice")
-    if not factors:
+    if not units:
         wanted = f"must begin with a header that names inputs ({' '.join(INPUTS)})"
         raise DataError(f"{name} {wanted}, got {quoted(','.join(headings))}")
-    return TopsFile(columns, carried, units, factors, table)
+    return TopsFile(columns, carried, units, table)
 
 
 def _column_of(heading: str) -> tuple[str, str]:

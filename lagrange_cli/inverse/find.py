@@ -31,8 +31,15 @@ from ..sweeps.records import sweep
 from ..top.given import Given, gather
 from ..top.inputs import overridden, warn_of
 from ..top.top import INPUTS, Top
-from ..top.units import factor_of
-from ..top.values import Span, Value, exact_number, parse_span, parse_value, value_of, values_of
+from ..top.values import (
+    Span,
+    Value,
+    exact_number,
+    parse_number_or_span,
+    parse_value,
+    value_of,
+    values_of,
+)
 
 COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
@@ -134,8 +141,8 @@ def search_of(
             f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(targets)} for "
             f"{len(spans)}: {', '.join(spans)}"
         )
-    known = {name: x for name, x in given.inputs.items() if name not in spans}
-    fixed = shared_inputs(given._replace(inputs=known), varying=spans)
+    known = {name: x for name, x in given.values.items() if name not in spans}
+    fixed = shared_inputs(given._replace(values=known), varying=spans)
     return Search(fixed, spans, targets, others, radians), given
 
 
@@ -153,14 +160,10 @@ def _read_condition(text: str, *, radians: bool) -> Condition:
             wanted, got = ", ".join(_WORDS[key]), f"{'' if relation == '=' else relation}{word}"
             raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
         return Condition(key, relation, word)
-    try:
-        value = parse_value(word)
-    except LagtopError as error:
-        raise LagtopError(f"the value of {key} {error}") from None
     unit = shown_keys(radians=radians, requested=True)[key].unit
-    factor = factor_of(key, value.unit, unit) if value.unit else 1
+    value = parse_value(key, word, wanted=unit)
     has_unit = bool(value.unit) and unit not in {"deg", "rad"}
-    return Condition(key, relation, float(value.number * factor), has_unit)
+    return Condition(key, relation, float(value.number), has_unit)
 
 
 def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], str]:
@@ -319,7 +322,7 @@ def find(
     An input is a number, or a pair (from, to) or a text `[log:]from:to` if it is unknown.  Pass up
     to three unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER
     discard motions.  The search starts from `scan` values of each unknown.  Angles are in degrees
-    or `radians`.  Quantities of pint are converted to SI, and uncertainties are ignored.  The list
+    or `radians`.  Uncertainties are ignored.  The list
     may be empty.  Raises LagtopError, also if the conditions do not determine the unknowns.
 
     >>> [x.top.r0 for x in find({"T_precession": 2.0}, r0=(10, 200), theta0_deg=30)]
@@ -330,8 +333,7 @@ def find(
     given = {name: _input(name, x) for name, x in inputs.items() if x is not None}
     texts = conditions
     if isinstance(conditions, Mapping):
-        values = [(key, value_of(key, x)) for key, x in conditions.items()]
-        texts = [f"{key}={_text(key, x.number)} {x.unit}" for key, x in values]
+        texts = [f"{key}={_text(key, value_of(key, x).number)}" for key, x in conditions.items()]
     search, found = search_of(given, list(texts), radians=radians)
     if found.missing:
         warn_of(found.missing, stacklevel=3)
@@ -346,8 +348,8 @@ def _text(key: str, number: Any) -> str:
 
 
 def _input(name: str, given: Any) -> Value:
-    """Return a number, or a pair as a range; a unit is kept.  Raises LagtopError."""
-    value = value_of(name, given, parse_span)
+    """Return a number, or a pair as a range.  Raises LagtopError."""
+    value = value_of(name, given, parse_number_or_span)
     if np.asarray(value.number, object).shape != (2,):
         return value
     first, last = (exact_number(name, x) for x in value.number)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,13 +21,11 @@ from ..output.formats import Columns, block_text
 from ..top.given import Given, gather
 from ..top.inputs import checked_double, overridden
 from ..top.ranges import Points
+from ..top.units import remark_in_si
 from ..top.values import Value, steady_refused
 from .records import BLOCK_ROWS, check_keys, column_keys, records
 from .results import ResultColumn
 from .top_arrays import top_arrays
-
-if TYPE_CHECKING:
-    from ..top.units import System
 
 NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
@@ -55,8 +53,8 @@ class Sweep(NamedTuple):
     keys: Sequence[str]
     radians: bool
     fmt: str
-    system: System | None = None
-    """The units of the output, if inputs have units; remarks name them."""
+    si: bool = False
+    """Whether inputs have units; remarks name them."""
 
     def part(self, numbered: NumberedBlock) -> Part:
         """Compute one part."""
@@ -69,8 +67,8 @@ class Sweep(NamedTuple):
             errors = [(row, f"line {given.lines[row]}: {error}") for row, error in errors]
         for row, error in errors:
             columns["error"][row] = error
-        if self.system and "remark" in columns:
-            columns["remark"][:] = [x and self.system.in_words(x) for x in columns["remark"]]
+        if self.si and "remark" in columns:
+            columns["remark"][:] = [x and remark_in_si(x) for x in columns["remark"]]
         computed = runs_of([columns[key] for key in self.keys])
         text = block_text([*given.carried, *computed], self.header, self.fmt)
         return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
@@ -111,7 +109,7 @@ def plan(
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid, ranges = Product(points), ranges_of(points)
         shared = shared_inputs(found, varying=ranges)
-        sweep = Sweep(chosen, shared, chosen, radians, fmt, found.system)
+        sweep = Sweep(chosen, shared, chosen, radians, fmt, found.si)
         inputs = shared | {name: str(axis) for name, axis in ranges.items()}
         blocks = enumerate(grid.blocks(BLOCK_ROWS))
         return Plan(sweep, blocks, grid.size, _described(sweep, inputs), found)
@@ -123,7 +121,7 @@ def plan(
     found = source.shared(axes, scene)
     shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
-    sweep = Sweep([*source.carried, *with_error], shared, with_error, radians, fmt, found.system)
+    sweep = Sweep([*source.carried, *with_error], shared, with_error, radians, fmt, found.si)
     of_file = enumerate(source.blocks(BLOCK_ROWS))
     return Plan(sweep, of_file, 0, _described(sweep, shared, digest), found)
 
@@ -133,7 +131,7 @@ def _described(sweep: Sweep, inputs: Mapping[str, Any], digest: str = "") -> dic
     return {
         **{"lagtop": __version__, "format": sweep.fmt, "radians": sweep.radians},
         **{"keys": list(sweep.keys), "inputs": dict(inputs), "file": digest},
-        "units": sweep.system is not None,
+        "units": sweep.si,
     }
 
 
@@ -155,7 +153,8 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
     }
     if isinstance(word := numbers.get("psidot0"), str):
         raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
-    top = found._replace(inputs=numbers).top(without=loose)
+    values = {name: found.values[name]._replace(number=x) for name, x in numbers.items()}
+    top = found._replace(values=values).top(without=loose)
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return overridden(inputs, {name: checked_double(name, x) for name, x in numbers.items()})
 

@@ -59,7 +59,7 @@ def sweep(
     """Return the records of many tops: arrays by key, in the shape to which the inputs broadcast.
 
     Inputs are those of `Top`, as numbers, arrays or pandas Series: pass a DataFrame of inputs as
-    `sweep(**df)`.  Quantities of pint are converted to SI.  Only `keys` are computed; angles are in
+    `sweep(**df)`.  Only `keys` are computed; angles are in
     degrees or `radians`.  A further key costs as much as a key of the record if it is a formula
     of the inputs (such as `stability_factor` or `Lz`), and about a millisecond per top otherwise.
     If a regime has no value for a key, its number is NaN and its text None.  An invalid top has an

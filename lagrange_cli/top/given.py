@@ -1,11 +1,9 @@
-"""Combine the inputs from options and from a scene file into a top."""
+"""The inputs of a top, from options, Python and a scene file."""
 
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Collection, Mapping
-from fractions import Fraction
+from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,7 +11,8 @@ from ..arithmetic.numbers import Number
 from ..errors import LagtopError, check_type
 from .inputs import (
     BODY,
-    BODY_UNITS,
+    BODY_IN_SI,
+    DECLARED,
     EXAMPLE,
     TILT,
     checked_double,
@@ -24,31 +23,51 @@ from .inputs import (
 )
 from .ranges import Points
 from .top import Top
-from .values import STEADY_WORDS, Value, values_of
+from .values import STEADY_WORDS, Value, tilt_key, values_of
 
 if TYPE_CHECKING:
     from .scenes import SceneFile
-    from .units import System
 
 
 class Given(NamedTuple):
-    """Inputs of a top by key, all in SI if one of them has a unit."""
+    """The inputs of a top that were given, in SI if one of them has a unit other than a tilt."""
 
-    inputs: Mapping[str, Any]
-    """The given numbers; the `Points` of a sweep or the `Span` of a search in their place."""
-    others: Mapping[str, Any]
-    """Other quantities that may have units, such as times."""
-    body: Mapping[str, Number]
-    """The body of the worked example, in these units."""
-    system: System | None
-    """SI; None if the inputs have no units."""
+    values: Mapping[str, Value]
+    """The values by key; the number of one may be the `Points` of a sweep or a `Span`."""
+    si: bool
     missing: Mapping[str, float]
     """The body inputs taken from the worked example, in CGS, if only some of the body was given."""
-    stds: Mapping[str, float] = {}
-    """Standard uncertainties of the inputs that have one, in these units."""
     file: SceneFile | None = None
     options: Collection[str] = ()
     """The inputs that are not from the scene file."""
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """The numbers of the values, by key."""
+        return {name: x.number for name, x in self.values.items()}
+
+    @property
+    def stds(self) -> dict[str, float]:
+        """Standard uncertainties of the values that have one, by key."""
+        return {name: float(x.std) for name, x in self.values.items() if x.std is not None}
+
+    @property
+    def body(self) -> Mapping[str, Number]:
+        """The body of the worked example, in SI or CGS."""
+        return BODY_IN_SI if self.si else BODY
+
+    @property
+    def named(self) -> Callable[[str], str]:
+        """A function that returns the name of a unit such as `rad/time`, with seconds if in SI."""
+        from .units import in_si  # start-up
+
+        return in_si if self.si else str
+
+    def remark(self, remark: str | None) -> str | None:
+        """Return a remark of a record with the names of units."""
+        from .units import remark_in_si  # start-up
+
+        return remark_in_si(remark) if remark and self.si else remark
 
     @property
     def empty(self) -> str | None:
@@ -64,7 +83,7 @@ class Given(NamedTuple):
         kept = {key: x for key, x in self.inputs.items() if key not in without}
         numbers = overridden(self.body, kept)
         try:
-            if self.system is not None and numbers.get("psidot0") not in STEADY_WORDS:
+            if self.si and numbers.get("psidot0") not in STEADY_WORDS:
                 from .derived import as_solved  # start-up
 
                 numbers = as_solved(overridden(EXAMPLE, numbers))  # from exact numbers, once
@@ -79,12 +98,12 @@ class Given(NamedTuple):
             if moments and error.key in {"A", "C"}:
                 which = f"{' and '.join(moments)} of the worked example"
                 error = LagtopError(f"{error} (with {which}: give the whole body)", error.key)
-            raise _of_file(self.file, error, self.options) from None
+            raise self.placed(error) from None
 
-
-def _of_file(file: SceneFile | None, error: LagtopError, options: Collection[str]) -> LagtopError:
-    """Return an error with the file and the line of its input, unless an option gives it."""
-    return error if file is None or error.key in options else file.error(error)
+    def placed(self, error: LagtopError) -> LagtopError:
+        """Return an error with the file and the line of its input, unless an option gives it."""
+        from_option = self.file is None or error.key in self.options
+        return error if from_option or self.file is None else self.file.error(error)
 
 
 def gather(
@@ -97,36 +116,27 @@ def gather(
 ) -> Given:
     """Return the `given` inputs and those of a scene file, if any; given inputs override the file.
 
-    Inputs with units are converted to SI, and so are `others`, such as times or the units of
-    columns.  If `units` is true, inputs must have units.  `varying` names inputs that are given
+    Either all inputs must have units or none, also if one of the `others` has one, such as a time
+    or the heading of a column, and if `units` is true.  `varying` names inputs that are given
     later.  Raises SceneError for a bad file, LagtopError for a bad given input.
     """
-    inputs = {TILT if x.unit and name.startswith(TILT) else name: x for name, x in given.items()}
+    own = {tilt_key(name, x): x for name, x in given.items()}
     file: SceneFile | None = None
     if path is not None:
         from .scenes import SceneFile  # start-up
 
         file = SceneFile(path)
-        inputs = overridden(file.inputs, inputs)
-    system: System | None = None
-    body: Mapping[str, Number] = BODY
+    found = Given(overridden(file.inputs if file else {}, own), False, {}, file, own)
     try:
-        one_of_each(inputs)
-        if units or any(x.unit for x in (*inputs.values(), *others.values())):
-            from .units import factor_of  # start-up
-
-            system = system_of(overridden(inputs, others), asked=units)
-            inputs, others = converted(inputs), converted(others)
-            if system:
-                body = {x: Fraction(y) * factor_of(x, BODY_UNITS[x]) for x, y in BODY.items()}
+        one_of_each(found.values)
+        si = have_units(overridden(found.values, others), asked=units)
     except LagtopError as error:
-        raise _of_file(file, error, given) from None
-    stds = {name: float(x.std) for name, x in inputs.items() if x.std is not None}
-    numbers, known = ({name: x.number for name, x in values.items()} for values in (inputs, others))
+        raise found.placed(error) from None
     # The only value of an axis of a sweep counts as a number.
-    fixed = {x: y.bounds()[0] if getattr(y, "count", 0) == 1 else y for x, y in numbers.items()}
-    missing = from_example(dict.fromkeys(varying) | fixed)
-    return Given(numbers, known, body, system, missing, stds, file, given)
+    fixed = {
+        x: y.bounds()[0] if getattr(y, "count", 0) == 1 else y for x, y in found.inputs.items()
+    }
+    return found._replace(si=si, missing=from_example(dict.fromkeys(varying) | fixed))
 
 
 def read_scene(
@@ -149,44 +159,22 @@ def read_scene(
     return top
 
 
-def converted(inputs: Mapping[str, Value]) -> dict[str, Value]:
-    """Return inputs in SI; a tilt with a unit becomes degrees or radians.
-
-    Raises LagtopError for a unit of other dimensions.
-    """
-    from . import units  # start-up
-
-    found: dict[str, Value] = {}
-    for key, value in inputs.items():
-        if not value.unit:
-            found[key] = value
-        elif key == TILT:
-            units.factor_of(key, value.unit)  # refuses other dimensions
-            wanted = "deg" if units.unit_of_text(value.unit).power_of_pi else "rad"
-            found[f"{TILT}_{wanted}"] = value.scaled(units.factor_of(key, value.unit, wanted))
-        else:
-            found[key] = value.scaled(units.factor_of(key, value.unit))
-    return found
-
-
-def system_of(inputs: Mapping[str, Value], *, asked: bool = False) -> System | None:
-    """Return SI if inputs have units, or None if none has one, or only a tilt.
+def have_units(values: Mapping[str, Value], *, asked: bool = False) -> bool:
+    """Return whether inputs have units, apart from a tilt.
 
     A tilt, a time and a zero need no unit.  Raises LagtopError for another input without a unit if
     some have one, or if units are `asked` for.
     """
-    from . import units  # start-up
+    named = {name: x for name, x in values.items() if not name.startswith(TILT)}
+    united = [name for name, x in named.items() if x.unit]
+    for name, x in named.items() if united or asked else ():
+        if name in DECLARED and not (x.unit or _is_zero(x.number)):
+            from .units import EXAMPLES  # start-up
 
-    united = [key for key, x in inputs.items() if x.unit and key != TILT]
-    named = [x for x in inputs if x in units.UNIT_OF and not x.startswith(TILT)]
-    bare = [x for x in named if not (inputs[x].unit or _is_zero(inputs[x].number))]
-    if bare and (united or asked):
-        why = f"as {united[0]} has" if united else "as a time or a condition has"
-        number, example = inputs[bare[0]].number, units.EXAMPLES[units.UNIT_OF[bare[0]]]
-        if isinstance(number, Fraction) and number != 1:  # a heading of a file counts as 1
-            example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
-        raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
-    return units.SI if united or asked else None
+            why = f"as {united[0]} has" if united else "as a time or a condition has"
+            example = EXAMPLES[DECLARED[name].unit]
+            raise LagtopError(f"{name} must have a unit such as {example}, {why}, got none", name)
+    return bool(united) or asked
 
 
 def _is_zero(number: Any) -> bool:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import re
 
-from ..arithmetic.text import NumberText, parse_number, quoted, shortened
+from ..arithmetic.text import NumberText, quoted, shortened
 from ..errors import DataError, LagtopError, SceneError
 from ..file_bytes import decoded, read_bytes, shown_path
 from ..names import suggestion
 from .inputs import TILT
 from .top import INPUTS
-from .values import STEADY_WORDS, Value, parse_value
+from .values import STEADY_WORDS, Value, parse_value, tilt_key
 
 _MOST_BYTES = 1 << 14
 """Most bytes of a scene file, because the run time of `tomllib` may grow with their square."""
@@ -77,8 +77,7 @@ class SceneFile:
                 found = _value(key, value)
             except LagtopError as error:
                 raise self.error(LagtopError(str(error), key)) from None
-            # A tilt without a unit is in degrees, as on the command line.
-            self.inputs[f"{TILT}_deg" if key == TILT and not found.unit else key] = found
+            self.inputs[tilt_key(key, found)] = found
 
     def error(self, error: LagtopError) -> SceneError:
         """Return the error prefixed with the name of the file and the line of its key."""
@@ -100,12 +99,9 @@ def _value(key: str, value: object) -> Value:
     if not is_text and key == TILT:
         wanted = f"have a unit, such as '30 deg', or be called {key}_deg or {key}_rad"
         raise LagtopError(f"{key} must {wanted}")
-    try:
-        if not is_text:
-            return Value(parse_number(str(value).replace("_", "")))
-        found = parse_value(str(value), uncertain=True, steady=key == "psidot0")
-    except LagtopError as error:
-        raise LagtopError(f"{key} {error}") from None
+    if not is_text:
+        return parse_value(key, str(value).replace("_", ""))
+    found = parse_value(key, str(value), uncertain=True, steady=key == "psidot0")
     if not found.unit and found.number not in STEADY_WORDS and found.std is None:
         wanted = "must have a unit between quotes"
         raise LagtopError(f"{key} {wanted}, got {quoted(value)}: leave out the quotes")

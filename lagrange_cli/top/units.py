@@ -55,12 +55,10 @@ UNITS: dict[str, Unit] = {
     for name, size in (pair.split("=") for pair in pairs.split())
 }
 """The known units by name."""
-UNIT_OF = {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
-UNIT_OF |= {f"{TILT}_deg": "deg", f"{TILT}_rad": "rad"}
-EXAMPLES = {"mass": "350g", "mass len²": "'3.9e-3 kg*m^2'", "len": "4cm", "m": "4cm", "time": "2s"}
-EXAMPLES |= {"len/time²": "'9.81 m/s^2'", "rad/time": "'50 rad/s' or 480rpm"}
-EXAMPLES |= dict.fromkeys(("deg", "rad"), "30deg or 0.5rad")
-"""An example of each unit of an input."""
+EXAMPLES = {"mass": "kg or g", "mass len²": "kg*m^2 or g*cm^2", "len": "m or cm", "time": "s or ms"}
+EXAMPLES |= {"len/time²": "m/s^2 or cm/s^2", "rad/time": "rad/s or rpm"}
+EXAMPLES |= dict.fromkeys(("deg", "rad"), "deg or rad")
+"""Examples of each unit of an input."""
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _NAME = r"1|°|g_0|[^\W\d_]+"
 _FACTOR = re.compile(rf"\s*([*·/]?)\s*({_NAME})\s*(?:(?:\*\*|\^)?\s*(-?\d)(?!\d))?")
@@ -97,39 +95,44 @@ def _meant(name: str) -> str:
     return f" (did you mean {usual!r}?)" if usual else suggestion(name, UNITS)
 
 
-def factor_of(key: str, unit: str, wanted: str | None = None) -> Fraction:
-    """Return the factor from a unit to `wanted` in SI.
+def unit_to_keep(key: str, unit: str) -> str:
+    """Return the unit that the input or the time `key`, given in a unit, is converted to.
 
-    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`, by default that of the input
-    `key`, or else of a time.  Raises LagtopError for a unit of other dimensions.
+    A tilt stays in degrees if its unit contains pi, and in radians otherwise.
     """
-    wanted = UNIT_OF.get(key, "time") if wanted is None else wanted
-    into = unit_of_text(SI.named(wanted))
+    if not key.startswith(TILT):
+        return DECLARED[key].unit if key in DECLARED else "time"
+    factor_of(TILT, unit, "rad")  # refuses other dimensions
+    return "deg" if unit_of_text(unit).power_of_pi else "rad"
+
+
+def factor_of(key: str, unit: str, wanted: str) -> Fraction:
+    """Return the factor that converts the quantity `key` from a unit to `wanted` in SI.
+
+    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`.  Raises LagtopError for a
+    unit of other dimensions.
+    """
+    into = unit_of_text(in_si(wanted))
     try:
         given = unit_of_text(unit)
         per_time = into.dimensions == _RATE and given.dimensions == (0, 0, -1, 0)  # as 1/s
         if given.dimensions != into.dimensions and not per_time:
             raise LagtopError("it measures something else")
     except LagtopError as error:
-        example = EXAMPLES.get(wanted) or repr(f"2 {SI.named(wanted)}")
-        must = f"have a unit as in {example}" if wanted else "have no unit"
+        example = EXAMPLES.get(wanted) or in_si(wanted)
+        must = f"have a unit such as {example}" if wanted else "have no unit"
         wrong = f"{key} must {must}, got the unit {quoted(unit)} ({error})"
         raise LagtopError(wrong, key) from None
     powers_of_pi = given.power_of_pi - into.power_of_pi
     return given.size / into.size * pi_to(PI_DIGITS) ** powers_of_pi
 
 
-class System:
-    """The names of the units of results: SI."""
-
-    def named(self, unit: str) -> str:
-        """Return a unit such as `mass len²` or `rad/time` with the names of its parts."""
-        names = {"mass": "kg", "len": "m", "time": "s"}
-        return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
-
-    def in_words(self, remark: str) -> str:
-        """Return a remark with `time` replaced by the second."""
-        return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)
+def in_si(unit: str) -> str:
+    """Return a unit such as `mass len²` or `rad/time` with the SI names of its parts."""
+    names = {"mass": "kg", "len": "m", "time": "s"}
+    return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
 
 
-SI = System()
+def remark_in_si(remark: str) -> str:
+    """Return a remark with seconds in place of units of time."""
+    return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)

@@ -1,10 +1,12 @@
-"""Values of inputs as texts: numbers with units and uncertainties, ranges, lists and grids.
+"""Values of inputs, read from texts or Python; a number with a unit becomes SI when it is read.
 
 number       `30`, `-1.5`, `2e-3`
 uncertain    `1587(2)`, `1587+/-2`, `1587 ± 0.1 %`, `(1.5+-0.2)e3`
 points       `1,2,3`, `start:stop:count`, `log:start:stop:count`
 unknown      `from:to`, `log:from:to`
 unit         at the end of any of them: `480 rpm`, `477(2) rpm`, `60:80:3 rpm`
+
+A tilt with a unit becomes degrees or radians.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
+from .inputs import TILT
 from .ranges import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 
 LOG = "log:"
@@ -39,34 +42,52 @@ _UNCERTAIN = (
 
 
 class Value(NamedTuple):
-    """An input as it was given, without any conversion."""
+    """An input; one that was given with a unit is in SI, a tilt in degrees or radians."""
 
     number: Any
     """A real number or one of `STEADY_WORDS`; the `Points` of a sweep or the `Span` of a search."""
     unit: str = ""
+    """The unit of the number after conversion, such as `len`, `rad/time` or `deg`; or empty."""
     std: Fraction | None = None
     """Standard uncertainty, in the same unit; None if there is none."""
 
-    def scaled(self, factor: Fraction) -> Value:
-        """Return the value multiplied by the size of its unit, without the unit."""
-        if hasattr(self.number, "scaled"):
-            number = self.number.scaled(factor)
-        else:  # arrays have doubles
-            number = self.number * (factor if isinstance(self.number, Fraction) else float(factor))
-        return Value(number, "", None if self.std is None else self.std * abs(factor))
+    def given_in(self, unit: str, key: str, wanted: str | None = None) -> Value:
+        """Return the number as one in a unit, converted to SI, or to `wanted` (see `factor_of`).
+
+        `key` is the input or the quantity.  Raises LagtopError for a unit of other dimensions.
+        """
+        if not unit:
+            return self
+        from .units import factor_of, unit_to_keep  # start-up
+
+        wanted = unit_to_keep(key, unit) if wanted is None else wanted
+        factor = factor_of(key, unit, wanted)
+        is_number = isinstance(self.number, Fraction)
+        number = self.number * factor if is_number else self.number.scaled(factor)
+        return Value(number, wanted, None if self.std is None else self.std * factor)
+
+
+def tilt_key(name: str, value: Value, *, radians: bool = False) -> str:
+    """Return the key of an input: that of a tilt names its unit, which is degrees by default."""
+    if not name.startswith(TILT) or (name != TILT and not value.unit):
+        return name
+    return f"{TILT}_{value.unit or ('rad' if radians else 'deg')}"
 
 
 def parse_value(
+    key: str,
     text: str,
     parse: Callable[[str], Any] = parse_number,
     *,
     uncertain: bool = False,
     steady: bool = False,
+    wanted: str | None = None,
 ) -> Value:
-    """Parse an input; `parse` reads its number.
+    """Read the input or quantity `key`; `parse` reads its number.
 
-    `uncertain` allows an uncertainty, and `steady` allows `STEADY_WORDS`.  Raises LagtopError if
-    `parse` does, with the whole text in place of the number, and for a bad uncertainty.
+    `uncertain` allows an uncertainty, `steady` allows `STEADY_WORDS`, and `wanted` is the unit of
+    the result.  Raises LagtopError if `parse` does, with the whole text in place of the number, for
+    a bad uncertainty, and for a unit of other dimensions.
     """
     number, unit = split_unit(text)
     if steady and number in STEADY_WORDS:
@@ -76,14 +97,15 @@ def parse_value(
         plain, std = _split_uncertainty(number)
         if std is not None and not uncertain:
             raise LagtopError(f"must have no uncertainty in this command, {got}: leave it out")
-        return Value(parse(plain), unit, std)
+        found = Value(parse(plain), "", std)
     except LagtopError as error:
         whole = str(error).replace(f"got {quoted(number)}", got)
         if number in STEADY_WORDS:
             whole = steady_refused(number)
         elif steady and not re.search(r"\d", number):
             whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
-        raise LagtopError(whole, error.key) from None
+        raise LagtopError(f"{key} {whole}", key) from None
+    return found.given_in(unit, key, wanted)
 
 
 def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
@@ -133,41 +155,19 @@ def steady_refused(word: str) -> str:
 def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -> Value:
     """Return a number or an array of Python as a value.
 
-    Quantities of pint and numbers of the package uncertainties are accepted, and texts if `parse`
-    reads their numbers.  Raises LagtopError for an uncertainty that is not finite, for a quantity
-    of another kind, and if `parse` does.
+    Numbers of the package uncertainties are accepted, and texts if `parse` reads their numbers.
+    Raises LagtopError for an uncertainty that is not finite, and if `parse` does.
     """
     if parse is not None and isinstance(given, str):
-        try:
-            return parse_value(given, parse, uncertain=True)
-        except LagtopError as error:
-            raise LagtopError(f"{name} {error}", name) from None
+        return parse_value(name, given, parse, uncertain=True)
     if isinstance(given, Value):
         return given
-    unit = ""
-    if hasattr(given, "m_as"):  # a quantity of pint
-        unit, given = _of_pint(name, given)
+    if hasattr(given, "magnitude"):  # NumPy would drop the unit of a quantity of pint
+        wrong = "must be a number without a unit object, such as its magnitude"
+        raise LagtopError(f"{name} {wrong}, got {quoted(given)}", name)
     number, std = getattr(given, "nominal_value", given), getattr(given, "std_dev", None)
-    if unit and not getattr(number, "shape", ()):
-        number = exact_number(name, number)
     spread = None if std is None else exact_number(name, std, "the uncertainty of ")
-    return Value(number, unit, spread)
-
-
-def _of_pint(name: str, given: Any) -> tuple[str, Any]:
-    """Return the unit and the magnitude of a quantity, in SI if lagtop does not know its unit."""
-    from .units import SI, UNIT_OF, unit_of_text  # start-up
-
-    unit = f"{given.units:~C}"
-    try:
-        unit_of_text(unit)
-        return unit, given.magnitude  # which is then converted exactly
-    except LagtopError:
-        unit = SI.named(UNIT_OF.get(name, "time"))
-    try:
-        return unit, given.m_as(unit)
-    except Exception as error:  # pint has errors of many kinds
-        raise LagtopError(f"{name} must have a unit such as {unit}: {error}", name) from None
+    return Value(number, "", spread)
 
 
 def values_of(inputs: Mapping[str, Any]) -> dict[str, Value]:

@@ -230,7 +230,7 @@ BAD = {
     "--r0 −5": "(write the minus sign as an ASCII hyphen, -)",
     "--r0 1_000": "(leave out the underscores)",
     "--r0 ٣": "--r0 must be a finite decimal number, got '٣'",
-    "--r0 0x10": "--r0 must have a unit as in '50 rad/s' or 480rpm, got the unit 'x10'",
+    "--r0 0x10": "--r0 must have a unit such as rad/s or rpm, got the unit 'x10'",
     "--psidot0 Steady": "--psidot0 must be a number, steady or steady-fast, got 'Steady'",
     "--psidot0 slow": "--psidot0 must be a number, steady or steady-fast, got 'slow'",
     "--m 0": "m must be > 0, got 0.0",

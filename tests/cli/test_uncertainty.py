@@ -34,7 +34,7 @@ def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
         std = abs(value) * 10 ** rng.uniform(-13, 2)
         text = uncertain_text(value, std)
         assert text == f"{uncertainties.ufloat(value, std):S}", text
-        read, other = parse_value(text, uncertain=True), uncertainties.ufloat_fromstr(text)
+        read, other = parse_value("m", text, uncertain=True), uncertainties.ufloat_fromstr(text)
         assert float(read.number) == pytest.approx(other.n, rel=1e-15)
         assert float(read.std or 0) == pytest.approx(other.s, rel=1e-12)
 

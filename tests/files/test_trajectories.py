@@ -164,7 +164,7 @@ HOSTILE = [  # pickles are not loaded, and no memory is taken for the size that 
         (b"PK\x03\x04", "bad npz file"),
         (b"PAR1", "bad Parquet file"),
         (twice(), "bad Parquet file: two columns are named 'theta'"),
-        (b"t,theta (furlongs)\n0,0\n", ": theta must have a unit as in 30deg or 0.5rad, got the"),
+        (b"t,theta (furlongs)\n0,0\n", ": theta must have a unit such as deg or rad, got the"),
         (b"t,x [m],y [m],z [cm]\n0,0,0,0\n", ": the parts of position must have one unit, got 'x"),
         (b"t,q_w (m),q_x (m),q_y (m),q_z (m)\n", ": quaternion must have no unit, got 'm'"),
         *((content, "") for content in HOSTILE),

@@ -10,7 +10,6 @@ from typing import Any
 
 import mpmath
 import numpy as np
-import pint
 import pytest
 from conftest import Lagtop, assert_one_line
 from lagtop import LagtopError, MixedBodyWarning, Top, find, solve, sweep
@@ -170,7 +169,7 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         (["T_nutation~3"], {"r0": "1:2"}, "a condition must be KEY=VALUE"),
         (["T_nutation=1", "T_nutation=2"], {"r0": "1:2", "m": "1:2"}, "each key once"),
         (["T_nutation=0.4", "path=straight"], {"r0": "1:2"}, "path= must be one of cusped"),
-        (["T_nutation=nan"], {"r0": "1:2"}, "the value of T_nutation must be a finite"),
+        (["T_nutation=nan"], {"r0": "1:2"}, "T_nutation must be a finite"),
         (["T_nut=3"], {"r0": "1:2"}, "did you mean .T_nutation"),
         (["T_nutation=1"], {"r0": "2:1"}, "r0 must be a range whose first end is the smaller one"),
         (["T_nutation=1"], {"r0": "log:-1:1"}, "must have two ends of one sign"),
@@ -220,18 +219,21 @@ def test_conditions_with_units(united: str, plain: str, lagtop: Lagtop) -> None:
 
 
 def test_units_that_do_not_belong(lagtop: Lagtop) -> None:
-    message = "T_nutation must have a unit as in 2s, got the unit 'rad'"
+    message = "T_nutation must have a unit such as s or ms, got the unit 'rad'"
     assert_one_line(lagtop("find", *LAB, "T_nutation=50rad"), 2, message)
-    message = "--r0 must have a unit such as '50 rad/s' or 480rpm, as a time"
+    message = "--r0 must have a unit such as rad/s or rpm, as a time"
     assert_one_line(lagtop("find", "--r0", "10:200", "T_precession=500ms"), 2, message)
 
 
-def test_quantities_of_pint() -> None:
-    unit: Any = pint.UnitRegistry()
-    body = {"m": "1587 g", "A": "39032 g cm^2", "C": "17458 g cm^2", "s": "4 cm", "g": "981 cm/s^2"}
-    known = {name: unit.Quantity(text) for name, text in body.items()}
-    period = {"T_precession": unit.Quantity(2000.0, "ms")}
-    (found,) = find(period, r0=unit.Quantity((100, 1900), "rpm"), scan=100, **known)
+def test_texts_with_units() -> None:
+    body: Any = {
+        "m": "1587 g",
+        "A": "39032 g cm^2",
+        "C": "17458 g cm^2",
+        "s": "4 cm",
+        "g": "981 cm/s^2",
+    }
+    (found,) = find({"T_precession": "2000 ms"}, r0="100:1900 rpm", scan=100, **body)
     (plain,) = find({"T_precession": 2}, r0=(10, 200), scan=100)
     assert (found.top.r0, found.top.m) == pytest.approx((plain.top.r0, 1.587), rel=1e-12)
 

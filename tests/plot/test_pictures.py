@@ -185,6 +185,20 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
     assert set(PICTURES) == {"sphere", "angles", "cubic", "phase", "map"}
 
 
+def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> None:
+    shown: list[Any] = []
+
+    def figure_of(motions: Any, _: object, options: Any) -> None:
+        shown.extend([motions[""].top, options.x, options.y])
+        raise LagtopError("enough")
+
+    monkeypatch.setattr("lagrange_cli.plot.pictures.figure_of", figure_of)
+    lagtop("plot", "map", "--x", "m=1000:2000:3 g", "--y", "theta0=0.5:1:2 rad", "-o", "x.png")
+    top, (x, masses), (_, tilts) = shown
+    assert (top.m, top.s, x, masses.tolist()) == (1.587, 0.04, "m", [1.0, 1.5, 2.0])
+    assert tilts.tolist() == pytest.approx([28.64788975654116, 57.29577951308232], rel=1e-15)
+
+
 @pytest.mark.parametrize(
     ("args", "said"),
     [
@@ -195,6 +209,8 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
         (["sphere", "-o", "x.png", "--key", "a"], "need map"),
         (["map", "-o", "x.png", "--key", "nosuch"], "nosuch"),
         (["map", "-o", "x.png", "--x", "r0=1:2"], "--x"),
+        (["map", "-o", "x.png", "--x", "m=1:2:3 kg", "--r0", "50"], "--r0 must have a unit"),
+        (["map", "-o", "x.png", "--x", "m=1:2:3 s"], "--x must have a unit such as kg or g"),
         (["map", "-o", "x.png", "--x", "q0=1:2:3"], "--x must be among"),
         (["map", "-o", "x.png", "--x", "r0=9:2:3"], "start < stop"),
         (["map", "-o", "x.png", "--x", "theta0=1:9:3"], "two inputs"),

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas
-import pint
 import pytest
 import xarray
 from lagtop import LagtopError, Top, solve, sweep
@@ -42,22 +41,6 @@ def test_paired_inputs_share_a_dimension() -> None:
     assert found.to_pandas().columns.tolist() == ["r0", "theta0_deg", "regime"]
     with pytest.raises(LagtopError, match=r"pass columns by name: sweep\(\*\*df\)"):
         sweep(columns)
-
-
-def test_quantities_are_converted_to_si() -> None:
-    unit: Any = pint.UnitRegistry()
-    found = sweep(
-        r0=unit.Quantity([400.0, 500.0], "rpm"),
-        theta0_deg=unit.Quantity(0.5, "rad"),
-        m=unit.Quantity(350, "g"),
-        keys=["r0", "m", "A", "theta0_deg"],
-    )
-    assert found["r0"] == pytest.approx(np.array([400, 500]) * math.pi / 30, rel=1e-15)
-    assert found["theta0_deg"] == pytest.approx(np.full(2, math.degrees(0.5)), rel=1e-15)
-    assert found["m"].tolist() == [0.35] * 2
-    assert found["A"].tolist() == [0.0039032] * 2  # 39032 g cm^2 of the worked example
-    with pytest.raises(LagtopError, match="s must have a unit"):
-        sweep(m=unit.Quantity(350, "g"), s=4.0)
 
 
 UNREAL: list[Any] = [np.array([1, 2j]), np.array(["2020-01-01"], "datetime64[D]"), 10**400]
