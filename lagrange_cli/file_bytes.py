@@ -17,6 +17,8 @@ from .errors import CannotWriteError, DataError, LagtopError
 LARGEST_FILE = 1 << 30
 """Most bytes of an input file after decompression, because files are held in memory."""
 _AT_ONCE = 1 << 20
+_BINARY = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0", b"\x93NUM")
+"""The first bytes of archives and new workbooks, of an empty archive, of old workbooks, of npy."""
 _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -71,6 +73,9 @@ def decoded(content: bytes, name: str) -> str:
 
     Raises DataError for other bytes, with their line.
     """
+    if content.startswith(_BINARY):
+        wrong = "a workbook, an archive or an array of NumPy is no text: save it as CSV"
+        raise DataError(f"{name}: {wrong}")
     try:
         text = content.decode("utf-16" if content[:2] in _UTF16 else "utf-8-sig")
     except UnicodeDecodeError as error:

@@ -57,13 +57,6 @@ def shortened(text: str, most: int = 80) -> str:
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
-def json_text(value: Any) -> str:
-    """Return the text of any JSON value."""
-    import orjson
-
-    return orjson.dumps(value).decode()
-
-
 def double_text(value: float) -> str:
     """Return the shortest text that reads back as the same double.
 
@@ -113,16 +106,3 @@ def _remedy(text: str) -> str:
     if any(dash in text for dash in "\u2212\u2013\u2014"):
         return " (write the minus sign as an ASCII hyphen, -)"
     return ""
-
-
-def csv_text(value: Any) -> str:
-    """Return a CSV cell, in quotes if necessary; anything but text and numbers is JSON."""
-    if type(value) is str:
-        return f'"{value.replace(_QUOTE, _QUOTE * 2)}"' if set(value) & _SPECIAL else value
-    if value is None or isinstance(value, float | NumberText):
-        return value_text(value)
-    return csv_text(json_text(value))
-
-
-_QUOTE = '"'
-_SPECIAL = {_QUOTE, ",", "\n", "\r"}

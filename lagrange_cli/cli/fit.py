@@ -6,11 +6,11 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
-from ..arithmetic.text import json_text
 from ..errors import LagtopError, SomeFailedError
 from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import with_progress
+from ..output.text import json_text
 from . import shared as opt
 from .app import complain
 

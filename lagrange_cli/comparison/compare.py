@@ -15,7 +15,7 @@ from ..file_bytes import shown_path, utf8_path
 from ..files.columns import QUANTITIES
 from ..files.observed import Conventions, quantities_of
 from ..names import ANGLES, check_names
-from ..solver.notebook import HasRecord
+from ..output.notebook import HasRecord
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 from .causes import likely_cause

@@ -7,13 +7,14 @@ delimiter, the headings and the decimal mark are decided once per file, from its
 from __future__ import annotations
 
 import csv
+import json
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.text import json_text, parse_number, quoted, shortened
+from ..arithmetic.text import parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
 from ..file_bytes import decoded
 
@@ -298,7 +299,7 @@ def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
 
 def _shown(value: Any) -> str:
     """Return a cell as text for a message, a value of JSON as it writes it."""
-    return quoted(value) if isinstance(value, str) else shortened(json_text(value))
+    return quoted(value) if isinstance(value, str) else shortened(json.dumps(value))
 
 
 def parts(name: str, size: int) -> list[str]:

@@ -1,11 +1,11 @@
 """Trajectories and times from files or from standard input, held in memory as whole columns.
 
-The first bytes of a file determine its format, not its name: Parquet, npy, npz, or else text.
+The first bytes of a file determine its format, not its name: Parquet, or else text.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .observed import Conventions
 
-_MAGIC = {b"PAR1": "Parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
+_PARQUET = b"PAR1"
 
 
 class Trajectory:
@@ -123,75 +123,53 @@ def read_trajectory(
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
     content = read_bytes(path)
-    if kind := _MAGIC.get(content[:4]):
-        return Trajectory(_read_arrays(content, name, kind), names)
+    if content.startswith(_PARQUET):
+        return Trajectory(_read_parquet(content, name), names)
     table = read_table(content, name, known_quantities, decimal, len(names or ()) or None)
     if table.headings is None and not table.width:
         raise DataError(f"{name} must hold a trajectory, got no row")
     return Trajectory(table, names)
 
 
-def _read_arrays(content: bytes, name: str, kind: str) -> Table:
-    """Return the columns of real numbers that are as long as the column of times, no pickles."""
+def _read_parquet(content: bytes, name: str) -> Table:
+    """Return the columns of numbers of a Parquet file; a list of a fixed size is several columns.
+
+    Null becomes NaN.
+    """
     import numpy as np
 
     try:
-        found = (_parquet if kind == "Parquet" else _numpy)(content)
+        from pyarrow import parquet
     except ImportError:
         remedy = "pip install 'lagtop[parquet]'"
         raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
+    try:
+        file = parquet.ParquetFile(BytesIO(content))
+        _check_size(file)
+        table = file.read()
+        if twice := repeated(table.column_names):
+            raise ValueError(f"two columns are named {twice!r}")
+        columns: dict[str, Array] = {}
+        for heading, column in zip(table.column_names, table.columns, strict=True):
+            size = getattr(column.type, "list_size", 0)
+            rows = [x or [None] * size for x in column.to_pylist()] if size else column.to_numpy()
+            numbers: Array = np.array(rows, np.float64) if size else np.asarray(rows)
+            if numbers.dtype.kind in "iuf":
+                headings = parts(heading, size)
+                columns |= dict(zip(headings, np.atleast_2d(numbers.T), strict=True))
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
-        raise DataError(f"{name}: bad {kind} file: {why}") from None
-    real = {x: y for x, y in found.items() if y.dtype.kind in "iuf" and y.ndim in {1, 2}}
-    time = next((x for x in real if "t" in quantities_in([x])), next(iter(real), None))
-    if time is None:
-        shown = shortened(", ".join(f"{x} {y.dtype} {y.shape}".strip() for x, y in found.items()))
-        raise DataError(f"{name} must have real numbers in 1 or 2 dimensions, got {shown or None}")
-    columns: dict[str, Array] = {}
-    for x, y in real.items():
-        if len(y) == len(real[time]):
-            columns |= dict(
-                zip(parts(x, y.shape[1] if y.ndim > 1 else 0), np.atleast_2d(y.T), strict=True)
-            )
-    rows = np.array([*columns.values()], np.float64).T
-    headings = None if "" in found else [*columns]
-    return Table(name, headings, len(columns), rows, range(1, len(rows) + 1), place="row")
+        raise DataError(f"{name}: bad Parquet file: {why}") from None
+    values = np.array([*columns.values()], np.float64).T
+    lines = range(1, len(values) + 1)
+    return Table(name, [*columns], len(columns), values, lines, place="row")
 
 
-def _numpy(content: bytes) -> Mapping[str, Any]:
-    """Return the arrays of an npz file, the fields of an npy file, or its array without a name."""
-    import numpy as np
-
-    if content.startswith(b"PK"):
-        from zipfile import ZipFile
-
-        _check_size(sum(x.file_size for x in ZipFile(BytesIO(content)).infolist()))
-        with np.load(BytesIO(content), allow_pickle=False) as archive:
-            return dict(archive)
-    array = np.load(BytesIO(content), allow_pickle=False)
-    return {x: array[x] for x in array.dtype.names} if array.dtype.names else {"": array}
-
-
-def _parquet(content: bytes) -> Mapping[str, Any]:
-    """Return the columns, and lists of a fixed size as matrices; null becomes NaN."""
-    import numpy as np
-    from pyarrow import parquet
-
-    file = parquet.ParquetFile(BytesIO(content))
-    _check_size(8 * file.metadata.num_rows * file.metadata.num_columns)
-    found: dict[str, Any] = {}
-    table = file.read()
-    if twice := repeated(table.column_names):
-        raise ValueError(f"two columns are named {twice!r}")
-    for name, column in zip(table.column_names, table.columns, strict=True):
-        size = getattr(column.type, "list_size", 0)
-        rows = [x or [None] * size for x in column.to_pylist()] if size else column.to_numpy()
-        found[name] = np.array(rows, np.float64) if size else rows
-    return found
-
-
-def _check_size(size: int) -> None:
+def _check_size(file: Any) -> None:
+    """Raise ValueError for a Parquet file that needs too much memory, before it is read."""
+    groups = [file.metadata.row_group(i) for i in range(file.metadata.num_row_groups)]
+    listed = sum(getattr(x.type, "list_size", 1) for x in file.schema_arrow)
+    size = max(sum(x.total_byte_size for x in groups), 8 * file.metadata.num_rows * listed)
     if size > LARGEST_FILE:
         raise ValueError(f"it must have at most {LARGEST_FILE} bytes of numbers, has {size}")
 

@@ -22,8 +22,8 @@ from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..errors import AbsentError
 from ..files.rotations import within_half_turn
+from ..output.notebook import HasRecord
 from ..output.report import Field, Report, uncertain_text
-from ..solver.notebook import HasRecord
 from .recording import Known, Recording, shifted_origin
 
 if TYPE_CHECKING:

@@ -15,9 +15,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
-from ..arithmetic.text import NumberText, csv_text, json_text, value_text
+from ..arithmetic.text import NumberText, value_text
 from ..errors import CannotWriteError, LagtopError
 from .terminal import is_screen, printable, width_of
+from .text import csv_text, json_text
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import orjson
 
-from ..arithmetic.text import NumberText, csv_text, json_text
+from ..arithmetic.text import NumberText
 from ..errors import UnavailableError
+from .text import csv_text, json_text
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array

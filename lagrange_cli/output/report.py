@@ -12,8 +12,9 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.key import Key
-from ..arithmetic.text import csv_text, double_text, value_text
+from ..arithmetic.text import double_text, value_text
 from .terminal import printable
+from .text import csv_text
 
 if TYPE_CHECKING:
     from rich.text import Text

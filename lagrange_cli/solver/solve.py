@@ -10,7 +10,7 @@ from ..arithmetic.rounding import rounded
 from ..errors import LagtopError, OutOfRangeWarning
 from ..top.top import Top
 from .numbers import Numbers, record_in_range
-from .record import NUMBER_KEYS, all_keys, requested_keys
+from .record import KEYS, NUMBER_KEYS, all_keys, requested_keys
 from .regime import Regime, exact
 from .spin_precession import Nutating
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
     from ..arithmetic.types import Array
-    from .notebook import Document
+    from ..output.notebook import Document
     from .sampling import Angles
     from .series import Swing
 
@@ -151,9 +151,9 @@ class Motion(Numbers):
 
     def _repr_html_(self) -> str:
         """Return the record as a table for a notebook."""
-        from .notebook import record_html  # start-up
+        from ..output.notebook import record_html  # start-up
 
-        return record_html(self.record())
+        return record_html(self.regime, self.record(), KEYS)
 
     def view(self) -> Document:
         """Return an animated page of the top, for a notebook or, with `save`, for a browser.

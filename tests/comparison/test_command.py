@@ -76,9 +76,10 @@ def test_steps(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
 def test_conventions_by_options(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
     """An option overrides what p, q and r say of their frame."""
     table = np.loadtxt(right, delimiter=",", skiprows=1)
-    np.save(tmp_path / "a.npy", np.column_stack([table[:, 0] + 3, np.roll(table[:, 1:5], -1, 1)]))
+    rolled = np.column_stack([table[:, 0] + 3, np.roll(table[:, 1:5], -1, 1)])
+    np.savetxt(tmp_path / "a.txt", rolled, "%.17g")
     how = ["--columns", "t,quaternion", "--align", "time", "--quaternion-order", "xyzw"]
-    result = lagtop("compare", tmp_path / "a.npy", *OPTIONS, *how)
+    result = lagtop("compare", tmp_path / "a.txt", *OPTIONS, *how)
     assert result.exit_code == 0
     wrong = lagtop("compare", right, *OPTIONS, "--rates-frame", "space")
     assert "the rates are in the frame of body: --rates-frame body" in wrong.stdout

@@ -9,8 +9,9 @@ import orjson
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrange_cli.arithmetic.text import csv_text, double_text, value_text
+from lagrange_cli.arithmetic.text import double_text, value_text
 from lagrange_cli.output.formats import block_text
+from lagrange_cli.output.text import csv_text
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

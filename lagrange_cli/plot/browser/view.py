@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import LagtopError, check_type
+from ...output.notebook import Document
 from ...solver.explanation import listed
-from ...solver.notebook import Document
 from ...solver.record import KEYS
 from ...solver.solve import Motion, solve
 from ...top.given import read_scene

@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from .record import KEYS
+from ..arithmetic.key import Key
 
 
 class Document(str):
@@ -44,14 +44,14 @@ class HasRecord:
         return html_table(self.verdict, (x for x in record.items() if x[1] is not None))
 
 
-def record_html(record: Mapping[str, Any]) -> str:
-    """Return the record of a motion as an HTML table: key, symbol, meaning, value and unit."""
+def record_html(caption: str, record: Mapping[str, Any], keys: Mapping[str, Key]) -> str:
+    """Return a record as an HTML table: key, symbol, meaning, value and unit."""
     rows = (
-        (name, KEYS[name].symbol, KEYS[name].meaning, value, KEYS[name].unit)
+        (name, keys[name].symbol, keys[name].meaning, value, keys[name].unit)
         for name, value in record.items()
         if value is not None
     )
-    return html_table(record["regime"], rows)
+    return html_table(caption, rows)
 
 
 def html_table(caption: str, rows: Iterable[Sequence[Any]], head: Sequence[str] = ()) -> str:
