@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from io import BytesIO
 from typing import Any
 
-from .errors import CannotWriteError, DataError, LagtopError
+from .errors import DataError
 
 LARGEST_FILE = 1 << 30
 """Most bytes of an input file after decompression, because files are held in memory."""
@@ -93,21 +93,3 @@ def utf8_path(path: str) -> str:
 def shown_path(path: str) -> str:
     """Return the name of a file for messages."""
     return "standard input" if path == "-" else utf8_path(path) or "''"
-
-
-def digest_of(path: str) -> str:
-    """Return the SHA-256 digest of a file.  Raises LagtopError for standard input."""
-    from hashlib import sha256  # for sweeps in parts only
-
-    if path == "-":
-        raise LagtopError("--parts needs a file of tops that can be read again, got -")
-    return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
-
-
-@contextmanager
-def temporary_files() -> Iterator[None]:
-    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
-    try:
-        yield
-    except OSError as error:
-        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None

@@ -49,6 +49,7 @@ def _parse_jobs(text: str) -> int:
 @opt.top(
     "[SCENE] [TOPS.csv|.ndjson|-]",
     kind=opt.values(parse_values),
+    rate=opt.values(parse_values, steady=True),
     is_scene=is_scene_file,
 )
 @opt.keys

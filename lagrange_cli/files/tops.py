@@ -22,7 +22,7 @@ from ..top.given import Given, gather
 from ..top.inputs import TILT, checked_double, one_of_each, overridden
 from ..top.ranges import MOST_POINTS, Points
 from ..top.top import INPUTS
-from ..top.values import STEADY_WORDS, Value, steady_refused, tilt_key
+from ..top.values import STEADY_WORDS, Value, tilt_key
 from .headings import name_and_unit
 from .text_tables import Table, read_table
 
@@ -35,8 +35,8 @@ class Tops(NamedTuple):
 
     size: int
     """The number of tops."""
-    inputs: Mapping[str, Array | float]
-    """For each input an array, or one number for all tops; NaN for a top without the input."""
+    inputs: Mapping[str, Any]
+    """For each input an array, or one value for all tops; NaN for a top without the input."""
     carried: Sequence[Sequence[Any]] = ()
     """The extra columns, which are copied to the output."""
     lines: Sequence[int] | None = None
@@ -68,7 +68,7 @@ class Product(NamedTuple):
         for first in range(0, self.size, size):
             yield Product(self.axes, first, min(first + size, self.size))
 
-    def arrays(self, shared: Mapping[str, float]) -> Tops:
+    def arrays(self, shared: Mapping[str, Any]) -> Tops:
         """Return the inputs of the combinations; `shared` holds those that do not vary."""
         numbers = np.arange(self.first, self.first + self.size)
         _, *places = np.unravel_index(
@@ -111,11 +111,11 @@ class TopsFile(NamedTuple):
         for first in range(0, self.size, size):
             yield self._replace(table=self.table.part(slice(first, first + size)))
 
-    def arrays(self, shared: Mapping[str, float]) -> Tops:
+    def arrays(self, shared: Mapping[str, Any]) -> Tops:
         """Return the inputs of the tops; `shared` inputs are the defaults of rows without error."""
-        found, carried, errors = list[dict[str, float]](), list[list[Any]](), dict[int, str]()
+        found, carried, errors = list[dict[str, Any]](), list[list[Any]](), dict[int, str]()
         for row in range(self.size):
-            values, inputs = dict[str, Any](), dict[str, float]()
+            values, inputs = dict[str, Any](), dict[str, Any]()
             try:
                 cells = self.table.cells(row)
                 values = dict(zip(self.columns, cells, strict=False))
@@ -128,19 +128,27 @@ class TopsFile(NamedTuple):
                 errors[row] = str(error)
             found.append(inputs)
             carried.append([values.get(name) for name in self.carried])
-        arrays = {name: np.array([x.get(name, np.nan) for x in found]) for name in INPUTS}
+        arrays = {name: _array([x.get(name, np.nan) for x in found]) for name in INPUTS}
         return Tops(self.size, arrays, [*zip(*carried, strict=True)], self.table.lines, errors)
 
-    def _double(self, name: str, cell: Any) -> float:
-        """Return the input in a cell.  Raises LagtopError."""
+    def _double(self, name: str, cell: Any) -> Any:
+        """Return the input in a cell, a double or a word for psidot0.  Raises LagtopError."""
+        if name == "psidot0" and cell in STEADY_WORDS:
+            return cell
         try:
             number = self.table.number(cell)
         except LagtopError as error:
-            wrong = steady_refused(cell) if cell in STEADY_WORDS else str(error)
+            wrong = str(error)
             if isinstance(cell, str) and re.search(r"\d\s*(\(\d|±|\+/?-)", cell):
                 wrong = f"must have no uncertainty, got {quoted(cell)}: loop over solve"
             raise LagtopError(f"{name} {wrong}") from None
         return checked_double(name, number * self.units[name].number)
+
+
+def _array(values: list[Any]) -> Array:
+    """Return numbers as an array of doubles, or of objects if words are among them."""
+    words = any(isinstance(x, str) for x in values)
+    return np.array(values, dtype=object if words else np.float64)
 
 
 def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFile:

@@ -1,7 +1,7 @@
-"""Further keys that are formulas of the inputs, for many tops at once in pairs of doubles.
+"""Further keys that are formulas of the inputs, for many tops at once, in pairs of doubles.
 
-`motion` declares the same keys with their meanings; `solve` computes a key of a top by itself if
-its terms cancel here.  Equation numbers are Chrapan's.
+`solver` declares the same keys with their meanings.  Where the terms of a formula cancel, `solve`
+computes the number.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -10,38 +10,35 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arithmetic.arrays import PAIRS
-from ..arithmetic.pairs import DoubleDouble, two_sum
+from ..arithmetic.pairs import PI, DoubleDouble, two_sum
 from ..arithmetic.types import Array, Mask
-from .top_arrays import PAIR_EPS, TopArrays
+from .tops import TopArrays
+from .trust import GOOD, PAIR_EPS
 
-_GOOD = 2.0**-54
-"""Relative error at which a number is trusted."""
 _LEAST, _MOST = 1e-280, 1e280
 """Sizes between which pairs of doubles keep all of their digits."""
+_TURN = DoubleDouble(np.array([2 * PI.high]), np.array([2 * PI.middle]))
 
 
 class Elementary:
     """The keys of many tops."""
 
     def __init__(self, tops: TopArrays) -> None:
-        with PAIRS.working():
-            self.start = tops.pair_state()
-            self.A, self.C = DoubleDouble(tops.A), DoubleDouble(tops.C)
-            self.share = DoubleDouble(*two_sum(2 * tops.A, -tops.C)) / (2.0 * self.A)
+        self.start = tops.start_in_pairs()
+        self.A, self.C = DoubleDouble(tops.A), DoubleDouble(tops.C)
+        self.twice_A_C = DoubleDouble(*two_sum(2 * tops.A, -tops.C))
         self.a, self.b, self.cos = self.start.a, self.start.b, self.start.cos
-        self.unsure = np.zeros(tops.m.shape, dtype=np.bool_)
-        """Tops for which the present number has lost digits."""
+        self.lost = np.zeros(tops.m.shape, dtype=np.bool_)
+        """Tops whose present number has lost digits."""
 
     def number(self, key: str) -> tuple[Array, Mask]:
-        """Return a key of ELEMENTARY, NaN if it does not exist, and the tops left for `solve`."""
-        self.unsure = np.zeros_like(self.unsure)
-        with PAIRS.working():
-            values: Array = np.array(np.broadcast_to(ELEMENTARY[key](self).high, self.A.high.shape))
-            size = abs(values)
-            left = self.unsure | (size > 0) & (size < _LEAST) | (size > _MOST)
-        divisor = {"stability_factor": self.a}.get(key, self.b)
+        """Return a key of ELEMENTARY, NaN if it does not exist, and the tops left to `solve`."""
+        self.lost = np.zeros_like(self.lost)
+        values = np.array(np.broadcast_to(ELEMENTARY[key](self).high, self.lost.shape))
+        size = abs(values)
+        left = self.lost | (size > 0) & (size < _LEAST) | (size > _MOST)
         if key in _QUOTIENTS:
+            divisor = self.a if key == "stability_factor" else self.b
             left &= divisor.high != 0
             values[divisor.high == 0] = np.nan
         values[left] = np.nan
@@ -50,12 +47,12 @@ class Elementary:
     def total(self, *terms: DoubleDouble, error: Array | float = 0.0) -> DoubleDouble:
         """Return a sum; note the tops for which it loses digits.
 
-        `error` is the size of an error of the terms, in units of PAIR_EPS.
+        `error` is an absolute error of the terms, in units of PAIR_EPS.
         """
         found, size = terms[0], abs(terms[0].high) + error
         for term in terms[1:]:
             found, size = found + term, size + abs(term.high)
-        self.unsure |= ~(PAIR_EPS * size <= _GOOD * abs(found.high))
+        self.lost |= ~(PAIR_EPS * size <= GOOD * abs(found.high))
         return found
 
     def momentum(self) -> DoubleDouble:
@@ -80,7 +77,7 @@ class Elementary:
         """Return q = b +- sqrt(b^2 - 2 a cos theta0), of the sign of b; NaN if there is none."""
         self.total(self.cos, error=1.0)
         square = self.total(self.b * self.b, -2.0 * self.a * self.cos, error=self.a.high)
-        self.unsure |= square.high == 0
+        self.lost |= square.high == 0
         both = abs(self.b) + square.sqrt()
         return DoubleDouble.choose(self.b.high < 0, -both, both)
 
@@ -88,7 +85,8 @@ class Elementary:
         """Return the least r0 of a steady precession, 0 from 90 degrees on."""
         self.total(self.cos, error=1.0)
         above = DoubleDouble.choose(self.cos.high > 0, self.cos, 0.0)
-        return self.A / self.C * (2.0 * self.a * above).sqrt()
+        least: DoubleDouble = self.A / self.C * (2.0 * self.a * above).sqrt()
+        return least
 
 
 ELEMENTARY: dict[str, Callable[[Elementary], DoubleDouble]] = {
@@ -98,14 +96,14 @@ ELEMENTARY: dict[str, Callable[[Elementary], DoubleDouble]] = {
     "steady_rate_slow": lambda of: of.a / of.steady(),
     "steady_rate_fast": lambda of: of.steady() / (2.0 * of.cos),
     "precession_rate_elementary": lambda of: of.a / (2.0 * of.b),
-    "T_nutation_elementary": lambda of: 2.0 * PAIRS.pi / abs(of.b),
+    "T_nutation_elementary": lambda of: _TURN / abs(of.b),
     "energy_without_spin": lambda of: of.A * of.energy() / 2.0,
     "energy_constant": Elementary.energy,
     "Lz": lambda of: of.A * of.momentum(),
     "momentum_constant": Elementary.momentum,
     "f_upright": Elementary.upright,
     "f_hanging": Elementary.hanging,
-    "spin_share": lambda of: of.share,
+    "spin_share": lambda of: of.twice_A_C / (2.0 * of.A),
 }
 """The formula of each key."""
 _QUOTIENTS = {"stability_factor", "precession_rate_elementary", "T_nutation_elementary"}

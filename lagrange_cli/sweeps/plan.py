@@ -8,6 +8,7 @@ single run, wherever they were computed.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from hashlib import sha256
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -15,17 +16,16 @@ import numpy as np
 
 from .. import __version__
 from ..errors import LagtopError, SomeFailedError
-from ..file_bytes import digest_of
+from ..file_bytes import read_bytes
 from ..files.tops import Product, TopsFile, read_tops
 from ..output.formats import Columns, block_text
 from ..top.given import Given, gather
 from ..top.inputs import checked_double, overridden
 from ..top.ranges import Points
-from ..top.units import remark_in_si
 from ..top.values import Value, steady_refused
 from .records import BLOCK_ROWS, check_keys, column_keys, records
 from .results import ResultColumn
-from .top_arrays import top_arrays
+from .tops import top_arrays
 
 NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
@@ -48,13 +48,13 @@ class Sweep(NamedTuple):
 
     header: Sequence[str]
     """The names of the columns that are written: copied columns, and the keys."""
-    shared: Mapping[str, float]
-    """Inputs of tops that do not have their own."""
+    shared: Mapping[str, Any]
+    """Inputs of tops that do not have their own; psidot0 may be a word."""
     keys: Sequence[str]
     radians: bool
     fmt: str
     si: bool = False
-    """Whether inputs have units; remarks name them."""
+    """Whether inputs have units."""
 
     def part(self, numbered: NumberedBlock) -> Part:
         """Compute one part."""
@@ -67,8 +67,6 @@ class Sweep(NamedTuple):
             errors = [(row, f"line {given.lines[row]}: {error}") for row, error in errors]
         for row, error in errors:
             columns["error"][row] = error
-        if self.si and "remark" in columns:
-            columns["remark"][:] = [x and remark_in_si(x) for x in columns["remark"]]
         computed = runs_of([columns[key] for key in self.keys])
         text = block_text([*given.carried, *computed], self.header, self.fmt)
         return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
@@ -108,7 +106,7 @@ def plan(
         found = gather(axes, scene)
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid, ranges = Product(points), ranges_of(points)
-        shared = shared_inputs(found, varying=ranges)
+        shared = shared_inputs(found, varying=ranges, steady=True)
         sweep = Sweep(chosen, shared, chosen, radians, fmt, found.si)
         inputs = shared | {name: str(axis) for name, axis in ranges.items()}
         blocks = enumerate(grid.blocks(BLOCK_ROWS))
@@ -119,11 +117,18 @@ def plan(
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
     source = read_tops(path, computed, decimal)
     found = source.shared(axes, scene)
-    shared = shared_inputs(found, varying=source.columns)
+    shared = shared_inputs(found, varying=source.columns, steady=True)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     sweep = Sweep([*source.carried, *with_error], shared, with_error, radians, fmt, found.si)
     of_file = enumerate(source.blocks(BLOCK_ROWS))
     return Plan(sweep, of_file, 0, _described(sweep, shared, digest), found)
+
+
+def digest_of(path: str) -> str:
+    """Return the SHA-256 digest of a file.  Raises LagtopError for standard input."""
+    if path == "-":
+        raise LagtopError("--parts needs a file of tops that can be read again, got -")
+    return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
 
 
 def _described(sweep: Sweep, inputs: Mapping[str, Any], digest: str = "") -> dict[str, Any]:
@@ -140,10 +145,13 @@ def ranges_of(axes: Mapping[str, Points]) -> dict[str, Points]:
     return {name: axis for name, axis in axes.items() if axis.count > 1}
 
 
-def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, float]:
+def shared_inputs(
+    found: Given, *, varying: Collection[str] = (), steady: bool = False
+) -> dict[str, Any]:
     """Return inputs by key as doubles; the worked example gives the missing ones.
 
-    Raises LagtopError for an invalid input; inputs in `varying` are not checked.
+    If `steady`, psidot0 may be a word, which stays one.  Raises LagtopError for an invalid input;
+    inputs in `varying`, and a steady rate, are not checked.
     """
     loose = set(varying)
     if loose & {"A", "A_cm", "C"} or ("A_cm" in found.inputs and loose & {"m", "s"}):
@@ -151,12 +159,14 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
     numbers = {
         name: x.bounds()[0] if isinstance(x, Points) else x for name, x in found.inputs.items()
     }
-    if isinstance(word := numbers.get("psidot0"), str):
-        raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
+    words = {name: x for name, x in numbers.items() if isinstance(x, str)}
+    if words and not steady:
+        raise LagtopError(f"psidot0 {steady_refused(words['psidot0'])}", "psidot0")
     values = {name: found.values[name]._replace(number=x) for name, x in numbers.items()}
-    top = found._replace(values=values).top(without=loose)
+    top = found._replace(values=values).top(without={*loose, *words})
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
-    return overridden(inputs, {name: checked_double(name, x) for name, x in numbers.items()})
+    doubles = {name: checked_double(name, x) for name, x in numbers.items() if name not in words}
+    return overridden(inputs, doubles) | words
 
 
 def runs_of(columns: Iterable[ResultColumn]) -> Columns:

@@ -1,43 +1,39 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
-Tops released from rest go through the formulas of `motion` as arrays of doubles, others as arrays
-of pairs of doubles.  `solve` computes a top by itself if its sizes are beyond 1e+-30, or if a
-cancellation costs too many digits.  It also computes all further keys.  An invalid top gets an
-`error` and no numbers.
+Tops released from rest go through `formulas` as arrays of doubles, others as arrays of pairs of
+doubles.  `solve` computes a top by itself if `trust` finds that digits are lost, if its sizes are
+beyond 1e+-30, and for a steady precession given by a word.  It also computes all further keys.  An
+invalid top gets an `error` and no numbers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..names import check_names
 from ..solver import record as motion_record
-from ..solver.kinds import vertical_remark
-from ..solver.numbers import gaps_of, kind_of, record_in_range
+from ..solver.numbers import record_in_range
 from ..solver.quantity import degree_name
 from ..solver.regime import FAST, Regime
 from ..solver.solve import solve
-from ..solver.spin_precession import fast_remark
 from ..top.top import Top
 from .elementary import ELEMENTARY, Elementary
-from .moving_tops import MovingTops
+from .formulas import ConstantTilt, Released, Start
 from .results import ResultColumn, Results, SweepInputs
-from .top_arrays import TopArrays, facts_at_rest
+from .tops import TopArrays
+from .trust import AnyStart
 
 TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
-OF_MODULI: dict[str, Callable[[Any], Array]] = {
-    "k_squared": lambda motion: motion.m,
-    "comodular_angle_deg": lambda motion: np.degrees(np.arctan2(motion.k_prime, motion.k)),
-}
-"""Further keys that a nutation after release from rest has, from its moduli."""
+OF_MODULI = ("k_squared", "comodular_angle_deg")
+"""Further keys that are formulas of the moduli."""
 BLOCK_ROWS = 1 << 12
 """Number of tops computed together, so that their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
@@ -123,23 +119,15 @@ def records(
     The columns are new, unless columns of `_empty_columns` are passed, and always have `error`.
     The result does not depend on the `numpy.errstate` of the caller.
     """
-    with ARRAYS.working():
+    with np.errstate(all="ignore"):  # `trust` rejects what an overflow or a 0/0 has touched
         columns = _empty_columns(keys, tops.m.size) if columns is None else columns
         block = _Block(tops, columns, radians)
-        left = np.ones(tops.m.shape, dtype=np.bool_)
-        for row, error in (errors or {}).items():
-            left[row], block.columns["error"][row] = False, error
-        for regime, found in tops.regimes().items():
-            if (rows := found & left).any():
-                block.fill(rows, regime)
-                left &= ~rows
-        if left.any() and (moving := left & tops.moving()).any():
-            left &= ~block.fill_moving(moving)
-        unsure = left | block.fill_elementary(~left)
-        for row in np.flatnonzero(unsure | bool(block.requested)).tolist():
-            keys_left = [*block.texts, *block.numbers] if left[row] else []
-            some = block.elementary if unsure[row] else []
-            block.solve(row, [*keys_left, *some, *block.requested])
+        block.set_errors(errors or {})
+        for regime, rows in tops.released().items():
+            block.fill_released(rows & block.missing, regime)
+        block.fill_moving(tops.moving() & block.missing)
+        block.fill_elementary()
+        block.solve_the_rest()
         return block.columns
 
 
@@ -149,111 +137,163 @@ class _Block:
     def __init__(self, tops: TopArrays, columns: Mapping[str, ResultColumn], radians: bool) -> None:
         self.tops, self.radians = tops, radians
         self.columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
-        tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
-        given = tops._asdict() | tilt
-        known = motion_record.record_keys(radians=radians)
-        others = {*given, *TEXTS}
+        tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians=radians)}
+        inputs = tops._asdict() | tilt
+        record = motion_record.record_keys(radians=radians)
+        self.inputs = [key for key in columns if key in inputs]
         self.texts = [key for key in columns if key in motion_record.TEXT_KEYS]
-        self.numbers = [key for key in columns if key in known and key not in others]
-        self.numbers += [key for key in columns if degree_name(key) in OF_MODULI]
-        others |= {*self.numbers, *self.texts}
         self.elementary = [key for key in columns if key in ELEMENTARY]
-        self.requested = [key for key in columns if key not in {*others, *self.elementary}]
+        others = {*self.inputs, *self.texts, *self.elementary, "error"}
+        self.numbers = [
+            key
+            for key in columns
+            if key not in others and (key in record or degree_name(key) in OF_MODULI)
+        ]
+        self.further = [key for key in columns if key not in {*others, *self.numbers}]
+        self.missing = np.ones(tops.m.shape, dtype=np.bool_)
+        """Tops whose numbers and texts are not filled yet."""
+        self.lost = np.zeros(tops.m.shape, dtype=np.bool_)
+        """Other tops with an elementary key that has lost digits."""
         for key, column in self.columns.items():
-            column[:] = given.get(key, np.nan if column.dtype == np.float64 else None)
+            column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
 
-    def fill(self, rows: Mask, regime: Regime) -> None:
-        """Fill the rows of one regime, all released from rest, by the formulas over doubles."""
-        chosen = slice(None) if rows.all() else rows
-        tops = self.tops.part(chosen)
-        facts, state = facts_at_rest(regime, tops.r0), tops.state()
-        gaps = gaps_of(ARRAYS, facts, state)
-        motion = kind_of(facts)(ARRAYS, facts, state, gaps)
-        lacks = {*motion.lacks, "theta_min_deg"}  # the least tilt is the start
-        for key in (key for key in self.numbers if key.startswith("theta_min")):
-            self.columns[key][chosen] = tops.tilt_in(self.radians)
-        remarks: Sequence[str | None] | None = None
-        if regime in {Regime.SLEEPING, Regime.HANGING}:
-            remarks = [vertical_remark(regime, stable) for stable in state.sleep >= 0]
-        elif regime is Regime.REGULAR and "remark" in self.texts:
-            remarks = self._fast_remarks(tops, motion)
-        path = "cusped" if regime is Regime.REGULAR else None
-        texts = {"regime": regime.value, "path": path, "remark": remarks}
+    def set_errors(self, errors: Mapping[int, str]) -> None:
+        """Set the errors of rows, which stay empty."""
+        for row, error in errors.items():
+            self.missing[row], self.columns["error"][row] = False, error
 
-        def number(name: str) -> Array | None:
-            if name in OF_MODULI:
-                return OF_MODULI[name](motion) if path or facts.plane else None
-            return None if name in lacks else getattr(motion, name)
+    def fill_released(self, rows: Mask, regime: Regime) -> None:
+        """Fill tops of one regime that are released from rest."""
+        if not rows.any():
+            return
+        tops = self._chosen(rows)
+        start = tops.start()
+        constant = regime not in {Regime.REGULAR, Regime.NO_SPIN}
+        motions: ConstantTilt | Released
+        if constant:
+            motions = ConstantTilt(start, vertical=regime != Regime.TORQUE_FREE)
+        else:
+            motions = Released(start, spins=regime == Regime.REGULAR)
+        texts: dict[str, Any] = {"regime": regime.value}
+        if regime == Regime.REGULAR:
+            texts["path"] = "cusped"
+        if "remark" in self.texts:
+            texts["remark"] = _remarks(regime, tops, start)
+        tilt = tops.tilt_in(radians=self.radians)
+        given = {"theta_min_deg", "theta_max_deg"} if constant else {"theta_min_deg"}
 
-        self._write(chosen, number, texts)
+        def number(key: str) -> Array | None:
+            name = degree_name(key)
+            return tilt if name in given else self._in_unit(key, getattr(motions, name, None))
 
-    def _write(
-        self, rows: Any, number: Callable[[str], Array | None], texts: Mapping[str, Any]
-    ) -> None:
-        """Write texts of some rows, and numbers by a function of the key (angles in degrees)."""
-        for key in texts.keys() & {*self.texts}:
-            self.columns[key][rows] = texts[key]
-        for key in self.numbers:
-            value = number(degree_name(key))
-            if value is not None:
-                self.columns[key][rows] = np.radians(value) if key.endswith("_rad") else value
+        self._write(rows, number, texts)
 
-    def _fast_remarks(self, tops: TopArrays, motion: Any) -> list[str | None]:
-        """Return the remark of `solve` on each pseudo-regular precession among tops."""
-        remarks: list[str | None] = [None] * tops.m.size
-        rows = np.flatnonzero(motion.b * motion.b > 0.99 * FAST * motion.a)
-        rows = rows[tops.part(rows).fast()] if rows.size else rows
-        if rows.size:
-            nodding = motion.nodding if self.radians else np.degrees(motion.nodding)
-            quantities = nodding, motion.T_nutation, motion.elementary_rate, motion.excess
-            numbers = (x[rows].tolist() for x in quantities)
-            for row, *found in zip(rows.tolist(), *numbers, strict=True):
-                remarks[row] = fast_remark(*found, radians=self.radians)
-        return remarks
-
-    def fill_moving(self, rows: Mask) -> Mask:
-        """Fill rows with other initial rates, if they can be trusted; return which these are."""
-        tops = self.tops.part(slice(None) if rows.all() else np.flatnonzero(rows))
-        motions = MovingTops(tops)
+    def fill_moving(self, rows: Mask) -> None:
+        """Fill the tops with other initial rates that can be trusted."""
+        if not rows.any():
+            return
+        tops = self._chosen(rows)
+        motions = AnyStart(tops.start_in_pairs())
         trusted = motions.trusted(self.numbers)
         fine: Any = slice(None) if trusted.all() else trusted
+        regimes = np.where(tops.r0 == 0, Regime.NO_SPIN.value, Regime.REGULAR.value).astype(object)
+        texts = {"regime": regimes[fine], "path": motions.paths[fine]}
         filled = rows.copy()
         filled[rows] = trusted
 
-        def number(name: str) -> Array | None:
-            value = None if name in OF_MODULI else motions.number(name)
+        def number(key: str) -> Array | None:
+            value = self._in_unit(key, getattr(motions, degree_name(key), None))
             return None if value is None else value[fine]
 
-        regimes = np.array([Regime.REGULAR.value, Regime.NO_SPIN.value], dtype=object)
-        without_spin = (tops.r0[fine] == 0).astype(np.intp)
-        texts = {"regime": regimes[without_spin], "path": motions.paths()[fine]}
-        self._write(slice(None) if filled.all() else filled, number, texts)
-        return filled
+        self._write(filled, number, texts)
 
-    def fill_elementary(self, rows: Mask) -> Mask:
-        """Fill rows of the keys that are formulas of the inputs; return which `solve` must fill."""
-        left = np.zeros_like(rows)
+    def _chosen(self, rows: Mask) -> TopArrays:
+        """Return some tops, without copies if they are all."""
+        return self.tops if rows.all() else self.tops.part(rows)
+
+    def _in_unit(self, key: str, value: Array | None) -> Array | None:
+        """Return the value of a key, angles in the unit of the columns."""
+        return value if value is None or not key.endswith("_rad") else np.radians(value)
+
+    def _write(
+        self, rows: Mask, number: Callable[[str], Array | None], texts: Mapping[str, Any]
+    ) -> None:
+        """Write the texts of some tops, and the numbers that a function returns for each key."""
+        chosen: Any = slice(None) if rows.all() else rows
+        for key in texts.keys() & {*self.texts}:
+            self.columns[key][chosen] = texts[key]
+        for key in self.numbers:
+            value = number(key)
+            if value is not None:
+                self.columns[key][chosen] = value
+        self.missing &= ~rows
+
+    def fill_elementary(self) -> None:
+        """Fill the keys that are formulas of the inputs, of all tops that are not missing."""
         if not self.elementary:
-            return left
-        numbers = Elementary(self.tops)
+            return
+        numbers, done = Elementary(self.tops), ~self.missing
         for key in self.elementary:
-            values, unsure = numbers.number(key)
-            self.columns[key][rows] = values[rows]
-            left |= unsure & rows
-        return left
+            values, lost = numbers.number(key)
+            self.columns[key][done] = values[done]
+            self.lost |= lost & done
 
-    def solve(self, row: int, keys: Sequence[str]) -> None:
-        """Fill some keys of one row by `solve`, unless it has an error."""
-        if self.columns["error"][row] is not None:
+    def solve_the_rest(self) -> None:
+        """Fill by `solve` what is missing, and the further keys of all tops."""
+        rows = self.missing | self.lost | bool(self.further)
+        opened = self.tops.open
+        for row in np.flatnonzero(rows).tolist():
+            keys = list(self.further)
+            if self.missing[row]:
+                keys += [*self.texts, *self.numbers]
+            if self.missing[row] or self.lost[row]:
+                keys += self.elementary
+            self._solve(row, keys, is_open=bool(opened[row]))
+
+    def _solve(self, row: int, keys: Sequence[str], *, is_open: bool) -> None:
+        """Fill some keys of one top by `solve`, unless it has an error."""
+        columns = self.columns
+        if columns["error"][row] is not None:
             return
         try:
-            motion = solve(Top(**self.tops.one(row)))
+            motion = solve(self.tops.one(row))
             record, beyond = record_in_range(motion, radians=self.radians, keys=keys)
         except LagtopError as error:
-            self.columns["error"][row] = str(error)
+            columns["error"][row] = str(error)
             return
         if beyond:
-            self.columns["error"][row] = "; ".join(map(str, beyond))
-        for key in keys:
-            if record[key] is not None:
-                self.columns[key][row] = record[key]
+            columns["error"][row] = "; ".join(map(str, beyond))
+        if is_open:
+            record |= {key: getattr(motion.top, key) for key in {"r0", "psidot0"} & {*self.inputs}}
+        if record.get("remark"):
+            record["remark"] = _words(record["remark"])
+        for key, value in record.items():
+            if value is not None:
+                columns[key][row] = value
+
+
+def _remarks(regime: Regime, tops: TopArrays, start: Start) -> Any:
+    """Return the remarks on tops released from rest: the words of `solve`, without its numbers."""
+    if regime == Regime.HANGING:
+        return _remark_on(theta0_deg=180)
+    if regime == Regime.SLEEPING:
+        words: Any = [_remark_on(theta0_deg=0, r0=r0) for r0 in (1.0, 1e3)]
+        return np.array(words, dtype=object)[(start.sleep >= 0).astype(np.intp)]
+    if regime == Regime.REGULAR:
+        fast = np.zeros(tops.m.shape, dtype=np.bool_)
+        rows = np.flatnonzero(start.b * start.b > 0.99 * FAST * start.a)
+        fast[rows] = tops.part(rows).fast()
+        remarks: Any = [None, _remark_on(r0=1e3)]
+        return np.array(remarks, dtype=object)[fast.astype(np.intp)]
+    return None
+
+
+@cache
+def _remark_on(**start: float) -> str:
+    """Return the words of the remark on the worked example with another start."""
+    return _words(solve(Top(**start)).record()["remark"])
+
+
+def _words(remark: str) -> str:
+    """Return a remark without the numbers that follow its words."""
+    return remark.partition(":")[0]

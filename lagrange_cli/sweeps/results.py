@@ -16,8 +16,8 @@ from ..names import check_names
 from ..top.given import gather
 from ..top.inputs import EXAMPLE, overridden, warn_of
 from ..top.top import INPUTS
-from ..top.values import steady_refused, values_of
-from .top_arrays import TopArrays, top_arrays
+from ..top.values import STEADY_WORDS, values_of
+from .tops import TopArrays, top_arrays
 
 ResultColumn = Array | NDArray[np.object_]
 """A column: numbers (NaN if a regime has none) or texts (None if there is none)."""
@@ -34,20 +34,29 @@ class Results(dict[str, ResultColumn]):
     """
 
     def __init__(
-        self, columns: Mapping[str, ResultColumn], inputs: Mapping[str, Array], shape: Any
+        self,
+        columns: Mapping[str, ResultColumn],
+        inputs: Mapping[str, Array],
+        shape: Any,
+        index: Any = None,
     ) -> None:
-        """Take columns of one shape, and the inputs that vary, as arrays that broadcast to it."""
+        """Take columns of one shape, and the inputs that vary, as arrays that broadcast to it.
+
+        `index` is that of the pandas Series among the inputs.
+        """
         super().__init__(columns)
-        self.inputs, self.shape = dict(inputs), tuple(shape)
+        self.inputs, self.shape, self._index = dict(inputs), tuple(shape), index
 
     def to_pandas(self) -> Any:
         """Return a pandas DataFrame with a row for each top; inputs that vary come first.
 
+        It has the index of the Series that were passed as inputs, if they are all of one length.
         Raises UnavailableError if pandas is not installed.
         """
         columns = self.inputs | self
         return _library("pandas").DataFrame(
-            {name: np.broadcast_to(x, self.shape).reshape(-1) for name, x in columns.items()}
+            {name: np.broadcast_to(x, self.shape).reshape(-1) for name, x in columns.items()},
+            index=self._index,
         )
 
     def to_xarray(self) -> Any:
@@ -86,12 +95,11 @@ class SweepInputs:
     def __init__(self, inputs: Mapping[str, Any]) -> None:
         """Raise LagtopError for an unknown input, and for inputs that do not fit together."""
         check_names("inputs", list(inputs) or ["m"], INPUTS)
-        if isinstance(word := inputs.get("psidot0"), str):
-            raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
+        words = {x: y for x, y in inputs.items() if x == "psidot0" and _is_steady(y)}
         for name, x in inputs.items():
             if getattr(x, "dims", ()):
                 raise LagtopError(f"{name} has named dimensions: pass {name}.to_numpy()", name)
-        read = gather(values_of(inputs))
+        read = gather(values_of({x: y for x, y in inputs.items() if x not in words}))
         if read.stds:
             name = min(read.stds)
             why = "is uncertain: a sweep does not propagate uncertainties; loop over solve"
@@ -107,6 +115,7 @@ class SweepInputs:
             raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
         self.shape, self.size = arrays[0].shape, arrays[0].size
         self._varying = {name: x for name, x in own.items() if x.size > 1}
+        self._words, self._index = words, _index_of(inputs, self.shape)
         self._flat: dict[str, Any] = {
             name: x if x.ndim == 1 else x.flat for name, x in zip(given, arrays, strict=True)
         }
@@ -114,9 +123,30 @@ class SweepInputs:
     def part(self, rows: slice) -> TopArrays:
         """Return some of the tops; only these rows are copied."""
         count = len(range(*rows.indices(self.size)))
-        return top_arrays({name: x[rows] for name, x in self._flat.items()}, count)
+        return top_arrays({name: x[rows] for name, x in self._flat.items()} | self._words, count)
 
     def results(self, columns: Mapping[str, ResultColumn]) -> Results:
         """Return flat columns in the shape of the inputs."""
         shaped = {key: x.reshape(self.shape) for key, x in columns.items()}
-        return Results(shaped, self._varying, self.shape)
+        return Results(shaped, self._varying, self.shape, self._index)
+
+
+def _is_steady(value: object) -> bool:
+    return isinstance(value, str) and value in STEADY_WORDS
+
+
+def _index_of(inputs: Mapping[str, Any], shape: tuple[int, ...]) -> Any:
+    """Return the index of the pandas Series among inputs, or None.
+
+    Raises LagtopError if their indices differ: rows would be paired by position.
+    """
+    series = {name: x for name, x in inputs.items() if hasattr(x, "index") and hasattr(x, "iloc")}
+    if not series:
+        return None
+    first, *others = series
+    index = series[first].index
+    for name in others:
+        if not index.equals(series[name].index):
+            why = f"{first} and {name} are Series with different indices"
+            raise LagtopError(f"{why}: align them, or pass {name}.to_numpy()", name)
+    return index if shape == (len(index),) else None

@@ -22,8 +22,7 @@ from threading import Thread
 from typing import Any, TypeVar
 
 from .. import __version__
-from ..errors import LagtopError, UnavailableError
-from ..file_bytes import temporary_files
+from ..errors import CannotWriteError, LagtopError, UnavailableError
 
 MOST_JOBS = 1024
 _AHEAD = 4
@@ -88,6 +87,15 @@ def _unless_lost(call: Callable[..., P], *arguments: Any) -> P:
         ) from None
 
 
+@contextmanager
+def _temporary_files() -> Iterator[None]:
+    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
+    try:
+        yield
+    except OSError as error:
+        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
+
+
 def _through_file(path: str) -> None:
     """Do the work in a file, and write its result to the same file.
 
@@ -99,7 +107,7 @@ def _through_file(path: str) -> None:
 
 def _dump(value: object, path: str) -> None:
     """Write a value to a new file.  Raises CannotWriteError."""
-    with temporary_files(), open(path, "xb") as file:
+    with _temporary_files(), open(path, "xb") as file:
         pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
 
 
@@ -141,7 +149,7 @@ def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
 
     Items and results pass through files of a temporary folder.
     """
-    with temporary_files():
+    with _temporary_files():
         temporary = TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
     with _starting():
         executor = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _begin)

@@ -300,10 +300,10 @@ def test_options_win_over_the_file(solved: Solved, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fmt", ["csv", "ndjson"])
-def test_a_file_of_tops_has_a_number_in_place_of_the_word_steady(fmt: str, lagtop: Lagtop) -> None:
+def test_the_record_of_a_steady_top_is_a_file_of_tops(fmt: str, lagtop: Lagtop) -> None:
     record = lagtop("solve", "--r0", "60", "--psidot0", "steady", "--format", fmt).stdout
-    result = lagtop("sweep", "-", "--keys", "T_nutation", input=record)
-    assert "psidot0 must be a number unless one top is solved, got steady: see" in result.stderr
+    result = lagtop("sweep", "-", "--keys", "regime,T_nutation", input=record)
+    assert result.stdout.splitlines()[1] == "steady precession,0.4637087134781949,"
 
 
 def test_bad_line_of_times(lagtop: Lagtop) -> None:

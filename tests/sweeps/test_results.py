@@ -43,6 +43,14 @@ def test_paired_inputs_share_a_dimension() -> None:
         sweep(columns)
 
 
+def test_the_index_of_a_frame_is_kept() -> None:
+    frame = pandas.DataFrame({"r0": SPINS, "theta0_deg": 30.0}, index=["slow", "mid", "fast"])
+    assert sweep(**frame, keys=["K"]).to_pandas().index.tolist() == ["slow", "mid", "fast"]
+    assert sweep(r0=frame.r0, theta0_deg=[[30], [60]], keys=["K"]).to_pandas().index[-1] == 5
+    with pytest.raises(LagtopError, match="r0 and theta0_deg are Series with different indices"):
+        sweep(r0=frame.r0, theta0_deg=frame.theta0_deg[::-1])
+
+
 UNREAL: list[Any] = [np.array([1, 2j]), np.array(["2020-01-01"], "datetime64[D]"), 10**400]
 UNREAL += [["50"], [True], [[1], [2, 3]]]
 

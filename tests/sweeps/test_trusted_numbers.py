@@ -18,9 +18,9 @@ from scenes import EVERY_KIND, UNIT
 from lagrange_cli.solver.record import NUMBER_KEYS
 from lagrange_cli.sweeps import records
 from lagrange_cli.sweeps.elementary import ELEMENTARY
-from lagrange_cli.sweeps.moving_tops import MovingTops
 from lagrange_cli.sweeps.records import OF_MODULI
-from lagrange_cli.sweeps.top_arrays import top_arrays
+from lagrange_cli.sweeps.tops import top_arrays
+from lagrange_cli.sweeps.trust import AnyStart
 
 KEYS = [*NUMBER_KEYS, *sorted({*ELEMENTARY, *OF_MODULI})]
 COSINES = {"u1", "u2", "u_quarter"}
@@ -119,7 +119,7 @@ def test_tops_at_the_threshold_of_sleeping_go_one_by_one(body: tuple[float, ...]
     m, A, C, s, g = body
     r0 = 2 * math.sqrt(A * m * g * s) / C * np.array([0.9, 1 - 1e-15, 1.0, 1 + 1e-15, 1.1, -1.0])
     fixed = {"m": m, "A": A, "C": C, "s": s, "g": g, "theta0_deg": 10, "thetadot0": 0, "psidot0": 0}
-    regimes = top_arrays(fixed | {"r0": r0}, r0.size).regimes().values()
+    regimes = top_arrays(fixed | {"r0": r0}, r0.size).released().values()
     assert np.any(list(regimes), axis=0).tolist() == [True, False, False, False, True, False]
 
 
@@ -137,7 +137,7 @@ def test_starts_next_to_the_pole() -> None:
         "thetadot0": power(-12, 2),
         "psidot0": power(-10, 2),
     }
-    assert MovingTops(top_arrays(given, 400)).small.mean() > 0.9
+    assert AnyStart(top_arrays(given, 400).start_in_pairs()).known.mean() > 0.9
     assert_trusted([{name: float(x[i]) for name, x in given.items()} for i in range(60)], 60)
 
 

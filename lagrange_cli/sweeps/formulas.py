@@ -1,0 +1,457 @@
+"""The formulas of the paper for many tops at once, in forms that lose no digits.
+
+Numbers are arrays of doubles, or pairs of doubles (`DoubleDouble`) where differences cancel.
+`solver` evaluates the formulas as they are printed, in enclosures that show lost digits.  Arrays
+cannot show them.  Each formula here is therefore a sum of positive terms, a product or a quotient
+wherever the printed one subtracts nearly equal numbers.  Equation numbers are Chrapan's.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.special import elliprf
+
+from ..arithmetic.pairs import DoubleDouble
+from ..arithmetic.types import Array, Mask
+
+Numbers = Any
+"""An array of doubles, or pairs of doubles."""
+
+
+def sqrt(x: Numbers) -> Numbers:
+    """Return the square roots of numbers >= 0."""
+    return x.sqrt() if isinstance(x, DoubleDouble) else np.sqrt(x)
+
+
+def where(condition: Mask, yes: Numbers, no: Numbers) -> Numbers:
+    """Choose between two numbers, element by element."""
+    choose: Any = DoubleDouble.choose if isinstance(yes, DoubleDouble) else np.where
+    return choose(condition, yes, no)
+
+
+class Start(NamedTuple):
+    """The constants of the motions and their states at t = 0."""
+
+    a: Numbers
+    """2mgs/A (4,4)."""
+    b: Numbers
+    """C r0/A (4,5)."""
+    r0: Numbers
+    sleep: Numbers
+    """b^2/2 - a, from the inputs: near the threshold of sleeping it cancels."""
+    spin_drift: Numbers
+    """r0 - b/2 = r0 (2A - C)/2A, the spin rate without the effect of the nutation (6,1)."""
+    sin: Numbers
+    cos: Numbers
+    below: Numbers
+    """1 + cos(theta0) = 2 cos^2(theta0/2)."""
+    above: Numbers
+    """1 - cos(theta0) = 2 sin^2(theta0/2)."""
+    theta_rate: Numbers
+    psi_rate: Numbers
+
+    @property
+    def energy(self) -> Numbers:
+        """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4)."""
+        around = self.psi_rate * self.sin
+        return self.theta_rate * self.theta_rate + around * around
+
+    @property
+    def momentum(self) -> Numbers:
+        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
+        return self.psi_rate * self.sin * self.sin
+
+    @property
+    def spin_rate(self) -> Numbers:
+        """The spin rate phi' at the start (4,8)."""
+        return self.r0 - self.psi_rate * self.cos
+
+
+class Gaps(NamedTuple):
+    """Distances between the roots u2 <= u1 <= 1 <= u3 of (4,9), the poles and the start u0.
+
+    Every later formula needs only these.  Distances from u3 have the factor a, so that they stay
+    finite without a torque.
+    """
+
+    u1_u0: Numbers
+    u0_u2: Numbers
+    u1_u2: Numbers
+    below_u1: Numbers
+    """1 + u1."""
+    below_u2: Numbers
+    above_u1: Numbers
+    """1 - u1."""
+    above_u2: Numbers
+    a_u3_u0: Numbers
+    a_u3_u1: Numbers
+    a_u3_u2: Numbers
+    a_u3_above: Numbers
+    """a (u3 - 1)."""
+    momentum_u1: Numbers
+    """beta - b u1, the momentum psi' (1 - u^2) of (4,7) at u1."""
+    momentum_u2: Numbers
+
+
+def gaps_from_rest(start: Start) -> Gaps:
+    """Return the gaps after release from rest, where u1 = u0, from (4,11)-(4,18).
+
+    The roots are at u0 and at the zeros of a quadratic with discriminant rho^2.  Subtracting its
+    zeros would lose digits.  Let S and Q be sin^2 and cos^2 of theta0/2.  The products
+
+        a (u3 - u1) (u1 - u2) = 4 a S Q,   a (u3 - 1) (1 - u2) = 2 b^2 S,
+        a (u3 + 1) (1 + u2) = 2 b^2 Q
+
+    each have one factor that is a sum of positive terms; the other factor is the quotient.
+    """
+    a, b, sleep, above, below = start.a, start.b, start.sleep, start.above, start.below
+    # half of a (u3 - u1) - a (u1 - u2), in the form that adds above and the one that adds below 0
+    x = np.where(above <= below, sleep + a * above, b * b / 2 + a - a * below)
+    a_sin = a * start.sin
+    rho = np.sqrt(x * x + a_sin * a_sin)
+    more = rho + abs(x)
+    less = a_sin * (a_sin / more)
+    u1_u2 = np.where(x >= 0, start.sin * (a_sin / more), more / a)
+    a_u3_u1 = np.where(x >= 0, more, less)
+    more_1 = rho + abs(sleep)
+    less_1 = b * b * (above / more_1)
+    zero = 0 * a
+    return Gaps(
+        u1_u0=zero,
+        u0_u2=u1_u2,
+        u1_u2=u1_u2,
+        below_u1=below,
+        below_u2=b * b * below / (b * b / 2 + a + rho),
+        above_u1=above,
+        above_u2=np.where(sleep >= 0, less_1, more_1 / a),
+        a_u3_u0=a_u3_u1,
+        a_u3_u1=a_u3_u1,
+        a_u3_u2=2 * rho,
+        a_u3_above=np.where(sleep >= 0, more_1, a * less_1),
+        momentum_u1=zero,
+        momentum_u2=b * u1_u2,
+    )
+
+
+def cubic_of(start: Start) -> tuple[Numbers, Numbers, Numbers]:
+    """Return c2, c1, c0 of the cubic (4,9), a x^3 + c2 x^2 + c1 x + c0 in x = u - u0."""
+    energy, along = start.energy, start.sin * start.theta_rate
+    c2 = 2 * start.a * start.cos - energy - start.b * start.b
+    c1 = 2 * start.b * start.momentum - start.a * start.sin * start.sin - 2 * start.cos * energy
+    return c2, c1, along * along
+
+
+def gaps_from_start(start: Start, cubic: tuple[Numbers, Numbers, Numbers], D: Numbers) -> Gaps:
+    """Return the gaps of any start from its cubic and D = a (u3 - u0), its largest root times a.
+
+    The other two roots x1 >= 0 >= x2 solve a quadratic equation with a negative last coefficient,
+    so that its discriminant is a sum.  The smaller root is the quotient of that coefficient and the
+    larger root.  Gaps between a root and a pole are still differences: `trust` bounds their errors.
+    """
+    a, b = start.a, start.b
+    _, c1, c0 = cubic
+    total, product = (c1 + a * c0 / D) / D, c0 / D  # x1 + x2 and -x1 x2
+    larger = (abs(total) + sqrt(total * total + 4 * product)) / 2
+    smaller = product / larger
+    up = where(total >= 0, larger, smaller)  # x1
+    down = where(total >= 0, smaller, larger)  # -x2
+    return Gaps(
+        u1_u0=up,
+        u0_u2=down,
+        u1_u2=up + down,
+        below_u1=start.below + up,
+        below_u2=start.below - down,
+        above_u1=start.above - up,
+        above_u2=start.above + down,
+        a_u3_u0=D,
+        a_u3_u1=D - a * up,
+        a_u3_u2=D + a * down,
+        a_u3_above=D - a * start.above,
+        momentum_u1=start.momentum - b * up,
+        momentum_u2=start.momentum + b * down,
+    )
+
+
+def u2(gaps: Gaps) -> Numbers:
+    """Return the lower turning point (4,11) from its distance to the nearer pole."""
+    return where(gaps.above_u2 < gaps.below_u2, 1 - gaps.above_u2, gaps.below_u2 - 1)
+
+
+def rates_half(start: Start, gaps: Gaps) -> tuple[Numbers, Numbers]:
+    """Return the rates of spin and precession at T/2, (4,8) and (4,7).
+
+    The axis is then at u = u2 + (u1 - u0)(u3 - u2)/(u3 - u0).
+    """
+    from_u2 = gaps.u1_u0 * (gaps.a_u3_u2 / gaps.a_u3_u0)
+    from_u1 = gaps.u0_u2 * (gaps.a_u3_u1 / gaps.a_u3_u0)
+    below, above = gaps.below_u2 + from_u2, gaps.above_u1 + from_u1
+    precession = (gaps.momentum_u2 - start.b * from_u2) / below / above
+    return start.r0 - (below - above) / 2 * precession, precession
+
+
+def mean_parts(
+    k_prime: Numbers, gaps: Gaps, momenta: tuple[Numbers, Numbers] | None = None
+) -> tuple[Numbers, Numbers]:
+    """Return the means over a period of the partial fractions of psi' (4,7) at both poles,
+
+        south = (beta - b u)/(2 (1 + u)),    north = (beta - b u)/(2 (1 - u)).
+
+    Then psi' = south + north, and phi' = r0 + south - north.  `momenta` replace the values of
+    beta - b u at u1 and u2.
+    """
+    at_u1, at_u2 = momenta or (gaps.momentum_u1, gaps.momentum_u2)
+    mc = k_prime * k_prime
+
+    def half_mean(from_u1: Numbers, from_u2: Numbers) -> Numbers:
+        mean = period_mean(k_prime, from_u2 * mc / from_u1, at_u1, at_u2 * mc)
+        return mean / from_u1 / 2
+
+    return half_mean(gaps.below_u1, gaps.below_u2), half_mean(gaps.above_u1, gaps.above_u2)
+
+
+def agm(x: Array, y: Array) -> Array:
+    """Return the arithmetic-geometric mean of x > 0 and y > 0 (DLMF 19.8.1)."""
+    while np.any(abs(x - y) > 2.0**-26 * x):
+        x, y = (x + y) / 2, np.sqrt(x * y)
+    return (x + y) / 2
+
+
+def period_mean(k_prime: Numbers, p: Numbers, x: Numbers, y: Numbers) -> Numbers:
+    """Return the mean over a period of (x cn^2 + y sn^2)/(cn^2 + p sn^2), for k', p > 0.
+
+    It is Bulirsch's cel(k', p, x, y)/K (DLMF 19.2.11).  Each step is Bartky's transformation
+    (Bulirsch 1969), which keeps the mean and squares the distance of m from g.  If x and y have
+    one sign, the steps only add numbers of one sign.  Otherwise the error is relative to the mean
+    of the absolute values.
+    """
+    close_to = 2.0**-52 if isinstance(k_prime, DoubleDouble) else 2.0**-26
+    m, g, p = 0 * k_prime + 1, k_prime, sqrt(p)
+    y = y / p
+    while True:
+        product = m * g
+        quotient = product / p
+        x, y, p = (x + y / p) / 2, (y + x * quotient) / 2, (p + quotient) / 2
+        is_last = not np.any(abs(m - g) > close_to * m)
+        m, g = (m + g) / 2, sqrt(product)
+        if is_last:
+            return (x * m + y) / (m + p)
+
+
+def nome_of(m: Array, k_prime: Array) -> Array:
+    """Return the nome q = exp(-pi K'/K) of m = k^2 < 1 (2,4).
+
+    The exponential would lose log(1/q) digits.  Instead, each step of the AGM of 1 and k' squares
+    the nome, until c/a is small and a short series in c/a gives it (DLMF 19.5.5); the roots of
+    that number follow.
+    """
+    a, b = (1 + k_prime) / 2, np.sqrt(k_prime)
+    c, steps = m / (4 * a), list[Mask]()
+    while np.any(far := c > 0.05 * a):
+        steps.append(far)
+        mean = (a + b) / 2
+        a, b = np.where(far, mean, a), np.where(far, np.sqrt(a * b), b)
+        c = np.where(far, c * (c / (4 * mean)), c)
+    e = c / (2 * (a + b))
+    e4 = e * e * e * e
+    q = e * (1 + e4 * (2 + e4 * (15 + e4 * (150 + e4 * 1707))))
+    for far in reversed(steps):
+        q = np.where(far, np.sqrt(q), q)
+    found: Array = q
+    return found
+
+
+def tilt_deg(above: Array, below: Array) -> Array:
+    """Return a tilt in degrees from 1 - u and 1 + u: near the poles acos(u) would lose digits."""
+    tilt: Array = np.degrees(2 * np.arctan2(np.sqrt(above), np.sqrt(below)))
+    return tilt
+
+
+def turn_time(rate: Array) -> Array:
+    """Return the time of one turn at a rate (section 8), NaN if the rate is 0."""
+    time: Array = 2 * np.pi / np.where(rate == 0, np.nan, abs(rate))
+    return time
+
+
+class Nutations:
+    """The numbers of many nutating tops by key, in doubles.
+
+    A key that the tops lack is no attribute.
+    """
+
+    def __init__(self, start: Start, gaps: Gaps) -> None:
+        self.start, self.gaps = start, gaps
+        self.a, self.b, self.r0 = start.a, start.b, start.r0
+        self.precession_rate_start = start.psi_rate
+
+    @property
+    def u1(self) -> Array:
+        """The upper turning point (4,9)."""
+        u1: Array = self.start.cos + self.gaps.u1_u0
+        return u1
+
+    @property
+    def u2(self) -> Array:
+        """The lower turning point (4,11)."""
+        lower: Array = u2(self.gaps)
+        return lower
+
+    @property
+    def u3(self) -> Array:
+        """The third root (4,11), from its distance to 1."""
+        u3: Array = (self.a + self.gaps.a_u3_above) / self.a
+        return u3
+
+    @cached_property
+    def k2(self) -> Array:
+        """k^2 (4,19)."""
+        m: Array = self.a * self.gaps.u1_u2 / self.gaps.a_u3_u2
+        return m
+
+    @cached_property
+    def k(self) -> Array:
+        """The modulus (4,19)."""
+        return np.sqrt(self.k2)
+
+    @cached_property
+    def k_prime(self) -> Array:
+        """The complementary modulus (4,21), from its own numerator: 1 - k^2 loses digits."""
+        k_prime: Array = np.sqrt(self.gaps.a_u3_u1 / self.gaps.a_u3_u2)
+        return k_prime
+
+    @property
+    def modular_angle_deg(self) -> Array:
+        """The angle arcsin k, near 90 degrees from k'."""
+        return np.degrees(np.arctan2(self.k, self.k_prime))
+
+    @property
+    def nome(self) -> Array:
+        """The nome (2,4)."""
+        return nome_of(self.k2, self.k_prime)
+
+    @cached_property
+    def K(self) -> Array:
+        """The quarter period (5,1)."""
+        return np.pi / 2 / agm(np.ones_like(self.k_prime), self.k_prime)
+
+    @cached_property
+    def K_prime(self) -> Array:
+        """The quarter period of k' (2,4)."""
+        return np.pi / 2 / agm(np.ones_like(self.k), self.k)
+
+    @property
+    def E(self) -> Array:
+        """The integral of the second kind by Legendre's relation, a sum of positive terms.
+
+        E = pi/2K' + K (K' - E')/K', where (K' - E')/K' is the mean of k'^2 sn^2(u, k').
+        """
+        mean = period_mean(self.k, 1.0, 0.0, self.k_prime * self.k_prime)
+        integral: Array = np.pi / (2 * self.K_prime) + self.K * mean
+        return integral
+
+    @cached_property
+    def T_nutation(self) -> Array:
+        """The nutation period 4K/sqrt(a (u3 - u2)) (5,1)."""
+        period: Array = 4 * self.K / np.sqrt(self.gaps.a_u3_u2)
+        return period
+
+    @property
+    def u_quarter(self) -> Array:
+        """cos(theta) at T/4 after a start at u1 (5,2), as a difference from u1; else NaN."""
+        value = self.u1 - self.gaps.u1_u2 * (self.k_prime / (1 + self.k_prime))
+        return np.where(self.gaps.u1_u0 <= 0, value, np.nan)
+
+    @property
+    def theta_min_deg(self) -> Array:
+        """The tilt at u1."""
+        return tilt_deg(self.gaps.above_u1, self.gaps.below_u1)
+
+    @property
+    def theta_max_deg(self) -> Array:
+        """The tilt at u2."""
+        return tilt_deg(self.gaps.above_u2, self.gaps.below_u2)
+
+
+class Released(Nutations):
+    """Tops released from rest with a torque, off the vertical; all of them spin, or none does."""
+
+    def __init__(self, start: Start, *, spins: bool) -> None:
+        super().__init__(start, gaps_from_rest(start))
+        self.spin_rate_start = start.r0
+        if spins:
+            self.spin_rate_half, self.precession_rate_half = rates_half(start, self.gaps)
+        self._spins = spins
+
+    @property
+    def k_squared(self) -> Array:
+        """The square of the modulus."""
+        return self.k2
+
+    @property
+    def comodular_angle_deg(self) -> Array:
+        """The angle arcsin k'."""
+        return np.degrees(np.arctan2(self.k_prime, self.k))
+
+    @property
+    def amplitude_deg(self) -> Array:
+        """The amplitude of alpha (7,2) from its tangent."""
+        gaps = self.gaps
+        tangent = np.sqrt(gaps.a_u3_u2), np.sqrt(self.a * gaps.below_u2)
+        amplitude: Array = np.degrees(np.arctan2(*tangent))
+        return amplitude
+
+    @property
+    def alpha(self) -> Array:
+        """The parameter alpha = F(amplitude, k') (1,6), by Carlson's integral (DLMF 19.25.5).
+
+        Its sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)) and cn^2 are products.
+        """
+        gaps = self.gaps
+        scale = gaps.a_u3_u1 * gaps.above_u2
+        sn2, cn2 = gaps.above_u1 * gaps.a_u3_u2 / scale, gaps.a_u3_above * gaps.u1_u2 / scale
+        alpha: Array = np.sqrt(sn2) * elliprf(cn2, cn2 + self.k2 * sn2, 1.0)
+        return alpha
+
+    @property
+    def mean_spin_rate(self) -> Array:
+        """The mean spin rate (6,3): a drift and one turn per nutation, a sum of one sign."""
+        half_turn = np.pi / self.T_nutation
+        rate: Array = self.start.spin_drift + np.where(self.r0 < 0, -half_turn, half_turn)
+        return rate
+
+    @cached_property
+    def mean_precession_rate(self) -> Array:
+        """The mean precession rate (7,3); a top without spin turns by 180 degrees at the bottom."""
+        if not self._spins:
+            return np.pi / self.T_nutation
+        south, north = mean_parts(self.k_prime, self.gaps)
+        rate: Array = south + north
+        return rate
+
+    @property
+    def T_spin(self) -> Array:
+        """The time of one turn at the mean spin rate."""
+        return turn_time(self.mean_spin_rate)
+
+    @property
+    def T_precession(self) -> Array:
+        """The time of one turn at the mean precession rate."""
+        return turn_time(self.mean_precession_rate)
+
+
+class ConstantTilt:
+    """Tops released from rest whose tilt stays constant: on the vertical, or without a torque."""
+
+    def __init__(self, start: Start, *, vertical: bool) -> None:
+        zero: Array = 0 * start.a
+        self.a, self.b = start.a, start.b
+        self.u1 = self.u2 = start.cos
+        self.mean_spin_rate = self.spin_rate_start = start.r0
+        self.T_spin = turn_time(start.r0)
+        if not vertical:
+            self.k = self.modular_angle_deg = self.nome = zero
+            self.mean_precession_rate = self.precession_rate_start = zero
+            self.k_prime, self.K, self.E = zero + 1, zero + np.pi / 2, zero + np.pi / 2
+            self.T_nutation = turn_time(start.b)

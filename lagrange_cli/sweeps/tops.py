@@ -1,0 +1,263 @@
+"""The inputs of many tops as arrays, and the start of their motions.
+
+`solve` takes the constants of a motion from exact fractions.  Here they are computed in pairs of
+doubles and rounded once, so that the formulas begin with equal numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import factorial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.pairs import DoubleDouble, pair, two_sum
+from ..arithmetic.types import Array, Mask
+from ..solver.regime import FAST, Regime
+from ..top.top import Top
+from ..top.values import STEADY_WORDS
+from .formulas import Start, where
+
+_SMALL, _LARGE = 1e-30, 1e30
+"""Sizes between which no formula leaves the range of doubles."""
+_DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
+_NEAR_1 = 2.0**-44
+"""Distance of lambda = b^2/2a from 1 below which a pair of doubles may lose lambda - 1."""
+_LITTLE_LEFT = 1e-10
+"""Ratio of a sum to its parts below which the sum has lost digits of its pairs."""
+_MOST_SPIN = 1e150
+"""Size of a rate up to which sums and products of pairs cannot overflow."""
+
+
+class TopArrays(NamedTuple):
+    """The inputs of `Top`, an array each; NaN where an input is not given.
+
+    Only the tilt may be NaN, in the unit that is not given, and `A_cm` and `phidot0`, which are
+    kept for tops whose r0 only `solve` computes.
+    """
+
+    m: Array
+    A: Array
+    C: Array
+    s: Array
+    g: Array
+    r0: Array
+    theta0_deg: Array
+    thetadot0: Array
+    psidot0: Array
+    theta0_rad: Array
+    phidot0: Array
+    steady: Array
+    """1 or 2 for the words of a steady precession, for which psidot0 is NaN; else 0."""
+
+    def part(self, rows: Any) -> TopArrays:
+        """Return some of the tops, by a slice, a mask or their row numbers."""
+        return TopArrays(*(x[rows] for x in self))
+
+    def one(self, row: int) -> Top:
+        """Return one top.  Raises LagtopError if it is invalid."""
+        inputs: dict[str, Any] = {
+            name: float(x[row]) for name, x in zip(self._fields, self, strict=True)
+        }
+        unused = "r0" if not np.isnan(inputs["phidot0"]) else "phidot0"
+        tilt = "theta0_rad" if np.isnan(inputs["theta0_rad"]) else "theta0_deg"
+        word = int(inputs.pop("steady"))
+        given = {x: y for x, y in inputs.items() if x != unused and not (x == tilt and np.isnan(y))}
+        return Top(**given | ({"psidot0": STEADY_WORDS[word - 1]} if word else {}))
+
+    @property
+    def open(self) -> Mask:
+        """The tops of which an input is known only to `solve`: steady rates, and some r0."""
+        found: Mask = (self.steady > 0) | ~np.isnan(self.phidot0)
+        return found
+
+    def tilt_in(self, *, radians: bool) -> Array:
+        """Return theta0 in degrees or in radians."""
+        if radians:
+            return np.where(np.isnan(self.theta0_rad), np.radians(self.theta0_deg), self.theta0_rad)
+        return np.where(np.isnan(self.theta0_deg), np.degrees(self.theta0_rad), self.theta0_deg)
+
+    def released(self) -> dict[Regime, Mask]:
+        """Return the tops of each regime that are released from rest and of ordinary size."""
+        upright, hanging = self._upright, self.theta0_deg == 180
+        inclined, torque = ~(upright | hanging), (self.s > 0) & (self.g > 0)
+        masks = {
+            Regime.SLEEPING: upright,
+            Regime.HANGING: hanging,
+            Regime.TORQUE_FREE: inclined & ~torque,
+            Regime.NO_SPIN: inclined & torque & (self.r0 == 0),
+            Regime.REGULAR: inclined & torque & (self.r0 != 0),
+        }
+        at_rest = self._are_ordinary() & (self.thetadot0 == 0) & (self.psidot0 == 0)
+        found = {regime: at_rest & mask for regime, mask in masks.items()}
+        return {regime: mask for regime, mask in found.items() if mask.any()}
+
+    def moving(self) -> Mask:
+        """Return the tops of ordinary size with other rates, with a torque and off the vertical."""
+        torque = (self.s > 0) & (self.g > 0)
+        inclined = ~self._upright & (self.theta0_deg != 180)
+        moving: Mask = (self.thetadot0 != 0) | (self.psidot0 != 0)
+        moving &= self._are_ordinary() & torque & inclined
+        return moving
+
+    @property
+    def _upright(self) -> Mask:
+        upright: Mask = (self.theta0_deg == 0) | (self.theta0_rad == 0)
+        return upright
+
+    def _are_ordinary(self) -> Mask:
+        """Return the valid tops whose sizes fit, and that are not next to the sleeping threshold.
+
+        Comparisons with NaN are false: tops that lack an input are not among them.
+        """
+
+        def fits(x: Array, most: float = _LARGE) -> Mask:
+            return (x >= _SMALL) & (x <= most)
+
+        ordinary: Mask = (2 * self.A >= self.C) & fits(self.m) & fits(self.A) & fits(self.C)
+        for x in (self.s, self.g, abs(self.r0), abs(self.thetadot0), abs(self.psidot0)):
+            ordinary &= (x == 0) | fits(x)
+        deg, rad = self.theta0_deg, self.theta0_rad
+        ordinary &= (np.isnan(rad) & ((deg == 0) | fits(deg, 180))) | (
+            np.isnan(deg) & ((rad == 0) | fits(rad, np.pi))
+        )
+        torque = self.m * self.g * self.s
+        lam = (self.C * self.r0) ** 2 / (4 * self.A * torque)
+        ordinary &= (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
+        return ordinary & ~(abs(lam - 1) < _NEAR_1)
+
+    def fast(self) -> Mask:
+        """Return which tops released from rest precess pseudo-regularly, b^2 >= 50 a."""
+        a, b, *_ = self._constants()
+        fast: Mask = (b * b - a * float(FAST)).high >= 0
+        return fast
+
+    def _constants(self) -> tuple[DoubleDouble, ...]:
+        """Return the first five numbers of a `Start`."""
+        m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
+        a, b = (m * g * s / A).scaled(2), C * r0 / A
+        drift = r0 * DoubleDouble(*two_sum(2 * self.A, -self.C)) / A
+        return a, b, r0, (b * b).scaled(0.5) - a, drift.scaled(0.5)
+
+    def start(self) -> Start:
+        """Return constants and start of tops released from rest, each rounded once."""
+        zero = np.zeros_like(self.m)
+        constants = (x.high for x in self._constants())
+        return Start(*[*constants, *self._tilts(), zero, zero])
+
+    def start_in_pairs(self) -> Start:
+        """Return constants and start of tops in pairs of doubles."""
+        rates = DoubleDouble(self.thetadot0), DoubleDouble(self.psidot0)
+        return Start(*[*self._constants(), *self._tilts_in_pairs(), *rates])
+
+    def _tilts(self) -> tuple[Array, ...]:
+        """Return sin, cos, 1 + cos and 1 - cos of theta0, each with full relative accuracy."""
+        deg, rad = self.theta0_deg, self.theta0_rad
+        # sin(x + y) = sin x + y cos x for a pair, from the nearer pole and from 90 degrees
+        nearer = np.minimum(deg, 180 - deg)
+        arc, up = DoubleDouble(nearer) * _DEGREE, DoubleDouble(*two_sum(90.0, -nearer)) * _DEGREE
+        sin, near, far = np.sin(arc.high), np.sin(arc.high / 2), np.cos(arc.high / 2)
+        cos = np.sin(up.high) + up.low * sin
+        sin += arc.low * cos
+        near, far = near + arc.low / 2 * far, far - arc.low / 2 * near
+        down = deg > 90
+        cos = np.where(down, -cos, cos)
+        sin_half, cos_half = np.where(down, far, near), np.where(down, near, far)
+        if (given := ~np.isnan(rad)).any():
+            found = np.sin(rad), np.cos(rad), np.sin(rad / 2), np.cos(rad / 2)
+            of_degrees = sin, cos, sin_half, cos_half
+            pairs = zip(found, of_degrees, strict=True)
+            sin, cos, sin_half, cos_half = (np.where(given, x, y) for x, y in pairs)
+        return sin, cos, 2 * cos_half * cos_half, 2 * sin_half * sin_half
+
+    def _tilts_in_pairs(self) -> tuple[DoubleDouble, ...]:
+        """Return the numbers of `_tilts` in pairs."""
+        deg, rad = self.theta0_deg, self.theta0_rad
+        given = ~np.isnan(rad)
+        down = np.where(given, rad > np.pi / 2, deg > 90)
+        nearer = DoubleDouble(np.where(down, 180 - deg, deg)) * _DEGREE
+        if given.any():
+            arc = DoubleDouble(np.where(given, rad, 0.0))
+            other = DoubleDouble(np.full_like(rad, 180.0)) * _DEGREE - arc
+            nearer = where(given, where(down, other, arc), nearer)
+        sine = _sine(nearer.scaled(0.5))
+        cosine = (1.0 - sine * sine).sqrt()
+        sine, cosine = where(down, cosine, sine), where(down, sine, cosine)
+        cos = (cosine - sine) * (cosine + sine)
+        return (sine * cosine).scaled(2), cos, (cosine * cosine).scaled(2), (sine * sine).scaled(2)
+
+
+_SINE = [pair(Fraction((-1) ** n, factorial(2 * n + 1))) for n in range(15)]
+"""Coefficients of the sine in x^2; from x^17 on, their low parts do not count."""
+
+
+def _sine(x: DoubleDouble) -> DoubleDouble:
+    """Return the sine by its Taylor series, for |x| <= pi/4."""
+    square = x * x
+    tail = np.zeros_like(square.high)
+    for term in _SINE[:7:-1]:
+        tail = tail * square.high + term.high
+    total = DoubleDouble(tail)
+    for term in _SINE[7::-1]:
+        total = total * square + DoubleDouble(*map(np.array, term))
+    return total * x
+
+
+def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
+    """Return the inputs of tops, numbers or arrays; A_cm and phidot0 are converted to A and r0.
+
+    A missing input is NaN.  psidot0 may be a word of a steady precession, or an array of objects
+    with such words among its numbers.
+    """
+    numbers, steady = _steady_words(inputs)
+
+    def filled(name: str) -> Array:
+        value = numbers.get(name)
+        return np.broadcast_to(np.float64(np.nan if value is None else value), (size,))
+
+    A_cm, no_rate = filled("A_cm"), np.broadcast_to(np.nan, (size,))
+    words = np.broadcast_to(np.float64(steady), (size,))
+    tops = TopArrays(*[*map(filled, TopArrays._fields[:-2]), no_rate, words])
+    if not np.isnan(A_cm).all():  # Steiner's theorem; `Top` refuses a negative A_cm
+        with np.errstate(all="ignore"):
+            s = DoubleDouble(tops.s)
+            moment = (DoubleDouble(A_cm) + DoubleDouble(tops.m) * (s * s)).high
+        cases = [np.isnan(A_cm), A_cm < 0]
+        tops = tops._replace(A=np.select(cases, [tops.A, A_cm], moment))
+    if not np.isnan(phi_rate := filled("phidot0")).all():
+        tops = _with_spins(tops, phi_rate)
+    return tops
+
+
+def _steady_words(inputs: Mapping[str, Any]) -> tuple[Mapping[str, Any], Any]:
+    """Return inputs with NaN in place of words of psidot0, and numbers of these words, or 0."""
+    given = inputs.get("psidot0")
+    if not isinstance(given, str) and getattr(given, "dtype", np.float64) == np.float64:
+        return inputs, 0.0
+    words = np.atleast_1d(np.asarray(given, dtype=object))
+    is_word = np.array([isinstance(x, str) for x in words])
+    numbers = np.where(is_word, np.nan, words).astype(float)
+    steady = [STEADY_WORDS.index(x) + 1.0 if isinstance(x, str) else 0.0 for x in words]
+    return {**inputs, "psidot0": numbers}, steady
+
+
+def _with_spins(tops: TopArrays, phi_rate: Array) -> TopArrays:
+    """Return tops with r0 = phi' + psi' cos(theta0) (4,1) where phi' is given.
+
+    Where the sum may have lost digits, or psi' is a word, r0 is NaN and phidot0 is kept.
+    """
+    psi_rate, deg = tops.psidot0, tops.theta0_deg
+    with np.errstate(all="ignore"):
+        cos = tops.start_in_pairs().cos
+        exact = np.select([deg == 60, deg == 90, deg == 120], [0.5, 0.0, -0.5], np.nan)
+        cos = where(np.isnan(exact), cos, DoubleDouble(exact))
+        spins = (DoubleDouble(phi_rate) + DoubleDouble(psi_rate) * cos).high
+        lost = np.isnan(exact) & ~(abs(spins) > _LITTLE_LEFT * abs(phi_rate)) & (psi_rate != 0)
+        lost |= ~(abs(spins) < _MOST_SPIN)
+    given = ~np.isnan(phi_rate)
+    return tops._replace(
+        r0=np.where(given, np.where(lost, np.nan, spins), tops.r0),
+        phidot0=np.where(given & lost, phi_rate, np.nan),
+    )
