@@ -161,13 +161,27 @@ export function motionOf(scene) {
   const k = Math.sqrt(1 - kPrime ** 2);
   const isNear = (tilt && away(tilt) < 0.03) || most < 0.05;
   const [high, low, isSwinging] = isVertical ? [u0, u0, false] : [u1, u2, Boolean(a)];
+  const constant = isVertical || u1 - u2 < 1e-7;  // a double root has half of the digits
+  function factsOf() {
+    const [atTop, atLow] = [beta - b * u1, beta - b * u2];  // as the precession there
+    const plane = !r0 && !beta;
+    const curved = atTop * atLow < 0 ? "looping" : "wavy";
+    let regime = period || constant ? "regular" : "separatrix";
+    if (isVertical) regime = tilt ? "hanging" : "sleeping";
+    return {
+      regime, constant, plane, spin: r0, spins: r0 !== 0, stable: b * b >= 2 * a,
+      turns_over: plane && gap === 0 && !isTop,
+      precesses: Math.abs(turn) > 1e-9 * Math.sqrt(wide),
+      path: constant || plane ? null : Math.abs(atTop) < 1e-9 * Math.abs(atLow) ? "cusped" : curved,
+    };
+  }
   return {
     scene,
     angles,
     span,
     isSketch: Boolean(!isVertical && (isNear || (a && 1 - k < 5e-8))),
     f: (u) => (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2,
-    precession: (u) => (beta - b * u) / (1 - u * u),
+    facts: factsOf(),
     record: {
       a, b, u1: high, u2: low, u3: isSwinging ? u3 : null, k: isSwinging ? k : null,
       T_nutation: period, T_spin: turnTime(spin), T_precession: turnTime(turn),
@@ -178,24 +192,27 @@ export function motionOf(scene) {
   };
 }
 
-/** The motion in one sentence; `unit` names the unit of time. */
-export function sentence(motion, unit) {
-  const { record, scene, precession } = motion;
-  const { u1, u2, T_nutation: T, mean_precession_rate: turn } = record;
-  const text = (x, digits = 4) => String(Number(x.toPrecision(digits))).replace("-", "−");
-  const tilts = [record.theta_min_deg, record.theta_max_deg].map((x) => `${x.toFixed(2)}°`);
-  if (scene.theta0_deg % 180 === 0 && !scene.thetadot0) {
-    if (scene.theta0_deg) return "The axis hangs straight down; this is stable.";
-    const isStable = record.b ** 2 >= 2 * record.a;
-    return `The axis stays upright; this is ${isStable ? "stable" : "unstable"}.`;
+/** A number in so many digits, as printf writes it with %#g. */
+function figures(x, digits) {
+  const [mantissa, power] = x.toExponential(digits - 1).split("e").map((part, i) => (i ? Number(part) : part));
+  if (power >= -4 && power < digits) return x.toFixed(digits - 1 - power);
+  return `${mantissa}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
+}
+
+/** The motion in one sentence by the table of `lagtop solve`; `unit` names the unit of time. */
+export function sentence({ record, facts }, phrases, unit) {
+  const { theta_min_deg: low, theta_max_deg: high, T_nutation: nutation, mean_precession_rate: turns } = record;
+  let digits = 4;
+  while (digits < 17 && figures(low, digits) === figures(high, digits)) digits += 1;
+  const [least, most] = [low, high].map((x) => figures(x, digits));
+  const words = { least, most, angle: "deg", unit };
+  const numbers = { low, high, spin: facts.spin, turns, nutation };
+  function part(_, name) {
+    if (name in words) return words[name];
+    if (name in numbers) return figures(numbers[name], 4);
+    const all = { ...facts, unit };
+    const isTrue = ([when]) => Object.entries(when).every(([fact, value]) => all[fact] === value);
+    return phrases[name].find(isTrue)[1].replace(/\{(\w+)\}/g, part);
   }
-  if (!T) return "The axis rises to the upright position and never quite reaches it.";
-  const mean = `precesses at ${text(turn)} rad per ${unit}`;
-  if (u1 - u2 < 1e-12) return `The axis keeps its tilt of ${tilts[0]} and ${mean}.`;
-  const swing = `The axis nutates between ${tilts[0]} and ${tilts[1]} every ${text(T)} ${unit}s`;
-  if (!scene.r0 && !scene.psidot0) return `The axis swings in a plane, to ${tilts[1]}, as a pendulum.`;
-  const [high, low] = [precession(u1), precession(u2)];
-  const isCusp = Math.abs(high) < 1e-9 * Math.abs(low);
-  const path = isCusp ? "has cusps" : high * low < 0 ? "has loops" : "is wavy";
-  return `${swing} and ${mean} on average; its path ${path}.`;
+  return part("", "sentence");
 }

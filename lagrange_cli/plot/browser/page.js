@@ -12,7 +12,8 @@ const number = (word) => (word.trim() ? Number(word.replace("−", "-").replace(
 const clamped = (x, least, most) => Math.min(Math.max(x, least), most);
 const even = (from, to, n) => Array.from({ length: n + 1 }, (_, i) => from + ((to - from) * i) / (n || 1));
 const circle = even(0, 2 * Math.PI, 120);
-const timeUnit = DATA.time === "time" ? "time unit" : DATA.time;
+/** The name of a unit; a shipped scene has none of its own. */
+const unitOf = (unit) => (unit === "angle" ? "°" : at.scenes.value in DATA.scenes ? unit : DATA.units[unit]);
 const style = getComputedStyle(document.documentElement);  // follows the dark mode
 const colour = (name) => style.getPropertyValue(`--${name}`) || name;
 const camera = { azimuth: -62, elevation: 20, zoom: 1 };
@@ -32,7 +33,8 @@ function prepared(canvas) {
   const pen = canvas.getContext("2d");
   pen.scale(fine, fine);
   const letters = document.fullscreenElement ? 24 : 13;
-  Object.assign(pen, { font: `${letters}px system-ui, "DejaVu Sans", sans-serif`, textBaseline: "middle" });
+  const font = `${letters}px system-ui, "DejaVu Sans", sans-serif`;
+  Object.assign(pen, { font, textBaseline: "middle", lineJoin: "round" });
   return { pen, width, height, letters };
 }
 
@@ -61,8 +63,11 @@ function disc(pen, [x, y], radius, tint) {
   area(pen, circle.map((k) => [x + radius * Math.cos(k), y + radius * Math.sin(k)]), tint);
 }
 
+/** Write on a rim of paper, which keeps the letters clear of curves. */
 function word(pen, letters, [x, y], tint, textAlign = "center") {
-  Object.assign(pen, { fillStyle: colour(tint), textAlign });
+  Object.assign(pen, { fillStyle: colour(tint), strokeStyle: colour("paper"), lineWidth: 4, textAlign });
+  pen.setLineDash([]);
+  pen.strokeText(letters, x, y);
   pen.fillText(letters, x, y);
 }
 
@@ -164,7 +169,7 @@ function drawSpace() {
   if (at.arcs.checked) {
     line(pen, [[0, 0, 0], frame.nodes].map(place), "green", { dash: [6, 3] });
     const points = {
-      psi: (x) => [0.55 * Math.cos(x), 0.55 * Math.sin(x), 0],
+      psi: (x) => [0.8 * Math.cos(x), 0.8 * Math.sin(x), 0],
       theta: (x) => sum([0.95, frameOf(x, psi).axis]),
       phi: (x) => around(frame, 0.45, x, 0.5),
     };
@@ -187,10 +192,11 @@ function panel(pen, [left, right, top, bottom], [x0, x1], [y0, y1], [across, up]
     bottom - ((y - y0) / (y1 - y0)) * (bottom - top),
   ];
   const letters = parseInt(pen.font, 10);
+  const most = clamped(Math.floor((bottom - top) / (2 * letters)), 1, up);
   for (const x of across ? ticks(x0, x1, across) : []) {
     word(pen, text(x), [place([x, y0])[0], bottom + 0.8 * letters], "ink");
   }
-  for (const y of ticks(y0, y1, up)) {
+  for (const y of ticks(y0, y1, most)) {
     const [x, height] = place([x0, y]);
     word(pen, text(y), [x - 6, height], "ink", "right");
     line(pen, [[x - 3, height], [x, height]], "quiet");
@@ -203,18 +209,18 @@ function drawCurves() {
   const [left, right, foot] = [4.8 * letters, width - 8, height - 2.2 * letters];
   const { from, span, times } = curves;
   const mean = { theta: 0, phi: motion.record.mean_spin_rate ?? 0, psi: 0 };
+  const now = left + ((t - from) / span) * (right - left);
   Object.entries(CURVES).forEach(([name, [, title, tint]], i) => {
     const values = curves.angles.map((angles, j) => (angles[name] - mean[name] * times[j]) * DEGREE);
     const [low, high] = [Math.min(...values), Math.max(...values)];
     const range = high - low > 1e-7 ? [low, high] : [low - 1, high + 1];
     const box = [left, right, (foot * i) / 3 + 1.3 * letters, (foot * (i + 1)) / 3 - 6];
     const place = panel(pen, box, [from, from + span], range, [i === 2 ? 5 : 0, 4]);
-    word(pen, title, [left + 4, box[2] - 0.6 * letters], tint, "left");
     line(pen, values.map((value, j) => place([times[j], value])), tint, { width: 1.8 });
+    line(pen, [box[2], box[3]].map((height) => [now, height]), "trace", { width: 1.5 });
+    word(pen, title, [left + 4, box[2] - 0.7 * letters], tint, "left");
   });
-  const now = left + ((t - from) / span) * (right - left);
-  word(pen, `t (${timeUnit})`, [(left + right) / 2, foot + 1.5 * letters], "ink");
-  line(pen, [[now, 4], [now, foot]], "trace", { width: 1.5 });
+  word(pen, `t (${unitOf("time").replace("time", "time units")})`, [(left + right) / 2, foot + 1.5 * letters], "ink");
   curves.timeAt = (place) => from + ((place - left) / (right - left)) * span;
 }
 
@@ -235,7 +241,7 @@ function drawCubic() {
   for (const [name, u] of Object.entries(last === u3 ? { ...roots, "u₃": u3 } : roots)) {
     const [x, y] = place([u, 0]);
     disc(pen, [x, y], 3, "ink");
-    word(pen, name, [x + (name === "u₃" ? 9 : -9), y - 11], "ink");
+    word(pen, name, [x + ({ "u₁": 11, "u₁ = u₂": 0 }[name] ?? -11), y - 12], "ink");
   }
   const u = Math.cos(motion.angles(t).theta);
   disc(pen, place([u, motion.f(u)]), 6, "trace");
@@ -264,66 +270,85 @@ function draw() {
     drawCurves();
     drawCubic();
   }
-  if (document.activeElement !== at.time) at.time.value = text(t);
+  if (document.activeElement !== at.time && !at.time.classList.contains("wrong")) at.time.value = text(t, 6);
   if (document.activeElement !== at.scrub) at.scrub.value = (t / motion.span) * 10;
 }
 
 const make = (tag, parts) => Object.assign(document.createElement(tag), parts);
 const fields = {};
-for (const [name, { symbol, meaning, unit }] of Object.entries(DATA.inputs)) {
-  const words = `${symbol}  ${meaning}${/mass|len/.test(unit) || !unit ? "" : ` (${unit})`}`;
-  const label = make("label", { htmlFor: `field-${name}`, textContent: words });
+for (const [name, { meaning }] of Object.entries(DATA.inputs)) {
+  const label = make("label", { htmlFor: `field-${name}` });
   const field = make("input", { type: "text", id: `field-${name}`, inputMode: "decimal" });
   const slider = make("input", { type: "range", step: "any", ariaLabel: `${meaning}, slider` });
   const row = make("div", { className: "input" });
   row.append(label, field, slider);
   at.inputs.append(row);
-  fields[name] = { field, slider };
+  fields[name] = { label, field, slider };
   field.addEventListener("change", () => change({ [name]: number(field.value) }, true));
-  slider.addEventListener("input", () => change({ [name]: Number(Number(slider.value).toPrecision(4)) }));
+  slider.addEventListener("input", () => {
+    const rounded = Number(Number(slider.value).toPrecision(4));
+    change({ [name]: clamped(rounded, Number(slider.min), Number(slider.max)) });
+  });
 }
 
-/** The ends of a slider around a value. */
+/** The ends of a slider around a value; those of A and C depend on each other. */
 function rangeOf(name, x) {
   const { A, C, m, g, s } = scene;
   if (name === "theta0_deg") return [0, 180];
-  if (!name.endsWith("0")) return [0, name === "C" ? 2 * A : 3 * x || 1];
+  if (name === "C") return [A / 100, 2 * A];
+  if (!name.endsWith("0")) return ["s", "g"].includes(name) ? [0, 3 * x || 1] : [x / 100, 3 * x];
   const rate = Math.sqrt((2 * m * g * s) / A) || 1;
   const most = Math.max(1.5 * Math.abs(x), name === "r0" ? (2.5 * rate * A) / C : rate);
   return [-most, most];
 }
 
-/** Why a scene is impossible, or an empty text. */
+/** The input that makes a scene impossible, and why; or nothing. */
 function complaint(given) {
   const { m, A, C, s, g, theta0_deg: tilt, psidot0 } = given;
   const outside = {
     m: m <= 0, A: A <= 0, C: C <= 0 || C > 2 * A, s: s < 0, g: g < 0, theta0_deg: tilt < 0 || tilt > 180,
   };
   for (const [name, { symbol, bound }] of Object.entries(DATA.inputs)) {
-    if (!Number.isFinite(given[name])) return `${symbol} must be a number`;
-    if (outside[name]) return `${symbol} must be ${bound}`;
+    if (!Number.isFinite(given[name])) return [name, `${symbol} must be a number`];
+    if (outside[name]) return [name, `${symbol} must be ${bound}`];
   }
-  return tilt % 180 === 0 && psidot0 ? "a vertical axis has no ψ̇0" : "";
+  return tilt % 180 === 0 && psidot0 ? ["psidot0", "ψ'0 must be 0 if the axis is vertical."] : [];
+}
+
+/** Say what is wrong with a field, or nothing; `remedy` is what the button beside it does. */
+function say(field, words = "", remedy = null) {
+  document.querySelectorAll(".wrong").forEach((each) => each.classList.remove("wrong"));
+  if (words) field.classList.add("wrong");
+  [at.error.textContent, at.fix.hidden, at.fix.onclick] = [words, !remedy, remedy];
 }
 
 /** Change some inputs, unless they are impossible; `anew` sets the ends of the sliders. */
 function change(changes, anew = false) {
   const given = { ...scene, ...changes };
-  at.error.textContent = complaint(given);
-  if (document.body.classList.toggle("bad", Boolean(at.error.textContent))) return;
+  const [wrong, words] = complaint(given);
+  if (document.body.classList.toggle("bad", Boolean(wrong))) {
+    const remedy = words.includes("must be 0 if") ? () => change({ ...changes, psidot0: 0 }, true) : null;
+    say(fields[wrong].field, words, remedy);
+    return;
+  }
+  say();
   scene = given;
   motion = motionOf(scene);
-  for (const [name, { field, slider }] of Object.entries(fields)) {
-    if (anew) [slider.min, slider.max] = rangeOf(name, scene[name]);
-    [field.value, slider.value] = [scene[name], scene[name]];
+  for (const [name, { label, field, slider }] of Object.entries(fields)) {
+    const { symbol, meaning, unit } = DATA.inputs[name];
+    const shown = unitOf(unit);
+    label.textContent = `${symbol}  ${meaning}${/mass|len/.test(shown) ? "" : ` (${shown})`}`;
+    if (anew || name === "C") [slider.min, slider.max] = rangeOf(name, scene[name]);
+    if (name === "A") slider.min = Math.max(slider.min, scene.C / 2);
+    [field.value, slider.value] = [Number(scene[name].toPrecision(7)), scene[name]];
   }
   if (anew) pace = motion.span / 2.5;
-  at.words.textContent = sentence(motion, timeUnit);
+  at.words.textContent = sentence(motion, DATA.phrases, unitOf("time"));
   at.sketch.hidden = !motion.isSketch;
   at.record.replaceChildren(...Object.entries(motion.record).filter(([, x]) => x !== null).map(([name, x]) => {
     const { symbol, meaning, unit, formula } = DATA.keys[name];
     const row = make("tr", {});
-    for (const words of [symbol, meaning, `${text(x)} ${unit}`]) row.insertCell().textContent = words;
+    for (const words of [symbol, meaning, `${text(x)} ${unitOf(unit)}`]) row.insertCell().textContent = words;
     row.cells[1].append(make("small", { textContent: formula }));
     return row;
   }));
@@ -337,7 +362,11 @@ function stale() {
   fresh = false;
 }
 
-const setTime = (time) => { t = Number.isFinite(time) ? Math.max(time, 0) : t; };
+function setTime(time) {
+  const isTime = Number.isFinite(time) && time >= 0;
+  if (isTime) t = time;
+  if (!document.body.classList.contains("bad")) say(at.time, isTime ? "" : "t must be a number, at least 0");
+}
 
 function play(isOn) {
   playing = isOn;
@@ -347,7 +376,7 @@ function play(isOn) {
 
 /** Write everything that is shown into the address. */
 function link() {
-  const view = { t, speed: at.speed.value, ...camera, arcs: Number(at.arcs.checked) };
+  const view = { t, speed: at.speed.value, ...camera, arcs: Number(at.arcs.checked), scene: at.scenes.value };
   history.replaceState(null, "", `#${new URLSearchParams({ ...scene, ...view })}`);
 }
 
@@ -355,6 +384,7 @@ function link() {
 function restore() {
   const words = new URLSearchParams(location.hash.slice(1));
   const known = Object.fromEntries([...words].map(([name, x]) => [name, number(x)]));
+  at.scenes.value = words.get("scene") in DATA.scenes ? words.get("scene") : "this scene";
   change(DATA.scene, true);
   change(Object.fromEntries(Object.entries(known).filter(([name]) => name in DATA.inputs)), true);
   for (const name of Object.keys(camera)) if (Number.isFinite(known[name])) camera[name] = known[name];
@@ -370,7 +400,7 @@ const fullScreen = () => (document.fullscreenElement ? document.exitFullscreen()
 const KEYS = {
   " ": () => play(!playing),
   ArrowRight: () => setTime(t + motion.span / 50),
-  ArrowLeft: () => setTime(t - motion.span / 50),
+  ArrowLeft: () => setTime(Math.max(t - motion.span / 50, 0)),
   Home: () => setTime(0),
   "+": () => zoom(1.1),
   "-": () => zoom(1 / 1.1),
@@ -384,7 +414,7 @@ on(at.reset, "click", resetView);
 on(at.full, "click", fullScreen);
 on(at.time, "change", () => setTime(number(at.time.value)));
 on(at.scrub, "input", () => setTime((Number(at.scrub.value) * motion.span) / 10));
-on(at.plots, "pointermove", (event) => event.buttons && setTime(curves.timeAt(event.offsetX)));
+on(at.plots, "pointermove", (event) => event.buttons && setTime(Math.max(curves.timeAt(event.offsetX), 0)));
 on(at.space, "pointerdown", (event) => at.space.setPointerCapture(event.pointerId));
 on(at.space, "pointermove", ({ buttons, movementX, movementY }) => {
   if (!buttons) return;

@@ -17,6 +17,7 @@ from ...output.notebook import Document
 from ...solver.explanation import listed
 from ...solver.record import KEYS
 from ...solver.solve import Motion, solve
+from ...solver.summary import PHRASES
 from ...top.given import read_scene
 from ...top.inputs import DECLARED
 from ...top.scenes import scene_names
@@ -57,14 +58,16 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
     formulas = {row.name: row.formula for row in listed()}
     scene = page_scene(motion)
     inputs = {name: DECLARED[name.removesuffix("_deg")] for name in scene}
+    units = {x.unit for x in inputs.values()} | {x.unit for x in KEYS.values()}
 
     def described(key: Any, **more: str) -> dict[str, str]:
-        return more | {"symbol": key.symbol, "unit": unit(key.unit).replace("angle", "°")}
+        return more | {"symbol": key.symbol, "unit": key.unit}
 
     return {
         "scene": scene,
         "scenes": {name: page_scene(solve(read_scene(name))) for name in scene_names()},
-        "time": unit("time"),
+        "units": {x: unit(x) for x in sorted(units)},
+        "phrases": PHRASES,
         "inputs": {name: described(x, meaning=x.name, bound=x.bound) for name, x in inputs.items()},
         "keys": {
             x: described(KEYS[x], meaning=KEYS[x].meaning, formula=formulas.get(x, ""))
