@@ -6,10 +6,11 @@ import math
 from collections.abc import Sequence
 from contextlib import ExitStack
 from fractions import Fraction
-from os.path import splitext
+from os.path import exists, splitext
 
 from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError
+from ..names import suggestion
 from ..output.destination import opened
 from ..output.terminal import is_screen, with_progress
 from ..plot import KINDS, SHEET
@@ -24,11 +25,13 @@ from ..plot.style import (
     styled,
 )
 from ..top.inputs import DECLARED
+from ..top.scenes import scene_names
 from ..top.values import Value, parse_range, parse_value
 from . import shared as opt
 from .table import angle_stds
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
+FILMS = "gif", "mp4"
 
 
 @opt.command(
@@ -44,6 +47,7 @@ PAGE_DPI, FILM_DPI = 150.0, 100.0
 @opt.option("--x", metavar="RANGE", help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
 @opt.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0]")
 @opt.option("--camera", metavar="AZ,EL", help="Azimuth and elevation.  [default: in front]")
+@opt.option("--title", metavar="TEXT", help="Title of the picture, or '' for none.")
 @opt.option("--dark", is_flag=True, help="Dark background.")
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
 @opt.option("--animate", metavar="FILE", help="Write a film of the top: FILE.gif or FILE.mp4.")
@@ -57,6 +61,7 @@ def plot_command(
     x: str | None,
     y: str | None,
     camera: str | None,
+    title: str | None,
     dark: bool,
     dpi: Fraction | None,
     animate: str | None,
@@ -77,6 +82,10 @@ def plot_command(
     """
     kinds = _kinds([word for word in words if word in {*KINDS, SHEET}])
     scenes = [word for word in words if word not in {*KINDS, SHEET}]
+    for word in scenes:
+        hint = suggestion(word, [*KINDS, SHEET, *scene_names()])
+        if hint and not (opt.is_scene(word) or exists(word)):
+            raise LagtopError(f"{word!r} is no kind of picture and no scene{hint}")
     if not (output or animate):
         raise LagtopError("nothing to do: give -o FILE.png or --animate FILE.gif")
     if duration is not None and animate is None:
@@ -89,8 +98,10 @@ def plot_command(
         raise LagtopError(f"--dpi must be in [{LEAST_DPI:g}, {MOST_DPI:g}], got {float(dpi):g}")
     if output is not None and is_screen(output):
         raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
+    if opt.extension(output or "") in FILMS:
+        raise LagtopError(f"a film needs --animate: write --animate {output} instead of -o")
     fmt = "svg" if output in (None, "-") else check_picture(output, FORMATS)
-    film = check_picture(animate, ("gif", "mp4")) if animate else ""
+    film = check_picture(animate, FILMS) if animate else ""
     eye = _camera(camera, top.radians) if camera else None
     from ..plot.film import SECONDS, film_bytes
     from ..plot.pictures import Options, figure_of
@@ -98,7 +109,8 @@ def plot_command(
     axes = {"x": _axis("--x", x, top), "y": _axis("--y", y, top)}
     others = {"t_max": t_max} | dict(filter(None, axes.values()))
     founds = [top._replace(scene=name or None).given(**others) for name in scenes or [""]]
-    motions = [opt.motion_of(found) for found in founds]
+    uses_stds = len(founds) == 1 and "angles" in kinds
+    motions = [opt.motion_of(found, uses_stds=uses_stds) for found in founds]
     options = Options(
         t_max=t_max and t_max.number,
         radians=top.radians,
@@ -108,7 +120,7 @@ def plot_command(
         **{x: y and (y[0], next(y[1].number.blocks())) for x, y in axes.items()},
         progress=with_progress,
         unit=founds[0].named,
-        stds=angle_stds(founds[0], motions[0]) if len(founds) == 1 else None,
+        stds=angle_stds(founds[0], motions[0]) if uses_stds else None,
     )
     with ExitStack() as stack:
         if animate:
@@ -116,15 +128,15 @@ def plot_command(
             resolution = float(dpi or FILM_DPI)
             stream.write(film_bytes(motions[0], film, options, seconds, resolution))
         if output is not None:
-            named = dict(zip(scenes or [""], motions, strict=True))
-            title = f"Lagrange top: {', '.join(kinds)}"
+            named = list(zip(scenes or [""], motions, strict=True))
+            about = title or f"Lagrange top: {', '.join(kinds)}"
             text = "; ".join(
                 f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.options()}"
-                for name, motion in named.items()
+                for name, motion in named
             )
             with styled(options.look):
-                figure = figure_of(named, kinds, options)
-                picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), title, text)
+                figure = figure_of(named, kinds, options, title)
+                picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)
 
 

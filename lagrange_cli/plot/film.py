@@ -70,8 +70,9 @@ def film_figure(
     (rim,) = ax.plot([], [], color=look.ink, lw=0.9, zorder=2.6)
     (axle,) = ax.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
     clock = ax.text(0.02, 0.97, "", transform=ax.transAxes)
-    pace, unit = t_max * PER_SECOND / frames, options.unit("time").replace("time", "of t")
-    foot = f"1 second shows {pace:.3g} {unit}"
+    unit = options.unit("time").replace("time", "")
+    decimals = max(0, 2 - math.floor(math.log10(t_max)))
+    foot = pace_of(t_max * PER_SECOND / frames, unit)
     if np.abs(np.diff(motion.angles(times).phi)).max(initial=0.0) > math.pi / 3:
         foot += "\nthe spin is too fast for these frames"
     ax.text(0.02, 0.0, foot, size="small", transform=ax.transAxes)
@@ -85,9 +86,17 @@ def film_figure(
         axle.set_zorder(4 if toward > 0 else 2.1)
         for line, side in ((near, sides[0]), (far, sides[1])):
             line.set_data(*side[t <= times[i]].T)
-        clock.set_text(f"t = {times[i]:.4g}")
+        clock.set_text(f"t = {times[i]:.{decimals}f} {unit}")
 
     return figure, show
+
+
+def pace_of(pace: float, unit: str) -> str:
+    """Return what one second of a film shows, in words: `pace` units of time."""
+    if unit != "s":
+        return f"1 second shows t = {pace:.2g}"
+    factor, word = (pace, "faster") if pace > 1 else (1 / pace, "slower")
+    return "as fast as in life" if factor < 1.05 else f"{factor:.2g} times {word} than life"
 
 
 def cone(quaternion: Array, camera: Array, look: Look) -> tuple[list[Array], list[Array], Array]:

@@ -8,15 +8,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
+from pathlib import PurePath
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from matplotlib.ticker import LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
 from ..arithmetic.numbers import Number, angle_unit
@@ -41,7 +41,7 @@ ARROWS = np.array([0.1, 0.28, 0.46, 0.64, 0.82])
 """Places of the arrowheads that show the direction of a path, as shares of its samples."""
 WORDS = {"regime": "Regime of the motion", "path": "Path of the axis"}
 """Keys of a map whose values are words, with their titles."""
-REGIONS = "#9cc9ec #f3c69a #a9dcc3 #d9c3ea #f0e08c #e8a9a4 #c9ced4 #c8e6a0".split()
+CLASSES = "#9cc9ec #f3c69a #a9dcc3 #d9c3ea #f0e08c #e8a9a4 #c9ced4 #c8e6a0".split()
 """Colours of words."""
 MOST_VALUES = 1000
 """Most values along one axis of a map."""
@@ -58,7 +58,7 @@ class Options(NamedTuple):
     """Azimuth and elevation (radians) of the camera; by default it faces the path."""
     look: Look = LIGHT
     stds: Callable[[Array], Any] | None = None
-    """Standard deviations (radians) of tilt, spin and precession at given times: bands."""
+    """Standard deviations (radians) of the three angles at given times: bands."""
     key: str | None = None
     """Key of a map; by default the mean precession rate."""
     x: tuple[str, ArrayLike] | None = None
@@ -134,14 +134,17 @@ def sampled(motion: Motion, t_max: float, names: Sequence[str]) -> list[Array]:
 # --- sphere
 
 
-def camera_of(path: Array, options: Options, elevation: float = 20.0) -> Array:
+def camera_of(path: Array, options: Options, elevation: float | None = None) -> Array:
     """Return an orthographic camera: its axes right, up and towards us.
 
-    By default it is in front of the middle of a path and its start, a little to the side, and above
-    the horizon unless the path hangs well below it.
+    By default it is in front of the middle of a path and its start, a little to the side, and looks
+    down on the band of the path (up, if the path hangs well below the horizon).
     """
-    x, y, z = path.mean(axis=0) + 0.2 * path[0]  # a path that goes around has its middle at 0
-    in_front = math.atan2(y, x) + 0.3, math.radians(math.copysign(elevation, z + 0.5))
+    x, y, _ = path.mean(axis=0) + 0.2 * path[0]  # a path that goes around has its middle at 0
+    height = (path[:, 2].min() + path[:, 2].max()) / 2
+    if elevation is None:
+        elevation = min(max(math.degrees(math.asin(min(abs(height), 1.0))), 20.0), 60.0)
+    in_front = math.atan2(y, x) + 0.3, math.radians(math.copysign(elevation, height + 0.5))
     sa, ca, se, ce = (f(x) for x in options.camera or in_front for f in (math.sin, math.cos))
     return np.array([[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
 
@@ -159,15 +162,16 @@ def project(camera: Array, points: Array) -> tuple[Array, Array]:
 def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """Draw the path of the figure axis on the unit sphere, with the direction, coloured by time.
 
-    Above six nutation periods the line is finer.
+    The path fills the picture, which may cut the sphere.  Above six nutation periods the line is
+    finer.  `add_time_bar` draws the scale of the colours.
     """
     (ax,), look = axes, options.look
     t, *columns = sampled(motion, last_time(motion, options, usual_span(motion, 3, 40)), ["axis"])
     path = np.stack(columns, axis=1)
     camera = camera_of(path, options)
-    draw_globe(ax, motion, camera, options)
-    near, far = project(camera, path)
     moves = np.ptp(path, axis=0).max() > 1e-12
+    draw_globe(ax, motion, camera, options, path if moves else None)
+    near, far = project(camera, path)
     mark_start(ax, camera[:2] @ path[0], look, "start" if moves else "the axis stays here")
     if moves:
         cuts = np.linspace(0, t.size - 1, 161).astype(int)
@@ -176,22 +180,17 @@ def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
             pieces = [side[i : j + 1] for i, j in pairwise(cuts)]
             lines = LineCollection(pieces, array=t[cuts[:-1]], clim=(0, t[-1]), cmap=scale(look))
             lines.set(lw=width * max(fine, 0.35), capstyle="round", alpha=alpha, zorder=order)
-            ax.add_collection(lines)
-        bar = ax.figure.colorbar(lines, ax=ax, shrink=0.6, pad=0.02, aspect=28)
-        bar.outline.set_visible(False)
-        bar.set_label(options.time_label)
-        is_large = np.ptp(path @ camera[:2].T, axis=0).max() > 0.15
-        heads = ((ARROWS if is_large else ARROWS[-1:]) * t.size).astype(int)
+            ax.add_collection(lines, autolim=False)
+        heads = ((ARROWS if fine > 0.5 else ARROWS[-1:]) * t.size).astype(int)
         steps = near[heads + 1] - near[heads]
         steps /= np.linalg.norm(steps, axis=1, keepdims=True)
         shape: dict[str, Any] = {"headlength": 6, "headaxislength": 6, "headwidth": 5}
         shape |= {"units": "inches", "width": 0.02, "scale_units": "inches", "scale": 8.0}
         ax.quiver(*near[heads].T, *steps.T, color=look.ink, pivot="mid", zorder=5, **shape)
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3)
-    words = f"{motion.path} path" if motion.path else motion.regime.value
     if motion.regime is Regime.SLEEPING:
-        words += ", stable" if motion.exact.facts.stable else ", unstable"
-    return f"Figure axis on the unit sphere: {words}"
+        return f"sleeping, {'stable' if motion.exact.facts.stable else 'unstable'}"
+    return motion.path or motion.regime.value
 
 
 def mark_start(ax: Axes, point: Iterable[float], look: Look, label: str = "start") -> None:
@@ -200,17 +199,36 @@ def mark_start(ax: Axes, point: Iterable[float], look: Look, label: str = "start
     ax.plot(*point, "o", ls="none", label=label, **ring)
 
 
-def draw_globe(ax: Axes, motion: Motion, camera: Array, options: Options) -> None:
-    """Draw the outline, the equator, the axes of space and the limits of the tilt."""
-    look = options.look
+def draw_globe(
+    ax: Axes, motion: Motion, camera: Array, options: Options, path: Array | None = None
+) -> None:
+    """Draw the outline, the equator, the axes of space that fit, and the limits of the tilt.
+
+    The picture shows the whole sphere, or the part around a path with the z axis, if the latter
+    does not make it much larger.
+    """
+    look, tips = options.look, 1.24 * camera[:2]
+    low, high = np.full(2, -1.35), np.full(2, 1.35)
+    if path is not None:
+        ends = camera[:2] @ path.T
+        low, high = ends.min(axis=1), ends.max(axis=1)
+        if tips[1, 2] - low[1] < 1.6 * max(high - low):
+            high[1] = max(high[1], tips[1, 2])
+        room = 0.07 * max(high - low) + 0.005
+        low, high = low - room, high + room
     ax.set_axis_off()
-    ax.set(aspect="equal", xlim=(-1.35, 1.35), ylim=(-1.35, 1.35))
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     ax.add_patch(Circle((0, 0), 1, fc=look.faint, ec=look.quiet, alpha=0.6, zorder=0))
     draw_circle(ax, camera, math.pi / 2, color=look.quiet, lw=0.6)
-    for name, end, depth in zip("xyz", camera[:2].T, camera[2], strict=True):
-        shade: dict[str, Any] = {"color": look.quiet, "alpha": 1.0 if depth >= 0 else 0.5}
-        arrow = {"arrowstyle": "<|-", "lw": 0.8, **shade}
-        ax.annotate(name, end, 1.32 * end, ha="center", va="center", arrowprops=arrow, **shade)
+    has_origin = np.all((low < 0) & (high > 0))
+    for name, tip, depth in zip("xyz", tips.T, camera[2], strict=True):
+        is_hidden = depth < 0 and np.linalg.norm(tip) < 1.1
+        if not is_hidden and np.all((low < tip) & (tip < high)):
+            shade: dict[str, Any] = {"color": look.quiet, "alpha": 1.0 if depth >= 0 else 0.6}
+            arrow = {"arrowstyle": "<|-", "lw": 0.8, "shrinkA": 7, "shrinkB": 0, **shade}
+            foot = (0.0 if has_origin else 0.8) * tip
+            ax.annotate(name, foot, tip, ha="center", va="center", arrowprops=arrow, **shade)
     least, most = (math.radians(x or 0.0) for x in (motion.theta_min_deg, motion.theta_max_deg))
     limits = {"ϑ min": least, "ϑ max": most} if least < most else {"ϑ =": least}
     for (name, tilt), dashes in zip(limits.items(), ("-", (0, (7, 2, 1, 2))), strict=False):
@@ -220,11 +238,26 @@ def draw_globe(ax: Axes, motion: Motion, camera: Array, options: Options) -> Non
 
 def draw_circle(ax: Axes, camera: Array, tilt: float, **line: Any) -> None:
     """Draw the circle of a tilt, with its far side dashed and paler."""
-    around = np.linspace(0.0, 2 * math.pi, 241)
+    around = np.linspace(0.0, 2 * math.pi, 721)
     x, y, z = math.sin(tilt) * np.cos(around), math.sin(tilt) * np.sin(around), math.cos(tilt)
     near, far = project(camera, np.stack([x, y, 0 * x + z], axis=1))
     ax.plot(*near.T, zorder=2, **line)
     ax.plot(*far.T, zorder=1, **line | {"alpha": 0.45, "ls": (0, (3, 3)), "label": None})
+
+
+def add_time_bar(axes: Sequence[Axes], label: str) -> None:
+    """Draw one colour bar for the times of spheres side by side, or more if they differ much."""
+    lines = [x for ax in axes for x in ax.collections if isinstance(x, LineCollection)]
+    ends = [x.get_clim()[1] for x in lines]
+    if len(axes) > 1 and lines and max(ends) > 3 * min(ends):
+        for ax in axes:
+            add_time_bar([ax], label)
+    elif lines:
+        for x in lines:
+            x.set_clim(0, max(ends))
+        bar = axes[0].figure.colorbar(lines[-1], ax=axes, shrink=0.7, pad=0.02, aspect=28)
+        bar.set_label(label)
+        bar.outline.set_visible(False)
 
 
 # --- angles
@@ -324,12 +357,12 @@ def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
         tilt = math.acos(b * b / a - 1) * np.sin(np.linspace(0.0, math.pi, 385))
         square = 2 * a * np.sin(tilt / 2) ** 2 - (b * np.tan(tilt / 2)) ** 2
         speed = np.sqrt(np.maximum(square, 0.0)) * np.where(np.arange(385) < 192, 1, -1)
-        name = "separatrix of a top that starts upright with this spin"
+        name = "upright top with this spin" + ", for comparison" * (motion.swing is None)
         ax.plot(tilt * factor, speed, color=look.ink, lw=1.4, ls=(0, (5, 2)), label=name)
     else:
         why = "without torque" if a == 0 else "the upright top is stable with this spin"
         ax.plot([], [], ls="none", label=f"no separatrix: {why}")
-    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
     ax.set(xlabel=f"tilt ϑ ({unit})", ylabel=f"tilt rate ϑ̇ ({options.unit('rad/time')})")
     ax.margins(0.06)
     ax.locator_params(axis="x", nbins=5)
@@ -348,34 +381,37 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     key = degree_name(options.key or "mean_precession_rate")
     check_names("key", [key], [*WORDS, *NUMBER_KEYS, *requested_keys()])
     grid = grid_of(motion.top, options)
+    tilt = "theta0_rad" if options.radians else "theta0_deg"
+    (x, xs), (y, ys) = ((tilt if x == "theta0" else x, values) for x, values in grid.items())
+    inputs: dict[str, Any] = dict(motion.top.inputs(radians=options.radians))
+    own = float(inputs[x]), float(inputs[y])
+    inputs["psidot0"] = motion.top.as_dict()["psidot0"]  # it may be a word
+    inputs |= {x: xs[np.newaxis, :], y: ys[:, np.newaxis]}
+    found = sweep(keys=list(dict.fromkeys([key, "stability_factor", "b", "u1"])), **inputs)
+    values: Any = found[key]
+    title = (draw_classes if key in WORDS else draw_numbers)(ax, (xs, ys), values, key, options)
+    borders = {"border of stability (upright top)": (found["stability_factor"] - 1, look.ink, "--")}
+    if key == "path":  # beta - b u, and with it the precession, is 0 at u1, at u = 1 or at u = -1
+        size, tilts = np.abs(found["b"]).max() or 1.0, inputs[tilt] / options.angle_unit[0]
+        b, around = found["b"] / size, inputs["psidot0"] / size * np.sin(tilts) ** 2
+        beta = b * np.cos(tilts) + around * (b != 0)  # a top without spin has no cusps
+        borders["cusped"] = beta - b * found["u1"], look.ink, "-"
+        borders["through the vertical"] = beta**2 - b**2, look.lines[0], "-"
+    for label, (height, colour, dashes) in borders.items():
+        if np.nanmin(height) < -1e-9 and np.nanmax(height) > 1e-9:
+            ax.contour(xs, ys, height, [0.0], colors=colour, linewidths=2.2, linestyles=dashes)
+            ax.plot([], [], dashes, color=colour, label=label)
     for side, (name, points) in zip("xy", grid.items(), strict=True):
         declared = DECLARED[name]
         unit = options.angle_unit[1] if declared.unit == "angle" else options.unit(declared.unit)
         known = "" if "len" in unit or "mass" in unit else f" ({unit})"
-        geometric = np.geomspace(points[0], points[-1], points.size) if points[0] > 0 else 0
-        shape = "log" if points.size > 2 and np.allclose(points, geometric, 1e-12) else "linear"
-        label = f"{declared.name} {declared.symbol}{known}"
-        ax.set(**{f"{side}label": label, f"{side}scale": shape})
-    inputs: dict[str, Any] = dict(motion.top.inputs(radians=options.radians))
-    tilt = next(name for name in inputs if name.startswith("theta0"))
-    (x, xs), (y, ys) = ((tilt if x == "theta0" else x, values) for x, values in grid.items())
-    keys = list(dict.fromkeys([key, "stability_factor"]))
-    rate = {"psidot0": motion.top.as_dict()["psidot0"]}  # a word is refused unless it is an axis
-    rows = [
-        sweep(keys=keys, **inputs | rate | {x: xs, y: value})
-        for value in options.progress(ys.tolist(), "map")
-    ]
-    values, stability = (np.array([row[name] for row in rows]) for name in (keys[0], keys[-1]))
-    title = (draw_words if key in WORDS else draw_numbers)(ax, grid, key, values, options)
-    if np.any(stability < 1) and np.any(stability > 1):
-        line: dict[str, Any] = {"colors": look.ink, "linewidths": 1.8, "linestyles": "--"}
-        ax.contour(xs, ys, stability, [1.0], **line)
-        ax.plot([], [], "--", color=look.ink, label="with more spin an upright top is stable")
-    own = float(inputs[x]), float(inputs[y])
+        ax.set(**{f"{side}label": f"{declared.name} {declared.symbol}{known}"})
+        if points[0] > 0 and np.ptp(np.diff(np.log(points))) < 1e-9 < np.ptp(np.diff(points)):
+            ax.set(**{f"{side}scale": "log"})
     if xs[0] <= own[0] <= xs[-1] and ys[0] <= own[1] <= ys[-1]:
         mark_start(ax, own, look, "this scene")
     if ax.get_legend_handles_labels()[0]:
-        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
     return title
 
 
@@ -386,8 +422,8 @@ def grid_of(top: Top, options: Options) -> dict[str, Array]:
     """
     threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
     most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
-    tilts = np.radians(np.linspace(2.0, 178.0, 120)) * options.angle_unit[0]
-    x = options.x or ("r0", (np.arange(160) + 0.5) * most / 160)
+    tilts = np.radians(np.linspace(1.0, 179.0, 100)) * options.angle_unit[0]
+    x = options.x or ("r0", (np.arange(200) + 0.5) * most / 200)
     y = options.y or ("theta0", tilts)
     if x[0] == y[0]:
         raise LagtopError(f"x and y must be two inputs, got {x[0]} twice")
@@ -403,49 +439,37 @@ def grid_of(top: Top, options: Options) -> dict[str, Array]:
     return grid
 
 
-def draw_numbers(
-    ax: Axes, grid: dict[str, Array], key: str, values: Array, options: Options
-) -> str:
-    """Draw a number as filled contours with labelled lines, and a colour bar; return a title.
+def draw_numbers(ax: Axes, grid: Sequence[Array], values: Array, key: str, options: Options) -> str:
+    """Draw a number in colours, with a colour bar, and return a title.
 
-    The colours span the values without the lowest and the highest 1 %, which may be a peak.  There
-    are no lines beside a jump, where they would be jagged.
+    The colours span the values without the lowest and the highest 1 %, which may be a peak.
     """
     declared, look = number_key(key), options.look
     assert declared is not None
     unit = options.unit(declared.unit)
     if declared.unit == "angle":  # keys of angles are in degrees
         values, unit = np.radians(values) * options.angle_unit[0], options.angle_unit[1]
+    ax.set_facecolor(look.faint)
     shown = np.ma.masked_invalid(values)
     if not shown.count():
         raise LagtopError(f"no map: {key} is undefined for all of these tops")
-    low, high = np.percentile(shown.compressed(), [1, 99]).tolist()
-    if low == high:
-        low, high = low - 0.5 * (abs(low) or 1), low + 0.5 * (abs(low) or 1)
-    logarithmic = low > 0 and high > 30 * low
-    locator = LogLocator(subs=(1.0, 2.0, 5.0)) if logarithmic else MaxNLocator(10)
-    levels = np.unique(locator.tick_values(low, high))
-    norm = (LogNorm if logarithmic else Normalize)(levels[0], levels[-1])
-    ax.set_facecolor(look.faint)
-    filled = ax.contourf(*grid.values(), shown, levels, cmap=scale(look), norm=norm, extend="both")
-    slope = np.max(np.abs(np.gradient(shown.filled(np.nan))), axis=0)
-    smooth = np.ma.masked_where(slope > (high - low) / 8, shown)
-    lines = ax.contour(*grid.values(), smooth, levels, colors=look.paper, linewidths=0.6)
-    ax.clabel(lines, levels[1:-1:2], fontsize="small", fmt="%g")
+    low, high = np.percentile(shown.compressed(), [1, 99])
+    mesh = ax.pcolormesh(*grid, shown, cmap=scale(look), vmin=low, vmax=high, rasterized=True)
     label = f"{declared.symbol} ({unit})" if unit else declared.symbol
-    bar = ax.figure.colorbar(filled, ax=ax, aspect=28, format="%g", label=label)
+    bar = ax.figure.colorbar(mesh, ax=ax, aspect=28, extend="both", label=label)
     bar.outline.set_visible(False)
     if shown.count() < shown.size:
         ax.plot([], [], "s", color=look.faint, mec=look.quiet, label="undefined")
     return f"{declared.symbol}: {declared.meaning} {declared.equation}".rstrip()
 
 
-def draw_words(ax: Axes, grid: dict[str, Array], key: str, values: Array, _: Options) -> str:
-    """Draw words as coloured regions with a legend; return a title."""
+def draw_classes(ax: Axes, grid: Sequence[Array], values: Any, key: str, _: Options) -> str:
+    """Draw words as coloured classes with a legend, and return a title."""
     names, numbers = np.unique(values.astype(str), return_inverse=True)
-    regions = ListedColormap(REGIONS[: names.size])
-    ax.pcolormesh(*grid.values(), numbers.reshape(values.shape), cmap=regions, rasterized=True)
-    for colour, name in zip(REGIONS, names, strict=False):
+    classes = numbers.reshape(values.shape)
+    colours = ListedColormap(CLASSES[: names.size])
+    ax.pcolormesh(*grid, classes, cmap=colours, rasterized=True)
+    for colour, name in zip(CLASSES, names, strict=False):
         ax.plot([], [], "s", color=colour, label=name.replace("None", "undefined"))
     return WORDS[key]
 
@@ -454,7 +478,7 @@ def draw_words(ax: Axes, grid: dict[str, Array], key: str, values: Array, _: Opt
 
 
 PICTURES: dict[str, tuple[Callable[[Motion, Sequence[Axes], Options], str], int, Any]] = {
-    "sphere": (sphere, 1, (6.0, 5.6)),
+    "sphere": (sphere, 1, (6.0, 4.4)),
     "angles": (angles, 3, (6.8, 6.0)),
     "cubic": (cubic, 1, (6.4, 4.8)),
     "phase": (phase, 1, (6.4, 4.8)),
@@ -464,20 +488,43 @@ PICTURES: dict[str, tuple[Callable[[Motion, Sequence[Axes], Options], str], int,
 below the other; and the width and height of one picture (inches)."""
 
 
-def figure_of(motions: Mapping[str, Motion], kinds: Sequence[str], options: Options) -> Figure:
-    """Return a figure with a panel for each kind of each motion, by the name of its scene.
+def figure_of(
+    scenes: Sequence[tuple[str, Motion]],
+    kinds: Sequence[str],
+    options: Options,
+    title: str | None = None,
+) -> Figure:
+    """Return a figure with a panel for each kind of each scene, a name and a motion.
 
-    Several scenes stand side by side; several kinds of one scene fill a square.
+    Several scenes stand side by side, with their names in the titles; several kinds of one scene
+    fill a square.  A `title` above the figure, which may be empty, replaces those of the panels.
     """
-    panels = [(name, kind) for kind in kinds for name in motions]
-    columns = len(motions) if len(motions) > 1 else math.ceil(math.sqrt(len(kinds)))
+    panels = [(*scene, kind) for kind in kinds for scene in scenes]
+    columns = len(scenes) if len(scenes) > 1 else math.ceil(math.sqrt(len(kinds)))
     rows = -(-len(panels) // columns)
     width, height = np.max([PICTURES[kind][2] for kind in kinds], axis=0)
     figure = Figure(figsize=(width * columns, height * rows))
-    places = figure.subfigures(rows, columns, squeeze=False).flat
-    for place, (name, kind) in zip(places, panels, strict=False):
+    spheres = []
+    places = figure.add_gridspec(rows, columns)
+    for i, (name, motion, kind) in enumerate(panels):
         draw, count, _ = PICTURES[kind]
-        axes = place.subplots(count, sharex=True, squeeze=False).ravel()
-        title = draw(motions[name], axes, options)
-        place.suptitle(f"{plain(name)}: {title}" if name else title, x=0.012, ha="left")
+        grid = places[i].subgridspec(count, 1)
+        several: Any = grid.subplots(sharex=True) if count > 1 else ()
+        axes = [*several] or [figure.add_subplot(places[i])]
+        shown = draw(motion, axes, options)
+        stem = PurePath(name).stem if len(scenes) > 1 else ""
+        if title is None:
+            both = f"{stem}: {shown}" if stem and shown not in stem else stem or shown
+            axes[0].set_title(plain(both), pad=18)
+        spheres += axes * (kind == "sphere")
+    if spheres:
+        add_time_bar(spheres, options.time_label)
+    if title:
+        figure.suptitle(plain(title), x=0.012, ha="left")
+    windows = [(ax.get_xlim(), ax.get_ylim()) for ax in spheres]
+    if engine := figure.get_layout_engine():  # each round of it widens a picture of equal scales
+        engine.execute(figure)
+        figure.set_layout_engine("none")
+    for ax, (wide, tall) in zip(spheres, windows, strict=True):
+        ax.set(xlim=wide, ylim=tall)
     return figure

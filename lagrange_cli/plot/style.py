@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import io
 import logging
-import os
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import CannotWriteError, LagtopError, UnavailableError
+from ..output.terminal import one_line
 
 if TYPE_CHECKING:
     from matplotlib.colors import Colormap
@@ -77,8 +76,8 @@ def scale(look: Look) -> Colormap:
 
 
 def plain(text: str) -> str:
-    """Return a text from outside that matplotlib draws as it is, without control characters."""
-    return "".join(x if x.isprintable() else " " for x in text).replace("$", r"\$")
+    """Return a text from outside that matplotlib draws as it is, on one line."""
+    return one_line(text).replace("$", r"\$")
 
 
 def require_matplotlib() -> None:
@@ -86,12 +85,11 @@ def require_matplotlib() -> None:
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as about its folder of settings
     try:
         import matplotlib  # noqa: F401
-
-        datetime.fromtimestamp(int(os.environ.get("SOURCE_DATE_EPOCH", "0")), UTC)
-    except ImportError:
-        raise UnavailableError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
-    except (ValueError, OverflowError) as error:  # MPLBACKEND or SOURCE_DATE_EPOCH is wrong
-        raise UnavailableError(f"matplotlib cannot start: {error}") from None
+    except (ImportError, ValueError, MemoryError) as error:  # such as a wrong MPLBACKEND
+        if isinstance(error, ModuleNotFoundError) and error.name == "matplotlib":
+            raise UnavailableError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
+        why = str(error) or "out of memory"
+        raise UnavailableError(f"cannot import matplotlib: {why}") from None
 
 
 def check_picture(path: str, formats: tuple[str, ...], report: str = "-") -> str:
@@ -123,6 +121,7 @@ def figure_bytes(figure: Figure, fmt: str, dpi: float, title: str, text: str) ->
         most = (MOST_PIXELS / (width * height)) ** 0.5 * dpi
         raise LagtopError(f"dpi must be at most {most:.0f} for this picture, got {dpi:g}", "dpi")
     about = {"Title": title, "Subject" if fmt == "pdf" else "Description": text}
+    about = {name: one_line(words) for name, words in about.items()}
     buffer = io.BytesIO()
     figure.savefig(buffer, format=fmt, dpi=dpi, metadata=about)
     return buffer.getvalue()

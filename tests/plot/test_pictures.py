@@ -13,10 +13,11 @@ from conftest import Lagtop
 from lagtop import LagtopError, Motion, Top, draw, read_scene, solve
 
 pytest.importorskip("matplotlib")
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from PIL import Image
 
-from lagrange_cli.plot.film import cone
+from lagrange_cli.plot.film import cone, film_figure, pace_of
 from lagrange_cli.plot.pictures import (
     PICTURES,
     Options,
@@ -26,27 +27,102 @@ from lagrange_cli.plot.pictures import (
     sampled,
     usual_span,
 )
-from lagrange_cli.plot.reports import draw_errors
-from lagrange_cli.plot.style import LIGHT, figure_bytes, plain, styled
+from lagrange_cli.plot.reports import draw_errors, draw_fits
+from lagrange_cli.plot.style import DARK, LIGHT, Look, figure_bytes, plain, styled
 
 
-def drawn(kind: str, motion: Motion, **options: Any) -> Figure:
-    """Return the figure of one picture."""
-    with styled(LIGHT):
-        return figure_of({"": motion}, [kind], Options(**options))
+def drawn(kind: str, *motions: Motion, title: str | None = None, **options: Any) -> Any:
+    """Return the figure of one kind of picture, saved once: an artist that warns fails."""
+    chosen = Options(**options)
+    with styled(chosen.look):
+        figure = figure_of(
+            [(f"dir/{i}.toml", x) for i, x in enumerate(motions)], [kind], chosen, title
+        )
+        figure_bytes(figure, "svg", 40, "", "")
+    assert figure.get_tightbbox().x0 >= -0.05  # nothing is cut
+    return figure
+
+
+def data(line: Any) -> tuple[Any, Any]:
+    """Return x and y of a line."""
+    x, y = (np.asarray(each, float) for each in line.get_data())
+    return x, y
+
+
+def labelled(axes: Any) -> dict[str, Any]:
+    """Return the lines of some axes with a label, by label, and the texts by their words."""
+    lines = {str(x.get_label()): x for x in axes.get_lines()}
+    return lines | {x.get_text(): x for x in axes.texts}
+
+
+# --- sphere
 
 
 def test_the_path_is_that_of_the_axis() -> None:
+    motion, options = solve(Top()), Options(camera=(0.3, 0.5), t_max=1.0)
+    (axes, bar) = drawn("sphere", motion, **options._asdict()).axes
+    far, near = (x for x in axes.collections[:2])
+    camera = camera_of(motion.axis([0.0]), options)
+    times = np.linspace(0, 1, 8000)
+    right, up, toward = camera @ motion.axis(times).T
+    for side, is_side in ((near, toward >= -0.01), (far, toward <= 0.01)):
+        found = np.concatenate([x for x in side.get_segments() if len(x)])
+        exact = np.stack([right, up], axis=1)[is_side]
+        assert np.abs(found[:, None] - exact[None]).sum(axis=2).min(axis=1).max() < 2e-3
+        assert side.get_clim() == (0, 1)
+        for piece, t in zip(side.get_segments(), side.get_array(), strict=True):
+            if len(piece) and abs(piece[0, 0] - np.interp(t, times, right)) > 2e-3:
+                assert len(piece) < 6  # it begins where the path comes to this side
+    assert near.get_linewidth()[0] > far.get_linewidth()[0]
+    assert bar.get_ylabel() == "t (input units)"
+    arrows: Any = axes.collections[2]
+    speed = np.gradient(right, times), np.gradient(up, times)
+    for at, u, v in zip(arrows.get_offsets(), arrows.U, arrows.V, strict=True):
+        if np.isfinite(at).all():
+            i = np.argmin(np.abs(right - at[0]) + np.abs(up - at[1]))
+            assert u * speed[0][i] + v * speed[1][i] > 0.9 * math.hypot(speed[0][i], speed[1][i])
+
+
+def test_the_globe_shows_axes_limits_and_the_start() -> None:
     motion = solve(Top())
-    with styled(LIGHT):
-        figure = figure_of({"": motion}, ["sphere"], Options(camera=(0.3, 0.5), t_max=1.0))
-    sides: Any = figure.axes[0].collections[:2]
-    found = np.concatenate([x for side in sides for x in side.get_segments() if len(x)])
-    axis = motion.axis(np.linspace(0, 1, 8000))
-    exact = axis @ camera_of(axis, Options(camera=(0.3, 0.5)))[:2].T
-    distance = np.abs(found[:, None] - exact[None]).sum(axis=2).min(axis=1)
-    assert distance.max() < 2e-3
-    assert len(found) > 100
+    axes = drawn("sphere", motion, camera=(0.3, 0.5)).axes[0]
+    camera, shown = camera_of(motion.axis([0.0]), Options(camera=(0.3, 0.5))), labelled(axes)
+    assert data(shown["start"])[1] == pytest.approx(camera[1] @ motion.axis([0.0])[0])
+    for name, tilt in (("ϑ min 30°", motion.theta_min_deg), ("ϑ max 73.92°", motion.theta_max_deg)):
+        x, _ = data(shown[name])
+        assert np.nanmax(x) == pytest.approx(math.sin(math.radians(tilt)), abs=1e-4)
+    assert shown["z"].get_position() == pytest.approx((0.0, 1.24 * math.cos(0.5)))
+    assert "ϑ max 1.29 rad" in labelled(drawn("sphere", motion, radians=True).axes[0])
+    still = drawn("sphere", solve(read_scene("sleeping-top")))
+    assert {"the axis stays here", "x", "y", "z"} <= labelled(still.axes[0]).keys()
+    assert still.axes[0].get_title("left") == "sleeping, stable"
+
+
+@pytest.mark.parametrize("names", [["looping-top"], ["cusped-top", "looping-top", "wavy-top"]])
+def test_spheres_fill_the_picture_with_one_colour_bar(names: list[str]) -> None:
+    motions = [solve(read_scene(name)) for name in names]
+    figure = drawn("sphere", *motions)
+    *axes, bar = figure.axes
+    assert len(axes) == len(names)
+    last = max(x.collections[1].get_clim()[1] for x in axes)
+    for each, motion in zip(axes, motions, strict=True):
+        assert each.collections[1].get_clim()[1] == last
+        points = np.concatenate([x for x in each.collections[1].get_segments() if len(x)])
+        assert np.nanmax(points[:, 0]) - np.nanmin(points[:, 0]) > 0.7 * np.diff(each.get_xlim())[0]
+        assert each.get_title("left").endswith(str(motion.path))
+        inside = [each.get_window_extent().contains(*x.get_window_extent().min) for x in each.texts]
+        assert all(inside)
+    assert bar.get_ylim()[1] == pytest.approx(last)
+
+
+def test_titles_are_short_and_replaced() -> None:
+    motions = [solve(Top()), solve(Top(psidot0=1))]
+    titles = [x.get_title("left") for x in drawn("cubic", *motions).axes]
+    assert titles == [f"{i}: The cubic f(u) = u̇² (4,9), the motion shaded" for i in (0, 1)]
+    for title in ("$x_1$", ""):
+        figure = drawn("phase", *motions, title=title)
+        assert [x.get_title("left") for x in figure.axes] == ["", ""]
+        assert figure.get_suptitle() == title.replace("$", r"\$")
 
 
 def test_the_camera_is_in_front_of_the_path() -> None:
@@ -55,49 +131,71 @@ def test_the_camera_is_in_front_of_the_path() -> None:
     (x, y), far = (side.T for side in project(camera_of(path, Options()), path))
     assert np.isnan(far).all()
     assert np.abs(x).mean() < 0.3
-    assert y.min() > 0
+    assert np.abs(y).max() < 0.3
 
 
-def test_spin_is_drawn_as_its_deviation_from_the_mean_rate() -> None:
+# --- angles, cubic and phase
+
+
+def test_angles_are_drawn_with_mean_rates_and_periods() -> None:
     motion = solve(Top())
     tilt, spin, precession = drawn("angles", motion).axes[:3]
-    t, deviation = (np.asarray(x) for x in spin.get_lines()[0].get_data())
+    t, deviation = data(spin.get_lines()[0])
     exact = motion.angles(t)
-    assert deviation == pytest.approx(
-        np.degrees(exact.phi - (motion.mean_spin_rate or 0) * t), abs=1e-9
-    )
-    assert tilt.get_lines()[0].get_ydata() == pytest.approx(np.degrees(exact.theta))
-    assert precession.get_lines()[1].get_ydata() == pytest.approx(np.degrees(exact.psi))
-    assert spin.get_ylabel() == "Δφ (deg)"
+    mean = motion.mean_spin_rate, motion.mean_precession_rate
+    assert deviation == pytest.approx(np.degrees(exact.phi - mean[0] * t), abs=1e-9)
+    assert data(tilt.get_lines()[0])[1] == pytest.approx(np.degrees(exact.theta))
+    assert data(precession.get_lines()[0])[1] == pytest.approx(np.degrees(mean[1] * t))
+    assert data(precession.get_lines()[1])[1] == pytest.approx(np.degrees(exact.psi))
+    assert [x.get_ylabel() for x in (tilt, spin, precession)] == ["ϑ (deg)", "Δφ (deg)", "ψ (deg)"]
+    notes = ["", f"spin less its mean rate {mean[0]:.4g} rad/time"]
+    notes += [f"dashed: mean rate {mean[1]:.4g} rad/time"]
+    assert [x.get_title("right") for x in (tilt, spin, precession)] == notes
+    above: Any = tilt.child_axes[0]
+    assert [x.get_text() for x in above.get_xticklabels()] == ["T", "2 T", "3 T"]
+    assert above.get_xticks()[1] == pytest.approx(2 * motion.T_nutation)
 
 
 def test_bands_are_one_standard_deviation_wide() -> None:
-    figure = drawn("angles", solve(Top()), stds=lambda t: [0.01 + 0 * t] * 3)
-    band = figure.axes[0].collections[0].get_paths()[0].vertices
-    assert np.ptp(np.asarray(band)[:, 1]) > 43.9
-    first = np.asarray(band)[np.asarray(band)[:, 0] == 0.0, 1]
-    assert np.ptp(first) == pytest.approx(np.degrees(0.02), rel=1e-6)
+    figure = drawn("angles", solve(Top()), stds=lambda t: [0.01 + 0 * t, 0.02 + t, 0 * t])
+    for axes, std in zip(figure.axes[:2], (0.01, 0.02), strict=False):
+        band = np.asarray(axes.collections[0].get_paths()[0].vertices)
+        assert np.ptp(band[band[:, 0] == 0.0, 1]) == pytest.approx(np.degrees(2 * std), rel=1e-6)
+    assert figure.axes[0].get_title("left").endswith("bands: ±1σ")
 
 
 def test_the_cubic_is_f_of_u() -> None:
     motion = solve(Top(psidot0=1, thetadot0=2))
     axes = drawn("cubic", motion).axes[0]
-    u, f = (np.asarray(x) for x in axes.get_lines()[1].get_data())
+    u, f = data(axes.get_lines()[1])
     theta0, a, b = math.radians(30), motion.a or 0, motion.b or 0
     beta = math.sin(theta0) ** 2 + b * math.cos(theta0)
     alpha = 4 + math.sin(theta0) ** 2 + a * math.cos(theta0)
     exact = (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2  # (4,9)
     assert f == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
     assert "u₁ = 0.8" in axes.get_xlabel()
+    shaded = np.asarray(axes.collections[0].get_paths()[0].vertices)[:, 0]
+    assert (shaded.min(), shaded.max()) == pytest.approx((motion.u2, motion.u1), abs=4e-3)
+    roots = {name: labelled(axes)[name].xy[0] for name in ("u₂", "u₁", "u₃")}
+    assert roots == pytest.approx({"u₂": motion.u2, "u₁": motion.u1, "u₃": motion.u3})
+    above: Any = axes.child_axes[0]
+    names = dict(zip(above.get_xticks(), above.get_xticklabels(), strict=True))
+    assert {x: y.get_text() for x, y in names.items()} == {-1: "hanging", 1: "upright"}
+    assert "u₁ = u₂" in labelled(drawn("cubic", solve(read_scene("steady-top"))).axes[0])
 
 
 def test_the_phase_plane_holds_the_separatrix() -> None:
-    axes = drawn("phase", solve(Top())).axes[0]
-    tilt, rate = (np.asarray(x) for x in axes.get_lines()[3].get_data())
+    axes = drawn("phase", solve(Top(thetadot0=2))).axes[0]
+    shown = labelled(axes)
+    assert [x.item() for x in data(shown["start"])] == pytest.approx([30, 2])
+    tilt, rate = data(shown["upright top with this spin, for comparison"])
     top = solve(Top(theta0_deg=0.001, thetadot0=0))
-    largest = np.degrees(max(top.angles(np.linspace(0, top.T_nutation or 1, 2000)).theta))
-    assert tilt.max() == pytest.approx(largest, rel=1e-4)
-    assert rate[0] == 0
+    times = np.linspace(0, top.T_nutation or 1, 2000)
+    exact = top.table(times, ["theta", "thetadot"])
+    assert tilt.max() == pytest.approx(np.degrees(exact["theta"].max()), rel=1e-4)
+    assert rate.max() == pytest.approx(exact["thetadot"].max(), rel=1e-3)
+    why = "no separatrix: the upright top is stable with this spin"
+    assert why in labelled(drawn("phase", solve(Top(r0=60))).axes[0])
 
 
 def test_sampled_curves_are_smooth() -> None:
@@ -107,36 +205,86 @@ def test_sampled_curves_are_smooth() -> None:
     size = np.linalg.norm(steps, axis=1)
     turn = np.sum(steps[1:] * steps[:-1], axis=1) / (size[1:] * size[:-1])
     assert np.degrees(np.arccos(np.clip(turn, -1, 1)))[size[1:] > 1e-2].max() < 20
+    assert size.max() < 0.05
     assert usual_span(motion, 2, 2) == 2 * (motion.T_nutation or 0)
 
 
+# --- map
+
+
 def test_a_map_shows_the_number_of_each_top() -> None:
-    r0, tilt = np.geomspace(20, 50, 20), np.linspace(0.5, 2.5, 20)
-    figure = drawn(
-        "map", solve(Top()), key="theta_max_deg", radians=True, x=("r0", r0), y=("theta0", tilt)
-    )
-    axes = figure.axes[0]
+    r0, tilt = np.geomspace(20, 90, 20), np.linspace(0.5, 2.5, 9)
+    given: Any = {"x": ("r0", r0), "y": ("theta0", tilt), "key": "theta_max_deg", "radians": True}
+    axes, bar = drawn("map", solve(Top()), **given).axes
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
     assert axes.get_ylabel().endswith("(rad)")
-    legend: Any = axes.get_legend()
-    assert [x.get_text() for x in legend.get_texts()] == ["this scene"]  # all below the border
-    lines: Any = axes.collections[1]
-    found = [(x, path.vertices) for x, path in zip(lines.levels, lines.get_paths(), strict=True)]
-    exact = {x: solve(Top(r0=at[0][0], theta0_rad=at[0][1])) for x, at in found if len(at)}
-    assert len(exact) > 4
-    assert [math.radians(top.theta_max_deg) for top in exact.values()] == pytest.approx(
-        [*exact], rel=2e-3
+    assert bar.get_ylabel().endswith("(rad)")
+    cells = np.asarray(axes.collections[0].get_array()).reshape(9, 20)
+    for i, j in ((0, 0), (3, 17), (8, 5)):
+        top = solve(Top(r0=r0[j], theta0_rad=tilt[i]))
+        assert cells[i, j] == pytest.approx(math.radians(top.theta_max_deg))
+    low, high = axes.collections[0].get_clim()
+    assert low < np.percentile(cells, 3)
+    assert high > np.percentile(cells, 97)
+    shown = labelled(axes)
+    assert [float(x.item()) for x in data(shown["this scene"])] == [50, math.radians(30)]
+    border = np.concatenate([x.vertices for x in axes.collections[1].get_paths()])
+    threshold = math.sqrt(4 * 39032 * 1587 * 981 * 4) / 17458
+    assert border[:, 0] == pytest.approx(np.full(len(border), threshold), rel=1e-2)
+    assert "border of stability (upright top)" in shown
+    low_spins = given | {"x": ("r0", r0[:5])}
+    assert "border of stability (upright top)" not in labelled(
+        drawn("map", solve(Top()), **low_spins).axes[0]
     )
 
 
-def test_names_from_outside_are_plain_text() -> None:
-    assert plain("a$b\x1b[31m\n") == r"a\$b [31m "
-    error = np.array([1e-3, 1e-2, np.nan])
-    result = SimpleNamespace(file="$x_1$", t=np.arange(3.0), error=error, step=None)
-    figure = draw_errors([result], 1e-3)
-    legend = figure.axes[0].get_legend()
-    assert legend
-    assert legend.get_texts()[0].get_text() == r"\$x_1\$"
+def test_a_map_of_paths_shows_cusps_at_the_border() -> None:
+    rates, spins = np.linspace(-4, 4, 10), np.linspace(2, 120, 12)
+    given: Any = {"x": ("psidot0", rates), "y": ("r0", spins), "key": "path"}
+    (axes,) = drawn("map", solve(Top(theta0_deg=60)), **given).axes
+    cells: Any = np.reshape(axes.collections[0].get_array(), (12, 10))
+    texts = [x.get_text() for x in axes.get_legend().get_texts()]
+    assert {"looping", "wavy", "cusped", "through the vertical"} <= {*texts}
+    colours = {str(x.get_label()): to_hex(x.get_color()) for x in axes.get_lines()}
+    for i, j in ((0, 0), (11, 0), (5, 9), (11, 9)):
+        path = str(solve(Top(theta0_deg=60, psidot0=rates[j], r0=spins[i])).path)
+        assert to_hex(axes.collections[0].to_rgba(cells[i, j])) == colours[path]
+    lines = [np.concatenate([x.vertices for x in y.get_paths()]) for y in axes.collections[1:]]
+    assert np.abs(lines[1][:, 0]).max() < 1e-9  # released from rest: cusps
+
+
+# --- film and reports
+
+
+def test_a_film_shows_the_top_its_trace_and_the_time() -> None:
+    motion, options = solve(Top()), Options(t_max=1.0, unit=lambda unit: "s")
+    figure, show = film_figure(motion, options, 11)
+    show(6)
+    (axes,) = figure.axes
+    lines, texts = axes.get_lines(), [x.get_text() for x in axes.texts]
+    assert "t = 0.60 s" in texts
+    assert "2.3 times faster than life" in "".join(texts)
+    camera = camera_of(np.stack(sampled(motion, 1.0, ["axis"])[1:], axis=1), options, 15.0)
+    right, up, toward = camera @ motion.axis([0.6])[0]
+    axle = lines[-1]
+    assert [x[1] for x in data(axle)] == pytest.approx([right, up])
+    assert (axle.get_zorder() > 3) == (toward > 0)
+    near, far = (np.stack(data(x)) for x in lines[-4:-2])
+    last = [x[:, np.isfinite(x[0])][:, -1] for x in (near, far)]
+    assert min(np.abs(x - [right, up]).max() for x in last) < 0.05  # the trace ends at the axle
+
+
+@pytest.mark.parametrize(
+    ("pace", "unit", "words"),
+    [
+        (0.221, "s", "4.5 times slower than life"),
+        (3.0, "s", "3 times faster than life"),
+        (1.01, "s", "as fast as in life"),
+        (0.221, "", "1 second shows t = 0.22"),
+    ],
+)
+def test_the_pace_of_a_film_in_words(pace: float, unit: str, words: str) -> None:
+    assert pace_of(pace, unit) == words
 
 
 def test_the_axle_of_the_film_is_the_figure_axis() -> None:
@@ -146,7 +294,60 @@ def test_the_axle_of_the_film_is_the_figure_axis() -> None:
     attitude = np.array([*motion.table(0.3, ["quaternion"]).values()])
     triangles, shades, rim = cone(attitude, camera, LIGHT)
     assert len(triangles) == len(shades) > 30
+    assert len({to_hex(np.array(x) / max(x)) for x in shades}) == 2  # a sector shows the spin
     assert rim[1:].mean(axis=0) == pytest.approx(0.62 * (camera[:2] @ axis[0]))
+
+
+def test_errors_are_drawn_over_time_and_step() -> None:
+    t = np.linspace(0, 1, 9)
+    steps = (0.1, 0.05, 0.025)
+    results = [SimpleNamespace(file="$x_1$", t=t, error=x**4 * t, step=x) for x in steps]
+    with styled(LIGHT):
+        figure = draw_errors(results, 1e-3, [x**4 for x in steps])
+        over_time, over_step = figure.axes
+        assert data(over_time.get_lines()[0])[1][1:] == pytest.approx(1e-4 * t[1:])
+        assert data(labelled(over_time)["--max-error"])[1] == pytest.approx([1e-3, 1e-3])
+        legend: Any = over_time.get_legend()
+        assert legend.get_texts()[0].get_text() == r"\$x_1\$"
+        points, *slopes = over_step.get_lines()
+        assert [*data(points)[1]] == pytest.approx([x**4 for x in sorted(steps)])
+        ends = [float(data(x)[1][1]) for x in slopes]
+        assert sorted(ends) == pytest.approx([1e-4 / 4**n for n in (4, 2, 1)])
+        single = SimpleNamespace(**vars(results[0]) | {"step": None})
+        assert len(draw_errors([single], 1e-3).axes) == 1
+
+
+def test_a_fit_is_drawn_with_its_residuals() -> None:
+    t = np.linspace(0, 1, 9)
+    curve = {"t": t, "data": t**2, "residual": t**3, "fine_t": t, "curve": 2 * t}
+    curves = [SimpleNamespace(name=x, **curve) for x in ("theta", "psi")]
+    outcome: Any = SimpleNamespace(curves=lambda: curves, angle="deg", title="good")
+    with styled(LIGHT):
+        above, below, psi, _ = draw_fits([outcome]).axes
+    assert data(labelled(above)["data"])[1] == pytest.approx(t**2)
+    assert data(labelled(above)["fit"])[1] == pytest.approx(2 * t)
+    assert data(below.get_lines()[1])[1] == pytest.approx(t**3)
+    assert [above.get_ylabel(), psi.get_ylabel()] == ["ϑ (deg)", "ψ (deg)"]
+    shown = [to_hex(labelled(x)["fit"].get_color()) for x in (above, psi)]
+    assert shown == [LIGHT.lines[0], LIGHT.lines[2]]
+
+
+@pytest.mark.parametrize("look", [LIGHT, DARK])
+def test_colours_stand_out_from_the_paper(look: Look) -> None:
+    def lightness(colour: str) -> float:
+        parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+        linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in parts]
+        return float(np.dot([0.2126, 0.7152, 0.0722], linear)) + 0.05
+
+    for colour in (look.ink, look.quiet, *look.lines):
+        pair = sorted([lightness(colour), lightness(look.paper)])
+        assert pair[1] / pair[0] >= 4.5
+    figure = drawn("phase", solve(Top()), look=look)
+    assert to_hex(figure.get_facecolor()) == to_hex(figure.axes[0].get_facecolor()) == look.paper
+
+
+def test_names_from_outside_are_plain_text() -> None:
+    assert plain("a$b\x1b[31m\n\udcff") == r"a\$b\x1b[31m \udcff"
 
 
 @pytest.mark.slow
@@ -188,8 +389,8 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
 def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> None:
     shown: list[Any] = []
 
-    def figure_of(motions: Any, _: object, options: Any) -> None:
-        shown.extend([motions[""].top, options.x, options.y])
+    def figure_of(scenes: Any, _: object, options: Any, __: object) -> None:
+        shown.extend([scenes[0][1].top, options.x, options.y])
         raise LagtopError("enough")
 
     monkeypatch.setattr("lagrange_cli.plot.pictures.figure_of", figure_of)
@@ -206,6 +407,8 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
         (["-o", "x.bmp"], "must end in .png, .svg or .pdf"),
         (["-o", "none/x.png"], "no such directory"),
         (["sphere", "nosuch", "-o", "x.png"], "nosuch"),
+        (["angle", "-o", "x.png"], "did you mean 'angles'?"),
+        (["-o", "x.gif"], "write --animate x.gif instead of -o"),
         (["sphere", "-o", "x.png", "--key", "a"], "need map"),
         (["map", "-o", "x.png", "--key", "nosuch"], "nosuch"),
         (["map", "-o", "x.png", "--x", "r0=1:2"], "--x"),
@@ -246,8 +449,5 @@ def test_the_command_writes_the_sheet_and_three_scenes(lagtop: Lagtop, tmp_path:
     scenes = ("cusped-top", "looping-top", "wavy-top")
     assert lagtop("plot", "sphere", *scenes, "-o", three).exit_code == 0
     text = three.read_text()
-    assert [text.index(f"{name}: Figure axis") for name in scenes] == sorted(
-        text.index(f"{name}: Figure axis") for name in scenes
-    )
-    for name, path in zip(scenes, ("cusped", "looping", "wavy"), strict=True):
-        assert solve(read_scene(name)).path == path
+    places = [text.index(f">{name}</text>") for name in scenes]
+    assert places == sorted(places)
