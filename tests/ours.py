@@ -9,11 +9,13 @@ from typing import Any
 from flint import acb, arb
 from mpmath.ctx_mp import MPContext
 
-from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.elliptic import incomplete, modulus
-from lagrange_cli.elliptic.enclosures import exact, rational
-from lagrange_cli.elliptic.functions import Functions, Point, nearest
-from lagrange_cli.top.ranges import ExactComplex
+from lagrange_cli.arithmetic.enclosures import at_precision
+from lagrange_cli.elliptic.arguments import ExactComplex
+from lagrange_cli.elliptic.constants import constants_of
+from lagrange_cli.elliptic.function_table import point
+from lagrange_cli.elliptic.functions import Functions
+from lagrange_cli.elliptic.legendre import Legendre
+from lagrange_cli.elliptic.modulus import GivenModulus
 
 
 class ManyDigits(MPContext):  # type: ignore[misc]
@@ -44,13 +46,9 @@ class Ours:
         """Return the exact value of a number."""
         return ExactComplex(*(fraction(self.ar.mpf(x)) for x in (self.ar.re(z), self.ar.im(z))))
 
-    def ball(self, x: Any) -> arb:
-        """Return a ball that contains a real number."""
-        return exact(self.exact(x).real)
-
-    def modulus(self, k: Any) -> modulus.Modulus:
-        """Return a modulus in balls."""
-        return modulus.reduced(self.exact(k))
+    def modulus(self, k: Any) -> GivenModulus:
+        """Return a modulus."""
+        return GivenModulus("k", self.exact(k))
 
     def number(self, ball: arb | acb | None) -> Any:
         """Return the middle of a ball, real if its imaginary part is 0."""
@@ -64,16 +62,14 @@ class Ours:
 
     def evaluated(self, compute: Callable[[], Any]) -> Any:
         """Return what a function computes in balls, as numbers."""
-        with balls(self.ar.dps + 30):
-            found = compute()
-            many = isinstance(found, tuple)
-            return tuple(map(self.number, found)) if many else self.number(found)
+        found = at_precision(self.ar.dps + 30, compute)
+        return tuple(map(self.number, found)) if isinstance(found, tuple) else self.number(found)
 
     def _functions(self, k: Any) -> Functions:
-        return Functions(self.modulus(k))
+        return Functions(self.modulus(k).reduced())
 
-    def _point(self, z: Any) -> Point:
-        return Point(*map(rational, self.exact(z)))
+    def _point(self, z: Any) -> Any:
+        return point(self.exact(z))
 
     def jacobi(self, u: Any, k: Any) -> Any:
         """Return am, sn, cn, dn."""
@@ -100,31 +96,39 @@ class Ours:
         return self.evaluated(lambda: self._functions(k).third(*points)[ij][which])
 
     def quarter_period(self, k: Any) -> Any:
-        """Return K of a modulus in [0, 1)."""
-        return self.evaluated(lambda: modulus.quarter_period(self.modulus(k).k_prime))
+        """Return K."""
+        return self._constant("K", k)
 
     def second_kind(self, k: Any) -> Any:
-        """Return E of a modulus in [0, 1]."""
-        return self.evaluated(lambda: modulus.second_kind(self.modulus(k).k_prime))
+        """Return E."""
+        return self._constant("E", k)
 
     def nome(self, k: Any) -> Any:
-        """Return q of a modulus in [0, 1]."""
-        return self.evaluated(lambda: modulus.nome(*self.modulus(k)[:2]))
+        """Return q."""
+        return self._constant("nome", k)
+
+    def _constant(self, name: str, k: Any) -> Any:
+        return self.evaluated(lambda: constants_of(self.modulus(k).reduced())[name])
 
     def incomplete_f(self, phi: Any, k: Any) -> Any:
         """Return F(phi, k) of an amplitude in radians."""
-        return self._incomplete(incomplete.incomplete_f, modulus.quarter_period, phi, k)
+        return self._integrals(phi, k)[0]
 
     def incomplete_e(self, phi: Any, k: Any) -> Any:
         """Return E(phi, k) of an amplitude in radians."""
-        return self._incomplete(incomplete.incomplete_e, modulus.second_kind, phi, k)
+        return self._integrals(phi, k)[1]
 
-    def _incomplete(self, within: Any, complete: Any, phi: Any, k: Any) -> Any:
+    def incomplete_pi(self, n: Any, phi: Any, k: Any) -> Any:
+        """Return Pi(n; phi | k) of an amplitude in radians."""
+        return self._integrals(phi, k, n)[2]
+
+    def _integrals(self, phi: Any, k: Any, n: Any = None) -> Any:
+        """Return F, E and Pi of an amplitude in radians."""
+        given, parameter = self.modulus(k), None if n is None else self.exact(n).real
+
         def compute() -> Any:
-            angle, given = self.ball(phi), self.modulus(k)
-            half_turns = nearest(angle / arb.pi())
-            sine, cosine = (angle - half_turns * arb.pi()).sin_cos()
-            return within(sine, cosine, given) + 2 * half_turns * complete(given.k_prime)
+            legendre = Legendre(given.reduced(), given.m, parameter)
+            return tuple(legendre.at(self.exact(phi), radians=True))
 
         return self.evaluated(compute)
 

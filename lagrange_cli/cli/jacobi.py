@@ -6,62 +6,27 @@ import re
 from fractions import Fraction
 
 from ..arithmetic.key import Key
-from ..arithmetic.text import quoted
-from ..elliptic.eta import ETA_COLUMNS, EtaTable, Quadrature, eta_record
-from ..elliptic.function_table import ComplexPoints, FunctionRequest, FunctionTable
-from ..elliptic.incomplete import AmplitudeTable
-from ..elliptic.modulus import ModulusInput, constants_record
-from ..elliptic.nome_series import SeriesTable
-from ..elliptic.tables import TableOfFunctions
+from ..elliptic import constants, eta
+from ..elliptic.arguments import (
+    Arguments,
+    ExactComplex,
+    parse_arguments,
+    parse_complex,
+    parse_small,
+)
+from ..elliptic.constants import constants_record
+from ..elliptic.eta import ETA_COLUMNS, Quadrature, eta_record, eta_rows
+from ..elliptic.function_table import FAMILIES, FunctionRequest, function_rows
+from ..elliptic.legendre import amplitude_rows
+from ..elliptic.modulus import GivenModulus
+from ..elliptic.tables import Rows
 from ..errors import LagtopError
 from ..names import check_names
 from ..output.destination import Output
 from ..output.terminal import with_progress
-from ..top.ranges import ExactComplex, ListedPoints, Points, looks_complex, parse_complex
-from ..top.values import listed_multiples, parse_multiple, parse_multiples, parse_values
+from ..top.ranges import Points
+from ..top.values import parse_values
 from . import shared as opt
-
-MOST_TERMS = 10_000
-_FAMILIES = ("am", "theta", "zeta", "omega", "pi")
-_JACOBI = """
-k | k | modulus | |
-k_prime | k' | complementary modulus | |
-modular_angle_deg | arcsin k | modular angle | deg |
-modular_angle_rad | arcsin k | modular angle | rad |
-nome | q | nome | | (3.1.6)
-nome_prime | q' | nome of k' | | (3.1.6)
-Complete integrals
-K | K | first kind, k | | (3.1.2)
-K_prime | K' | first kind, k' | | (3.1.2)
-E | E | second kind, k | |
-E_prime | E' | second kind, k' | |
-"""
-_ETA = """
-delta | δ | upper end of the band | | (3.2.1)
-delta_star | δ* | lower end of the band | | (3.2.1)
-p | p' | middle of the outer roots | | (3.2.1)
-q | q' | half the distance of the outer roots | | (3.2.1)
-q_imag | q'/i | the same for a complex pair | | (3.2.1)
-outer_root | | the finite outer root | |
-layout | | outer roots | |
-kind | | radicand | |
-g | g | -2 α1 c² | 1/time² | (3.2.1)
-Constants
-m_prime | m' | at δ | | (3.2.3)
-m_double_prime | m" | at δ* | | (3.2.3)
-k | k | modulus of (3.2.4) | | (3.2.5)
-k_imag | k/i | imaginary modulus of (3.2.4) | | (3.2.5)
-k1 | k1 | modulus | | (3.2.8)
-k1_imag | k1/i | imaginary modulus | | (3.2.8)
-k1_prime | k1' | complementary modulus | |
-K1 | K1 | first kind, k1 | | (3.2.8)
-sigma1 | σ1 | rate of the argument | 1/time | (3.2.8)
-s | s | amplitude of sn | | (3.2.12)
-d | d | of the denominator | | (3.2.12)
-gamma | γ | shift | | (3.2.12)
-period | T | of η, 4 K1/σ1 | time | (3.2.10)
-tau3 | τ3 | -K1/σ1 | time | (3.2.10)
-"""
 
 
 def constant_keys(group: str, table: str) -> dict[str, Key]:
@@ -81,34 +46,22 @@ def constant_keys(group: str, table: str) -> dict[str, Key]:
     return keys
 
 
-def _parse_arguments(text: str) -> tuple[ComplexPoints, bool]:
-    """Return the arguments of a range or a list, and whether they are factors of K."""
-    parts = text.split(",")
-    if ":" not in text and any(map(looks_complex, parts)):
-        if "K" in text:
-            raise LagtopError(f"must not contain K if numbers are complex, got {quoted(text)}")
-        real, imag = zip(*map(parse_complex, parts), strict=True)
-        return ComplexPoints(ListedPoints([*real]), ListedPoints([*imag])), False
-    multiples = (
-        parse_multiples(text) if ":" in text else listed_multiples([*map(parse_multiple, parts)])
-    )
-    return ComplexPoints(multiples.factor), multiples.in_quarters
-
-
 def _parse_parameter(text: str) -> tuple[ExactComplex, bool]:
     """Return a complex number, and whether it is imaginary."""
     value = parse_complex(text)
     return value, not value.real and text.strip().endswith("i")
 
 
+ARGUMENTS = opt.Parsed("X", parse_arguments)
+MODULUS = opt.Parsed("X", parse_small)
 RANGE = opt.Parsed("X", parse_values)
 function_formats = opt.output("table", "csv", "json", "ndjson", "parquet")
 
 
-def write_functions(table: TableOfFunctions | SeriesTable, digits: int | None, out: Output) -> None:
-    """Write a table of functions, with its progress."""
-    header, blocks = table.rows(digits)
-    out.table(header, with_progress(blocks, "rows", table.count or None, len))
+def write_functions(rows: Rows, count: int, out: Output) -> None:
+    """Write a table of functions with `count` rows, with its progress."""
+    header, blocks = rows
+    out.table(header, with_progress(blocks, "rows", count, len))
 
 
 @opt.command(
@@ -116,88 +69,80 @@ def write_functions(table: TableOfFunctions | SeriesTable, digits: int | None, o
     "jacobi --k 0.8",
     "jacobi --k 0.8 --u 0:4K:101 -o sn.csv",
     "jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i",
+    "jacobi --m 2 --phi 10,20 --n 0.3",
 )
-@opt.option("--k", type=opt.Parsed("X", parse_complex), help="Modulus: real, or imaginary as 0.8i.")
-@opt.option("--k-prime", type=opt.NUMBER, help="Complementary modulus k', for k close to 1.")
-@opt.option("--nome", type=opt.NUMBER, help="Nome q = exp(-pi K'/K), below 1.")
+@opt.option("--k", type=MODULUS, help="Modulus: 0 or more, or imaginary as 0.8i.")
+@opt.option("--k-prime", type=MODULUS, help="Complementary modulus k', for k close to 1.")
+@opt.option("--m", type=MODULUS, help="Parameter m = k^2, any real number.")
+@opt.option("--nome", type=MODULUS, help="Nome q = exp(-pi K'/K), between -1 and 1.")
 @opt.option(
     "--u",
-    type=opt.Parsed("X", _parse_arguments),
+    type=ARGUMENTS,
     help="Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
     "K such as K/2,-2.5K.",
 )
 @opt.option(
     "--functions",
     type=opt.LIST,
-    help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
-    "omega, pi (of u and --param, after Chrapan).  [default: am]",
+    help="Functions of u: am (with sn, cn, dn), sn, cn, dn and their quotients such as cd, theta, "
+    "zeta (logarithmic derivatives of theta), omega, pi (of u and --param, after Chrapan).  "
+    "[default: am]",
 )
 @opt.option("--param", type=opt.Parsed("V", _parse_parameter), help="Of omega and pi, as 0.2+0.7i.")
-@opt.option("--phi", type=RANGE, help="Amplitudes: print F(phi, k) and E(phi, k) instead.")
-@opt.option("--series", type=opt.count(MOST_TERMS), help="Print N partial sums of the nome series.")
+@opt.option(
+    "--phi",
+    type=ARGUMENTS,
+    help="Amplitudes, such as 30,90,-210 or 30+20i: print Legendre's F(phi, k) and E(phi, k).",
+)
+@opt.option("--n", type=opt.NUMBER, help="Print Legendre's Pi(n; phi | k), or the complete one.")
 @opt.rad
 @opt.digits(opt.MOST_TABLE_DIGITS)
 @function_formats
 def jacobi_command(
-    k: ExactComplex | None,
-    k_prime: Fraction | None,
-    nome: Fraction | None,
-    u: tuple[ComplexPoints, bool] | None,
+    u: Arguments | None,
     functions: list[str] | None,
     param: tuple[ExactComplex, bool] | None,
-    phi: Points | None,
-    series: int | None,
+    phi: Arguments | None,
+    n: Fraction | None,
     rad: bool,
     digits: int | None,
     out: Output,
+    **moduli: ExactComplex | None,
 ) -> None:
     """Compute elliptic integrals, elliptic and theta functions.
 
-    Without --u and --phi, the constants of the modulus are printed.
+    Give the modulus by exactly one of --k, --k-prime, --m and --nome.  Without --u and --phi, its
+    constants are printed.
 
-    Every value is correctly rounded, or has N correct digits with --digits N.  u and a real --param
-    may be up to 2^50 periods, an imaginary --param up to K'.  An empty cell is a pole, or am beyond
-    its branch points.
+    Every value is correctly rounded, or has N correct digits with --digits N.  u and --param may be
+    up to 2^50 periods.  An empty cell is a pole, am beyond its branch points, or an integral on a
+    branch cut.
 
-    The modulus is read as an exact decimal, u and --param as doubles unless --digits is given.
-    Complex results have columns that end in _re and _im.
+    The modulus and --n are read as exact decimals, u, --phi and --param as doubles unless --digits
+    is given.  Complex results have columns that end in _re and _im.
     """
     opt.exclude(phi=phi, u=u)
-    opt.exclude(phi=phi, series=series, functions=functions)
-    opt.exclude(series=series, digits=digits)
-    given = {"k": k and k.real, "k_prime": k_prime, "nome": nome}
-    chosen = [(name, value) for name, value in given.items() if value is not None]
+    opt.exclude(phi=phi, functions=functions)
+    opt.exclude(n=n, u=u)
+    chosen = [(name, value) for name, value in moduli.items() if value is not None]
     if len(chosen) != 1:
-        raise LagtopError("give exactly one of --k, --k-prime, --nome")
-    named = check_names("functions", functions or ["am"], _FAMILIES)
-    asked = tuple(name for name in _FAMILIES if name in named)
+        raise LagtopError("give exactly one of --k, --k-prime, --m, --nome")
+    given = GivenModulus(*chosen[0])
+    named = check_names("functions", functions or ["am"], FAMILIES)
+    asked = tuple(name for name in FAMILIES if name in named)
     parameter, imaginary = _parameter(param, asked)
-    points, in_quarters = u or (None, False)
-    beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
-    has_complex = points is not None and points.imag is not None
-    real = not (beyond or has_complex or (parameter.real and parameter.imag))
-    if not real and (phi or series):
-        raise LagtopError("--phi and --series need a real --u, and a --k in [0, 1]")
-    if not real and in_quarters:
-        raise LagtopError("--u must not contain K if numbers are complex or --k is not in [0, 1]")
-    modulus = ModulusInput(*chosen[0], radians=rad)
-    any_modulus = k if k is not None and beyond else modulus
     if phi is not None:
-        write_functions(AmplitudeTable(phi, modulus), digits, out)
-    elif series is not None:
-        if points is not None and points.real.count != 1:
-            raise LagtopError(f"--series takes one --u, got {points.real.count}")
-        at = None if points is None else next(points.real.decimals())
-        write_functions(SeriesTable(modulus, at, series, in_quarters=in_quarters), None, out)
-    elif points is not None:
+        rows = amplitude_rows(phi, given, n, radians=rad, digits=digits)
+        write_functions(rows, phi.real.count, out)
+    elif u is not None:
         v = parameter.nearest() if digits is None else parameter
-        request = FunctionRequest(any_modulus, asked, v, imaginary, rad, in_quarters, real)
-        write_functions(FunctionTable(points, request), digits, out)
+        request = FunctionRequest(u, given, asked, v, imaginary, rad)
+        write_functions(function_rows(request, digits), u.real.count, out)
     elif functions is not None:
         raise LagtopError("--functions needs --u")
     else:
-        keys = constant_keys("Moduli", _JACOBI)
-        out.record(constants_record(any_modulus, digits), lambda: keys)
+        keys = constant_keys("Moduli", constants.CONSTANTS)
+        out.record(constants_record(given, digits, n=n, radians=rad), lambda: keys)
 
 
 def _parameter(
@@ -274,12 +219,12 @@ def eta_command(
     quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
     if tau is not None:
         names = check_names("columns", columns or ["eta"], ETA_COLUMNS)
-        table = EtaTable(tau, quadrature, names=names, angle="rad" if rad else "deg")
-        write_functions(table, digits, out)
+        rows = eta_rows(tau, quadrature, names, radians=rad, digits=digits)
+        write_functions(rows, tau.count, out)
         return
     if columns is not None:
         raise LagtopError("--columns needs --tau")
-    keys = constant_keys("Roots", _ETA)
+    keys = constant_keys("Roots", eta.CONSTANTS)
     out.record(eta_record(quadrature, digits), lambda: keys)
 
 

@@ -11,24 +11,51 @@ The two outer roots p +- q have these layouts:
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection
 from fractions import Fraction
 from math import prod
 from typing import Any, NamedTuple
 
 from flint import arb
 
-from ..arithmetic.ball import balls
-from ..arithmetic.rounding import FIRST_DIGITS, equal_digits
+from ..arithmetic.enclosures import at_precision, exact
 from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, MAX_TIME, Points, check_reach
-from .enclosures import Value, exact, record
+from .arguments import Arguments, ExactComplex
 from .functions import Functions, Point
-from .modulus import Kind, Modulus
-from .tables import TableOfFunctions, nearest
+from .modulus import Kind, Modulus, degrees
+from .tables import Row, Rows, Value, numbers, rows_of
 
 ETA_COLUMNS = ("tau", "eta", "etadot", "h1", "theta", "xi_prime")
 """The columns; tau is always included."""
+CONSTANTS = """
+delta | δ | upper end of the band | | (3.2.1)
+delta_star | δ* | lower end of the band | | (3.2.1)
+p | p' | middle of the outer roots | | (3.2.1)
+q | q' | half the distance of the outer roots | | (3.2.1)
+q_imag | q'/i | the same for a complex pair | | (3.2.1)
+outer_root | | the finite outer root | |
+layout | | outer roots | |
+kind | | radicand | |
+g | g | -2 α1 c² | 1/time² | (3.2.1)
+Constants
+m_prime | m' | at δ | | (3.2.3)
+m_double_prime | m" | at δ* | | (3.2.3)
+k | k | modulus of (3.2.4) | | (3.2.5)
+k_imag | k/i | imaginary modulus of (3.2.4) | | (3.2.5)
+k1 | k1 | modulus | | (3.2.8)
+k1_imag | k1/i | imaginary modulus | | (3.2.8)
+k1_prime | k1' | complementary modulus | |
+K1 | K1 | first kind, k1 | | (3.2.8)
+sigma1 | σ1 | rate of the argument | 1/time | (3.2.8)
+s | s | amplitude of sn | | (3.2.12)
+d | d | of the denominator | | (3.2.12)
+gamma | γ | shift | | (3.2.12)
+period | T | of η, 4 K1/σ1 | time | (3.2.10)
+tau3 | τ3 | -K1/σ1 | time | (3.2.10)
+"""
+"""Key, symbol, meaning, unit and equation of each constant; a line without `|` begins a group."""
+_FIRST_DIGITS = 32
 
 
 class Quadrature(NamedTuple):
@@ -110,28 +137,22 @@ class Quadrature(NamedTuple):
 
 
 class EtaConstants(NamedTuple):
-    """The constants of (3.2.3) to (3.2.12) and the complement k1', in balls."""
+    """The constants of (3.2.3) to (3.2.12) and the complement k1', in balls.
+
+    m1 and m2 are m' and m''.  For a complex pair of roots, k and k1 are divided by i, and k1' is
+    above 1.  The period is that of eta, 4 K1/sigma1.
+    """
 
     m1: arb
-    """m' (3.2.3)."""
     m2: arb
-    """m'' (3.2.3)."""
     k: arb
-    """Modulus k (3.2.5), or k/i for a complex pair of roots."""
     k1: arb
-    """Modulus k1 (3.2.8), or k1/i for a complex pair of roots."""
     k1_prime: arb
-    """Complement of k1; it is above 1 if k1 is imaginary."""
     sigma1: arb
-    """Rate of the argument (3.2.8)."""
     s: arb
-    """Amplitude of sn (3.2.12)."""
     d: arb
-    """Coefficient of the denominator (3.2.12)."""
     gamma: arb
-    """Shift (3.2.12)."""
     period: arb
-    """Period of eta, 4 K1/sigma1."""
 
     def modulus(self, quadrature: Quadrature) -> Modulus:
         """Return k1, reduced to [0, 1]; if it is imaginary, k/i is the reduced modulus."""
@@ -168,65 +189,56 @@ def eta_constants(quadrature: Quadrature) -> EtaConstants:
     )
 
 
-class EtaTable(TableOfFunctions):
-    """Tables of eta, its rate, h1, theta and xi' over tau, with eta = delta* at tau = 0.
+def eta_rows(
+    tau: Points,
+    quadrature: Quadrature,
+    names: Collection[str] = ("eta",),
+    *,
+    radians: bool = False,
+    digits: int | None = None,
+) -> Rows:
+    """Return a table of eta, its rate, h1, theta and xi' over tau, with eta = delta* at tau = 0.
 
-    Raises LagtopError as `Quadrature.check` does and, in doubles, for times beyond 2^50 periods.
+    `names` are some of ETA_COLUMNS.  Raises LagtopError as `Quadrature.check` does and, in doubles,
+    for times beyond 2^50 periods.
     """
+    quadrature.check()
+    if digits is None:
+        constants = at_precision(_FIRST_DIGITS, lambda: eta_constants(quadrature))
+        check_reach("tau", tau, min(MAX_PERIODS * float(constants.period.mid()), MAX_TIME))
 
-    def __init__(
-        self,
-        points: Points,
-        quadrature: Quadrature,
-        *,
-        names: Collection[str] = ("eta",),
-        angle: str = "deg",
-    ) -> None:
-        """Take the inputs; `names` are some of ETA_COLUMNS, `angle` is the unit, deg or rad."""
-        super().__init__()
-        self.points, self.count, self.quadrature = points, points.count, quadrature
-        self.names, self.angle = {"tau", *names}, angle
+    def known() -> tuple[EtaConstants, Functions]:
+        found = eta_constants(quadrature)
+        return found, Functions(found.modulus(quadrature))
 
-    def check(self, *, doubles: bool) -> None:
-        """Raise LagtopError unless the motion is periodic; see the class for doubles."""
-        self.quadrature.check()
-        if doubles:
-            with balls(FIRST_DIGITS):
-                period = float(eta_constants(self.quadrature).period.mid())
-            check_reach("tau", self.points, min(MAX_PERIODS * period, MAX_TIME))
+    def columns(x: ExactComplex, known: tuple[EtaConstants, Functions]) -> Row:
+        found = eta_columns(x.real, quadrature, *known)
+        theta = "theta_rad" if radians else "theta_deg"
+        if not radians:
+            found["theta"] = degrees(found["theta"])
+        kept = ((name, y) for name, y in found.items() if name in {"tau", *names})
+        return {theta if name == "theta" else name: y for name, y in kept}
 
-    def arguments(self, *, doubles: bool) -> Iterator[Fraction]:
-        """Yield the times."""
-        times = self.points.decimals()
-        return map(nearest, times) if doubles else times
+    times = Arguments(tau).numbers(digits)
+    return rows_of(times, columns, known, quadrature.inputs, digits)
 
-    def inputs(self, x: Fraction) -> Iterable[Fraction]:
-        """Return the time and the numbers of the quadrature."""
-        return [x, *self.quadrature.inputs]
 
-    def constants(self) -> tuple[EtaConstants, Functions]:
-        """Return the constants, and the functions of k1."""
-        found = eta_constants(self.quadrature)
-        return found, Functions(found.modulus(self.quadrature))
+def eta_columns(
+    tau: Fraction, quadrature: Quadrature, c: EtaConstants, functions: Functions
+) -> dict[str, Any]:
+    """Return ETA_COLUMNS at a time, theta in radians.
 
-    def columns(self, x: Fraction, constants: tuple[EtaConstants, Functions]) -> dict[str, Value]:
-        """Return the columns at a time.
-
-        h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1),
-        eta = (gamma + s xi')/(1 + d xi') (3.2.11)
-        """
-        c, functions = constants
-        h1 = c.sigma1 * (exact(x) - c.period / 4)
-        am, sn, cn, dn = (z.real for z in functions.jacobi(Point(h1)) if z is not None)
-        below = 1 + c.d * sn
-        eta: Value = (c.gamma + c.s * sn) / below
-        rate: Value = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / below**2
-        if self.quadrature.is_still:
-            eta, rate = self.quadrature.lower, Fraction(0)
-        theta = am if self.angle == "rad" else am * 180 / arb.pi()
-        values = dict(zip(ETA_COLUMNS, (x, eta, rate, h1, theta, sn), strict=True))
-        found = {name: value for name, value in values.items() if name in self.names}
-        return {f"theta_{self.angle}" if x == "theta" else x: y for x, y in found.items()}
+    h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1),
+    eta = (gamma + s xi')/(1 + d xi') (3.2.11)
+    """
+    h1 = c.sigma1 * (exact(tau) - c.period / 4)
+    am, sn, cn, dn = (z.real for z in functions.jacobi(Point(h1)) if z is not None)
+    below = 1 + c.d * sn
+    eta: Value = (c.gamma + c.s * sn) / below
+    rate: Value = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / below**2
+    if quadrature.is_still:
+        eta, rate = quadrature.lower, Fraction(0)
+    return dict(zip(ETA_COLUMNS, (tau, eta, rate, h1, am, sn), strict=True))
 
 
 def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
@@ -235,11 +247,10 @@ def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, A
     Raises LagtopError as `Quadrature.check` does, and for numbers beyond the doubles.
     """
     quadrature.check()
-    most = equal_digits(quadrature.inputs, digits or 0)
-    return record(lambda: _constants_by_key(quadrature), digits, most)
+    return numbers(lambda _: _constants_by_key(quadrature), quadrature.inputs, digits)
 
 
-def _constants_by_key(quadrature: Quadrature) -> dict[str, Value]:
+def _constants_by_key(quadrature: Quadrature) -> Row:
     """Return the record in balls; None for keys that the layout does not have."""
     c, outer = eta_constants(quadrature), quadrature.outer
     is_pair, is_imaginary = len(outer) > 1, bool(quadrature.height)

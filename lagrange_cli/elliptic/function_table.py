@@ -1,221 +1,164 @@
-"""Tables of am, sn, cn, dn and of the theta, Zeta, Omega and Pi functions of one modulus."""
+"""Tables of Jacobi's, theta, Zeta, Omega and Pi functions of one modulus."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import acb, arb
+from flint import acb, fmpq
 
-from ..arithmetic.ball import balls
-from ..arithmetic.rounding import FIRST_DIGITS
+from ..arithmetic.enclosures import at_precision
 from ..errors import LagtopError
-from ..top.ranges import MAX_PERIODS, MAX_TIME, ExactComplex, Points, check_reach
-from .enclosures import Value, exact, rational
-from .functions import INDICES, THIRD, Functions, Point
-from .modulus import AnyModulus, Kind, check_modulus, numbers_of, reduced, split
-from .tables import TableOfFunctions, nearest
+from ..top.ranges import MAX_PERIODS, MAX_TIME, check_reach
+from .arguments import Arguments, ExactComplex
+from .functions import THIRD, Functions, Point
+from .modulus import GivenModulus, Kind, degrees, real_parts, split
+from .tables import Row, Rows, rows_of
+
+QUOTIENTS = ("sn", "cn", "dn", "ns", "nc", "nd", "sc", "cs", "sd", "ds", "cd", "dc")
+"""Jacobi's functions in Glaisher's notation: pq = pn/qn, nn = 1."""
+FAMILIES = ("am", *QUOTIENTS, "theta", "zeta", "omega", "pi")
+"""The functions of u; `am` stands for am, sn, cn and dn."""
+_FIRST_DIGITS = 32
+
+Numbers = dict[str, acb | None]
 
 
 class FunctionRequest(NamedTuple):
-    """The functions to tabulate."""
+    """The functions to tabulate, and where."""
 
-    modulus: AnyModulus
+    u: Arguments
+    modulus: GivenModulus
     families: tuple[str, ...] = ("am",)
-    """Some of am (with sn, cn and dn), theta, zeta, omega and pi."""
+    """Some of FAMILIES."""
     parameter: ExactComplex = ExactComplex(Fraction(0))
     """The parameter of omega and pi."""
     imaginary: bool = False
     """Whether the parameter of real functions is imaginary (0i counts as imaginary)."""
     radians: bool = False
-    in_quarters: bool = False
-    """Whether the arguments are real multiples of K."""
-    is_real: bool = True
-    """Whether all numbers are real functions of a modulus in [0, 1], in one column each."""
 
     @property
-    def am(self) -> str:
-        """The name of the column of am, with its unit."""
-        return "am_rad" if self.radians else "am_deg"
+    def is_real(self) -> bool:
+        """Whether each number has one column: k is in [0, 1], and u and the parameter are on axes.
 
-    @property
-    def has_parameter(self) -> bool:
-        """Whether Omega or Pi is among the families."""
-        return bool({"omega", "pi"} & set(self.families))
+        For an imaginary parameter, Omega and Pi are then imaginary, and the column is `_imag`.
+        """
+        is_mixed = self.parameter.real and self.parameter.imag
+        return self.modulus.kind is Kind.UNIT and self.u.imag is None and not is_mixed
 
-
-class ComplexPoints(NamedTuple):
-    """Complex arguments: their real parts and, unless all are real, their imaginary parts."""
-
-    real: Points
-    imag: Points | None = None
-
-    def decimals(self) -> Iterator[ExactComplex]:
-        """Yield every argument exactly."""
-        if self.imag is None:
-            return map(ExactComplex, self.real.decimals())
-        return map(ExactComplex, self.real.decimals(), self.imag.decimals())
-
-
-class FunctionTable(TableOfFunctions):
-    """Tables of the functions of a request.
-
-    Complex numbers have a column for each part.  am, sn, cn and dn of real arguments are real and
-    have one.  For an imaginary parameter of real functions, Omega and Pi are given by their
-    imaginary parts.
-
-    Raises LagtopError for a modulus out of range, for multiples of an infinite K and for functions
-    that need two periods.  In doubles it also refuses arguments and parameters beyond 2^50 periods,
-    because doubles do not determine their place in a period.
-    """
-
-    def __init__(self, points: ComplexPoints, request: FunctionRequest) -> None:
-        super().__init__()
-        self.points, self.request, self.count = points, request, points.real.count
-        self.parameter = point(request.parameter)
-
-    def check(self, *, doubles: bool) -> None:
-        """Raise LagtopError for invalid inputs; see the class."""
-        request = self.request
-        check_modulus(request.modulus)
-        with balls(FIRST_DIGITS):
-            functions = Functions(reduced(request.modulus))
-        if functions.is_1 and request.in_quarters:
-            message = "u must be a number, without K, for k = 1, where K is infinite"
-            raise LagtopError(message, "u")
-        if request.families != ("am",):
-            self._check_periods(functions)
-        if doubles:
-            self._check_reach(functions)
-
-    def _check_periods(self, functions: Functions) -> None:
-        """Raise LagtopError for functions that need two periods."""
-        request = self.request
-        if request.is_real and functions.is_1:
+    def check(self, functions: Functions, *, doubles: bool) -> None:
+        """Raise LagtopError for invalid inputs; see `function_rows`."""
+        real, imag, in_quarters = self.u
+        if in_quarters and (functions.is_1 or functions.kind is Kind.LARGE):
+            raise LagtopError(
+                "u must not contain K for k >= 1, where K is infinite or complex", "u"
+            )
+        if functions.is_1 and {"theta", "zeta", "omega", "pi"} & set(self.families):
             raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
-        if not request.is_real and (functions.is_0 or functions.is_1):
-            message = "k must not be 0 or 1 for theta functions of complex arguments"
-            raise LagtopError(message, "k")
-        if request.has_parameter and request.imaginary and request.is_real:
-            height = exact(request.parameter.imag) * functions.across * 2
-            if abs(height) >= 1:
-                limit = (1 / (2 * functions.across)).mid()
-                raise LagtopError(
-                    f"param must be smaller than K' = {float(limit):.6g} in size "
-                    f"if it is imaginary, got {request.parameter}",
-                    "param",
-                )
-
-    def _check_reach(self, functions: Functions) -> None:
-        """Raise LagtopError for arguments and parameters beyond 2^50 periods."""
         rates = [float(rate.mid()) for rate in (functions.scale, functions.across)]
         limits = [min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME for rate in rates]
-        real, imag = self.points
-        if self.request.in_quarters:
+        if doubles and in_quarters:
             check_reach("u in units of K", real, 2 * MAX_PERIODS)
-        else:
+        elif doubles:
             check_reach("u", real, limits[0])
-        if imag is not None:
+        if doubles and imag is not None:
             check_reach("the imaginary part of u", imag, limits[1])
-        parameter = self.request.parameter
-        for part, limit in zip(parameter, limits, strict=True):
-            if abs(part) > limit:
-                must = "be" if self.request.is_real else "have parts"
+        for part, limit in zip(self.parameter, limits, strict=True):
+            if doubles and abs(part) > limit:
                 raise LagtopError(
-                    f"param must {must} within 2^50 periods = {limit:.3g} of 0, "
-                    f"got {parameter} (or give --digits)",
+                    f"param must be within 2^50 periods = {limit:.3g} of 0, "
+                    f"got {self.parameter} (or give --digits)",
                     "param",
                 )
 
-    def arguments(self, *, doubles: bool) -> Iterator[ExactComplex]:
-        """Yield the arguments; for doubles, multiples of K are not rounded."""
-        exact_points = self.points.decimals()
-        if not doubles or self.request.in_quarters:
-            return exact_points
-        return (ExactComplex(*map(nearest, x)) for x in exact_points)
 
-    def inputs(self, x: ExactComplex) -> Iterable[Fraction]:
-        """Return the parts of the argument, the parameter and the modulus."""
-        return [*x, *self.request.parameter, *numbers_of(self.request.modulus)]
+def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
+    """Return a table of the functions of a request.
 
-    def constants(self) -> Functions:
-        """Return the functions of the modulus."""
-        return Functions(reduced(self.request.modulus))
+    Complex numbers have a column for each part; Jacobi's functions of real u are real.  Raises
+    LagtopError for a modulus out of range, for multiples of a K that is not real, for functions
+    that do not exist for k = 1 and, in doubles, for arguments and parameters beyond 2^50 periods.
+    """
+    modulus, v = request.modulus, point(request.parameter)
+    modulus.check()
+    first = at_precision(_FIRST_DIGITS, lambda: Functions(modulus.reduced()))
+    at_precision(_FIRST_DIGITS, lambda: request.check(first, doubles=digits is None))
+    has_parameter = bool({"omega", "pi"} & set(request.families))
 
-    def columns(self, x: ExactComplex, constants: Functions) -> dict[str, Value]:
-        """Return the argument and the functions."""
-        request, u = self.request, point(x)
-        if request.in_quarters:
-            u = Point(u.real / (2 * constants.scale))
-        found: dict[str, acb | None] = {}
-        for family in request.families:
-            if family == "am":
-                found |= self._jacobi(constants, u)
-            elif family in {"theta", "zeta"}:
-                found |= _of_argument(constants, u, family)
-        if request.has_parameter:
-            found |= self._third(constants, u)
-        argument = u.real if request.in_quarters else x.real
+    def constants() -> tuple[Functions, Numbers]:
+        functions = Functions(modulus.reduced())
+        return functions, functions.zetas(v) if has_parameter else {}
+
+    def columns(x: ExactComplex, constants: tuple[Functions, Numbers]) -> Row:
+        u, (functions, zetas) = point(x), constants
+        if request.u.in_quarters:
+            u = Point(u.real / (2 * functions.scale))
+        jacobi, found = _jacobi(request, functions, u), _thetas(request, functions, u)
+        if has_parameter:
+            found |= _third(request, functions.third(u, v, zetas))
+        argument = u.real if request.u.in_quarters else x.real
         if request.is_real:
-            return {"u": argument} | _real_parts(found)
-        jacobi = {name: found.pop(name) for name in (request.am, "sn", "cn", "dn") if name in found}
-        if self.points.imag is not None:
+            return {"u": argument} | real_parts(jacobi | found)
+        if request.u.imag is not None:
             return {"u_re": x.real, "u_im": x.imag} | split(jacobi | found)
-        return {"u": argument} | _real_parts(jacobi) | split(found)
+        return {"u": argument} | real_parts(jacobi) | split(found)
 
-    def _jacobi(self, functions: Functions, u: Point) -> dict[str, acb | None]:
-        """Return am in the unit of the request, sn, cn and dn."""
-        am, sn, cn, dn = functions.jacobi(u)
-        if am is not None and not self.request.radians:
-            am = am * 180 / arb.pi()
-        axes, odd = u.axes, {self.request.am: am, "sn": sn}
-        found = {name: _on_axes(z, axes, odd=True) for name, z in odd.items()}
-        return found | {"cn": _on_axes(cn, axes), "dn": _on_axes(dn, axes)}
+    inputs = [*request.parameter, *modulus.value]
+    return rows_of(request.u.numbers(digits), columns, constants, inputs, digits)
 
-    def _third(self, functions: Functions, u: Point) -> dict[str, acb | None]:
-        """Return Omega and Pi in the order of the families, or their imaginary parts."""
-        request, values = self.request, functions.third(u, self.parameter)
-        if request.is_real and self.parameter.is_0:
-            values["11"] = acb(0), None  # also at u = 0, as on all of the real axis
-        found: dict[str, acb | None] = {}
-        for family in request.families:
-            for ij in THIRD if family in {"omega", "pi"} else ():
-                z = values[ij][family == "pi"]
-                if request.imaginary and request.is_real:
-                    found[f"{family}{ij}_imag"] = None if z is None else acb(z.imag)
-                else:
-                    found[f"{family}{ij}"] = z
+
+def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Numbers:
+    """Return am in the unit of the request, and the quotients of sn, cn, dn and 1."""
+    has_am, axes, found = "am" in request.families, u.axes, Numbers()
+    wanted = {*request.families, *(("sn", "cn", "dn") if has_am else ())}
+    names = [name for name in QUOTIENTS if name in wanted]
+    if not names:
         return found
+    am, *values = functions.jacobi(u)
+    of = dict(zip("scdn", (*values, acb(1)), strict=True))
+    if has_am and request.radians:
+        found["am_rad"] = _on_axes(am, axes, odd=True)
+    elif has_am:
+        found["am_deg"] = _on_axes(None if am is None else degrees(am), axes, odd=True)
+    for name in names:
+        p, q = (of[letter] for letter in name)
+        quotient = None if name[1] == "s" and u.is_0 else p if name[1] == "n" else p / q
+        found[name] = _on_axes(quotient, axes, odd="s" in name)
+    return found
+
+
+def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Numbers:
+    """Return the theta and the Zeta functions of u."""
+    families, kind, axes, found = request.families, functions.kind, u.axes, Numbers()
+    thetas = functions.thetas(u) if {"theta", "zeta"} & set(families) else {}
+    for ij, z in thetas.items() if "theta" in families else ():
+        is_real = kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0")
+        found[f"theta{ij}"] = _on_axes(z, axes, odd=ij == "11") if is_real else z
+    for ij, slope in functions.zetas(u, thetas).items() if "zeta" in families else ():
+        is_real = kind is not Kind.LARGE
+        found[f"zeta{ij}"] = _on_axes(slope, axes, odd=True) if is_real else slope
+    return found
+
+
+def _third(
+    request: FunctionRequest, values: Mapping[str, tuple[acb | None, acb | None]]
+) -> Numbers:
+    """Return Omega and Pi, or their imaginary parts."""
+    found = Numbers()
+    for i, family in enumerate(("omega", "pi")):
+        for ij in THIRD if family in request.families else ():
+            z = values[ij][i]
+            if request.imaginary and request.is_real:
+                found[f"{family}{ij}_imag"] = None if z is None else acb(z.imag)
+            else:
+                found[f"{family}{ij}"] = z
+    return found
 
 
 def point(x: ExactComplex) -> Point:
     """Return an exact number as the functions take it."""
-    return Point(*map(rational, x))
-
-
-def _real_parts(numbers: dict[str, acb | None]) -> dict[str, Value]:
-    return {name: None if z is None else z.real for name, z in numbers.items()}
-
-
-def _of_argument(functions: Functions, u: Point, family: str) -> dict[str, acb | None]:
-    """Return the theta or the Zeta functions of u."""
-    kind, axes = functions.kind, u.axes
-    values: Mapping[str, acb | None]
-    if family == "zeta":
-        values = functions.zetas(u)
-        has_symmetry = dict.fromkeys(INDICES, kind is not Kind.LARGE)
-    else:
-        values = functions.thetas(u)
-        has_symmetry = {
-            ij: kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0") for ij in INDICES
-        }
-    return {
-        f"{family}{ij}": _on_axes(z, axes, odd=family == "zeta" or ij == "11")
-        if has_symmetry[ij]
-        else z
-        for ij, z in values.items()
-    }
+    return Point(*(fmpq(part.numerator, part.denominator) for part in x))
 
 
 def _on_axes(z: acb | None, axes: set[str], *, odd: bool = False) -> acb | None:

@@ -1,6 +1,6 @@
-"""The modulus: in [0, 1] by any of its quantities, imaginary, or above 1; its constants.
+"""The modulus by any of its quantities.
 
-A modulus of any kind is reduced to a modulus in [0, 1], whose argument is stretched by a factor:
+Every modulus is reduced to a modulus in [0, 1], whose argument is stretched by a factor:
 
 - k = i kbar has the modulus kbar/sqrt(1 + kbar^2) and the factor sqrt(1 + kbar^2).  tau = iK'/K
   increases by 1 (Chrapan (1,1), (2,2) and (3,4)).
@@ -17,10 +17,13 @@ from typing import Any, NamedTuple
 
 from flint import acb, arb
 
-from ..arithmetic.rounding import equal_digits
+from ..arithmetic.enclosures import exact
 from ..errors import LagtopError
-from ..top.ranges import ExactComplex
-from .enclosures import Value, exact, record
+from .arguments import ExactComplex
+from .tables import Value
+
+_LEAST_BELOW_1 = Fraction("1e-17")
+"""Least 1 - |q|: the exponent of k' is then within the limits of printed numbers."""
 
 
 class Kind(Enum):
@@ -40,161 +43,72 @@ class Modulus(NamedTuple):
     stretch: arb = arb(1)
     """Factor of the argument."""
 
+    @property
+    def ball(self) -> acb:
+        """The given modulus itself."""
+        if self.kind is Kind.UNIT:
+            return acb(self.k)
+        return acb(0, self.stretch * self.k) if self.kind is Kind.IMAGINARY else acb(self.stretch)
 
-class ModulusInput(NamedTuple):
-    """A modulus in [0, 1], by one of its quantities.
+    @property
+    def complement(self) -> Modulus:
+        """The modulus k'; it is above 1 if k is imaginary, and imaginary if k is above 1."""
+        kind = {Kind.IMAGINARY: Kind.LARGE, Kind.LARGE: Kind.IMAGINARY}.get(self.kind, Kind.UNIT)
+        return self._replace(k=self.k_prime, k_prime=self.k, kind=kind)
 
-    `name` is k, k_prime or nome; `radians` is the unit of the modular angle and of amplitudes.
-    """
+
+class GivenModulus(NamedTuple):
+    """A modulus by one of its quantities: k, k_prime, m = k^2 or nome."""
 
     name: str
-    value: Fraction
-    radians: bool = False
+    value: ExactComplex
 
     def check(self) -> None:
-        """Raise LagtopError unless the value is in its range."""
-        name, value, is_high, end = self.name, self.value, self.value > 1, "1]"
+        """Raise LagtopError unless k^2 is real and k is 0 or more, or imaginary."""
+        name, (real, imag) = self.name, self.value
+        if name in {"k", "k_prime"}:
+            if real < 0 or imag < 0 or (real and imag):
+                form = f"{name} must be 0 or more, or imaginary as 0.8i"
+                raise LagtopError(f"{form}, got {self.value}", name)
+        elif imag:
+            raise LagtopError(f"{name} must be real, got {self.value}", name)
+        elif name == "nome" and abs(real) >= 1:
+            raise LagtopError(f"nome must be in (-1, 1), got {float(real)}", name)
+        elif name == "nome" and 1 - abs(real) < _LEAST_BELOW_1:
+            raise LagtopError(
+                "nome must be at most 1 - 1e-17 in size: k' is too small beyond", name
+            )
+
+    @property
+    def m(self) -> Fraction | None:
+        """The parameter k^2, exactly; None if the nome is given."""
+        name, (real, imag) = self.name, self.value
         if name == "nome":
-            is_high, end = value >= 1, "1)"
-        if value < 0 or is_high:
-            raise LagtopError(f"{name} must be in [0, {end}, got {float(value)}", name)
-        if name == "nome" and 1 - value < _LEAST_BELOW_1:
-            raise LagtopError("nome must be at most 1 - 1e-17: k' is too small beyond", name)
+            return None if real else Fraction(0)
+        square = real**2 - imag**2
+        return {"k": square, "k_prime": 1 - square, "m": real}[name]
 
     @property
-    def is_0(self) -> bool:
-        """Whether k is 0."""
-        return self.value == (1 if self.name == "k_prime" else 0)
+    def kind(self) -> Kind:
+        """The kind of the modulus."""
+        m = self.value.real if self.m is None else self.m
+        return Kind.IMAGINARY if m < 0 else Kind.LARGE if m > 1 else Kind.UNIT
 
-    @property
-    def is_1(self) -> bool:
-        """Whether k is 1."""
-        ends = {"k": 1, "k_prime": 0}
-        return self.value == ends.get(self.name)
-
-    def ball(self) -> Modulus:
-        """Return k and k' in balls."""
-        if self.is_0 or self.is_1:
-            return Modulus(arb(int(self.is_1)), arb(int(self.is_0)))
-        value = exact(self.value)
-        if self.name == "nome":
-            # the squares of theta2, theta4 over that of theta3, at tau = i T
-            tau = acb(0, -value.log() / arb.pi())
+    def reduced(self) -> Modulus:
+        """Return the modulus in balls, reduced to [0, 1]."""
+        kind, m = self.kind, self.m
+        if m is None:  # the squares of theta2 and theta4 over that of theta3, at tau = iT
+            tau = acb(0, -exact(abs(self.value.real)).log() / arb.pi())
             _, *thetas = acb.modular_theta(acb(0), tau)
             theta2, theta3, theta4 = (theta.real for theta in thetas)
-            return Modulus((theta2 / theta3) ** 2, (theta4 / theta3) ** 2)
-        other = exact(1 - self.value**2).sqrt()
-        return Modulus(value, other) if self.name == "k" else Modulus(other, value)
-
-
-_LEAST_BELOW_1 = Fraction("1e-17")
-"""Least 1 - q: the exponent of k' is then within the limits of printed numbers."""
-
-AnyModulus = ModulusInput | ExactComplex
-"""A modulus in [0, 1] by one of its quantities, or a number that is imaginary or above 1."""
-
-
-def check_modulus(given: AnyModulus) -> None:
-    """Raise LagtopError unless the modulus is real and not negative, or i kbar with kbar > 0."""
-    if isinstance(given, ModulusInput):
-        given.check()
-    elif given.real < 0 or given.imag < 0 or (given.real and given.imag):
-        raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {given}", "k")
-
-
-def numbers_of(given: AnyModulus) -> list[Fraction]:
-    """Return the numbers of which a modulus consists."""
-    return [given.value] if isinstance(given, ModulusInput) else [*given]
-
-
-def reduced(given: AnyModulus) -> Modulus:
-    """Return a modulus that is checked, reduced to [0, 1]."""
-    if isinstance(given, ModulusInput):
-        return given.ball()
-    if given.imag:
-        root = exact(1 + given.imag**2).sqrt()
-        return Modulus(exact(given.imag) / root, 1 / root, Kind.IMAGINARY, root)
-    if given.real > 1:
-        k = exact(given.real)
-        return Modulus(1 / k, exact(given.real**2 - 1).sqrt() / k, Kind.LARGE, k)
-    return ModulusInput("k", given.real).ball()
-
-
-def quarter_period(k_prime: arb) -> arb:
-    """Return K = F(pi/2, k) from the complement k' in (0, 1] (DLMF 19.8.5)."""
-    return arb.pi() / (2 * arb(1).agm(k_prime))
-
-
-def second_kind(k_prime: arb) -> arb:
-    """Return E = E(pi/2, k) from the complement k' in [0, 1] (DLMF 19.25.1)."""
-    if k_prime == 0:
-        return arb(1)
-    square = acb(k_prime**2)
-    return 2 * acb.elliptic_rg(acb(0), square, acb(1)).real
-
-
-def nome(k: arb, k_prime: arb) -> arb:
-    """Return q = exp(-pi K'/K), equation (2,4); 0 for k = 0, and 1 for k = 1."""
-    if k == 0 or k_prime == 0:
-        return arb(int(k_prime == 0))
-    return (-arb.pi() * arb(1).agm(k_prime) / arb(1).agm(k)).exp()
-
-
-def constants_record(given: AnyModulus, digits: int | None) -> dict[str, Any]:
-    """Return the constants of a modulus, correctly rounded to doubles or to `digits` digits.
-
-    Numbers that are not real are split into `_re` and `_im`; infinite constants are None.  Raises
-    LagtopError for a modulus out of range.
-    """
-    check_modulus(given)
-
-    def compute() -> dict[str, Value]:
-        if isinstance(given, ModulusInput):
-            return _unit_constants(given)
-        return _other_constants(given)
-
-    return record(compute, digits, equal_digits(numbers_of(given), digits or 0))
-
-
-def _unit_constants(given: ModulusInput) -> dict[str, Value]:
-    """Return the constants of a modulus in [0, 1]."""
-    k, k_prime, *_ = given.ball()
-    unit, factor = ("rad", 1) if given.radians else ("deg", 180 / arb.pi())
-    return {
-        "k": k,
-        "k_prime": k_prime,
-        f"modular_angle_{unit}": arb.atan2(k, k_prime) * factor,
-        "nome": nome(k, k_prime),
-        "nome_prime": nome(k_prime, k),
-        "K": None if given.is_1 else quarter_period(k_prime),
-        "K_prime": None if given.is_0 else quarter_period(k),
-        "E": second_kind(k_prime),
-        "E_prime": second_kind(k),
-    }
-
-
-def _other_constants(given: ExactComplex) -> dict[str, Value]:
-    """Return the constants of a modulus that is imaginary or above 1.
-
-    For k = i kbar, q is negative and K' = k'(K' - iK), with the constants of the reduced modulus on
-    the right.  For k > 1, k' = i sqrt(k^2 - 1), and K, E and q are complex.
-    """
-    k, k_prime, kind, s = reduced(given)
-    K, other = quarter_period(k_prime), quarter_period(k)
-    E, e_other = second_kind(k_prime), second_kind(k)
-    found: list[arb | acb]
-    # E of the inverse of a modulus (DLMF 19.7.3)
-    if kind is Kind.IMAGINARY:
-        beyond = acb(e_other - k**2 * other, E - k_prime**2 * K) / k_prime
-        found = [s, -nome(k, k_prime), K / s, acb(other, -K) / s, s * E, beyond]
-    else:
-        beyond = acb(E - k_prime**2 * K, e_other - k**2 * other) / k
-        tau = acb(0, other / K)
-        q = (tau / (1 - tau)).exp_pi_i()
-        found = [acb(0, s * k_prime), q, acb(K, -other) / s, other / s, beyond, s * e_other]
-    names = ("k_prime", "nome", "K", "K_prime", "E", "E_prime")
-    parts: dict[str, Value] = {"k_re": given.real, "k_im": given.imag}
-    return parts | split({name: acb(x) for name, x in zip(names, found, strict=True)})
+            k, k_prime = (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
+            return Modulus(k, k_prime, kind, arb(1) if kind is Kind.UNIT else 1 / k_prime)
+        square, stretch = m, arb(1)
+        if kind is Kind.IMAGINARY:
+            square, stretch = m / (m - 1), exact(1 - m).sqrt()
+        elif kind is Kind.LARGE:
+            square, stretch = 1 / m, exact(m).sqrt()
+        return Modulus(exact(square).sqrt(), exact(1 - square).sqrt(), kind, stretch)
 
 
 def split(numbers: Mapping[str, acb | None]) -> dict[str, Value]:
@@ -203,3 +117,13 @@ def split(numbers: Mapping[str, acb | None]) -> dict[str, Value]:
     for name, z in numbers.items():
         parts[f"{name}_re"], parts[f"{name}_im"] = (None, None) if z is None else (z.real, z.imag)
     return parts
+
+
+def real_parts(numbers: Mapping[str, acb | None]) -> dict[str, Value]:
+    """Return the real parts of complex numbers."""
+    return {name: None if z is None else z.real for name, z in numbers.items()}
+
+
+def degrees(angle: acb | arb) -> Any:
+    """Return an angle in degrees."""
+    return angle * 180 / arb.pi()

@@ -1,74 +1,96 @@
-"""Tables of functions: a row of correctly rounded numbers for each argument."""
+"""Correctly rounded numbers by name, and tables with a row of them for each argument."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from itertools import chain, islice
-from typing import Any
+from typing import Any, TypeVar
 
-from flint import ctx
+from flint import arb
 
-from ..arithmetic.rounding import equal_digits
-from ..arithmetic.text import NumberText
-from .enclosures import Value, cell, rounded
+from ..arithmetic.enclosures import decided, equal_digits, exact, settled, sign
+from ..arithmetic.text import NumberText, value_text
+from ..errors import OutOfRangeError
+from .arguments import ExactComplex
 
-Texts = Sequence[Sequence[NumberText]]
-"""Rows of numbers as text; an empty text is a missing number."""
-Rows = tuple[list[str], Iterator[Texts]]
+C = TypeVar("C")
+Value = arb | Fraction | str | None
+"""A number in a ball or as a fraction, a word, or None for a number that does not exist."""
+Row = Mapping[str, Value]
+Rows = tuple[list[str], Iterator[Sequence[Sequence[NumberText]]]]
+"""The header, and blocks of rows as text; an empty text is a missing number."""
 
 _ROWS_AT_ONCE = 100
 
 
-class TableOfFunctions:
-    """A row of functions for each of `count` arguments."""
+def rows_of(
+    arguments: Iterable[ExactComplex],
+    columns: Callable[[ExactComplex, C], Row],
+    constants: Callable[[], C],
+    inputs: Sequence[Fraction],
+    digits: int | None,
+) -> Rows:
+    """Return a table of `columns` of each argument and of constants, in balls.
 
-    count: int
+    `inputs` are the exact numbers on which the constants depend.  A pole is an empty text, and so
+    is a number too large for a double if doubles are requested.
+    """
+    known = cache(lambda _: constants())
+    rows = (
+        numbers(
+            lambda working, x=x: columns(x, known(working)), [*x, *inputs], digits, strict=False
+        )
+        for x in arguments
+    )
+    first = next(rows)
+    texts = ([NumberText(value_text(x)) for x in row.values()] for row in chain([first], rows))
 
-    def __init__(self) -> None:
-        self._constants = cache(lambda bits: self.constants())
+    def block() -> list[list[NumberText]]:
+        return list(islice(texts, _ROWS_AT_ONCE))
 
-    def rows(self, digits: int | None = None) -> Rows:
-        """Return the header, and blocks of rows as text, as doubles or with N significant digits.
-
-        In doubles, arguments are rounded to the nearest doubles first.  A pole, or a number that no
-        double can hold, is an empty text.  Raises LagtopError, before any row, for inputs that the
-        table cannot hold.
-        """
-        self.check(doubles=digits is None)
-        rows = (self._row(x, digits) for x in self.arguments(doubles=digits is None))
-        first = next(rows)
-        texts = ([cell(value) for value in row.values()] for row in chain([first], rows))
-        return list(first), iter(lambda: list(islice(texts, _ROWS_AT_ONCE)), [])
-
-    def _row(self, x: Any, digits: int | None) -> dict[str, Any]:
-        def compute() -> dict[str, Value]:
-            return self.columns(x, self._constants(ctx.prec))
-
-        return rounded(compute, digits, equal_digits(self.inputs(x), digits or 0))
-
-    def check(self, *, doubles: bool) -> None:
-        """Raise LagtopError for inputs that are invalid, or too large for doubles."""
-        raise NotImplementedError
-
-    def arguments(self, *, doubles: bool) -> Iterator[Any]:
-        """Yield the arguments; for doubles, their nearest doubles."""
-        raise NotImplementedError
-
-    def inputs(self, x: Any) -> Iterable[Fraction]:
-        """Return the inputs on which the row of an argument depends."""
-        raise NotImplementedError
-
-    def constants(self) -> Any:
-        """Return the constants that do not depend on the argument, in balls."""
-        raise NotImplementedError
-
-    def columns(self, x: Any, constants: Any) -> dict[str, Value]:
-        """Return the columns at an argument in balls; None for a pole."""
-        raise NotImplementedError
+    return list(first), iter(block, [])
 
 
-def nearest(x: Fraction) -> Fraction:
-    """Return the double nearest to a number."""
-    return Fraction(float(x))
+def numbers(
+    compute: Callable[[int], Row],
+    inputs: Iterable[Fraction],
+    digits: int | None,
+    *,
+    strict: bool = True,
+) -> dict[str, Any]:
+    """Return the numbers that `compute` encloses with some digits, correctly rounded.
+
+    They are doubles, or texts with `digits` significant digits.  Words are left as they are, and
+    poles are None.  A number too small for a double is 0.  A number too large for a double raises
+    OutOfRangeError or, unless `strict`, is None.
+    """
+    row, most = cache(compute), equal_digits(inputs, digits or 0)
+    found: dict[str, Any] = {}
+    for name, value in decided(row, most, digits=digits).items():
+        ball = partial(_ball, row, name, most)
+        try:
+            number = (
+                settled(name, ball, digits, most) if isinstance(value, arb | Fraction) else None
+            )
+            found[name] = number.value if number else value if isinstance(value, str) else None
+        except OutOfRangeError:
+            if digits is not None:
+                raise
+            is_small = decided(partial(_is_below_1, ball), most)
+            if strict and not is_small:
+                raise
+            found[name] = 0.0 if is_small else None
+    return found
+
+
+def _is_below_1(ball: Callable[[int], Any], digits: int) -> bool:
+    return sign(1 - abs(ball(digits))) > 0
+
+
+def _ball(row: Callable[[int], Row], name: str, most: int, digits: int) -> Any:
+    """Return the ball of a number of a row; None if `most` digits do not show that it is finite."""
+    value: Any = row(digits)[name]
+    ball = exact(value) if isinstance(value, Fraction) else value
+    return ball if ball.is_finite() or digits < most else None

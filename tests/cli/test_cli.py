@@ -279,7 +279,7 @@ BAD_TIMES = {
     + [
         ("table --digits 5 --format parquet", "--format parquet holds doubles: with --digits use"),
         ("jacobi --k 0.8 --format parquet", "--format parquet holds tables: use json or csv"),
-        ("jacobi --k 0.8i --u K/2", "--u must not contain K if numbers are complex"),
+        ("jacobi --k 0.8 --u i,K", "--u must not contain K if numbers are complex"),
         ("compare x.csv --plot x.bmp", "the name of a picture must end in .png, .svg or .pdf"),
         ("table --decimal x", "'x' is not one of 'point', 'comma'"),
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
-from itertools import chain, islice
+from itertools import chain
 from typing import Any, ClassVar
 
 import pytest
@@ -13,9 +13,8 @@ from equations import EquationTests, Register, once, pairs, slightly_wrong
 from errata import misprints
 from ours import ar, fraction, incomplete_f, jacobi, nome, ours, quarter_period
 
-from lagrange_cli.elliptic.eta import EtaConstants, EtaTable, Quadrature, eta_constants
-from lagrange_cli.elliptic.nome_series import k_series, nome_series
-from lagrange_cli.top.ranges import ListedPoints
+from lagrange_cli.elliptic.eta import EtaConstants, Quadrature, eta_columns, eta_constants
+from lagrange_cli.elliptic.functions import Functions
 
 aksenov = Register()
 MODULI = [ar.mpf(x) for x in ("0.03", "0.5", "0.9", "0.9999")]
@@ -37,15 +36,23 @@ def theirs(u: Any, m: Any) -> list[Any]:
     return [ar.ellipfun(name, u, m=m) for name in ("sn", "cn", "dn")]
 
 
-def partial_sum(name: str, k: Any, u: Any = 0, terms: int = 250) -> Any:
-    """Return the sum of so many terms of the series of K, am, sn or cn."""
-
-    def compute() -> Any:
-        modulus = ours.modulus(k)
-        series = k_series(modulus) if name == "K" else nome_series(ours.ball(u), modulus)[name]
-        return next(islice(series.sums, terms, None))
-
-    return ours.evaluated(compute)
+def series(name: str, k: Any, u: Any = 0, terms: int = 250) -> Any:
+    """Return a partial sum of the series of K (3.1.8), sn (3.1.4), cn (3.1.5) or am (3.1.7)."""
+    if name == "K":
+        term = total = ar.pi / 2
+        for n in range(1, terms):
+            term *= (k * (2 * n - 1) / (2 * n)) ** 2
+            total += term
+        return total
+    q, x, scale = nome(k), ar.pi * u / (2 * quarter_period(k)), 2 * ar.pi / (k * quarter_period(k))
+    if name == "am":
+        return x + sum(
+            2 * q**n / (n * (1 + q ** (2 * n))) * ar.sin(2 * n * x) for n in range(1, terms)
+        )
+    sign, wave = (-1, ar.sin) if name == "sn" else (1, ar.cos)
+    return scale * sum(
+        ar.sqrt(q) ** n / (1 + sign * q**n) * wave(n * x) for n in range(1, 2 * terms, 2)
+    )
 
 
 def first_kind(x: Any, m: Any) -> Any:
@@ -105,7 +112,7 @@ aksenov.each(
             for pair in pairs(jacobi(i * K, k)[1:], (*values[:2], values[2] or ar.sqrt(1 - m)))
         ],
         "(3.1.6)": lambda k, m, K: (nome(k), ar.exp(-ar.pi * ar.ellipk(1 - m) / K)),
-        "(3.1.8)": lambda k, m, K: [(partial_sum("K", k, terms=600), K)] if k < 0.99 else [],
+        "(3.1.8)": lambda k, m, K: [(quarter_period(k), series("K", k, terms=600))] * (k < 0.99),
     },
 )
 aksenov.each(
@@ -126,9 +133,9 @@ aksenov.each(
         "section 3.1: property 4": lambda k, m, u, am, sn, cn, dn: [
             *((sn**2 + cn**2, 1), (dn**2 + m * sn**2, 1), (dn**2 - m * cn**2 + m, 1))
         ],
-        "(3.1.4)": lambda k, m, u, *_: (partial_sum("sn", k, u), ar.ellipfun("sn", u, m=m)),
-        "(3.1.5)": lambda k, m, u, *_: (partial_sum("cn", k, u), ar.ellipfun("cn", u, m=m)),
-        "(3.1.7)": lambda k, m, u, *_: (ar.ellipf(partial_sum("am", k, u), m), u),
+        "(3.1.4)": lambda k, m, u, am, sn, cn, dn: (sn, series("sn", k, u)),
+        "(3.1.5)": lambda k, m, u, am, sn, cn, dn: (cn, series("cn", k, u)),
+        "(3.1.7)": lambda k, m, u, am, *_: (am, series("am", k, u)),
     },
 )
 SMALL = ar.mpf(10) ** -12
@@ -150,7 +157,6 @@ aksenov.each(
 LOWER, UPPER, P, Q, G = (Fraction(x) for x in ("-0.5", "0.6", "0.1", "1.4", "2.5"))
 NESTED = Quadrature(LOWER, UPPER, (P - Q, P + Q), G)
 C = EtaConstants(*ours.evaluated(lambda: tuple(eta_constants(NESTED))))
-TABLE = EtaTable(ListedPoints([]), NESTED)
 DELTA, DELTA_STAR, P_, Q_, G_ = (
     ar.mpf(x.numerator) / x.denominator for x in (UPPER, LOWER, P, Q, G)
 )
@@ -161,7 +167,13 @@ TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]
 
 def eta_at(tau: Any) -> Any:
     """Return eta at a time since it was at delta*."""
-    return ours.evaluated(lambda: TABLE.columns(fraction(tau), TABLE.constants())["eta"])
+
+    def compute() -> Any:
+        constants = eta_constants(NESTED)
+        functions = Functions(constants.modulus(NESTED))
+        return eta_columns(fraction(tau), NESTED, constants, functions)["eta"]
+
+    return ours.evaluated(compute)
 
 
 def times() -> Iterable[tuple[Any, ...]]:
@@ -278,7 +290,7 @@ class TestAksenov(EquationTests):
     def spoil(self, patch: pytest.MonkeyPatch) -> None:
         """Put wrong functions and constants of ours in place."""
         here = sys.modules[__name__]
-        for name in ("jacobi", "incomplete_f", "quarter_period", "nome", "eta_at", "partial_sum"):
+        for name in ("jacobi", "incomplete_f", "quarter_period", "nome", "eta_at"):
             patch.setattr(here, name, slightly_wrong(getattr(here, name)))
         wrong = [x * (1 + ar.mpf(i) / 100) for i, x in enumerate(C, 1)]
         patch.setattr(here, "C", type(C)(*wrong))

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from conftest import Lagtop
 
-from lagrange_cli.elliptic.eta import EtaTable, Quadrature, eta_record
+from lagrange_cli.elliptic.eta import Quadrature, eta_record, eta_rows
 from lagrange_cli.top.ranges import ListedPoints
 
 
@@ -27,8 +27,7 @@ def quadrature(
 
 def rows_of(of: Quadrature, times: Iterable[Any], names: Sequence[str]) -> list[dict[str, float]]:
     """Return the rows of a table by column, the angle in radians."""
-    table = EtaTable(ListedPoints(list(map(Fraction, times))), of, names=names, angle="rad")
-    header, blocks = table.rows(None)
+    header, blocks = eta_rows(ListedPoints(list(map(Fraction, times))), of, names, radians=True)
     rows = (map(float, row) for block in blocks for row in block)
     return [dict(zip(header, row, strict=True)) for row in rows]
 
@@ -159,7 +158,7 @@ def test_numbers_beyond_the_doubles_are_refused(lagtop: Lagtop) -> None:
     line = "eta --delta 1.7e308 --delta-star 0 --gap-above 1.7e308 --format json".split()
     refused = lagtop(*line)
     assert (refused.exit_code, refused.stdout) == (2, "")
-    assert "outer_root is beyond the doubles: use --digits" in refused.stderr
+    assert "outer_root must be within 1.8e308 in size, got 3.400e+308" in refused.stderr
     assert json.loads(lagtop(*line, "--digits", "5").stdout)["period"] > 0
 
 

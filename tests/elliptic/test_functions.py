@@ -14,17 +14,12 @@ from typing import Any
 
 import mpmath
 import pytest
-from flint import arb, fmpq
 from function_reference import NUMBER, Reference
-from lagtop import LagtopError
 
-from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.elliptic import functions
-from lagrange_cli.elliptic.enclosures import rounded
-from lagrange_cli.elliptic.function_table import ComplexPoints, FunctionRequest, FunctionTable
-from lagrange_cli.elliptic.functions import Functions, Point
-from lagrange_cli.elliptic.modulus import AnyModulus, ModulusInput
-from lagrange_cli.top.ranges import ExactComplex, ListedPoints, parse_complex
+from lagrange_cli.elliptic.arguments import Arguments, ExactComplex, parse_complex
+from lagrange_cli.elliptic.function_table import FunctionRequest, function_rows
+from lagrange_cli.elliptic.modulus import GivenModulus
+from lagrange_cli.top.ranges import ListedPoints
 
 EVERY = ("am", "theta", "zeta", "omega", "pi")
 MODULI = ["0.3", "0.8", "0.95", "0.999", "0.7071067811865476", "0.05i", "0.8i", "20i", "1.01", "2"]
@@ -35,25 +30,20 @@ Cells = dict[str, str]
 
 
 def row(
-    k: AnyModulus | str,
+    k: str,
     u: Number,
     v: Number = "0",
     families: tuple[str, ...] = EVERY,
     digits: int | None = None,
     *,
     is_real: bool = False,
-    imaginary: bool = False,
 ) -> Cells:
-    """Return the row of an argument; modulus, argument and parameter may be given by their text."""
+    """Return the row of an argument; numbers may be given by their texts."""
     first, second = (parse_complex(x) if isinstance(x, str) else x for x in (u, v))
-    if isinstance(k, str):
-        value = parse_complex(k)
-        k = value if value.imag or value.real > 1 else ModulusInput("k", value.real)
-    points = ListedPoints([first.real]), None if is_real else ListedPoints([first.imag])
-    request = FunctionRequest(
-        k, families, second, radians=True, is_real=is_real, imaginary=imaginary
-    )
-    header, (((cells,),)) = FunctionTable(ComplexPoints(*points), request).rows(digits)
+    imag = None if is_real else ListedPoints([first.imag])
+    arguments, modulus = Arguments(ListedPoints([first.real]), imag), parse_complex(k)
+    request = FunctionRequest(arguments, GivenModulus("k", modulus), families, second, radians=True)
+    header, (((cells,),)) = function_rows(request, digits)
     return dict(zip(header, cells, strict=True))
 
 
@@ -109,29 +99,6 @@ def test_digits_of_every_column(k: str, numbers: tuple[str, str], more: int) -> 
                 away = ar.mpf(text) - (ar.re(exact) if part == "re" else ar.im(exact))
                 assert abs(away) <= slack, (name, part, k, u, v)
     assert checked >= 30
-
-
-@pytest.mark.parametrize("k", ["0.7071067811865476", "0.3"])
-def test_a_series_cut_short_holds_the_truth(k: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only the error of what is left out makes the balls wide enough."""
-    u, v = Point(fmpq(5, 4), fmpq(4, 5)), Point(fmpq(-2, 5), fmpq(3, 5))
-    modulus = ModulusInput("k", Fraction(k))
-    with balls(40):
-        exact = Functions(modulus.ball()).third(u, v)
-        for terms in (0, 1):
-            monkeypatch.setattr(functions, "isqrt", lambda _, terms=terms: terms)
-            for ij, values in Functions(modulus.ball()).third(u, v).items():
-                for wide, sharp in zip(values, exact[ij], strict=True):
-                    assert wide is not None
-                    assert sharp is not None
-                    assert wide.overlaps(sharp), (ij, terms)
-                    assert wide.rel_accuracy_bits() < 100, (ij, terms)
-
-
-def test_a_ball_that_stays_wide_is_no_fraction() -> None:
-    with pytest.raises(LagtopError, match="1200 digits do not determine these numbers"):
-        rounded(lambda: {"x": arb(0, 1e-5)}, 10, 1200)
-    assert rounded(lambda: {"x": arb(1, arb(10) ** -1100)}, 10, 1200) == {"x": "1.0"}
 
 
 @pytest.mark.parametrize("k", MODULI)

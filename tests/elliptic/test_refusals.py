@@ -7,34 +7,31 @@ from conftest import Lagtop
 
 JACOBI = [
     # real functions
-    ("", "give exactly one of --k, --k-prime, --nome"),
+    ("", "give exactly one of --k, --k-prime, --m, --nome"),
     ("--k 0.5 --nome 0.1", "give exactly one of"),
     ("--k=-1", "--k must be 0 or more, or imaginary as 0.8i, got -1.0"),
-    ("--k-prime -1", "--k-prime must be in [0, 1], got -1.0"),
-    (f"--nome 0.{'9' * 300}", "--nome must be at most 1 - 1e-17: k' is too small beyond"),
-    ("--nome 1", "--nome must be in [0, 1), got 1.0"),
+    ("--k-prime -1", "--k-prime must be 0 or more, or imaginary as 0.8i, got -1.0"),
+    ("--m i", "--m must be real, got 1.0i"),
+    ("--nome 0.1i --u 1", "--nome must be real, got 0.1i"),
+    ("--nome 1e-10001", "--nome must be 0 or at least 1e-10000 in size, got '1e-10001'"),
+    (f"--nome 0.{'9' * 300}", "--nome must be at most 1 - 1e-17 in size: k' is too small"),
+    ("--nome 1", "--nome must be in (-1, 1), got 1.0"),
     ("--k 0.5 --u 0:1", "--u must be a range [log:]start:stop:count"),
     ("--k 0.5 --u 0:1:0", "--u must have a whole count of 1 to 1e9"),
     ("--k 0.5 --u 1 --functions pi", "the functions omega and pi need --param"),
     ("--k 0.5 --u 1 --param 2", "--param needs --functions omega or pi"),
     ("--k 0.5 --u 1 --functions pi --param x", "must be a finite decimal number"),
-    ("--k 0.5 --u 1 --functions pi --param 3i", "must be smaller than K'"),
+    ("--k 0.5 --u 1 --functions sn,ss", "--functions must be among am, sn, cn"),
     ("--k 1 --u 1 --functions theta", "k must be below 1 for theta functions"),
-    ("--k 0.5 --series 0", "--series must be in [1, 10000], got 0"),
-    ("--k 1 --series 3", "the nome series need 0 < k < 1"),
-    ("--k 0.5 --u 1,2 --series 3", "--series takes one --u, got 2"),
     # complex numbers, and moduli of any kind
     ("--k 1+2i", "--k must be 0 or more, or imaginary as 0.8i, got 1.0+2.0i"),
     ("--k 0.8 --u 1+2j", "must be a finite number, complex as 0.3+0.7i, got '1+2j'"),
     ("--k x", "--k must be a finite decimal number, got 'x'"),
-    ("--k 1.5 --phi 30", "--phi and --series need a real --u, and a --k in [0, 1]"),
     ("--k 0.5 --u i,2K", "--u must not contain K if numbers are complex"),
-    (
-        "--k 1 --u i --functions theta",
-        "--k must not be 0 or 1 for theta functions of complex arguments",
-    ),
+    ("--k 1.5 --u K", "--u must not contain K for k >= 1, where K is infinite or complex"),
+    ("--k 1 --u i --functions theta", "k must be below 1 for theta functions"),
     ("--k 0.8 --u 1e20+i", "--u must be within 2^50 periods = 4.49e+15 of 0, got 1e+20"),
-    ("--k 0.8 --u 1 --functions pi --param 1+1e20i", "--param must have parts within 2^50 periods"),
+    ("--k 0.8 --u 1 --functions pi --param 1+1e20i", "--param must be within 2^50 periods"),
     (
         "--k 0.8 --u 1+i --functions pi",
         "functions omega and pi need --param, as 0.7, 0.7i or 0.2+0.7i",
@@ -44,12 +41,18 @@ JACOBI = [
     ("--k 0.8 --phi 1 --u 3", "use --phi or --u, not both"),
     ("--k 0.8 --phi 1 --functions zeta", "use --phi or --functions, not both"),
     ("--k 0.8 --phi 1e30", "--phi must be within 2^50 periods = 2.03e+17 of 0, got 1e+30"),
+    ("--k 0.8 --phi K", "--phi must be an angle, without K"),
+    ("--k 0.8 --phi 1+i --n 2", "--phi must be real if n is given"),
+    ("--k 0.8 --u 1 --n 2", "use --n or --u, not both"),
     # multiples of K
-    ("--k 0.3 --u K/0", "--u must be a multiple of K such as K, -2.5K, K/2 or 3K/4, got 'K/0'"),
-    ("--k 0.3 --u K,1", "--u must be in units of K every time or never, got both"),
+    (
+        "--k 0.3 --u K/0",
+        "--u must be a real multiple of K such as K, -2.5K, K/2 or 3K/4, got 'K/0'",
+    ),
+    ("--k 0.3 --u K,1", "--u must be in units of K every time or never, got 'K,1'"),
     ("--k 0.3 --u 1:2K:3", "--u must have both ends in units of K or none"),
     ("--k 0.3 --u 1e16K", "u in units of K must be within 2^50 periods = 2.25e+15 of 0"),
-    ("--k 1 --u K", "--u must be a number, without K, for k = 1, where K is infinite"),
+    ("--k 1 --u K", "--u must not contain K for k >= 1, where K is infinite or complex"),
     (
         "--k 1 --u 1e19 --digits 20",
         "1e+990000000000000000, the limits of --digits: take a smaller argument",
@@ -58,10 +61,6 @@ JACOBI = [
     (
         "--k 0.9 --u 1 --functions pi --param 1e17",
         "--param must be within 2^50 periods = 5.14e+15 of 0",
-    ),
-    (
-        "--nome 1.6e-274 --u 0.1 --functions pi --param=-478.87i",
-        "--param must be smaller than K' = 315.219",
     ),
 ]
 ETA = [

@@ -1,0 +1,162 @@
+"""Arguments of the functions, exactly: complex numbers, multiples of K, lists and ranges."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from decimal import Decimal, InvalidOperation
+from fractions import Fraction
+from typing import NamedTuple
+
+from ..arithmetic.enclosures import equal_digits, exact, settled
+from ..arithmetic.text import is_decimal, parse_number, quoted
+from ..errors import LagtopError
+from ..top.ranges import ListedPoints, LogPoints, Points
+from ..top.values import LOG, parse_range
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_LEAST_EXPONENT = -10_000
+"""The exponent of the smallest modulus that is accepted."""
+
+
+class ExactComplex(NamedTuple):
+    """A complex number with two exact parts."""
+
+    real: Fraction
+    imag: Fraction = Fraction(0)
+
+    def __str__(self) -> str:
+        """Return the number in a form that can be typed."""
+        real, imag = f"{float(self.real)}", f"{float(self.imag):+}i"
+        if not self.imag:
+            return real
+        return imag.removeprefix("+") if not self.real else real + imag
+
+    def nearest(self) -> ExactComplex:
+        """Return the number whose parts are the nearest doubles."""
+        return ExactComplex(Fraction(float(self.real)), Fraction(float(self.imag)))
+
+
+class Arguments(NamedTuple):
+    """A list or a range of arguments."""
+
+    real: Points
+    imag: Points | None = None
+    """The imaginary parts; None if all arguments are real."""
+    in_quarters: bool = False
+    """Whether the arguments are multiples of K."""
+
+    def numbers(self, digits: int | None) -> Iterator[ExactComplex]:
+        """Yield the arguments: the nearest doubles, or exactly; see `places`.
+
+        Multiples of K are always exact.
+        """
+        real = places(self.real, (digits or 17) if self.in_quarters else digits)
+        if self.imag is None:
+            return map(ExactComplex, real)
+        return map(ExactComplex, real, places(self.imag, digits))
+
+
+def places(points: Points, digits: int | None) -> Iterator[Fraction]:
+    """Yield points as the nearest doubles or, if `digits` is a number, as exact decimals.
+
+    The points of a range with equal ratios are then rounded to so many significant digits.
+    """
+    if digits is None:
+        return (Fraction(float(x)) for x in points.decimals())
+    return _log_places(points, digits) if isinstance(points, LogPoints) else points.decimals()
+
+
+def _log_places(points: LogPoints, digits: int) -> Iterator[Fraction]:
+    """Yield first (last/first)^(i/(count - 1)), rounded to N digits; both ends are exact."""
+    first, last, steps = points.first, points.last, points.count - 1
+    most = equal_digits([first, last], digits)
+
+    def place(i: int) -> Fraction:
+        if i in {0, steps}:
+            return last if i else first
+        share = exact(Fraction(i, steps))
+        found = settled("u", lambda _: exact(first) * exact(last / first) ** share, digits, most)
+        return Fraction(found.value if found else 0)
+
+    return map(place, range(points.count))
+
+
+def parse_complex(text: str) -> ExactComplex:
+    """Return the exact value of `0.3`, `0.7i`, `i` or `0.3-0.7i`.
+
+    Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
+    """
+    text = text.strip()
+    real, imag = _part_texts(text)
+    if _looks_complex(text) and not (is_decimal(real) and is_decimal(imag)):
+        raise LagtopError(f"must be a finite number, complex as 0.3+0.7i, got {quoted(text)}")
+    return ExactComplex(parse_number(real), parse_number(imag))
+
+
+def _looks_complex(text: str) -> bool:
+    """Return whether a text has a letter for the imaginary unit, valid or not."""
+    return not set("ijIJ").isdisjoint(text)
+
+
+def _part_texts(text: str) -> tuple[str, str]:
+    """Return the texts of the real and the imaginary part, unparsed."""
+    if not text.endswith("i"):
+        return text, "0"
+    signs = [i for i, sign in enumerate(text) if sign in "+-" and text[i - 1 : i] not in {"e", "E"}]
+    split = signs[-1] if signs else 0
+    imag = text[split:-1]
+    return text[:split] or "0", f"{imag}1" if imag in {"", "+", "-"} else imag
+
+
+def parse_small(text: str) -> ExactComplex:
+    """Return the exact value of a complex number, or of a real one down to 1e-10000.
+
+    Raises LagtopError as `parse_complex` does.
+    """
+    text = text.strip()
+    if not (is_decimal(text) and len(text) < 2000 and abs(float(text)) < 1e-300):
+        return parse_complex(text)
+    with suppress(InvalidOperation):  # of an exponent beyond those of decimals
+        number = Decimal(text)
+        if not number or number.adjusted() >= _LEAST_EXPONENT:
+            return ExactComplex(Fraction(number))
+    raise LagtopError(f"must be 0 or at least 1e{_LEAST_EXPONENT} in size, got {quoted(text)}")
+
+
+def parse_arguments(text: str) -> Arguments:
+    """Return the arguments of a list such as `0.3,1+2i` or `K/2,-2.5K`, or of a range.
+
+    A range is `[log:]start:stop:count`.  Raises LagtopError for anything else, and for a mixture of
+    multiples of K with other numbers; 0 fits both.
+    """
+    if ":" in text:
+        ends = [_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
+        points = parse_range(text, lambda end: _multiple(end)[0])
+        mixed = "must have both ends in units of K or none"
+    elif _looks_complex(text):
+        if "K" in text:
+            raise LagtopError(f"must not contain K if numbers are complex, got {quoted(text)}")
+        real, imag = zip(*map(parse_complex, text.split(",")), strict=True)
+        return Arguments(ListedPoints([*real]), ListedPoints([*imag]))
+    else:
+        ends = [_multiple(part) for part in text.split(",")]
+        points = ListedPoints([factor for factor, _ in ends])
+        mixed = "must be in units of K every time or never"
+    kinds = {is_multiple for factor, is_multiple in ends if factor}
+    if len(kinds) > 1:
+        raise LagtopError(f"{mixed}, got {quoted(text)}")
+    return Arguments(points, in_quarters=True in kinds)
+
+
+def _multiple(text: str) -> tuple[Fraction, bool]:
+    """Return a number and False, or the factor of a multiple of K such as `3K/4` and True."""
+    if "K" not in text:
+        return parse_number(text), False
+    found = re.fullmatch(rf"([+-]|{_NUMBER})?\s*K(?:/({_NUMBER}))?", text.strip())
+    if found is None or parse_number(found[2] or "1") <= 0:
+        wanted = "must be a real multiple of K such as K, -2.5K, K/2 or 3K/4"
+        raise LagtopError(f"{wanted}, got {quoted(text)}")
+    before = {None: "1", "+": "1", "-": "-1"}.get(found[1], found[1])
+    return parse_number(before) / parse_number(found[2] or "1"), True

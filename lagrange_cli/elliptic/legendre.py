@@ -1,0 +1,183 @@
+"""Legendre's integrals F, E and Pi of an amplitude, for every modulus; their table.
+
+With Delta^2 = 1 - k^2 sin^2 t they are integrals from 0 to phi:
+
+    F(phi, k) of 1/Delta,    E(phi, k) of Delta,    Pi(n; phi | k) of 1/((1 - n sin^2 t) Delta).
+
+The path follows the real axis to Re phi, then a parallel to the imaginary axis.  If k sin t > 1 on
+the real axis, Delta is +i |Delta|, as for k^2 with a small negative imaginary part.  Pi is a Cauchy
+principal value if its path crosses a pole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from typing import NamedTuple
+
+from flint import acb, arb
+
+from ..arithmetic.enclosures import exact, nearest, sign
+from ..errors import LagtopError
+from ..top.ranges import MAX_PERIODS, check_reach
+from .arguments import Arguments, ExactComplex
+from .modulus import GivenModulus, Kind, Modulus, real_parts, split
+from .tables import Row, Rows, rows_of
+
+_SQUARED_SINES: dict[Fraction, Fraction | arb] = {
+    Fraction(x): Fraction(y, 4) for x, y in ((0, 0), (30, 1), (45, 2), (60, 3), (90, 4))
+}
+"""The rational squares of sines of angles in degrees."""
+
+
+class Integrals(NamedTuple):
+    """F, E and Pi.
+
+    None stands for a pole, for a number beyond a pole without a principal value, for a number on a
+    cut, and for a Pi that is not requested.
+    """
+
+    F: acb | None
+    E: acb | None
+    Pi: acb | None = None
+
+
+class Legendre:
+    """The integrals of a modulus and, if it is given, of n, in balls."""
+
+    def __init__(
+        self, modulus: Modulus, m: Fraction | None = None, n: Fraction | None = None
+    ) -> None:
+        """Take a modulus in balls, and the exact parameter m = k^2 if it is known."""
+        self.n, self.is_1 = n, modulus.k_prime.is_zero()
+        self.m, self.complement = ((x.ball**2).real for x in (modulus, modulus.complement))
+        self.above_1 = (m or self.m) if modulus.kind is Kind.LARGE else None
+        """The parameter m if it is above 1."""
+        self.complete = self._within(arb(1), arb(0), arb(0), Fraction(1))
+        """The integrals to pi/2."""
+
+    def at(self, phi: ExactComplex, *, radians: bool = False) -> Integrals:
+        """Return the integrals of an amplitude, by f(phi + pi) = f(phi) + 2 f(pi/2)."""
+        square: Fraction | arb
+        if radians and phi.real:
+            angle = exact(phi.real)
+            half_turns = nearest(angle / arb.pi())
+            rest = angle - half_turns * arb.pi()
+            side = sign(rest)
+            sine, cosine = abs(rest).sin_cos()
+            sign(cosine)  # otherwise the ball goes beyond the quarter turn
+            square = sine**2
+        else:
+            half_turns = math.ceil(phi.real / 180 - Fraction(1, 2))
+            within = phi.real - 180 * half_turns
+            side = -1 if within < 0 else 1
+            sine, cosine = exact(abs(within) / 180).sin_cos_pi()
+            square = _SQUARED_SINES.get(abs(within), sine**2)
+        height = side * exact(phi.imag) * (1 if radians else arb.pi() / 180)
+        found = self._within(sine, cosine, height, square)
+        if not half_turns:
+            return _each(lambda x: side * x, found)
+        return _each(lambda x, whole: side * x + 2 * half_turns * whole, found, self.complete)
+
+    def _within(self, sine: arb, cosine: arb, height: arb, square: Fraction | arb) -> Integrals:
+        """Return the integrals of x + iy, 0 <= x <= pi/2.
+
+        `sine` and `cosine` are those of x, and `square` is sin^2 x, as a fraction if it is known.
+        Below the real axis Carlson's integrals have the branch of the path.  Above it their values
+        are conjugate, and for k sin x > 1 the values of the path are reflected at Re f(pi/2).
+        """
+        inside = 1 if self.above_1 is None else _side(self.above_1, square)
+        s = acb(sine * height.cosh(), -cosine * abs(height).sinh())
+        c2 = acb(cosine * height.cosh(), sine * abs(height).sinh()) ** 2
+        d = c2 + self.complement * s**2
+        if height.is_zero():
+            return self._real(s, c2, d if inside else acb(0), square)
+        is_upper = sign(height) > 0
+        at_quarter = square in {0, 1} if isinstance(square, Fraction) else False
+        if (at_quarter and inside > 0 and sign(d.real) <= 0) or (is_upper and not inside):
+            return Integrals(None, None)
+        found = self._carlson(s, c2, d)
+        if not is_upper:
+            return found
+        if inside > 0:
+            return _each(acb.conjugate, found)
+        return _each(lambda x, whole: 2 * whole.real - x.conjugate(), found, self.complete)
+
+    def _carlson(self, s: acb, c2: acb, d: acb) -> Integrals:
+        """Return F and E from sin phi, cos^2 phi and Delta^2 (DLMF 19.25.5, 19.25.9)."""
+        F = s * acb.elliptic_rf(c2, d, acb(1))
+        return Integrals(F, s if self.is_1 else F - self.m * s**3 * _rd(c2, d) / 3)
+
+    def _real(self, s: acb, c2: acb, d: acb, square: Fraction | arb) -> Integrals:
+        """Return the integrals of a real amplitude; they are real up to the branch point of F."""
+        if self.is_1 and square == 1:
+            return Integrals(None, s)
+        F, E, _ = self._carlson(s, c2, d)
+        n = self.n
+        past = 0 if n is None else _side(n, square)
+        if n is None or F is None or not past or (past < 0 and n == self.above_1):
+            return Integrals(F, E)
+        p = c2 + exact(1 - n) * s**2
+        Pi = F + exact(n) * s**3 * acb.elliptic_rj(c2, d, acb(1), p) / 3  # DLMF 19.25.14
+        if past < 0:  # half a residue, because R_J passes the pole on one side
+            root = acb(1 - self.m / exact(n)).sqrt()
+            Pi += acb(0, arb.pi()) / (2 * exact(n - 1).sqrt() * root)
+        return Integrals(F, E, acb(Pi.real) if self.above_1 is None else Pi)
+
+
+def _each(function: Callable[..., acb], *integrals: Integrals) -> Integrals:
+    """Apply a function to F, E and Pi; None stays None."""
+    parts = zip(*integrals, strict=True)
+    return Integrals(*(None if any(x is None for x in part) else function(*part) for part in parts))
+
+
+def _rd(c2: acb, d: acb) -> acb:
+    return acb.elliptic_rd(c2, d, acb(1))
+
+
+def _side(q: Fraction | arb, square: Fraction | arb) -> int:
+    """Return the sign of 1 - q sin^2 phi."""
+    if isinstance(square, Fraction):
+        if isinstance(q, Fraction):
+            return (q * square < 1) - (q * square > 1)
+        square = exact(square)
+    return sign(1 - (exact(q) if isinstance(q, Fraction) else q) * square)
+
+
+def amplitude_rows(
+    phi: Arguments,
+    given: GivenModulus,
+    n: Fraction | None = None,
+    *,
+    radians: bool = False,
+    digits: int | None = None,
+) -> Rows:
+    """Return a table of F, E and, with n, Pi over amplitudes, in degrees unless `radians` is set.
+
+    Complex numbers have a column for each part.  F is infinite from a quarter turn on if k = 1.
+    Raises LagtopError for a modulus out of range, for n with complex amplitudes and, in doubles,
+    for amplitudes beyond 2^50 half turns.
+    """
+    given.check()
+    if phi.in_quarters:
+        raise LagtopError("phi must be an angle, without K", "phi")
+    if phi.imag is not None and n is not None:
+        raise LagtopError("phi must be real if n is given", "phi")
+    for points in filter(None, (phi.real, phi.imag)) if digits is None else ():
+        check_reach("phi", points, MAX_PERIODS * (math.pi if radians else 180.0))
+    heading = "phi_rad" if radians else "phi_deg"
+
+    def columns(x: ExactComplex, legendre: Legendre) -> Row:
+        found = legendre.at(x, radians=radians)._asdict()
+        if n is None:
+            del found["Pi"]
+        if phi.imag is not None:
+            return {f"{heading}_re": x.real, f"{heading}_im": x.imag} | split(found)
+        return {heading: x.real} | (split(found) if given.kind is Kind.LARGE else real_parts(found))
+
+    def constants() -> Legendre:
+        return Legendre(given.reduced(), given.m, n)
+
+    inputs = [*given.value, n or Fraction(0)]
+    return rows_of(phi.numbers(digits), columns, constants, inputs, digits)

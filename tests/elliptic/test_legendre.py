@@ -1,0 +1,236 @@
+"""Legendre's F, E and Pi for every modulus, against mpmath's functions and quadrature."""
+
+from __future__ import annotations
+
+import math
+import random
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from conftest import Lagtop
+
+from lagrange_cli.elliptic.arguments import Arguments, ExactComplex
+from lagrange_cli.elliptic.legendre import amplitude_rows
+from lagrange_cli.elliptic.modulus import GivenModulus
+from lagrange_cli.top.ranges import ListedPoints
+
+
+def rows(
+    name: str, value: float, amplitudes: list[complex], n: float | None = None, *, degrees: bool
+) -> list[list[complex]]:
+    """Return F, E and, with n, Pi of some amplitudes."""
+    real, imag = (
+        ListedPoints([Fraction(part) for part in parts])
+        for parts in zip(*((z.real, z.imag) for z in amplitudes), strict=True)
+    )
+    is_real = not any(z.imag for z in amplitudes)
+    header, blocks = amplitude_rows(
+        Arguments(real, None if is_real else imag),
+        GivenModulus(name, ExactComplex(Fraction(value))),
+        None if n is None else Fraction(n),
+        radians=not degrees,
+    )
+    names = ["F", "E", "Pi"][: 2 if n is None else 3]
+    found = []
+    for row in (row for block in blocks for row in block):
+        cells = dict(zip(header, row, strict=True))
+        parts = [(cells.get(x) or cells[f"{x}_re"], cells.get(f"{x}_im", "0")) for x in names]
+        found.append([complex(float(x), float(y)) for x, y in parts])
+    return found
+
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(120)
+
+
+def integral(function: Any, start: complex, end: complex) -> Any:
+    """Return an integral along a line; the substitution allows roots that vanish at its ends."""
+    half, middle, w = (end - start) / 2, (end + start) / 2, np.pi / 2 * NODES
+    values = function(middle + half * np.sin(w)) * half * np.cos(w)
+    return (WEIGHTS * values).sum() * np.pi / 2
+
+
+def by_quadrature(m: float, phi: complex, n: float) -> list[complex]:
+    """Return F, E and Pi along the real axis to Re phi, and then parallel to the imaginary axis.
+
+    A principal value is the mean of the detours on both sides of the pole.
+    """
+    x, y = abs(phi.real), phi.imag * (-1 if phi.real < 0 else 1)
+    branches, poles = (
+        [i * np.pi + sign * np.arcsin(q**-0.5) for i in range(4) for sign in (1, -1)]
+        if q > 1
+        else []
+        for q in (m, n)
+    )
+    stops = sorted(z for z in {0, x, *np.arange(1, 8) * np.pi / 2, *branches} if 0 <= z <= x)
+    found = []
+    for integrand in (lambda t, d: 1 / d, lambda t, d: d, lambda t, d: 1 / (1 - n * sin2(t)) / d):
+        total = 0j
+        for start, end in pairwise(stops):
+            unit = 1 if m * sin2((start + end) / 2) < 1 else 1j
+
+            def along(t: Any, unit: complex = unit, integrand: Any = integrand) -> Any:
+                return integrand(t, unit * np.sqrt((1 - m * sin2(t)) / unit**2 + 0j))
+
+            pole = next((p for p in poles if start < p < end), None)
+            if pole is None:
+                total += integral(along, start, end)
+                continue
+            radius = min(pole - start, end - pole) / 2
+            total += integral(along, start, pole - radius) + integral(along, pole + radius, end)
+            for side in (radius * 1j, -radius * 1j):
+                total += integral(along, pole - radius, pole + side) / 2
+                total += integral(along, pole + side, pole + radius) / 2
+
+        def upwards(t: Any, integrand: Any = integrand) -> Any:  # the root is continuous
+            square = 1 - m * sin2(x + 1j * np.linspace(0, y, 4000)) + 0j
+            phase = np.unwrap(np.angle(square))
+            near = np.interp(
+                t.imag, np.linspace(0, y, 4000)[:: 1 if y > 0 else -1], phase[:: 1 if y > 0 else -1]
+            )
+            root = np.sqrt(1 - m * sin2(t))
+            return integrand(t, root * np.sign((root * np.exp(-0.5j * near)).real))
+
+        total += integral(upwards, x, x + 1j * y) if y else 0
+        found.append(complex(total) * (-1 if phi.real < 0 else 1))
+    return found
+
+
+def sin2(t: Any) -> Any:
+    return np.sin(t) ** 2
+
+
+CASES = [
+    *((0.6, 4.2, 0.4), (0.9, -2 + 0.7j, None), (0.3, 1.2, 7.0), (0.8, -4.4, 1.5)),
+    *((-4.0, 2.6, -3.0), (-0.5, -1.7 + 1j, None), (-9.0, 1.1, 3.0)),
+    *((4.0, 0.4, 0.3), (4.0, 1.3, -2.0), (4.0, 3.4, None), (1.2, -2.2, 0.9)),
+    *((4.0, 1.3 + 0.6j, None), (4.0, 1.3 - 0.6j, None), (4.0, -2.0 + 0.3j, None)),
+    *((4.0, 0.3 + 0.9j, None), (4.0, 1.4, 2.5), (4.0, 1.2, 6.0), (2.5, -2.9, 1.7)),
+]
+"""Parameters m, amplitudes in radians, and n."""
+
+
+def check(m: float, phi: complex, n: float | None) -> None:
+    """Compare F, E and Pi with quadratures."""
+    (found,) = rows("m", m, [phi], n, degrees=False)
+    for value, true in zip(found, by_quadrature(m, phi, n or 0), strict=False):
+        assert abs(value - true) <= 1e-5 * (1 + abs(true)), (m, phi, n, found)
+
+
+@pytest.mark.parametrize(("m", "phi", "n"), CASES)
+def test_path(m: float, phi: complex, n: float | None) -> None:
+    """The integrals are those of the path, on every side of branch points and poles."""
+    check(m, phi, n)
+
+
+@pytest.mark.slow
+def test_random_paths() -> None:
+    rng = random.Random(60)
+    for _ in range(1000):
+        m = rng.choice([rng.random(), -(10 ** rng.uniform(-2, 1.5)), 1 + 10 ** rng.uniform(-2, 1)])
+        if rng.random() < 0.5:
+            check(m, complex(rng.uniform(-4, 4), rng.uniform(-1.5, 1.5)), None)
+        else:
+            n = rng.choice([rng.uniform(-5, 1), 1 + 10 ** rng.uniform(-1, 1.5)])
+            check(m, rng.uniform(-4, 4), n)
+
+
+@pytest.mark.parametrize("count", [9, pytest.param(600, marks=pytest.mark.slow)])
+def test_functions_of_mpmath(count: int) -> None:
+    """mpmath has the same branches for k in [0, 1), for imaginary k, and for k sin(Re phi) < 1."""
+    rng = random.Random(61)
+    for i in range(count):
+        m = [rng.random(), -(10 ** rng.uniform(-3, 3)), 1 + 10 ** rng.uniform(-3, 2)][i % 3]
+        reach = 7 if m < 1 else math.asin(m**-0.5)
+        phi = complex(rng.uniform(-reach, reach), rng.choice([0, rng.uniform(-3, 3)]))
+        n = None if phi.imag else rng.uniform(-9, 1)
+        (found,) = rows("m", m, [phi], n, degrees=False)
+        with mpmath.workdps(40):
+            exact = [mpmath.ellipf(phi, m), mpmath.ellipe(phi, m)]
+            exact += [] if n is None else [mpmath.ellippi(n, phi, m)]
+            for value, true in zip(found, exact, strict=True):
+                assert abs(value - true) <= 2.3e-16 * abs(true), (m, phi, n)
+
+
+def carlson(name: str, value: float, phi: float, degrees: bool) -> tuple[Any, Any]:
+    """Return F and E by Carlson's integrals of mpmath within half a turn, k' as it is given."""
+    other = mpmath.mpf(value) ** 2
+    m, rest = (other, 1 - other) if name == "k" else (1 - other, other)
+    angle = mpmath.radians(mpmath.mpf(phi)) if degrees else mpmath.mpf(phi)
+    turns = mpmath.nint(angle / mpmath.pi)
+    sine, cosine2 = (f(angle - turns * mpmath.pi) for f in (mpmath.sin, mpmath.cos))
+    cosine2 **= 2
+    delta2 = cosine2 + rest * sine**2
+    first = sine * mpmath.elliprf(cosine2, delta2, 1)
+    second = first - m * sine**3 * mpmath.elliprd(cosine2, delta2, 1) / 3
+    return first + 2 * turns * mpmath.ellipk(m), second + 2 * turns * mpmath.ellipe(m)
+
+
+@pytest.mark.parametrize("degrees", [False, True])
+@pytest.mark.parametrize(("name", "value"), [("k", 0.3), ("k_prime", 0.03), ("k_prime", 1e-9)])
+def test_rounding(name: str, value: float, degrees: bool) -> None:
+    """Tiny amplitudes, far ones, and those next to quarter turns: each is correctly rounded."""
+    rng, quarter = random.Random(f"F {name} {degrees}"), 90.0 if degrees else math.pi / 2
+    near = quarter * rng.randrange(-9, 10)
+    amplitudes: list[complex] = [
+        *(rng.uniform(-5, 5) * quarter, 10 ** rng.uniform(-20, 0) * quarter, near),
+        *(math.nextafter(near, 1e9), quarter * 10 ** rng.uniform(0, 15.05)),
+    ]
+    with mpmath.workdps(60):
+        found = rows(name, value, amplitudes, degrees=degrees)
+        for phi, values in zip(amplitudes, found, strict=True):
+            for got, true in zip(values, carlson(name, value, phi.real, degrees), strict=True):
+                assert abs(got.real - true) <= math.ulp(got.real) * 0.5001, (name, value, phi)
+
+
+@pytest.mark.parametrize(
+    ("options", "lines"),
+    [
+        ("--k 1 --phi 90,-210 --digits 20", ["90.0,,1.0", "-210.0,,-2.5"]),
+        ("--k 1 --phi 90,0", ["90.0,,1.0", "0.0,0.0,0.0"]),
+        ("--k 0 --rad --phi 1.5 --digits 20", ["1.5,1.5,1.5"]),
+        ("--k 2 --phi 0.3 --rad", ["0.3,0.321243014549783,0.0,0.2812485563404562,0.0"]),
+        ("--k 0.5 --n 4 --phi 30,40", ["30.0,x,x,", "40.0,x,x,x"]),
+        ("--k 0.5 --n 1 --phi 60,90,120", ["60.0,x,x,x", "90.0,x,x,", "120.0,x,x,"]),
+        ("--m 4 --n 4 --phi 20,45", ["20.0,x,0.0,x,0.0,x,0.0", "45.0,x,x,x,x,,"]),
+        ("--m 4 --n 1 --phi 80,90", ["80.0,x,x,x,x,x,x", "90.0,x,x,x,x,,"]),
+        ("--m 4 --phi 30", ["30.0,0.842875177406298,0.0,0.40629888645996026,0.0"]),
+        ("--m 4 --phi 30+10i,30-10i", ["30.0,10.0,,,,", "30.0,-10.0,x,x,x,x"]),
+        ("--k 0.5 --phi 90+50i,90+100i", ["90.0,50.0,x,x,x,x", "90.0,100.0,,,,"]),
+        ("--k i --phi 40i,80i,1+80i", ["0.0,40.0,0.0,x,0.0,x", "0.0,80.0,,,,", "1.0,80.0,x,x,x,x"]),
+    ],
+)
+def test_poles_cuts_and_branch_points(options: str, lines: list[str], lagtop: Lagtop) -> None:
+    """Poles, and numbers on a cut, are empty; F and E exist at their branch points."""
+    shown = lagtop("jacobi", *options.split(), "--format", "csv").stdout.splitlines()[1:]
+    for line, expected in zip(shown, lines, strict=True):
+        cells, known = line.split(","), expected.split(",")
+        assert ["x" if y == "x" and x else x for x, y in zip(cells, known, strict=True)] == known
+
+
+def test_amplitudes_of_the_command(lagtop: Lagtop) -> None:
+    """At whole quarter turns they are whole multiples of K and E."""
+    shown = lagtop(*"jacobi --k 0.6 --phi=-180:270:6 --digits 25 --format csv".split()).stdout
+    header, *lines = shown.splitlines()
+    assert header == "phi_deg,F,E"
+    with mpmath.workdps(60):
+        m = mpmath.mpf("0.36")
+        for quarters, line in zip(range(-2, 4), lines, strict=True):
+            _, first, second = map(mpmath.mpf, line.split(","))
+            assert abs(first - quarters * mpmath.ellipk(m)) <= abs(first) * 5.01e-25
+            assert abs(second - quarters * mpmath.ellipe(m)) <= abs(second) * 5.01e-25
+    assert lines[2] == "0.0,0.0,0.0"
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_the_double_below_a_quarter_turn_is_below_it(lagtop: Lagtop, sign: str) -> None:
+    """F(phi, 1) = asinh(tan phi), by mpmath; the next double is above the quarter turn."""
+    options = f"jacobi --k 1 --rad --phi={sign}1.5707963267948966,{sign}1.5707963267948968"
+    _, below, above = lagtop(*options.split(), "--format", "csv").stdout.splitlines()
+    with mpmath.workdps(50):
+        true = mpmath.asinh(mpmath.tan(mpmath.mpf(1.5707963267948966)))
+    assert float(below.split(",")[1]) == float(f"{sign}{float(true)}")
+    assert above.split(",")[1] == ""
