@@ -37,13 +37,17 @@ def rows_of(
     `inputs` are the exact numbers on which the constants depend.  A pole is an empty text, and so
     is a number too large for a double if doubles are requested.
     """
-    known = cache(lambda _: constants())
-    rows = (
-        numbers(
-            lambda working, x=x: columns(x, known(working)), [*x, *inputs], digits, strict=False
+
+    @cache
+    def known(_: int) -> C:
+        return constants()
+
+    def row(x: ExactComplex) -> dict[str, Any]:
+        return numbers(
+            lambda digits: columns(x, known(digits)), [*x, *inputs], digits, strict=False
         )
-        for x in arguments
-    )
+
+    rows = map(row, arguments)
     first = next(rows)
     texts = ([NumberText(value_text(x)) for x in row.values()] for row in chain([first], rows))
 
