@@ -60,12 +60,20 @@ def _opened(path: str) -> Iterator[Any]:
 
 def _read_whole(file: Any, most: int) -> bytes:
     """Return the bytes of a file.  Raises OSError for more than `most` of them."""
-    content = bytearray()
+    chunks, size = list[bytes](), 0
     while chunk := file.read(_AT_ONCE):
-        content += chunk
-        if len(content) > most:
+        chunks.append(chunk)
+        size += len(chunk)
+        if size > most:
             raise OSError(f"it must have at most {most} bytes, has more")
-    return bytes(content)
+        if len(chunk) < _AT_ONCE:
+            break  # a terminal ends at the first Ctrl-D, and goes on if it is read again
+    return b"".join(chunks)
+
+
+def read_text(path: str) -> str:
+    """Return the text of a file, as `read_bytes` and `decoded` do."""
+    return decoded(read_bytes(path), shown_path(path))
 
 
 def decoded(content: bytes, name: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 from contextlib import suppress
@@ -72,7 +73,7 @@ class LagtopGroup(click.Group):
         except LagtopError as error:
             name = ctx.invoked_subcommand
             params = self.get_command(ctx, name).params if name else []
-            error.args = (_naming_option(error, params),)
+            error.args = (_with_options(error, params),)
             raise
         except KeyboardInterrupt:
             _die_by("SIGINT", 130)
@@ -107,15 +108,19 @@ class LagtopGroup(click.Group):
         sys.exit(code)
 
 
-def _naming_option(error: LagtopError, params: list[click.Parameter]) -> str:
-    """Return a message whose first word, if it is the key of the error, is the name of the option.
+def _with_options(error: LagtopError, params: list[click.Parameter]) -> str:
+    """Return a message of the library with options in place of arguments.
 
-    The key of a tilt has a unit.
+    An argument is the key of the error at the start of the message, where that of a tilt has a
+    unit, or has a value, as in `columns=t,quaternion`.
     """
     text, key = str(error), error.key or ""
-    option = f"--{key.removesuffix('_deg').removesuffix('_rad').replace('_', '-')}"
-    if text.startswith(f"{key} ") and any(option in param.opts for param in params):
-        return option + text.removeprefix(key)
+    for param in params:
+        option, name = param.opts[-1], param.name
+        if name == key.removesuffix("_deg").removesuffix("_rad") and text.startswith(f"{key} "):
+            text = option + text.removeprefix(key)
+        if option.startswith("--"):
+            text = re.sub(rf"\b{name}=(?=[\w(])", f"{option} ", text)
     return text
 
 

@@ -78,7 +78,7 @@ _SPELLINGS = """
 t | t time timestamp times simtime xvalue | |
 quaternion | quaternion quat q orientation attitude xquat rot rotation | w x y z | wxyz
 quaternion | | w x y z | wxyz
-quaternion | quaternion quat q orientation attitude | 0 1 2 3 |
+quaternion | quaternion quat q orientation attitude rotation rot | 0 1 2 3 |
 quaternion | qpos u | 3 4 5 6 | wxyz
 quaternion | bodyq | 3 4 5 6 | xyzw
 quaternion | qpos xquat ep eulerparameters | 0 1 2 3 | wxyz
@@ -140,7 +140,9 @@ def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     found: dict[str, FoundQuantity] = {}
     for key, quantity in QUANTITIES.items():
         for spelling, says in quantity.spellings:
-            if key not in found and all(name in words for name in spelling):
+            one_more = f"{spelling[0][:-1]}{len(spelling)}"  # of a longer list
+            fits = all(name in words for name in spelling)
+            if key not in found and fits and not (spelling[0][-1] == "0" and one_more in words):
                 columns = [words.pop(name) for name in spelling]
                 found[key] = FoundQuantity(columns, says, plain[columns[0]][1])
     return found
@@ -167,16 +169,17 @@ def named_twice(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> tup
 def plain_name(name: str) -> tuple[str, str | None]:
     """Return a name in lower-case letters and digits only, and its unit.
 
-    The name of an angle may end in its unit, as in `theta_deg`.  Only the last two parts of the
-    path of a ROS message count, as in `/imu/orientation/x`.
+    The name of an angle may end in its unit, as in `theta_deg`.  Only the last two parts of a path
+    count, as in `/imu/orientation/x` or `pose.orientation.x`.
     """
     text, unit = name_and_unit(name)
     text = text.lower()
     if text.startswith("/"):
         text = "/".join(text.split("/")[-2:])
-    match = re.fullmatch(r"(.+?)[\s_.]*(deg|rad)(?:rees|ians)?", text)
-    if not unit and match and not match[2].startswith(match[1]):
-        text, unit = match[1], match[2]
+    text = ".".join(text.split(".")[-2:])
+    ending = re.search(r"(deg|rad)(?:rees|ians)?$", text)
+    if ending and unit in {"", ending[1]} and (rest := text[: ending.start()].rstrip(" _.")):
+        text, unit = rest, ending[1]
     return re.sub(r"[^a-z0-9]", "", text), unit or None
 
 

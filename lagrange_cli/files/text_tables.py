@@ -1,7 +1,8 @@
 """Text tables: the one reader of files of tops, trajectories, recordings and times.
 
 A row is one line: cells separated by tabs, semicolons, commas or blanks, or a JSON object.  The
-delimiter, the headings and the decimal mark are decided once per file, from its first rows.
+delimiter, the headings and the decimal mark are decided once per file, from its first rows.  A file
+is kept as one text, whose lines are split when they are read.
 """
 
 from __future__ import annotations
@@ -9,35 +10,81 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from array import array
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from itertools import islice
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.text import parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
-from ..file_bytes import decoded
+from ..names import repeated
 
 if TYPE_CHECKING:
-    from ..arithmetic.types import Array
+    from ..arithmetic.types import Array, Mask
 
 _SAMPLE = 1000
 """Number of rows that decide whether numbers have decimal commas."""
 _TITLES = 50
 """Most rows above the headings, such as the title `mass A` of Tracker or the header of LabVIEW."""
+_NO_ROW = re.compile(r"\n[^\S\n]*(?:\n|\Z|[#%─]|//)")
+"""A line end and an empty line, a comment, or a line that is drawn."""
+MOST_CELLS = 1 << 17
+"""Most cells of a row: names and cells take more memory than the text of a file."""
+LARGEST_ARRAY = 1 << 26
+"""Most characters of a JSON array, because it is held in memory as objects."""
+_MOST_DEPTH = 20
+"""Most levels of JSON objects in a row."""
+_AT_ONCE = 1 << 20
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
-_ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
-_HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
+_ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
+_HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
 Known = Callable[[Sequence[str]], int]
 """Returns the number of known headings in a row, which distinguishes headings from titles."""
 
 
+class Lines:
+    """The lines of a text with their numbers, from a line on, without empty lines and comments."""
+
+    def __init__(self, text: str, first: int = 1) -> None:
+        self.text, self.first = text, first
+
+    def __iter__(self) -> Iterator[tuple[int, str]]:
+        for numbers, lines in self.blocks():
+            yield from zip(numbers, lines, strict=True)
+
+    def blocks(self) -> Iterator[tuple[Sequence[int], Sequence[str]]]:
+        """Yield the numbers of some lines, and the lines, which are split block by block."""
+        for number, chunk in _chunks(self.text):
+            skipped = max(self.first - number, 0)
+            lines = chunk.split("\n")[skipped:]
+            numbers: Sequence[int] = range(number + skipped, number + skipped + len(lines))
+            if _NO_ROW.search(f"\n{chunk}"):
+                kept = [i for i, line in enumerate(lines) if not _NO_ROW.match(f"\n{line}")]
+                numbers, lines = [numbers[i] for i in kept], [lines[i] for i in kept]
+            yield numbers, lines
+
+
+def _chunks(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the lines of a text, many at a time, after the number of the first of them."""
+    at, number = 0, 1
+    while at < len(text):
+        end = text.find("\n", at + _AT_ONCE)
+        chunk = text[at:] if end < 0 else text[at:end]
+        at += len(chunk) + 1
+        if not chunk.isspace():  # a small archive may hold millions of empty lines
+            yield number, chunk
+        number += chunk.count("\n") + 1
+
+
 @dataclass
 class Table:
-    """The rows of a file in memory."""
+    """The rows of a file, or some of them."""
 
     name: str
     """The name of the file in messages."""
@@ -45,24 +92,23 @@ class Table:
     """None if the file has none."""
     width: int
     """The number of columns."""
-    rows: Any
-    """Lines of text, lists of JSON values, or one array."""
-    lines: Sequence[int]
-    """The numbers of the rows in messages."""
+    rows: Iterable[tuple[int, Any]]
+    """The number of each row in messages, and its text or its JSON object."""
     delimiter: str = ","
+    """Empty if rows are JSON objects."""
     decimal: str = "."
     """The decimal mark, a point or a comma."""
     place: str = "line"
-    """The unit of `lines` in messages: `line` or `row`."""
+    """The unit of the numbers of rows in messages: `line` or `row`."""
+    sizes: dict[str, int] = field(default_factory=dict)
+    """The lengths of lists in JSON objects, by their names."""
 
-    def where(self, row: int) -> str:
-        """Return the name of the file and the place of a row."""
-        return f"{self.name}, {self.place} {self.lines[row]}"
-
-    def cells(self, row: int) -> list[Any]:
-        """Return the cells of a row.  Raises LagtopError for a wrong quote."""
-        text = self.rows[row]
-        return split_row(text, self.delimiter) if isinstance(text, str) else text
+    def cells(self, row: Any) -> list[Any]:
+        """Return the cells of a row.  Raises LagtopError for a wrong quote and for wrong JSON."""
+        if self.delimiter:
+            return split_row(row, self.delimiter)
+        found = _flat(_loaded(row) if isinstance(row, str) else row, self.sizes)
+        return [found.get(name) for name in self.headings or ()]
 
     def check(self, cells: Sequence[Any]) -> None:
         """Raise LagtopError for a row with another number of cells."""
@@ -72,63 +118,84 @@ class Table:
                 wrong += ": a comma cannot both separate cells and be the decimal mark"
             raise LagtopError(wrong)
 
-    def part(self, rows: slice) -> Table:
-        """Return some of the rows."""
-        return replace(self, rows=self.rows[rows], lines=self.lines[rows])
+    def blocks(self, size: int) -> Iterator[Table]:
+        """Yield the table in blocks of `size` rows, which any process can read."""
+        rows = iter(self.rows)
+        while block := list(islice(rows, size)):
+            yield replace(self, rows=block)
 
-    def at(self, row: int) -> list[Any]:
-        """Return the cells of a row, one for each column.  Raises DataError."""
+    def column(self, index: int) -> Iterator[tuple[int, Any]]:
+        """Yield the numbers of the rows and the cells of one column.  Raises DataError."""
+        for number, row in self.rows:
+            yield number, self._cells_at(number, row)[index]
+
+    def _cells_at(self, number: int, row: Any) -> list[Any]:
         try:
             cells = self.cells(row)
             self.check(cells)
+            return cells
         except LagtopError as error:
-            raise DataError(f"{self.where(row)}: {error}") from None
-        return cells
+            raise DataError(f"{self.name}, {self.place} {number}: {error}") from None
 
-    def column(self, index: int) -> list[Any]:
-        """Return the cells of one column.  Raises DataError as `at` does."""
-        return [self.at(row)[index] for row in range(len(self.rows))]
-
-    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Array:
-        """Return columns of numbers, shape (rows, columns), with NaN for empty cells.
+    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Numbers:
+        """Return columns of numbers, without the rows that have none in these columns.
 
         `names` are the names of all columns in messages.  Raises DataError with the place of a cell
         that is no number.
         """
         import numpy as np
 
-        values = self._at_once()
-        if values is not None:
-            return values[:, columns]
-        rows = ((row, self.at(row)) for row in range(len(self.rows)))
-        found = [[self._double(row, i, names[i], x[i]) for i in columns] for row, x in rows]
-        return np.array(found).reshape(-1, len(columns))
+        found = self._at_once(columns)
+        if found is not None:
+            return found
+        values, empty, lines = array("d"), bytearray(), array("q")
+        for number, row in self.rows:
+            cells = self._cells_at(number, row)
+            missing = [cells[i] is None or cells[i] == "" for i in columns]
+            if not all(missing):
+                lines.append(number)
+                empty.extend(missing)
+                values.extend(self._double(number, i, names[i], cells[i]) for i in columns)
+        shape = (len(lines), len(columns))
+        mask = np.frombuffer(empty, np.bool_).reshape(shape)
+        return Numbers(np.frombuffer(values, np.float64).reshape(shape), mask, lines)
 
-    def _at_once(self) -> Array | None:
-        """Return all columns, or None if NumPy cannot read the rows as numbers."""
+    def _at_once(self, columns: Sequence[int]) -> Numbers | None:
+        """Return columns of numbers, or None if NumPy cannot read the rows as numbers."""
         import numpy as np
 
-        if isinstance(self.rows, np.ndarray):
-            return self.rows
-        rows = [x.translate(_SWAPPED) for x in self.rows] if self.decimal == "," else self.rows
+        lines, rows = array("q"), self.rows
+        if not isinstance(rows, Lines) or not self.delimiter or next(iter(rows), None) is None:
+            return None
+
+        def texts() -> Iterator[str]:
+            for numbers, block in rows.blocks():
+                lines.extend(numbers)
+                yield from (x.translate(_SWAPPED) for x in block) if self.decimal == "," else block
+
         mark = None if self.delimiter == " " else self.delimiter
         try:
-            values = np.loadtxt(rows, delimiter=mark, ndmin=2, comments=None) if rows else None
-        except (TypeError, ValueError):  # JSON, words or missing numbers
+            values = np.loadtxt(texts(), delimiter=mark, ndmin=2, comments=None)
+        except ValueError:  # words or missing numbers
             return None
-        return values if values is not None and values.shape == (len(rows), self.width) else None
+        if values.shape != (len(lines), self.width):
+            return None
+        return Numbers(values[:, columns], np.zeros((len(lines), len(columns)), np.bool_), lines)
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
         if cell is None or cell == "":
             return float("nan")
-        plain = self._plain(cell) if isinstance(cell, str) else repr(cell)
-        if _NUMBER.fullmatch(plain) and "," not in plain:
+        if type(cell) in {int, float}:
+            return float(cell)
+        plain = self._plain(cell) if isinstance(cell, str) else ""
+        if "," not in plain and _NUMBER.fullmatch(plain):
             return float(plain)
         try:
             return float(self.number(cell))
         except LagtopError as error:
-            raise DataError(f"{self.where(row)}, column {column + 1}: {name} {error}") from None
+            place = f"{self.name}, {self.place} {row}, column {column + 1}"
+            raise DataError(f"{place}: {name} {error}") from None
 
     def number(self, cell: Any) -> Fraction:
         """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
@@ -137,24 +204,33 @@ class Table:
         if not isinstance(cell, str):
             raise LagtopError(f"must be a finite number, got {_shown(cell)}")
         other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
-        hint = ""
-        if self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell):
-            hint = f" (use --decimal {other})"
+        is_other = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
         try:
             return parse_number(self._plain(cell))
         except LagtopError:
-            if hint or self.decimal == ",":
-                wrong = f"must be a finite decimal number, got {quoted(cell)}{hint}"
-                raise LagtopError(wrong) from None
-            raise
+            if not is_other and self.decimal != ",":
+                raise
+        hint = f" (use decimal={other})" if is_other else ""
+        raise LagtopError(f"must be a finite decimal number, got {quoted(cell)}{hint}")
 
     def _plain(self, cell: str) -> str:
         """Return a cell with a decimal point; a number with the other mark then fails to parse."""
         return cell.translate(_SWAPPED) if self.decimal == "," else cell
 
 
+class Numbers(NamedTuple):
+    """Columns of numbers."""
+
+    values: Array
+    """Shape (rows, columns); NaN for an empty cell."""
+    empty: Mask
+    """Whether a cell is empty, in the same shape."""
+    lines: Sequence[int]
+    """The number of each row in messages."""
+
+
 def read_table(
-    content: bytes, name: str, known: Known, decimal: str = "", width: int | None = None
+    text: str, name: str, known: Known, decimal: str = "", width: int | None = None
 ) -> Table:
     """Read a text table.
 
@@ -162,72 +238,133 @@ def read_table(
     first rows decide.  `width` is the number of columns if their names are given; headings in the
     file are then ignored.  Raises DataError.
     """
-    lines = decoded(content, name).split("\n")
-    kept = [i for i, x in enumerate(lines) if x.strip() and x.strip()[0] not in "#─"]
-    if kept and lines[kept[0]].lstrip()[0] in "{[":
-        return _json_table(name, lines, kept)
-    at, delimiter = _layout([lines[i] for i in kept[: _TITLES + 1]], known, decimal, width)
-    rows = [lines[i] for i in kept[at + 1 :]]
-    # A single heading may have its unit after a blank.
-    single = delimiter == " " and len(rows) > 0 and len(rows[0].split()) == 1
-    headings: list[str] | None = None
-    if at >= 0 and not width:
-        line = lines[kept[at]]
+    sample = list(islice(Lines(text), _SAMPLE + _TITLES))
+    if sample and sample[0][1].lstrip()[0] in "{[":
+        return _json_table(text, name, sample[0])
+    for number, line in sample:
+        if max(map(line.count, "\t;, ")) > MOST_CELLS:
+            raise DataError(f"{name}, line {number}: a row must have at most {MOST_CELLS} cells")
+    texts = [line for _, line in sample[: _TITLES + 1]]
+    layout = _layout_of(texts, width, decimal) if width else _layout(texts, known, decimal)
+    headings = layout.headings
+    if headings is not None and layout.delimiter != " ":
+        number, line = sample[layout.first - 1]
         try:
-            headings = [line.strip()] if single else _split(line, delimiter, strict=True)
+            split_row(line, layout.delimiter)
         except LagtopError as error:
-            raise DataError(f"{name}, line {kept[at] + 1}: {error}") from None
-    found = len(headings or (_split(rows[0], delimiter) if rows else ()))
+            raise DataError(f"{name}, line {number}: {error}") from None
+    rows = sample[layout.first :]
+    cells = _split(rows[0][1], layout.delimiter) if rows else []
+    count = len(headings or cells)
     if headings is None and not width:  # perhaps in a comment, as numpy.savetxt writes them
-        comments = [re.sub("[#,;]", " ", x).split() for x in lines[: min(kept, default=0)]]
-        fits = [x for x in comments if len(x) == found and known(x)]
-        headings = fits[-1] if fits else None
-    table = Table(name, headings, found, rows, [i + 1 for i in kept[at + 1 :]], delimiter)
-    return table if delimiter == "," else replace(table, decimal=decimal or _decimal_mark(table))
+        headings = _heading_in_comments(text, sample, count, known, layout.delimiter)
+    first = rows[0][0] if rows else text.count("\n") + 2
+    table = Table(name, headings, count, Lines(text, first), layout.delimiter)
+    return replace(table, decimal=decimal or _decimal_mark(table, rows[:_SAMPLE]))
 
 
-def _decimal_mark(table: Table) -> str:
-    """Return the decimal mark of the first rows.
+def _heading_in_comments(
+    text: str, sample: Sequence[tuple[int, str]], count: int, known: Known, delimiter: str
+) -> list[str] | None:
+    """Return the headings in the last fitting comment above the first row, or None."""
+    first = sample[0][0] if sample else 0
+    above = deque[str]((), _TITLES)
+    for number, chunk in _chunks(text):
+        if number < first:
+            above.extend(chunk.split("\n")[: first - number])
+    for line in reversed(above):
+        bare = re.sub(r"^\s*(?:[#%]+|//)", "", line)
+        for mark in dict.fromkeys([delimiter, *_splits(bare)]):
+            cells = _split(bare, mark)
+            if len(cells) == count and known(cells):
+                return cells
+    return None
+
+
+def _decimal_mark(table: Table, rows: Sequence[tuple[int, str]]) -> str:
+    """Return the decimal mark of some rows.
 
     Raises DataError if a comma may be a decimal mark or separate thousands.
     """
     places: dict[str, int] = {}
-    for row, text in enumerate(table.rows[:_SAMPLE]):
-        for cell in _split(text, table.delimiter) if "," in text else ():
-            if "," in cell and _NUMBER.fullmatch(cell):
-                places.setdefault(cell, row)
+    for number, text in rows:
+        if "," in text and (table.delimiter != "," or '"' in text):
+            for cell in _split(text, table.delimiter):
+                if "," in cell and _NUMBER.fullmatch(cell):
+                    places.setdefault(cell, number)
     if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
-        cell, row = next(iter(places.items()))
+        cell, number = next(iter(places.items()))
         wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
-        raise DataError(f"{table.where(row)}: {wrong}: pass --decimal point or --decimal comma")
+        place = f"{table.name}, {table.place} {number}"
+        raise DataError(f"{place}: {wrong}: use decimal=point or decimal=comma")
     return "," if places else "."
 
 
-def _layout(texts: Sequence[str], known: Known, decimal: str, width: int | None) -> tuple[int, str]:
-    """Return the index of the row of headings (the most known ones), or -1, and the delimiter."""
-    rows = [{x: _split(text, x) for x in _delimiters(text, decimal)} for text in texts]
-    if not rows:
-        return -1, " "
-    most, found = 0, (0, next(iter(rows[0])))
-    for i, row in enumerate(rows):
-        if any(map(_are_numbers, row.values())):
-            break
-        for delimiter, cells in row.items():
-            if (count := known(cells)) > most:
-                most, found = count, (i, delimiter)
-    has_number = (any(_NUMBER.fullmatch(x) for y in row.values() for x in y) for row in rows)
-    first = found[0] + 1 if most else [*has_number, True].index(True)
-    if first == len(rows) or (most and not (width and found[1] == " ")):
-        return found
-    options = rows[first] | {" ": _split(texts[first], " ")}
-    fits = {x: (width in {None, len(row)}, _are_numbers(row)) for x, row in options.items()}
-    return first - 1, max(fits, key=fits.__getitem__)
+class _Layout(NamedTuple):
+    """Where the headings and the rows of numbers are, among the first rows of a file."""
+
+    headings: list[str] | None
+    first: int
+    """The index of the first row of numbers, which is the one below the headings."""
+    delimiter: str
+    """The delimiter of the rows of numbers."""
 
 
-def _delimiters(text: str, decimal: str) -> list[str]:
-    """Return the possible delimiters of a row, the most probable one first."""
+def _layout(texts: Sequence[str], known: Known, decimal: str) -> _Layout:
+    """Return the layout of a file whose headings are the row with the most known names.
+
+    Titles in words may hold known names, too: headings are as many as the cells below, and have the
+    same delimiter.
+    """
+    splits = [_splits(text, decimal) for text in texts]
+    numeric = [[x for x, cells in row.items() if _are_numbers(cells)] for row in splits]
+    below = next((i for i, marks in enumerate(numeric) if marks), None)
+    found: tuple[Any, _Layout] | None = None
+    for i, text in enumerate(texts[:below]):
+        row = i + 1 if below is None else below
+        data = splits[row] if row < len(splits) else {}
+        marks = [*data] if below is None else numeric[below]
+        for mark, headings in _splits(text).items():
+            count, delimiters = known(headings), sorted(marks, key=mark.__ne__)
+            is_one = mark == " " and all(len(data[x]) == 1 for x in marks)  # with its unit
+            cells = [text.strip()] if is_one else headings
+            fits = [x for x in delimiters if len(data[x]) == len(cells)]
+            score = bool(fits), mark in marks, count
+            if count and (found is None or score > found[0]):
+                found = score, _Layout(cells, i + 1, [*fits, *delimiters, mark][0])
+    if found:
+        return found[1]
+    some = (i for i, row in enumerate(splits) if any(map(_has_number, [*row.values()][:-1] or row)))
+    first = next(some, min(len(texts), 1)) if below is None else below
+    near = first if first < len(texts) else first - 1
+    delimiter = [*numeric[near], *splits[near]][0] if texts else " "
+    return _Layout(_split(texts[first - 1], delimiter) if first else None, first, delimiter)
+
+
+def _layout_of(texts: Sequence[str], width: int, decimal: str) -> _Layout:
+    """Return the layout of a file with so many columns, whose names are given.
+
+    Numbers begin with the first row that has so many cells, like the row below it, and a number.
+    """
+    splits = [_splits(text, decimal) for text in texts]
+    best: tuple[int, ...] = ()
+    found = _Layout(None, len(texts), " ")
+    for i, row in enumerate(splits):
+        below = splits[i + 1] if i + 1 < len(splits) else row
+        for mark, cells in row.items():
+            is_wide = len(cells) == width
+            fits = is_wide and len(below.get(mark, ())) == width
+            score = fits, is_wide, -i, _are_numbers(cells)
+            if _has_number(cells) and score > best:
+                best, found = score, _Layout(None, i, mark)
+    return found
+
+
+def _splits(text: str, decimal: str = "") -> dict[str, list[str]]:
+    """Return the cells of a row by its possible delimiters, the most probable one first."""
     bare = _ENCLOSED.sub("", text)
-    return [x for x in "\t;," if x in bare and x != decimal] or [" "]
+    marks = [x for x in "\t;," if x in bare and (x != decimal or '"' in text)]
+    return {x: _split(text, x) for x in [*marks, " "]}
 
 
 def _are_numbers(cells: Sequence[str]) -> bool:
@@ -235,18 +372,17 @@ def _are_numbers(cells: Sequence[str]) -> bool:
     return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x)
 
 
-def _split(text: str, delimiter: str, *, strict: bool = False) -> list[str]:
-    """Return the headings in a row; a blank before a unit in brackets is not a delimiter.
+def _has_number(cells: Sequence[str]) -> bool:
+    return any(map(_NUMBER.fullmatch, cells))
 
-    Raises LagtopError for a wrong quote if `strict`.
-    """
+
+def _split(text: str, delimiter: str) -> list[str]:
+    """Return the headings in a row; a blank before a unit in brackets is not a delimiter."""
     if delimiter == " ":
         return [x.strip('"') for x in _HEADING.findall(text)]
     try:
         return split_row(text, delimiter)
     except LagtopError:
-        if strict:
-            raise
         return [x.strip() for x in text.split(delimiter)]
 
 
@@ -259,49 +395,107 @@ def split_row(text: str, delimiter: str) -> list[str]:
         return [x.strip() for x in next(rows)]
     except csv.Error as error:
         wrong = "a quoted cell must end with its quote, and on its line"
+        if "limit" in str(error):
+            wrong = f"a quoted cell must have at most {csv.field_size_limit()} characters"
         raise LagtopError(f"{wrong}: {error}") from None
 
 
-def _json_table(name: str, lines: Sequence[str], kept: Sequence[int]) -> Table:
-    """Return JSON objects, one per line or in one array; a list in them becomes several columns."""
+def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
+    """Return JSON objects, one per line or in one array.
+
+    The entries of objects and lists in them are columns of their own: `rotation.x`, `axis_0`.
+    """
+    number, line = first
+    rows: Iterable[tuple[int, Any]] = Lines(text, number)
+    table = Table(name, [], 0, rows, "")
+    if line.lstrip().startswith("["):
+        whole = text.split("\n", number - 1)[-1]
+        if len(whole) > LARGEST_ARRAY:
+            wanted = f"a JSON array must have at most {LARGEST_ARRAY} characters"
+            raise DataError(f"{name}: {wanted}: write one object per line")
+        try:
+            rows = [*enumerate(_loaded(whole, number), 1)]
+        except LagtopError as error:
+            raise DataError(f"{name}, {error}") from None
+        table = replace(table, rows=rows, place="row")
+    headings: dict[str, None] = {}
+    wrong = None
+    for number, row in rows:
+        try:
+            headings |= dict.fromkeys(
+                _flat(_loaded(row) if isinstance(row, str) else row, table.sizes)
+            )
+        except LagtopError as error:  # which is raised again when the row is read
+            wrong = wrong or DataError(f"{name}, {table.place} {number}: {error}")
+    if not headings and wrong:
+        raise wrong
+    return replace(table, headings=[*headings], width=len(headings))
+
+
+def _loaded(text: str, line: int | None = None) -> Any:
+    """Return a JSON value; an error names the line of an array.  Raises LagtopError."""
     import orjson
 
-    is_array = lines[kept[0]].lstrip()[0] == "["
-    texts = {kept[0]: "\n".join(lines[kept[0] :])} if is_array else {i: lines[i] for i in kept}
-    objects: list[Any] = []
-    for i, text in texts.items():
-        try:
-            objects.append(orjson.loads(text))
-        except orjson.JSONDecodeError as error:
-            wrong = f"not JSON: {error.msg} at character {error.colno}"
-            raise DataError(f"{name}, line {i + error.lineno}: {wrong}") from None
-    objects = objects[0] if is_array else objects
-    numbers = range(1, len(objects) + 1) if is_array else [i + 1 for i in kept]
-    table = Table(name, None, 0, objects, numbers, place="row" if is_array else "line")
-    sizes: dict[str, int] = {}
-    for row, found in enumerate(objects):
-        if not isinstance(found, dict):
-            raise DataError(f"{table.where(row)}: a row must be a JSON object")
-        for key, value in found.items():
-            sizes[key] = sizes.get(key) or (len(value) if isinstance(value, list) else 0)
-    rows: list[list[Any]] = []
-    for row, found in enumerate(objects):
-        rows.append([])
-        for key, size in sizes.items():
-            value = found.get(key)
-            if size and value is not None and not (isinstance(value, list) and len(value) == size):
-                wrong = f"must be {size} numbers, got {_shown(value)}"
-                raise DataError(f"{table.where(row)}, column {key}: {wrong}")
-            rows[-1] += (value or [None] * size) if size else [value]
-    headings = [part for key, size in sizes.items() for part in parts(key, size)]
-    return replace(table, headings=headings, width=len(headings), rows=rows)
+    try:
+        value = orjson.loads(text)
+    except orjson.JSONDecodeError as error:
+        place = "" if line is None else f"line {line + error.lineno - 1}: "
+        raise LagtopError(f"{place}not JSON: {error.msg} at character {error.colno}") from None
+    if text.count(":") != _keys_in(value):  # a key is named twice, or a text has a colon
+        json.loads(text, object_pairs_hook=_once)
+    return value
+
+
+def _flat(row: Any, sizes: dict[str, int]) -> dict[str, Any]:
+    """Return the entries of a JSON object by their names, those of objects and lists in it, too.
+
+    A list is as long as the first one of its name, whose length is in `sizes`.  Raises LagtopError.
+    """
+    if not isinstance(row, dict):
+        raise LagtopError("a row must be a JSON object")
+    found: dict[str, Any] = {}
+
+    def add(name: str, value: Any, depth: int) -> None:
+        if isinstance(value, dict):
+            parts = [(f"{name}.{key}", x) for key, x in value.items()]
+        elif isinstance(value, list) and value:
+            parts = [(f"{name}_{i}", x) for i, x in enumerate(value)]
+        else:
+            parts = []
+        size = len(parts) if isinstance(value, list) else 0
+        if value not in (None, []) and sizes.setdefault(name, size) != size:
+            must = f"{sizes[name]} numbers" if sizes[name] else "a number"
+            raise LagtopError(f"{name} must be {must}, got {_shown(value)}")
+        if len(found) > MOST_CELLS or depth > _MOST_DEPTH:
+            most = f"{MOST_CELLS} entries in {_MOST_DEPTH} levels"
+            raise LagtopError(f"a row must have at most {most}, {quoted(name)} has more")
+        for part, x in parts:
+            add(part, x, depth + 1)
+        if not isinstance(value, dict | list):
+            found[name] = value
+
+    for name, value in row.items():
+        if isinstance(value, dict | list) or name in sizes:
+            add(name, value, 1)
+        else:
+            found[name] = value
+    return found
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object of JSON.  Raises LagtopError if it names a key twice."""
+    if (twice := repeated(key for key, _ in pairs)) is not None:
+        raise LagtopError(f"an object must name each key once, got {quoted(twice)} twice")
+    return dict(pairs)
+
+
+def _keys_in(value: Any) -> int:
+    """Return the number of keys in a JSON value."""
+    if isinstance(value, dict):
+        return len(value) + sum(_keys_in(x) for x in value.values() if isinstance(x, dict | list))
+    return sum(map(_keys_in, value)) if isinstance(value, list) else 0
 
 
 def _shown(value: Any) -> str:
     """Return a cell as text for a message, a value of JSON as it writes it."""
     return quoted(value) if isinstance(value, str) else shortened(json.dumps(value))
-
-
-def parts(name: str, size: int) -> list[str]:
-    """Return the names of the columns of an entry with `size` numbers; 0 means a single number."""
-    return [f"{name}_{i}" for i in range(size)] if size else [name]

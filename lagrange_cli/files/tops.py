@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError
-from ..file_bytes import read_bytes, shown_path
+from ..file_bytes import read_text, shown_path
 from ..names import repeated
 from ..top.given import Given, gather
 from ..top.inputs import TILT, checked_double, one_of_each, overridden
@@ -103,19 +103,20 @@ class TopsFile(NamedTuple):
 
     @property
     def size(self) -> int:
-        """The number of tops."""
-        return len(self.table.rows)
+        """The number of tops in a block."""
+        return sum(1 for _ in self.table.rows)
 
     def blocks(self, size: int) -> Iterator[TopsFile]:
         """Yield the file in blocks of `size` rows, which any process can read."""
-        for first in range(0, self.size, size):
-            yield self._replace(table=self.table.part(slice(first, first + size)))
+        return (self._replace(table=block) for block in self.table.blocks(size))
 
     def arrays(self, shared: Mapping[str, Any]) -> Tops:
         """Return the inputs of the tops; `shared` inputs are the defaults of rows without error."""
         found, carried, errors = list[dict[str, Any]](), list[list[Any]](), dict[int, str]()
-        for row in range(self.size):
+        lines = list[int]()
+        for i, (line, row) in enumerate(self.table.rows):
             values, inputs = dict[str, Any](), dict[str, Any]()
+            lines.append(line)
             try:
                 cells = self.table.cells(row)
                 values = dict(zip(self.columns, cells, strict=False))
@@ -125,11 +126,11 @@ class TopsFile(NamedTuple):
                 one_of_each(given)
                 inputs = overridden(shared, given)
             except LagtopError as error:
-                errors[row] = str(error)
+                errors[i] = str(error)
             found.append(inputs)
             carried.append([values.get(name) for name in self.carried])
         arrays = {name: _array([x.get(name, np.nan) for x in found]) for name in INPUTS}
-        return Tops(self.size, arrays, [*zip(*carried, strict=True)], self.table.lines, errors)
+        return Tops(len(lines), arrays, [*zip(*carried, strict=True)], lines, errors)
 
     def _double(self, name: str, cell: Any) -> Any:
         """Return the input in a cell, a double or a word for psidot0.  Raises LagtopError."""
@@ -158,7 +159,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     empty if the file decides.  Raises DataError for a file that cannot be read, or that has no
     headings of inputs.
     """
-    table = read_table(read_bytes(path), shown_path(path), _known_inputs, decimal)
+    table = read_table(read_text(path), shown_path(path), _known_inputs, decimal)
     name, headings = table.name, table.headings or []
     columns, units = list[str](), dict[str, Value]()
     for heading in headings:

@@ -5,17 +5,19 @@ The first bytes of a file determine its format, not its name: Parquet, or else t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError, UnavailableError
-from ..file_bytes import LARGEST_FILE, read_bytes, shown_path
+from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
 from ..names import repeated
 from ..top.ranges import ListedPoints
 from .columns import (
     QUANTITIES,
+    SKIPPED,
+    FoundQuantity,
     converted,
     expanded,
     in_known_unit,
@@ -23,65 +25,104 @@ from .columns import (
     named_twice,
     quantities_in,
 )
-from .text_tables import Table, parts, read_table
+from .text_tables import Table, read_table
 
 if TYPE_CHECKING:
-    from ..arithmetic.types import Array
+    from ..arithmetic.types import Array, Mask
     from .observed import Conventions
 
 _PARQUET = b"PAR1"
+_FINE = 1e-7
+"""Largest rounding of a time, over the time between two rows, that does not matter."""
 
 
 class Trajectory:
-    """The columns of a file: times and quantities of a motion, and other columns."""
+    """The times and quantities of a motion in a file."""
 
     def __init__(self, table: Table, columns: Sequence[str] | None = None) -> None:
-        """Find the quantities; `columns` names all columns from the left.
+        """Find the quantities and read their numbers; `columns` names all columns from the left.
 
-        Raises DataError without a time or a quantity besides, LagtopError for wrong `columns`.
+        Rows that are empty in these columns are left out.  Raises DataError without a time or a
+        quantity besides, and for a cell that is not a number; LagtopError for wrong `columns`.
         """
-        self.name, self.table = table.name, table
+        self.name, self._table = table.name, table
         if columns is not None and len(columns) != table.width:
             wanted = f"all {table.width} columns of {table.name} (_ leaves one out)"
             wrong = f"columns must name {wanted}, got {len(columns)} names"
             raise LagtopError(wrong, "columns")
         names = table.headings if columns is None else columns
         if names is None:
-            remedy = f"name its {table.width} columns with --columns, such as t,quaternion"
+            remedy = f"name its {table.width} columns with columns=t,quaternion or the like"
             raise DataError(f"{table.name} has no header: {remedy}")
         self.names = list(names)
+        self.quantities = self._found(columns is not None)
+        used = sorted(i for found in self.quantities.values() for i in found.columns)
+        self.used = [self.names[i] for i in used]
+        """The names of the columns that are read."""
+        self.unused = [x for i, x in enumerate(self.names) if i not in used and x != SKIPPED]
+        """The names of the other columns, except those that `columns` leaves out."""
+        self._numbers = table.numbers(used, self.names)
+        self._places = {key: [*map(used.index, x.columns)] for key, x in self.quantities.items()}
+        self._check()
+        self.elapsed = self._elapsed()
+        """Times since the first row, each rounded once."""
+
+    def _found(self, are_given: bool) -> dict[str, FoundQuantity]:
+        """Return the quantities of the columns, whose names may be given.  Raises LagtopError."""
         found = quantities_in(self.names)
         if "t" not in found or len(found) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
             shown = shortened(", ".join(map(repr, self.names)), 120)
             lacks_z = {"x", "y"} <= {*self.names} and "z" not in self.names
-            remedy = "z is missing" if lacks_z else "name them with --columns"
+            remedy = (
+                "z is missing" if lacks_z else "name them with columns=t,quaternion or the like"
+            )
             wrong = f"must have columns among {wanted}, got {shown}: {remedy}"
             raise DataError(f"{self.name} {wrong}")
         if twice := named_twice(self.names, found):
             wrong = f"must name each quantity once, got {twice[0]!r} and {twice[1]!r}"
-            if columns is not None:
+            if are_given:
                 raise LagtopError(f"columns {wrong}", "columns")
-            remedy = "name the columns with --columns, and one of them _"
+            remedy = "name the columns with columns=t,theta,_ or the like, where _ leaves one out"
             raise DataError(f"{self.name} {wrong}: {remedy}")
         try:
-            self.quantities = {key: in_known_unit(key, x, self.names) for key, x in found.items()}
+            return {key: in_known_unit(key, x, self.names) for key, x in found.items()}
         except LagtopError as error:
             raise DataError(f"{self.name}: {error}") from None
+
+    def _check(self) -> None:
+        """Raise DataError for a quantity without numbers, and for a time that is not finite."""
+        import numpy as np
+
+        for key, places in self._places.items():
+            if self._numbers.lines and self._numbers.empty[:, places].all():
+                shown = ", ".join(self.names[i] for i in self.quantities[key].columns)
+                remedy = "remove its columns, or leave them out with columns=t,_ or the like"
+                raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
+        t = self._numbers.values[:, self._places["t"][0]]
+        for i in np.flatnonzero(~np.isfinite(t))[:1]:
+            raise DataError(f"{self.where(i)}: t must be a finite number, got {t[i]}")
+
+    def where(self, row: int) -> str:
+        """Return the name of the file and the place of a row."""
+        return f"{self.name}, {self._table.place} {self._numbers.lines[row]}"
 
     def values(self, *, radians: bool) -> dict[str, Array]:
         """Return every quantity as an array of shape (rows, parts), with NaN for missing numbers.
 
         Angles are returned in radians; those without a unit are in degrees, or else in `radians`.
-        Raises DataError for a cell that is not a number.
         """
-        wanted = [i for found in self.quantities.values() for i in found.columns]
-        numbers = self.table.numbers(wanted, self.names)
-        values: dict[str, Array] = {}
-        for key, found in self.quantities.items():
-            columns = numbers[:, [wanted.index(i) for i in found.columns]]
-            values[key] = converted(key, found, columns, radians=radians)
-        return values
+        return {
+            key: converted(key, found, self._numbers.values[:, self._places[key]], radians=radians)
+            for key, found in self.quantities.items()
+        }
+
+    def missing(self) -> dict[str, Mask]:
+        """Return for every quantity whether a part of it is an empty cell, by row."""
+        import numpy as np
+
+        empty = self._numbers.empty
+        return {key: np.any(empty[:, x], axis=1) for key, x in self._places.items()}
 
     def conventions(self, given: Conventions) -> Conventions:
         """Return conventions, overridden by the names of columns; the frame `space` is kept."""
@@ -93,23 +134,35 @@ class Trajectory:
 
     def words(self, column: str) -> list[str]:
         """Return the cells of a column as texts; numbers have their shortest form."""
-        cells = self.table.column(self.names.index(column))
+        cells = (cell for _, cell in self._table.column(self.names.index(column)))
         return [f"{x:.17g}" if isinstance(x, float) else str(x) for x in cells]
 
-    def check_times(self, t: Array) -> None:
-        """Raise DataError for a time that is not finite, that repeats, or that turns back."""
+    def _elapsed(self) -> Array:
+        """Return the times since the first row, from exact numbers if doubles are too coarse.
+
+        Unix times are such numbers: neighbouring doubles are 2e-7 s apart.
+        """
         import numpy as np
 
-        with np.errstate(all="ignore"):
-            ways = np.sign(np.diff(t))
-        for wrong, wanted in (
-            (~np.isfinite(t), "be a finite number, got {1}"),
-            (np.r_[False, ways == 0], "not repeat, got {1} twice"),
-            (np.r_[False, ways != ways[:1]], "not turn back, got {1} after {0}"),
-        ):
-            for i in np.flatnonzero(wrong)[:1]:
-                must = wanted.format(float(t[i - 1]), float(t[i]))
-                raise DataError(f"{self.table.where(i)}: t must {must}")
+        (place,), (column,) = self._places["t"], self.quantities["t"].columns
+        t: Array = self._numbers.values[:, place]
+        steps = np.abs(np.diff(t))
+        if steps.size and np.abs(t).max() * 2.0**-53 > _FINE * np.median(steps):
+            cells = (x for _, x in self._table.column(column) if x not in (None, ""))
+            exact = [self._table.number(x) for x in cells]
+            t = np.array([float(x - exact[0]) for x in exact])
+        found = self.quantities["t"]
+        return converted("t", found, t - t[:1], radians=True)
+
+    def check_times(self, t: Array) -> None:
+        """Raise DataError for a time that turns back; it may repeat."""
+        import numpy as np
+
+        ways = np.sign(np.diff(t))
+        forth = ways[ways != 0][:1]
+        for i in np.flatnonzero(np.r_[False, ways == -forth])[:1] if forth.size else ():
+            turned = f"t must not turn back, got {float(t[i])} after {float(t[i - 1])}"
+            raise DataError(f"{self.where(i)}: {turned}")
 
 
 def read_trajectory(
@@ -125,7 +178,9 @@ def read_trajectory(
     content = read_bytes(path)
     if content.startswith(_PARQUET):
         return Trajectory(_read_parquet(content, name), names)
-    table = read_table(content, name, known_quantities, decimal, len(names or ()) or None)
+    text = decoded(content, name)
+    del content  # one copy of a large file is enough
+    table = read_table(text, name, known_quantities, decimal, len(names or ()) or None)
     if table.headings is None and not table.width:
         raise DataError(f"{name} must hold a trajectory, got no row")
     return Trajectory(table, names)
@@ -134,44 +189,41 @@ def read_trajectory(
 def _read_parquet(content: bytes, name: str) -> Table:
     """Return the columns of numbers of a Parquet file; a list of a fixed size is several columns.
 
-    Null becomes NaN.
+    Null becomes an empty cell.
     """
-    import numpy as np
-
     try:
+        import pyarrow as pa
         from pyarrow import parquet
     except ImportError:
         remedy = "pip install 'lagtop[parquet]'"
         raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
     try:
         file = parquet.ParquetFile(BytesIO(content))
-        _check_size(file)
-        table = file.read()
-        if twice := repeated(table.column_names):
+        sizes = {x.name: getattr(x.type, "list_size", 0) for x in file.schema_arrow}
+        kinds = {x.name: getattr(x.type, "value_type", x.type) for x in file.schema_arrow}
+        if twice := repeated(file.schema_arrow.names):
             raise ValueError(f"two columns are named {twice!r}")
-        columns: dict[str, Array] = {}
-        for heading, column in zip(table.column_names, table.columns, strict=True):
-            size = getattr(column.type, "list_size", 0)
-            rows = [x or [None] * size for x in column.to_pylist()] if size else column.to_numpy()
-            numbers: Array = np.array(rows, np.float64) if size else np.asarray(rows)
-            if numbers.dtype.kind in "iuf":
-                headings = parts(heading, size)
-                columns |= dict(zip(headings, np.atleast_2d(numbers.T), strict=True))
+        names = [x for x, y in kinds.items() if pa.types.is_floating(y) or pa.types.is_integer(y)]
+        size = 8 * file.metadata.num_rows * sum(max(sizes[x], 1) for x in names)
+        if size > LARGEST_FILE:
+            raise ValueError(f"it must have at most {LARGEST_FILE} bytes of numbers, has {size}")
+        rows = _ParquetRows(file.read(columns=names))
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
         raise DataError(f"{name}: bad Parquet file: {why}") from None
-    values = np.array([*columns.values()], np.float64).T
-    lines = range(1, len(values) + 1)
-    return Table(name, [*columns], len(columns), values, lines, place="row")
+    headings = [f"{x}_{i}" if sizes[x] else x for x in names for i in range(sizes[x] or 1)]
+    return Table(name, headings, len(headings), rows, "", place="row")
 
 
-def _check_size(file: Any) -> None:
-    """Raise ValueError for a Parquet file that needs too much memory, before it is read."""
-    groups = [file.metadata.row_group(i) for i in range(file.metadata.num_row_groups)]
-    listed = sum(getattr(x.type, "list_size", 1) for x in file.schema_arrow)
-    size = max(sum(x.total_byte_size for x in groups), 8 * file.metadata.num_rows * listed)
-    if size > LARGEST_FILE:
-        raise ValueError(f"it must have at most {LARGEST_FILE} bytes of numbers, has {size}")
+class _ParquetRows:
+    """The rows of a Parquet file with their numbers, as JSON objects."""
+
+    def __init__(self, table: Any) -> None:
+        self.table = table
+
+    def __iter__(self) -> Iterator[tuple[int, Any]]:
+        batches = self.table.to_batches(max_chunksize=1 << 12)
+        return enumerate((row for batch in batches for row in batch.to_pylist()), 1)
 
 
 def read_times(path: str, decimal: str = "") -> ListedPoints:
@@ -180,7 +232,7 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     `decimal` is a point or a comma, or empty if the file decides.  Raises DataError for a file that
     cannot be read, and for a row without a time.
     """
-    table = read_table(read_bytes(path), shown_path(path), known_quantities, decimal)
+    table = read_table(read_text(path), shown_path(path), known_quantities, decimal)
     names = ["t"] * (table.width < 2) if table.headings is None else table.headings
     found = quantities_in(names).get("t")
     if found is None:
@@ -192,11 +244,12 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     except LagtopError as error:
         raise DataError(f"{table.name}: {error}") from None
     times = []
-    for row, cell in enumerate(table.column(found.columns[0])):
+    for number, cell in table.column(found.columns[0]):
         try:
             times.append(factor * table.number(cell))
         except LagtopError as error:
-            raise DataError(f"{table.where(row)}: the time {error}") from None
+            place = f"{table.name}, {table.place} {number}"
+            raise DataError(f"{place}: the time {error}") from None
     if not times:
         raise DataError(f"{table.name} must hold at least one time, got none")
     return ListedPoints(times)

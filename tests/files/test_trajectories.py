@@ -125,11 +125,15 @@ def twice() -> bytes:
         ),
         (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
         (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),
-        (b"t,theta\n0,1\n-1,2\n-1,3\n", "line 4: t must not repeat, got -1.0 twice"),
-        (b"0 1\n", "has no header: name its 2 columns with --columns, such as t,quaternion"),
+        (b"t,theta\n0,1\n-1,2\n-1,3\n0,3\n", "line 5: t must not turn back, got 0.0 after -1"),
+        (b"t,qw,qx,qy,qz,p,q,r\n0,,,,,1,2,3\n", "quaternion is empty (qw, qx, qy, qz): remove"),
+        (b"0 1\n", "has no header: name its 2 columns with columns=t,quaternion or the like"),
         (b"a,b\n0,1\n", "must have columns among the time (t, time, timestamp) and"),
         (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column 2: theta must be a finite"),
-        (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
+        (
+            b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n',
+            "line 2: axis must be 3 numbers, got [1]",
+        ),
         (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
         (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
         (b"\x93NUMPY\x01\x00\xff\xff", "is no text: save it as CSV"),
@@ -157,11 +161,13 @@ def test_a_parquet_file_beyond_the_limit_is_refused(
     """A few kilobytes may hold a gigabyte of zeros, in lists or in equal texts."""
     path, rows = tmp_path / "a", 10_000
     lists = pa.FixedSizeListArray.from_arrays(pa.array(np.zeros(4 * rows)), 4)
-    for column in (lists, pa.array(["x" * 1000] * rows)):
-        parquet.write_table(pa.table({"t": np.arange(rows), "theta": column}), path)
-        monkeypatch.setattr(trajectory, "LARGEST_FILE", 100_000)
-        with pytest.raises(DataError, match="must have at most 100000 bytes of numbers, has"):
-            read(path)
+    words = pa.array(["x" * 1000] * rows)  # which are not read
+    columns = {"t": np.arange(rows), "note": words, "quaternion": lists}
+    parquet.write_table(pa.table(columns), path)
+    assert read(path)["t"].size == rows
+    monkeypatch.setattr(trajectory, "LARGEST_FILE", 300_000)
+    with pytest.raises(DataError, match="must have at most 300000 bytes of numbers, has 400000"):
+        read(path)
 
 
 def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:

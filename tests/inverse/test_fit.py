@@ -452,7 +452,7 @@ def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None
         ("t,psi", "{t},40", "psi alone does not determine a top: give --theta0"),
         ("t,theta,psi", "0,40,{t}", "t must span"),
         ("t,theta,psi", "{t},240,{t}", "theta must be between 0 and 180 deg"),
-        ("t,theta,psi", "-{t},,", "must have 12 rows or more with a number, got 0 of 20"),
+        ("t,theta,psi", "-{t},,", "theta is empty (theta): remove its columns, or leave"),
         ("t,theta,psi", "{back},40,10", "t must not turn back, got 0 after 4: .* --by"),
     ],
 )

@@ -204,7 +204,7 @@ def test_rows_of_json(lagtop: Lagtop) -> None:
         input=text,
     )  # fmt: skip
     rows = list(map(json.loads, result.stdout.splitlines()))
-    assert [row["id"] for row in rows] == [1, {"x": [2]}, None]
+    assert [(row["id"], row["id.x_0"]) for row in rows] == [(1, None), (None, 2), (None, None)]
     assert [row["theta0_deg"] for row in rows[:2]] == [20, math.degrees(1)]
     assert [bool(row["error"]) for row in rows] == [False, False, True]
     assert rows[2]["error"] == "line 3: r0 must be a finite number, got true"
