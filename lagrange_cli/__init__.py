@@ -18,7 +18,7 @@ _MODULES = {
     "Outcome": "inverse.outcome",
     "OutOfRangeError": "errors",
     "OutOfRangeWarning": "errors",
-    "Regime": "solver.regime",
+    "Regime": "solver.facts",
     "Results": "sweeps.results",
     "SceneError": "errors",
     "Top": "top.top",

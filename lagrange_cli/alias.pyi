@@ -18,7 +18,7 @@ from lagrange_cli.plot import draw as draw
 from lagrange_cli.plot.browser.view import view as view
 from lagrange_cli.plot.reports import draw_outcome as draw_outcome
 from lagrange_cli.solver.derivatives import sensitivities as sensitivities
-from lagrange_cli.solver.regime import Regime as Regime
+from lagrange_cli.solver.facts import Regime as Regime
 from lagrange_cli.solver.solve import Motion as Motion
 from lagrange_cli.solver.solve import solve as solve
 from lagrange_cli.sweeps.records import sweep as sweep

@@ -22,6 +22,8 @@ import pytest
 from conftest import Lagtop, Solved
 from lagtop import LagtopError, Motion, Top, sensitivities, solve, sweep
 
+from lagrange_cli.top.inputs import STANDS_FOR
+
 PATH = Path(__file__).parent / "frozen.json"
 DIGEST = "14add8e54000a42963c8300aaf7af9e2f6af434a2df9c83e3f558e337516e039"
 FROZEN: dict[str, Any] = json.loads(PATH.read_bytes())
@@ -50,7 +52,11 @@ def top_of(inputs: dict[str, Any]) -> Top:
         name: Fraction(x) if isinstance(x, str) and not x.startswith("steady") else x
         for name, x in inputs.items()
     }
-    return Top(**exact)
+    top = Top(**exact)
+    derived = {
+        STANDS_FOR[name]: getattr(top, STANDS_FOR[name]) for name in STANDS_FOR.keys() & inputs
+    }
+    return top.replace(**derived)  # at that time A and r0 were rounded to doubles
 
 
 def assert_double(motion: Motion, key: str, text: str | None) -> None:

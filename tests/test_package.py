@@ -119,7 +119,7 @@ def test_type_checkers_see_the_names_of_the_wheel(distributions: Path, tmp_path:
     (wheel,) = distributions.glob("*.whl")
     with ZipFile(wheel) as archive:
         archive.extractall(tmp_path / "site")
-    lines = ["from lagtop import Top, solve", "k: float | None = solve(Top()).phase", "Top(mass=3)"]
+    lines = ["from lagtop import Top, solve", "k: str | None = solve(Top()).path", "Top(mass=3)"]
     (tmp_path / "user.py").write_text("\n".join(lines))
     done = subprocess.run(
         [sys.executable, "-m", "mypy", "--strict", "user.py"],

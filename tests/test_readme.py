@@ -24,7 +24,7 @@ from lagrange_cli.comparison.compare import COMPARISON_KEYS, VERDICTS
 from lagrange_cli.comparison.differences import WORDS
 from lagrange_cli.files.columns import QUANTITIES
 from lagrange_cli.solver.explanation import listed
-from lagrange_cli.solver.record import NUMBER_KEYS, number_key, requested_keys
+from lagrange_cli.solver.keys import NUMBERS
 from lagrange_cli.top.inputs import DECLARED, TILT
 
 ROOT = Path(__file__).parent.parent
@@ -133,7 +133,7 @@ def keys_table(kind: str, heading: str) -> list[str]:
     lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for row in listed():
         if row.kind == kind and row.name not in {*DECLARED, "theta0_deg"}:
-            key = number_key(row.name)
+            key = NUMBERS.get(row.name)
             cells = [f"`{row.name}`", row.symbol, row.meaning, row.unit, row.formula, row.equation]
             cells += [key.only if key else ""] if kind != "column" else []
             lines.append(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |")
@@ -202,7 +202,7 @@ def test_every_option_and_key_is_explained() -> None:
         re.findall(r"(?<![\w-])--?[a-zA-Z][\w-]*", text)
     ) == set()
     words = set(re.findall(r"\w+", text))
-    assert {*NUMBER_KEYS, *requested_keys(), "regime", "path", "remark"} <= words
+    assert {*NUMBERS, "regime", "path", "remark"} <= words
 
 
 def test_every_public_name_is_on_the_page_of_the_library() -> None:

@@ -24,6 +24,7 @@ from typing import Any, Self
 from flint import acb, arb, ctx, fmpq
 
 from ..errors import OutOfRangeError
+from .enclosures import TooFewDigitsError as TooFewDigitsError  # noqa: PLC0414
 from .numbers import Scalars
 
 BITS = 3.3219280948873626
@@ -33,10 +34,6 @@ LARGEST_EXPONENT = 990_000_000_000_000_000
 
 Truth = Any
 """True, False or OPEN."""
-
-
-class TooFewDigitsError(Exception):
-    """A question that cannot be decided with the digits in use."""
 
 
 class UndefinedError(ArithmeticError):

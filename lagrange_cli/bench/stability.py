@@ -16,7 +16,7 @@ import mpmath
 from ..names import check_names
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import Progress, silent
-from ..solver.regime import Regime
+from ..solver.facts import Regime
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 from .methods import METHODS

@@ -18,7 +18,7 @@ from ..errors import LagtopError
 from ..names import check_names
 from ..output.report import Field, Report, short
 from ..output.terminal import Progress, silent
-from ..solver.regime import Regime
+from ..solver.facts import Regime
 from ..solver.solve import Motion
 from .methods import METHODS, SlowError, attitudes
 from .reference import Attitude, Reference, inputs_of, rotation_angle

@@ -11,9 +11,8 @@ from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError
 from ..names import check_names
 from ..output.destination import Output
-from ..solver.numbers import record_in_range
-from ..solver.quantity import unit_name
-from ..solver.record import all_keys, record_keys, shown_keys
+from ..solver.keys import all_keys, record_keys, shown_keys, unit_name
+from ..solver.record import record_in_range
 from ..solver.solve import Motion
 from . import shared as opt
 from .app import complain
@@ -82,7 +81,7 @@ def solve_command(
         from ..solver.summary import summary
 
         with suppress(TypeError):  # a number beyond the range of doubles is None
-            sentence["summary"] = summary(record, motion.exact.facts, named)
+            sentence["summary"] = summary(record, motion.facts, named)
     if found.stds:
         drawn = out.fmt == "table" and (get is None or out.is_named)
         record = uncertainty.with_stds(found, motion, record, drawn)
@@ -126,7 +125,7 @@ def _chosen_values(motion: Motion, record: dict[str, Any], keys: Sequence[str]) 
 
 def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
-    from ..solver.requested import derivation_keys
+    from ..solver.keys import derivation_keys
 
     if motion.roots_sum is None:
         top = motion.top
@@ -140,7 +139,7 @@ def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
 
 def _keys_by_step(keys: dict[str, Key], radians: bool) -> dict[str, Key]:
     """Return the keys of the steps of section 8, in order and grouped by step."""
-    from ..solver.requested import CHAIN
+    from ..solver.keys import CHAIN
 
     chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
     return {name: keys[name]._replace(group=step) for name, step in chain.items()}

@@ -136,7 +136,7 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
     if not given.si or fmt != "table":
         return names
     from ..output.report import with_unit
-    from ..solver.record import shown_keys
+    from ..solver.keys import shown_keys
 
     keys = shown_keys(radians=radians, named=given.named, requested=True)
     return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
@@ -171,8 +171,8 @@ def find_command(
     """
     from ..inverse.find import find_tops, search_of
     from ..names import check_names
-    from ..solver.numbers import record_in_range
-    from ..solver.record import all_keys, record_keys
+    from ..solver.keys import all_keys, record_keys
+    from ..solver.record import record_in_range
 
     chosen = record_keys(radians=top.radians)
     if keys is not None:

@@ -105,7 +105,7 @@ def angle_stds(found: Given, motion: Motion) -> Callable[[Array], Array] | None:
     from ..solver.derivatives import NO_DERIVATIVE  # for few tops only
     from ..solver.uncertainty import AngleStds
 
-    stds = AngleStds(motion, found.stds, found.inputs.keys())
+    stds = AngleStds(motion, found.stds)
     if stds.derivatives.missing:
         complain(f"Warning: no uncertainty of the angles: {NO_DERIVATIVE}")
     return stds.at

@@ -11,8 +11,7 @@ from ..names import check_names
 from ..output.destination import Output
 from ..output.report import Field, Report, uncertain_text, with_unit
 from ..solver.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
-from ..solver.quantity import degree_name, unit_name
-from ..solver.record import shown_keys
+from ..solver.keys import degree_name, shown_keys, unit_name
 from ..solver.solve import Motion
 from ..solver.uncertainty import Contribution, FirstOrder, stds_of
 from ..top.given import Given
@@ -53,7 +52,7 @@ def with_stds(
 
 def _first_order(found: Given, motion: Motion) -> FirstOrder:
     """Return the first-order uncertainties of a motion."""
-    return FirstOrder(motion, found.stds, found.inputs.keys())
+    return FirstOrder(motion, found.stds)
 
 
 def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Output) -> None:

@@ -17,7 +17,7 @@ from ..files import rotations
 from ..files.observed import Conventions, Observed, Quantities, observe, rows_of
 from ..files.rotations import within_half_turn
 from ..names import ANGLES
-from ..solver.regime import Regime
+from ..solver.facts import Regime
 from ..solver.solve import Motion
 from ..top.top import Top
 

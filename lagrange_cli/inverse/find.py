@@ -22,9 +22,8 @@ from ..arithmetic.text import double_text, quoted, shortened
 from ..arithmetic.types import Array
 from ..errors import AbsentError, LagtopError, check_type
 from ..names import check_names, repeated
-from ..solver.quantity import unit_name
-from ..solver.record import all_keys, shown_keys
-from ..solver.regime import Regime
+from ..solver.facts import Regime
+from ..solver.keys import all_keys, shown_keys, unit_name
 from ..solver.solve import Motion, solve
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import sweep

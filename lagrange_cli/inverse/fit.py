@@ -21,8 +21,7 @@ from ..arithmetic.numbers import angle_unit
 from ..arithmetic.text import parse_number
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
-from ..solver.quantity import unit_name
-from ..solver.record import shown_keys
+from ..solver.keys import shown_keys, unit_name
 from ..sweeps.records import sweep
 from ..top.given import gather
 from ..top.values import value_of

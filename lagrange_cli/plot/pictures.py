@@ -24,9 +24,8 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import check_names
 from ..output.terminal import Progress, silent
-from ..solver.quantity import degree_name
-from ..solver.record import NUMBER_KEYS, number_key, requested_keys
-from ..solver.regime import Regime
+from ..solver.facts import Regime
+from ..solver.keys import NUMBERS, degree_name
 from ..solver.solve import Motion
 from ..sweeps.records import sweep
 from ..top.inputs import DECLARED, NINE
@@ -189,7 +188,7 @@ def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
         ax.quiver(*near[heads].T, *steps.T, color=look.ink, pivot="mid", zorder=5, **shape)
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3)
     if motion.regime is Regime.SLEEPING:
-        return f"sleeping, {'stable' if motion.exact.facts.stable else 'unstable'}"
+        return f"sleeping, {'stable' if motion.facts.stable else 'unstable'}"
     return motion.path or motion.regime.value
 
 
@@ -379,7 +378,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """
     (ax,), look = axes, options.look
     key = degree_name(options.key or "mean_precession_rate")
-    check_names("key", [key], [*WORDS, *NUMBER_KEYS, *requested_keys()])
+    check_names("key", [key], [*WORDS, *NUMBERS])
     grid = grid_of(motion.top, options)
     tilt = "theta0_rad" if options.radians else "theta0_deg"
     (x, xs), (y, ys) = ((tilt if x == "theta0" else x, values) for x, values in grid.items())
@@ -444,7 +443,7 @@ def draw_numbers(ax: Axes, grid: Sequence[Array], values: Array, key: str, optio
 
     The colours span the values without the lowest and the highest 1 %, which may be a peak.
     """
-    declared, look = number_key(key), options.look
+    declared, look = NUMBERS.get(key), options.look
     assert declared is not None
     unit = options.unit(declared.unit)
     if declared.unit == "angle":  # keys of angles are in degrees

@@ -1,7 +1,8 @@
 """Derivatives of the numbers and of the angles of a motion by the inputs of its top.
 
 The record: each input is moved by 2^-200 of its size to either side, and the numbers have 140
-digits or more.  The difference quotient agrees with the derivative to some 60 digits.
+digits or more.  The difference quotient agrees with the derivative to some 60 digits.  If a
+degenerate motion may be too near, the step is 2^-1000.
 
 The angles: doubles of four neighbours are compared at equal phases of the nutation, so that the
 differences stay small at any time.  The derivatives of the period and of the mean rates, taken from
@@ -11,32 +12,43 @@ the record, give the part that grows with time.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.ball import TooFewDigitsError, UndefinedError, balls, exact_fraction
+from flint import arb
+
+from ..arithmetic.enclosures import (
+    BITS,
+    TooFewDigitsError,
+    decided,
+    exact,
+    fraction,
+    rounded,
+    sign,
+)
 from ..arithmetic.numbers import unit_in_radians
-from ..arithmetic.rounding import decided
 from ..errors import LagtopError
 from ..names import ANGLES, check_names
+from ..top.inputs import DECLARED
 from ..top.top import Top
-from .record import NUMBER_KEYS
-from .requested import TEXTBOOK
+from .keys import NUMBER_KEYS, TEXTBOOK_KEYS, bare_name
 from .solve import Motion, solve
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
-DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]
+DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK_KEYS]
 """The keys that have derivatives."""
 NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist beside it"
 """The reason why a number of a motion has no derivative by some input."""
 
-_STEPS, _DIGITS, _SHARP = 2**200, 140, 30
+_STEPS, _SHARP = (200, 1_000), 30
+"""Binary orders of the steps to try, over the size of an input, and digits of a derivative."""
 _ALIKE, _NEGLIGIBLE = 1e-20, 1e-55
+_LEAST_DOUBLE = Fraction(1, 2**1075)
 _STENCILS = {-1: -0.5, 0: 0.0, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}
 _FINE_STENCILS = (
     {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
@@ -55,7 +67,7 @@ class Sensitivities(NamedTuple):
 
     top: Top
     inputs: tuple[str, ...]
-    """The nine inputs; the tilt is in degrees or radians, as given."""
+    """The nine inputs as they were given: A_cm in place of A, a tilt in radians ..."""
     derivatives: dict[str, dict[str, float]]
     """Derivatives by key and input, in the units of both, without keys that the motion lacks."""
 
@@ -67,7 +79,8 @@ def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivitie
     double; below 1e-55 of the number over the input it may be 0.  Angles are in degrees, also in
     derivatives by `theta0_rad`.  A derivative is one-sided if the input is at the end of its range,
     such as g = 0, and 0 if the input can have no other value.  It is NaN if the number has a kink
-    or a jump at this top, or does not exist beside it.  Raises LagtopError for an unknown key.
+    or a jump at this top, or does not exist beside it.  Raises LagtopError for an unknown key, and
+    OutOfRangeError for a derivative that no double holds.
 
     >>> sensitivities(Top(), ["T_nutation"]).derivatives["T_nutation"]["r0"]
     -0.0047282954028118425
@@ -91,32 +104,54 @@ class Derivatives:
 
     def has(self, key: str) -> bool:
         """Return whether the motion has a number."""
-        return decided(key, lambda digits: self.motion.enclosure(key, digits)) is not None
+        return self.motion.has(key)
 
     def nearest(self, key: str, name: str) -> float:
-        """Return the derivative of a number by an input as a double; NaN if there is none."""
-        found = self.of(key, name)
-        return math.nan if found is None else float(found)
+        """Return the derivative of a number by an input as a double; NaN if there is none.
 
-    def _neighbours(self, name: str) -> tuple[Fraction, list[Neighbour]]:
-        size = Fraction(size_of(self.motion, name))
-        return size / _STEPS, neighbours(self.motion, name, size / _STEPS, _STENCILS)
+        Raises OutOfRangeError for a derivative beyond the doubles.
+        """
+        found = self.of(key, name)
+        if found is None:
+            return math.nan
+        if abs(found) < _LEAST_DOUBLE:
+            return 0.0
+        nearest: float = rounded(f"the derivative of {key} by {name}", found, None)
+        return nearest
+
+    def _neighbours(self, name: str, order: int = _STEPS[0]) -> tuple[Fraction, list[Neighbour]]:
+        step = Fraction(size_of(self.motion, name)) / 2**order
+        return step, neighbours(self.motion, name, step, _STENCILS)
 
     def _of(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a number by an input to 30 digits; None if there is none."""
-        step, beside = self.neighbours(name)
+        for order in _STEPS:
+            found = self._quotient(key, name, order)
+            if found is not None:
+                return found
+        return None
+
+    def _quotient(self, key: str, name: str, order: int) -> Fraction | None:
+        """Return the derivative from differences, with the step 2^-order of the size of the input.
+
+        It is None if the motion differs too much from its neighbours.
+        """
+        step, beside = self.neighbours(name, order)
+        if not beside:
+            return Fraction(0)
+        h, size = exact(step), exact(step * 2**order)
 
         def quotient(digits: int) -> Fraction | None:
             values = [_value(x.motion, key, digits) for x in beside]
             if any(x is None for x in values):
                 return None
-            h = balls(digits).convert(step)
             first, last = ((y - x) / h for x, y in pairwise(values))
             bent = last - first
-            largest, steepest = max(x.least for x in values), max(first.greatest, last.greatest)
-            scale = (largest or 1) / (h * _STEPS)
+            largest = _greatest(x.abs_lower() for x in values)
+            steepest = _greatest(x.abs_upper() for x in (first, last))
+            scale = (arb(1) if largest.is_zero() else largest) / size
             limit = _ALIKE * (steepest + scale)
-            if not abs(bent) < limit or 4 * h * steepest > largest:
+            if _exceeds(abs(bent), limit) or _exceeds(4 * h * steepest, largest):
                 # a kink or a jump, unless the number is 0 here and its curvature is constant
                 place = 2 * beside[2].place - beside[1].place
                 beyond = moved(self.motion, name, place * step)
@@ -124,32 +159,48 @@ class Derivatives:
                 if more is None:
                     return None
                 bent = (more - values[2]) / h - last - bent
-            if abs(bent) > limit:
+            if _exceeds(abs(bent), limit):
                 return None
-            slope: Any = sum(x * y.weight for x, y in zip(values, beside, strict=True)) / h
-            least = _NEGLIGIBLE * scale * min(float(step * _STEPS), 1.0)
-            if slope.greatest <= least:
+            slope = sum(x * y.weight for x, y in zip(values, beside, strict=True)) / h
+            if not _exceeds(slope.abs_upper(), _NEGLIGIBLE * scale * size.min(arb(1))):
                 return Fraction(0)
-            if not slope.is_known_to(_SHARP):
+            if slope.rel_accuracy_bits() < _SHARP * BITS:
                 raise TooFewDigitsError
-            return exact_fraction(slope.middle.x)
+            return fraction(slope.mid())
 
-        return decided(f"a derivative of {key}", quotient, _DIGITS) if beside else Fraction(0)
+        def fail() -> Fraction | None:
+            raise LagtopError(f"a derivative of {key} cannot be distinguished from 0")
+
+        most = max(x.motion.facts.equal for x in beside) + order
+        return decided(quotient, most, digits=order // 2, lost=order // 4, otherwise=fail)
 
 
 def _value(motion: Motion, key: str, digits: int) -> Any:
     """Return a ball that holds a number; None if the number does not exist."""
-    try:
-        ball = motion.enclosure(key, digits)
-    except UndefinedError:
-        return None
-    return None if ball is None or ball.is_nan else ball
+    ball = motion.ball(key, digits)
+    if ball is not None and not ball.is_finite():
+        raise TooFewDigitsError
+    return ball
+
+
+def _greatest(numbers: Iterable[arb]) -> arb:
+    """Return the greatest of some exact numbers that are not negative."""
+    found = arb(0)
+    for x in numbers:
+        found = found.max(x)
+    return found
+
+
+def _exceeds(x: arb, limit: arb) -> bool:
+    """Return whether a number is greater than a limit."""
+    return sign(limit - x) < 0
 
 
 def inputs_of(top: Top) -> tuple[str, ...]:
-    """Return the inputs of a top; the tilt is in the unit in use, and a word is no number."""
-    names = top.inputs(radians=top.theta0_deg is None)
-    return tuple(name for name in names if not (name == "psidot0" and top.steady_word))
+    """Return the inputs of a top as they were given, but for a word, which is no number."""
+    names = [name for name, x in top.as_dict().items() if x is not None]
+    order = [name for key in DECLARED for name in names if bare_name(name) == key]
+    return tuple(name for name in order if not (name == "psidot0" and top.steady_word))
 
 
 def moved(motion: Motion, name: str, change: Fraction) -> Motion | None:
@@ -197,7 +248,8 @@ def size_of(motion: Motion, name: str) -> float:
         return A * rate * rate / other if other else 1.0
     if name == "thetadot0":
         return rate * min(sines(motion).values(), default=1.0)
-    return {"r0": rate * max(1.0, A / C), "psidot0": rate}.get(name, 1.0)
+    spin = rate * max(1.0, A / C)
+    return {"r0": spin, "phidot0": spin, "psidot0": rate, "A_cm": A}.get(name, 1.0)
 
 
 def sines(motion: Motion) -> dict[str, float]:
@@ -271,7 +323,7 @@ class AngleDerivatives:
                 for j, (rate, mean) in enumerate(zip(now.values(), means, strict=True)):
                     grown = (0.0, *by_rates)[j] - (rate - mean) * (by_period / self.period)
                     found[i, j] += grown * t
-                if self.motion.exact.facts.plane:
+                if self.motion.facts.plane:
                     found[i, 1:] = 0.0  # they change by half turns only
         return self._completed(found, t)
 

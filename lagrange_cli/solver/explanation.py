@@ -16,11 +16,10 @@ from typing import Any, NamedTuple
 from ..arithmetic.key import Key
 from ..names import check_names
 from .columns import shown_columns
-from .numbers import record_in_range
-from .quantity import unit_name
-from .record import KEYS, all_keys, shown_keys
+from .facts import Facts
+from .keys import KEYS, LINES, all_keys, bare_name, shown_keys, unit_name
+from .record import record_in_range
 from .solve import Motion
-from .spin_precession import with_limits
 
 _NAME = r"[A-Za-z_]\w*"
 _WORDS = {
@@ -89,14 +88,13 @@ def explanations(
     """
     rows = listed(radians=radians, named=named)
     check_names("KEY", names, list(dict.fromkeys(row.name for row in rows)))
-    facts = motion.exact.facts
     chosen = [
-        row._replace(text=with_limits(row.text, facts))
+        row._replace(text=_with_limits(row.text, motion.facts))
         for name in names
         for row in rows
         if row.name == name
     ]
-    keys = {_bare(name): name for name in all_keys(radians=radians)}
+    keys = {bare_name(name): name for name in all_keys(radians=radians)}
     parts = [[keys[x] for x in re.findall(_NAME, row.text) if x in keys] for row in chosen]
     wanted = {*chain(names, *parts)} & {*keys.values()}
     record, beyond = record_in_range(motion, radians=radians, keys=wanted)
@@ -106,7 +104,7 @@ def explanations(
         record["psidot0"] = float(motion.top.psidot0)  # the number of a word such as steady
     unit = "" if radians else "°"
     texts = _symbols() | {
-        _bare(name): f"{value:.6g}{unit if name.endswith('_deg') else ''}"
+        bare_name(name): f"{value:.6g}{unit if name.endswith('_deg') else ''}"
         for name, value in record.items()
         if isinstance(value, float)
     }
@@ -135,13 +133,19 @@ def _reasons(motion: Motion, absent: Sequence[str]) -> str:
 def _symbols() -> dict[str, str]:
     """Return the symbols of names in formulas."""
     keys = shown_keys(requested=True).items()
-    symbols = {_bare(name): key.symbol for name, key in keys if key.symbol}
+    symbols = {bare_name(name): key.symbol for name, key in keys if key.symbol}
     return symbols | {name: key.symbol for name, key in shown_columns().items()} | _WORDS
 
 
-def _bare(name: str) -> str:
-    """Return the name of a key without its unit."""
-    return name.removesuffix("_deg").removesuffix("_rad")
+def _with_limits(formula: str, facts: Facts) -> str:
+    """Return a formula with the limits of 0/0 or 0 infinity on a pole that the axis passes over.
+
+    It turns by half a turn there, so that the mean over a period is half a turn per period.
+    """
+    for name, pole, passes in (("P", "upper", facts.over_top), ("Q", "lower", facts.over_bottom)):
+        limit = f"2*pi*K/T_nutation (limit over the {pole} pole)"
+        formula = formula.replace(LINES[name].key.formula, limit) if passes else formula
+    return formula
 
 
 def _shown(formula: str, words: Mapping[str, str], times: str = " ") -> str:

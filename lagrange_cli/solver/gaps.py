@@ -90,10 +90,11 @@ def state(ar: Balls, exact: Exact) -> State[Ball]:
     a, b, r0 = exact.a, exact.b, exact.r0
     tilt = exact.tilt.tilt(ar)
     if exact.psi_rate is None:
+        from ..arithmetic.ball import Ball
         from ..top.derived import rates_of  # start-up: for few tops
 
         rates, word = rates_of(exact.top), str(exact.top.steady_word)
-        psi_rate = rates.rate(ar, ar.convert(a), ar.convert(b), tilt.cos, word)
+        psi_rate = Ball(rates.rate(word))
     else:
         psi_rate = ar.convert(exact.psi_rate)
     return State(

@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 from ..arithmetic.numbers import R
+from .facts import Regime
 from .quantity import quantity
-from .regime import Regime
 from .spin_precession import Nutating, SpinPrecession
 
 

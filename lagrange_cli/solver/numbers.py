@@ -1,249 +1,301 @@
-"""The numbers of one motion: enclosures in any precision, the record, and the sampler of angles."""
+"""The numbers of a motion: the formulas of `keys`, evaluated as they stand, in balls of Arb.
+
+No formula saves digits: a ball that has lost too many of them is computed again with more.  What is
+not a formula of the table is here: the functions that formulas use, the roots of the cubic, the
+mean of 1/(1 - u), and the limits.  Equation numbers are Chrapan's.
+"""
+
+# mypy: disable-error-code="no-any-return"
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import cache, partial
+from itertools import pairwise
+from types import CodeType
+from typing import Any, NamedTuple
 
-from ..arithmetic.ball import Ball, TooFewDigitsError, balls
-from ..arithmetic.numbers import R
-from ..arithmetic.rounding import FIRST_DIGITS, Rounded, decided, rounding_of, settled, sign_of
-from ..errors import OutOfRangeError
-from ..top.top import Top
-from .gaps import Gaps, State, are_told_apart, gaps_from_rest, state
-from .quantity import degree_name, unit_name
-from .record import NUMBER_KEYS, all_keys, number_key, record_keys, requested_keys
-from .regime import Exact, Facts, Regime
-from .spin_precession import Nutating
+from flint import acb, arb, ctx
 
-if TYPE_CHECKING:
-    from .kinds import Kind
-    from .sampling import Sampler
-
-_S = TypeVar("_S")
-
-SAMPLER_DIGITS = 40
-"""Digits of the gaps of a sampler: 2^50 periods use 16 of them, and a double 16 more."""
-MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
-"""The mean rate of each period of one turn, which does not exist if the rate is 0."""
+from ..arithmetic.enclosures import TooFewDigitsError, at_precision, exact, fraction, root, sign
+from ..top.derived import rates_of
+from .facts import Facts
+from .keys import LINES
 
 
-def gaps_of(ar: Any, facts: Facts, start: State[R]) -> Gaps[R]:
-    """Return the gaps of any top."""
-    if facts.falls:
-        return gaps_from_rest(ar, start)
-    from .any_start import gaps_from_start  # start-up: not for a release from rest
+class Tilt(NamedTuple):
+    """The sine and the cosine of the tilt at the start, which are exact if they are rational."""
 
-    return gaps_from_start(ar, start, facts)
+    sine: arb
+    cosine: arb
 
 
-def kind_of(facts: Facts) -> type[Kind[Any]]:
-    """Return the class of the motion with these facts."""
-    vertical = facts.regime in {Regime.SLEEPING, Regime.HANGING}
-    if not (vertical or facts.steady or facts.regime is Regime.SEPARATRIX):
-        return Nutating
-    from .kinds import Constant, Separatrix, Vertical  # start-up: for few tops
-
-    if vertical:
-        return Vertical
-    return Constant if facts.steady else Separatrix
+def acos(x: arb) -> arb:
+    """Return the angle from 0 to pi with a cosine."""
+    return arb.atan2(root(1 - x * x), x)
 
 
-class Numbers:
-    """The motion of one top; each number is computed once, in balls of sufficient precision.
+def nome_of(k: arb, k_prime: arb) -> arb:
+    """Return the nome exp(-pi K'/K); 0 for k = 0."""
+    if k.is_zero():
+        return arb(0)
+    found: arb = (-arb.pi() * arb(1).agm(k_prime) / arb(1).agm(k)).exp()
+    return found
 
-    Numbers are attributes named by the keys of the record; see `Motion`.
+
+def complete_E(k_prime: arb) -> arb:
+    """Return the complete integral of the second kind, 2 R_G(0, k'^2, 1)."""
+    if k_prime.is_zero():
+        return arb(1)
+    found: arb = 2 * acb.elliptic_rg(acb(0), acb(k_prime**2), acb(1)).real
+    return found
+
+
+def ellint_F(phi: arb, k: arb) -> arb:
+    """Return Legendre's integral of the first kind."""
+    found: arb = acb.elliptic_f(acb(phi), acb(k**2)).real
+    return found
+
+
+def ellint_E(phi: arb, k: arb) -> arb:
+    """Return Legendre's integral of the second kind."""
+    found: arb = acb.elliptic_e_inc(acb(phi), acb(k**2)).real
+    return found
+
+
+FUNCTIONS: dict[str, Any] = {
+    "abs": abs,
+    "acos": acos,
+    "agm": lambda x, y: y.agm(arb(x)),
+    "atan2": arb.atan2,
+    "complete_E": complete_E,
+    "cos": lambda tilt: tilt.cosine,
+    "ellint_E": ellint_E,
+    "ellint_F": ellint_F,
+    "max": lambda x, y: x.max(arb(y)),
+    "nome_of": nome_of,
+    "sin": lambda tilt: tilt.sine,
+    "sqrt": root,
+}
+"""The functions of formulas."""
+
+
+@cache
+def _code(formula: str) -> CodeType:
+    return compile(formula, "<formula>", "eval")
+
+
+class Numbers(dict[str, Any]):
+    """The numbers of a motion by name, in balls of some digits; each is computed on first use.
+
+    A name is that of a line of `keys`, of an input, or of a property of this class.  Angles are in
+    radians.  A number that needs more digits raises TooFewDigitsError.
     """
 
-    def __init__(self, scene: Exact) -> None:
-        self.exact = scene
-        self.kind_class = kind_of(scene.facts)
-        self._kinds: dict[int, Kind[Ball]] = {}
-        self._requested: dict[int, Any] = {}
-        self._doubles: dict[str, Rounded | None] = {}
-        self._zeros: dict[str, bool] = {}
-        self._sampler: Sampler | None = None
+    def __init__(self, facts: Facts, digits: int) -> None:
+        super().__init__(FUNCTIONS)
+        self.facts, self.digits = facts, digits
+
+    def __missing__(self, name: str) -> Any:
+        value = self[name] = at_precision(self.digits, partial(self._value, name))
+        return value
+
+    def _value(self, name: str) -> Any:
+        if name in LINES:
+            return eval(_code(LINES[name].evaluated), {}, self)
+        if name in self.facts.inputs:
+            return exact(self.facts.inputs[name])
+        return getattr(self, name)
 
     @property
-    def top(self) -> Top:
-        """The top with its initial state."""
-        return self.exact.top
+    def pi(self) -> arb:
+        """The number pi."""
+        return arb.pi()
 
     @property
-    def regime(self) -> Regime:
-        """The kind of motion."""
-        return self.exact.facts.regime
+    def theta0(self) -> Tilt:
+        """The tilt at the start."""
+        return Tilt(*self.facts.tilt.sine_and_cosine())
 
-    def __getattr__(self, name: str) -> Any:
-        """Return a number by its key: a float, or None if the motion has no such number."""
-        if number_key(name) is None:
-            from ..names import suggestion  # start-up: for a misspelt name only
+    # inputs that are derived
 
-            hint = "" if name.startswith("_") else suggestion(name, dir(self))
-            raise AttributeError(f"a motion has no {name!r}{hint}", name=name, obj=self)
-        found = self.number(name)
-        return None if found is None else found.value
+    @property
+    def r0(self) -> arb:
+        """The total spin rate, from phidot0."""
+        return self["phidot0"] + self["psidot0"] * self["theta0"].cosine
 
-    def number(
-        self, name: str, digits: int | None = None, *, radians: bool = False
-    ) -> Rounded | None:
-        """Return a number correctly rounded to a double or to `digits`; None if it does not exist.
+    @property
+    def psidot0(self) -> arb:
+        """The rate of steady precession that a word names."""
+        return rates_of(self.facts.top).rate(str(self.facts.top.steady_word))
 
-        Raises LagtopError if no precision distinguishes it from 0 or from a tie.
+    @property
+    def steady_rates(self) -> tuple[arb, arb]:
+        """The slow and the fast rate w of steady precession, cos(theta0) w^2 - b w + a/2 = 0."""
+        a, b, u0 = self["a"], self["b"], self["theta0"].cosine
+        if not (self.facts.a or self.facts.spin):
+            return arb(0), arb(0)
+        q = b + (-1 if self.facts.spin < 0 else 1) * root(b**2 - 2 * a * u0)
+        return a / q, q / (2 * u0)
+
+    # the cubic f(u) = (alpha - a u)(1 - u^2) - (beta - b u)^2 (4,9)
+
+    @property
+    def beta_minus_b(self) -> arb:
+        """beta - b; exactly 0 if 1 is a root of the cubic."""
+        return self["momentum_constant"] - self["b"] if self.facts.minus else arb(0)
+
+    @property
+    def beta_plus_b(self) -> arb:
+        """beta + b; exactly 0 if -1 is a root of the cubic."""
+        return self["momentum_constant"] + self["b"] if self.facts.plus else arb(0)
+
+    @property
+    def roots(self) -> tuple[arb, arb]:
+        """The roots u2 and u1 of the cubic (4,9); the known ones are divided out."""
+        facts, u0 = self.facts, self["theta0"].cosine
+        if facts.steady:
+            return u0, u0
+        if facts.separatrix:  # the sum of the roots less 2
+            return self["roots_sum_a"] / self["a"] - 2, arb(1)
+        a, b = self["a"], self["b"]
+        alpha, beta = self["energy_constant"], self["momentum_constant"]
+        cubic = [a, -self["roots_sum_a"], 2 * b * beta - a, alpha - beta**2]
+        known = [arb(1)] * (not facts.minus) + [arb(-1)] * (not facts.plus)
+        known += [u0] * bool(facts.turning and not facts.pole)
+        rest = cubic if facts.a else cubic[1:]
+        for known_root in known:
+            rest = _divided(rest, known_root)
+        found = sorted([*known, *_real_roots(rest)], key=_middle)
+        if any(sign(upper - lower) <= 0 for lower, upper in pairwise(found)):
+            raise TooFewDigitsError
+        return found[0], found[1]
+
+    @property
+    def roots_sum_a(self) -> arb:
+        """a (u1 + u2 + u3), by the coefficients of the cubic."""
+        return self["energy_constant"] + self["b"] ** 2
+
+    @property
+    def swing(self) -> arb:
+        """u1 - u2; exactly 0 if the tilt is constant."""
+        return arb(0) if self.facts.steady else self["u1"] - self["u2"]
+
+    @property
+    def wide(self) -> arb:
+        """a (u3 - u2)."""
+        return self["roots_sum_a"] - self["a"] * (self["u1"] + 2 * self["u2"])
+
+    @property
+    def narrow(self) -> arb:
+        """a (u3 - u1); exactly 0 on the separatrix."""
+        if self.facts.separatrix:
+            return arb(0)
+        return self["roots_sum_a"] - self["a"] * (2 * self["u1"] + self["u2"])
+
+    @property
+    def m_k(self) -> arb:
+        """k^2 (4,19); exactly 0 without nutation and without torque."""
+        if self.facts.steady or not self.facts.a:
+            return arb(0)
+        return self["a"] * self["swing"] / self["wide"]
+
+    @property
+    def m_k_prime(self) -> arb:
+        """k'^2 (4,21)."""
+        return arb(1) if self["m_k"].is_zero() else self["narrow"] / self["wide"]
+
+    # means and growth over time
+
+    def over_pole(self, pole: int) -> arb:
+        """Return Q (pole = 1) or P (pole = -1): K times the mean of (beta + b pole)/(1 + u pole).
+
+        If the axis passes over the pole where 1 + u pole = 0, psi + pole phi grows by a whole turn
+        per period there.  On the vertical all of the rotation counts as spin.
         """
-        in_radians = radians and name.endswith("_deg")
-        is_usual = digits is None and not in_radians
-        if is_usual and name in self._doubles:
-            return self._doubles[name]
-        found = settled(
-            name,
-            lambda working: self.enclosure(name, working, radians=in_radians),
-            rounding_of(name, digits),
-            digits=digits or 0,
-            most=self.exact.equal + 10 * (digits or 0),
-        )
-        if is_usual:
-            self._doubles[name] = found
-        return found
+        facts = self.facts
+        if facts.vertical:
+            return pole * self["b"] * self["K"]
+        if facts.over_bottom if pole > 0 else facts.over_top:
+            return 2 * self["pi"] * self["K"] / self["T_nutation"]
+        momentum = self["beta_plus_b" if pole > 0 else "beta_minus_b"]
+        at_u1, at_u2 = 1 + pole * self["u1"], 1 + pole * self["u2"]
+        return momentum * self["K"] * mean_of_inverse(at_u1, at_u2, self["m_k_prime"])
 
-    def is_zero(self, name: str) -> bool:
-        """Return whether a number is 0, or agrees with 0 to D digits."""
-        if name not in self._zeros:
-            sign = sign_of(lambda digits: self.enclosure(name, digits), self.exact.equal)
-            self._zeros[name] = sign == 0
-        return self._zeros[name]
+    @property
+    def half(self) -> tuple[arb, arb]:
+        """The growth of spin and precession in half a period after the start."""
+        return self._growth(0, 0.5)
 
-    def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
-        """Return a ball that contains a number, by key; None if the motion has no such number.
+    @property
+    def quarter(self) -> tuple[arb, arb]:
+        """The growth of spin and precession in the quarter after a passage of u1."""
+        return self._growth(None, 0.25)
 
-        Angles are in degrees or `radians`.  The ball is computed at the precision in use, with the
-        roots of the cubic in `digits` digits.  Raises TooFewDigitsError if the digits do not decide
-        which formula holds.
-        """
-        if name in self.kind_class.lacks:
-            return None
-        if name in MEAN_RATES and self.is_zero(MEAN_RATES[name]):
-            return None
-        kind = self.kind(digits)
-        source = kind if name in NUMBER_KEYS else self._on_request(digits)
-        value: Ball | None = getattr(source, name)
-        return value * kind.degree if radians and value is not None else value
+    def _growth(self, since: float | None, periods: float) -> tuple[arb, arb]:
+        from .old_numbers import OldMotion
+        from .regime import exact as old_exact
+        from .series import exact_attitude, periods_since_top
 
-    def absence(self, name: str) -> str:
-        """Return why the motion lacks a number: `undefined in ...` or `defined only if ...`."""
-        name = degree_name(name)
-        key = number_key(name)
-        if key is None or not key.only or name in self.kind_class.lacks:
-            return f"undefined in the regime {self.regime.value!r}"
-        return f"defined only {key.only}"
-
-    def _on_request(self, digits: int) -> Any:
-        """Return the further keys in balls of `digits` digits."""
-        from .requested import Requested  # start-up
-
-        if digits not in self._requested:
-            self._requested[digits] = Requested(self.kind(digits), self.exact)
-        return self._requested[digits]
-
-    def decide(self, what: str, ask: Callable[[Kind[Ball]], _S]) -> _S:
-        """Return the result of `ask` at the first precision that decides it.
-
-        Raises LagtopError if no precision does.
-        """
-        return decided(what, lambda digits: ask(self.kind(digits)))
-
-    def kind(self, digits: int) -> Kind[Ball]:
-        """Return the motion in balls of `digits` digits.
-
-        Raises TooFewDigitsError if they do not separate the roots.
-        """
-        if digits not in self._kinds:
-            facts = self.exact.facts
-            with balls(digits) as ar:
-                start = state(ar, self.exact)
-                gaps = gaps_of(ar, facts, start)
-                if not are_told_apart(facts, gaps):
-                    raise TooFewDigitsError
-            self._kinds[digits] = self.kind_class(ar, facts, start, gaps)
-        return self._kinds[digits]
-
-    def sharp(self, digits: int = SAMPLER_DIGITS) -> Kind[Ball]:
-        """Return the motion in balls, from a start and gaps proved to `digits` digits."""
-
-        def kind_in(working: int) -> Kind[Ball]:
-            kind = self.kind(working)
-            constant = kind.facts.steady  # no gap is used
-            if not (constant or all(gap.is_known_to(digits) for gap in kind.gaps)):
-                raise TooFewDigitsError
-            return kind
-
-        return decided("the roots of the cubic", kind_in, digits)
-
-    def sampler(self) -> Sampler:
-        """Return the series used by `angles`, computed once."""
-        from .sampling import sampler_of  # start-up: loads NumPy
-
-        if self._sampler is None:
-            self._sampler = decided(  # a start of many digits may need more of them
-                "the angles", lambda digits: sampler_of(self.sharp(digits - 10)), SAMPLER_DIGITS
-            )
-        return self._sampler
+        kind: Any = OldMotion(old_exact(self.facts.top)).kind(self.digits)
+        attitude = exact_attitude(kind)
+        first = kind.ar.convert(0) if since == 0 else -periods_since_top(kind)
+        T = kind.T_nutation
+        start = attitude(T * first) if since is None else attitude(0 * T)
+        end = attitude(T * (first + kind.ar.convert(periods)))
+        return (end.phi - start.phi).x, (end.psi - start.psi).x
 
 
-def record_in_range(
-    motion: Numbers,
-    *,
-    digits: int | None = None,
-    radii: bool = False,
-    radians: bool = False,
-    keys: Collection[str] | None = None,
-) -> tuple[dict[str, Any], list[OutOfRangeError]]:
-    """Return `Motion.record`, and an error for each number beyond the range of doubles."""
-    names, numbers = record_keys(radians=radians), NUMBER_KEYS
-    wanted = set(names if keys is None else keys)
-    if not wanted <= set(names):
-        names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
-    found, beyond = _inputs(motion.exact, digits, radians=radians), []
-    for name in numbers:
-        shown = unit_name(name, radians=radians)
-        if shown in wanted:
-            try:
-                found[shown] = motion.number(name, digits, radians=radians)
-            except OutOfRangeError as error:
-                found[shown] = None
-                beyond.append(error)
-    values = {name: None if number is None else number.value for name, number in found.items()}
-    values["regime"] = motion.regime.value
-    if motion.top.steady_word:
-        values["psidot0"] = motion.top.steady_word
-    if "path" in wanted:
-        values["path"] = motion.decide("path", lambda kind: kind.path)
-    if "remark" in wanted:
-        values["remark"] = motion.decide("remark", lambda kind: kind.remark(radians=radians))
-    record = {name: values[name] for name in names if name in wanted}
-    if radii:
-        known = {name: found[name] for name in record if name in found}
-        record |= {f"{name}_radius": x and x.radius for name, x in known.items()}
-    return record, beyond
+def _divided(polynomial: list[arb], known_root: arb) -> list[arb]:
+    """Return a polynomial, the highest power first, divided by u - known_root (Horner's scheme)."""
+    quotient = polynomial[:1]
+    for coefficient in polynomial[1:-1]:
+        quotient.append(quotient[-1] * known_root + coefficient)
+    return quotient
 
 
-def _inputs(exact: Exact, digits: int | None, *, radians: bool) -> dict[str, Rounded | None]:
-    """Return the inputs as they are printed; None for a word."""
-    top = exact.top
+def _real_roots(polynomial: list[arb]) -> list[arb]:
+    """Return the roots of a polynomial of degree 0 to 3 whose roots are real and simple."""
+    others = [x / polynomial[0] for x in polynomial[1:]]
+    if len(others) < 2:
+        return [-x for x in others]
+    if len(others) == 2:
+        half = -others[0] / 2
+        apart = (half**2 - others[1]).sqrt()
+        return [half - apart, half + apart]
+    c2, c1, c0 = others  # Viete's cosines, in u = 2 size cos(angle) + centre
+    centre = -c2 / 3
+    size = (centre**2 - c1 / 3).sqrt()
+    cosine = (centre**3 - (c1 * centre + c0) / 2) / size**3
+    angle = cosine.acos() / 3
+    return [2 * size * (angle + 2 * i * arb.pi() / 3).cos() + centre for i in range(3)]
 
-    def shown(name: str, value: Any) -> Rounded | None:
-        rounding = rounding_of(name, digits)
-        if not isinstance(value, Ball):
-            return Rounded(rounding(Fraction(value)), Fraction(value))
-        return settled(
-            name,
-            lambda working: top.inputs(radians=radians, ar=balls(working))[name],
-            rounding,
-            digits=digits or 0,
-            most=exact.equal + 10 * (digits or 0),
-        )
 
-    given = top.inputs(radians=radians, ar=balls(FIRST_DIGITS))
-    words = {"psidot0": None} if top.steady_word else {}
-    return {name: shown(name, value) for name, value in given.items()} | words
+def _middle(x: arb) -> Any:
+    if not x.is_finite():
+        raise TooFewDigitsError
+    return fraction(x.mid())
+
+
+def mean_of_inverse(at_u1: arb, at_u2: arb, m_k_prime: arb) -> arb:
+    """Return the mean over a period of 1/d, where d > 0 is linear in u, from d at u1 and u2.
+
+    By (4,30), d = d2 cos^2 x + d1 sin^2 x, where x is the amplitude counted from u2.  The mean has
+    the weight M/sqrt(cos^2 x + k'^2 sin^2 x), where M is the arithmetic-geometric mean of 1 and k'.
+    Bartky's transformation (Bulirsch 1969) replaces x and leaves the mean of
+
+        (A m^2 cos^2 x + B p sin^2 x)/(m^2 cos^2 x + p^2 sin^2 x)
+
+    with the weight M/sqrt(m^2 cos^2 x + g^2 sin^2 x) as it is, while m and g approach M.  In the
+    end they are equal within their radii.  With the weight 1 the mean is (A m + B)/(m + p), and the
+    true weight lies between g/m and m/g.
+    """
+    p, m, g = root(at_u1 / at_u2), arb(1), root(m_k_prime)
+    A, B = arb(1), 1 / p
+    for _ in range(ctx.prec):
+        A, B, p = (A + B / p) / 2, (B + A * m * g / p) / 2, (p + m * g / p) / 2
+        m, g = (m + g) / 2, root(m * g)
+        if m.overlaps(g):
+            break
+    value, ratio = (A * m + B) / (m + p) / at_u2, g / m
+    found: arb = (value * ratio).union(value / ratio)
+    return found

@@ -1,74 +1,264 @@
-"""The keys of a record, in their order; each is declared with its formula."""
+"""The numbers of a motion, each correctly rounded, and its record: results and words by key."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.key import Key
-from ..top.inputs import DECLARED, NINE, TILT
-from .quantity import keys_of, unit_name
-from .spin_precession import SpinPrecession
+from flint import arb
 
-_INPUTS = {
-    f"{name}_deg" if name == TILT else name: Key("Inputs", x.symbol, x.name, x.unit)
-    for name, x in DECLARED.items()
-    if name in NINE
-}
-_GROUPS = (
-    "Constants",
-    "Roots",
-    "Moduli and integrals",
-    "Periods",
-    "Turning points",
-    "Mean rates",
-    "Rates",
+from ..arithmetic.enclosures import (
+    Rounded,
+    TooFewDigitsError,
+    decided,
+    rounded,
+    settled,
+    sign_to,
 )
-_NUMBERS = dict(
-    sorted(keys_of(SpinPrecession).items(), key=lambda item: _GROUPS.index(item[1].group))
+from ..errors import OutOfRangeError
+from ..top.top import Top
+from .facts import Facts, Regime
+from .keys import (
+    CONDITIONS,
+    INPUTS,
+    LINES,
+    NUMBER_KEYS,
+    NUMBERS,
+    all_keys,
+    bare_name,
+    degree_name,
+    record_keys,
+    unit_name,
 )
+from .numbers import Numbers
+from .old_numbers import OldMotion
+from .regime import exact
 
-NUMBER_KEYS = list(_NUMBERS)
-"""The numbers of a record, in order; `regime` precedes them, `path` and `remark` follow."""
-TEXT_KEYS = ("regime", "path", "remark")
-"""The keys of a record whose values are words."""
-KEYS = (
-    _INPUTS
-    | {"regime": Key("Constants", "", "regime"), "path": Key("Constants", "", "path of the axis")}
-    | _NUMBERS
-    | {"remark": Key("Remark", "", "special properties of the motion, if any")}
-)
-"""The declaration of each key by name, in the order of the groups of a table."""
+if TYPE_CHECKING:
+    from .sampling import Sampler
 
 
-def number_key(name: str) -> Key | None:
-    """Return the declaration of a number of the record or on request; None for other names."""
-    return _NUMBERS.get(name) or requested_keys().get(name)
+class Solution:
+    """The numbers of one motion as attributes, named by their keys; see `Motion`."""
+
+    def __init__(self, facts: Facts) -> None:
+        self.facts = facts
+        self._balls: dict[int, Numbers] = {}
+        self._doubles: dict[str, Rounded | None] = {}
+        self._zeros: dict[str, bool] = {}
+
+    @property
+    def top(self) -> Top:
+        """The top with its initial state."""
+        return self.facts.top
+
+    @cached_property
+    def regime(self) -> Regime:
+        """The kind of motion."""
+        return self.facts.regime
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a number by its key: a float, or None if the motion has no such number."""
+        if name not in NUMBERS:
+            from ..names import suggestion  # start-up: for a misspelt name only
+
+            hint = "" if name.startswith("_") else suggestion(name, dir(self))
+            raise AttributeError(f"a motion has no {name!r}{hint}", name=name, obj=self)
+        found = self.number(name)
+        return None if found is None else found.value
+
+    def balls(self, digits: int) -> Numbers:
+        """Return the numbers of the motion in balls of some digits, angles in radians."""
+        if digits not in self._balls:
+            self._balls[digits] = Numbers(self.facts, digits)
+        return self._balls[digits]
+
+    def ball(self, name: str, digits: int) -> arb | None:
+        """Return a ball that holds a number or an input, by key; None if the motion has none.
+
+        An angle is in degrees or in radians, as its name says.  Raises TooFewDigitsError if the
+        digits do not separate the roots of the cubic.
+        """
+        if not self.has(name):
+            return None
+        of, bare = self.balls(digits), bare_name(name)
+        ball: arb = self.facts.tilt.angle() if bare == "theta0" else of[bare]
+        return ball * 180 / arb.pi() if name.endswith("_deg") else ball
+
+    def has(self, name: str) -> bool:
+        """Return whether the motion has a number or an input, by key."""
+        bare = bare_name(name)
+        if bare not in LINES:
+            return True
+        return bare not in self.facts.undefined and CONDITIONS[LINES[bare].key.only](self)
+
+    def number(self, name: str, digits: int | None = None) -> Rounded | None:
+        """Return a number correctly rounded to a double or to `digits`; None if it does not exist.
+
+        `name` is a key; that of an angle ends in `_deg` or `_rad`.  Raises LagtopError if no
+        precision distinguishes the number from 0 or from a tie.
+        """
+        if digits is None and name in self._doubles:
+            return self._doubles[name]
+        most = self.facts.equal + 10 * (digits or 0)
+        found = settled(name, lambda working: self.ball(name, working), digits, most)
+        if digits is None:
+            self._doubles[name] = found
+        return found
+
+    def is_zero(self, name: str) -> bool:
+        """Return whether a number is 0, or agrees with 0 to D digits."""
+        if name not in self._zeros:
+            found = sign_to(lambda digits: self.balls(digits)[name], self.facts.equal)
+            self._zeros[name] = found == 0
+        return self._zeros[name]
+
+    def absence(self, name: str) -> str:
+        """Return why the motion lacks a number: `undefined in ...` or `defined only if ...`."""
+        only = NUMBERS[degree_name(name)].only if degree_name(name) in NUMBERS else ""
+        if not only or bare_name(name) in self.facts.undefined:
+            return f"undefined in the regime {self.regime.value!r}"
+        return f"defined only {only}"
+
+    @cached_property
+    def path(self) -> str | None:
+        """Path of the figure axis: `cusped`, `looping` or `wavy`; None if there is no such path.
+
+        The precession stops at u1 (a cusp), between u1 and u2 (a loop), or nowhere.
+        """
+        facts = self.facts
+        if facts.plane or facts.steady:
+            return None
+        if facts.released:
+            return "cusped"
+        stops_at_pole = facts.over_top or facts.separatrix  # where beta - b u1 = 0 without a stop
+        at_u1 = 1 if stops_at_pole or not facts.spin else self._precession_at("u1")
+        if not at_u1:
+            return "cusped"
+        return "looping" if at_u1 < 0 < self._precession_at("u2") else "wavy"
+
+    def _precession_at(self, u: str) -> int:
+        """Return the sign of b (beta - b u), the precession rate at u1 or u2 relative to r0."""
+
+        def value(digits: int) -> arb:
+            of = self.balls(digits)
+            found: arb = of["b"] * (of["momentum_constant"] - of["b"] * of[u])
+            return found
+
+        return sign_to(value, self.facts.equal)
+
+    @property
+    def remark(self) -> str | None:
+        """One line on special properties of the motion, or None."""
+        return remark_of(self)
+
+    @cached_property
+    def old(self) -> OldMotion:
+        """The motion in the arithmetic that tables still use."""
+        return OldMotion(exact(self.top))
+
+    def sampler(self) -> Sampler:
+        """Return the series used by `angles`, computed once."""
+        return self.old.sampler()
+
+    exact = property(lambda self: self.old.exact)
+    kind = property(lambda self: self.old.kind)
+    sharp = property(lambda self: self.old.sharp)
 
 
-def requested_keys() -> dict[str, Key]:
-    """Return the further keys and their declarations."""
-    from .requested import REQUESTED  # start-up: not for a record
+def record_in_range(
+    motion: Solution,
+    *,
+    digits: int | None = None,
+    radii: bool = False,
+    radians: bool = False,
+    keys: Collection[str] | None = None,
+) -> tuple[dict[str, Any], list[OutOfRangeError]]:
+    """Return `Motion.record`, and an error for each number beyond the range of doubles."""
+    names, numbers = record_keys(radians=radians), NUMBER_KEYS
+    wanted = set(names if keys is None else keys)
+    if not wanted <= set(names):
+        names, numbers = all_keys(radians=radians), list(NUMBERS)
+    found: dict[str, Rounded | None] = {}
+    beyond = []
+    for name in [*INPUTS, *numbers]:
+        shown = unit_name(name, radians=radians)
+        if shown in wanted:
+            try:
+                found[shown] = _number(motion, shown, digits)
+            except OutOfRangeError as error:
+                found[shown] = None
+                beyond.append(error)
+    values = {name: None if number is None else number.value for name, number in found.items()}
+    values["regime"] = motion.regime.value
+    if motion.top.steady_word:
+        values["psidot0"] = motion.top.steady_word
+    if "path" in wanted:
+        values["path"] = motion.path
+    if "remark" in wanted:
+        values["remark"] = remark_of(motion, radians=radians)
+    record = {name: values[name] for name in names if name in wanted}
+    if radii:
+        known = {name: found[name] for name in record if name in found}
+        record |= {f"{name}_radius": x and x.radius for name, x in known.items()}
+    return record, beyond
 
-    return REQUESTED
+
+def _number(motion: Solution, name: str, digits: int | None) -> Rounded | None:
+    """Return a number or an input as it is printed; None for a word."""
+    facts = motion.facts
+    tilt = {"theta0_deg": facts.tilt.degrees, "theta0_rad": facts.tilt.radians}
+    given = facts.inputs.get(name, tilt.get(name))
+    if given is not None:
+        return Rounded(rounded(name, given, digits), given)
+    return None if name == "psidot0" else motion.number(name, digits)
 
 
-def all_keys(*, radians: bool = False) -> list[str]:
-    """Return the keys of a record and those on request, in their order."""
-    names = record_keys(radians=radians)
-    return [*names, *(unit_name(name, radians=radians) for name in requested_keys())]
+def remark_of(motion: Solution, *, radians: bool = False) -> str | None:
+    """Return a line on special properties of a motion, with angles in degrees or `radians`."""
+    facts = motion.facts
+    if facts.vertical:
+        return vertical_remark(facts.regime, facts.stable)
+    if facts.separatrix:
+        return "rises to the vertical in infinite time"
+    return _fast_remark(motion, radians) if facts.fast else None
 
 
-def record_keys(*, radians: bool = False) -> list[str]:
-    """Return all keys of a record in their order."""
-    names = [*_INPUTS, "regime", *NUMBER_KEYS, "path", "remark"]
-    return [unit_name(name, radians=radians) for name in names]
+def vertical_remark(regime: Regime, stable: bool) -> str:
+    """Return the remark on an upright or hanging top."""
+    if regime is Regime.HANGING:
+        return "only phi - psi is defined; stable"
+    word, sign = ("stable", ">=") if stable else ("unstable", "<")
+    return f"only phi + psi is defined; {word} (lambda = b^2/2a {sign} 1)"
 
 
-def shown_keys(
-    *, radians: bool = False, named: Callable[[str], str] = str, requested: bool = False
-) -> dict[str, Key]:
-    """Return the declaration of each key by name in a record; `named` gives the names of units."""
-    return {
-        unit_name(name, radians=radians): key.in_units(radians=radians, named=named)
-        for name, key in (KEYS | (requested_keys() if requested else {})).items()
-    }
+def _fast_remark(motion: Solution, radians: bool) -> str:
+    """Return the remark on a pseudo-regular precession, numbers with three digits."""
+    equal = motion.facts.equal
+
+    def short(what: str, ball: Callable[[Numbers], arb]) -> str:
+        found = settled(what, lambda digits: ball(motion.balls(digits)), 3, equal)
+        assert found is not None
+        return f"{float(found.value):.3g}"
+
+    def nutation(of: Numbers) -> arb:
+        angle: arb = of["theta_max"] - of["theta_min"]
+        return angle if radians else angle * 180 / arb.pi()
+
+    def excess(digits: int) -> int:
+        of = motion.balls(digits)
+        parts = 10**6 * (of["mean_precession_rate"] / of["precession_rate_elementary"] - 1)
+        found = (parts + 0.5).floor().unique_fmpz()
+        if found is None:
+            raise TooFewDigitsError
+        return int(found)
+
+    parts = decided(excess, equal)
+    where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
+    tilt, period = short("nutation", nutation), short("T_nutation", lambda of: of["T_nutation"])
+    rate = short("rate", lambda of: of["precession_rate_elementary"])
+    return (
+        f"pseudo-regular precession: nutates by {tilt} {'rad' if radians else 'deg'} "
+        f"in {period} time; its mean is {where} mgs/(C r0) = {rate} rad/time"
+    )

@@ -8,7 +8,6 @@ are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from enum import StrEnum
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
@@ -16,33 +15,10 @@ from ..arithmetic.angle import Angle
 from ..arithmetic.rounding import equal_digits
 from ..errors import LagtopError, check_type
 from ..top.top import Top
+from .facts import FAST, Regime
 
 B = TypeVar("B", bound=Any)
 """A bool, or an array of bools."""
-
-
-class Regime(StrEnum):
-    """Kind of motion; each member compares equal to its text.
-
-    >>> solve(Top(theta0_deg=0)).regime == "sleeping"
-    True
-    """
-
-    REGULAR = "regular"
-    STEADY = "steady precession"
-    SEPARATRIX = "separatrix"
-    SLEEPING = "sleeping"
-    HANGING = "hanging"
-    TORQUE_FREE = "torque-free"
-    NO_SPIN = "no spin"
-
-
-FAST = 50
-"""Least b^2/a of a pseudo-regular precession, that is, (C r0)^2 = 100 A m g s.
-
-Above it, at any tilt, the axis nutates by at most 1.15 degrees.  The mean precession rate is then
-within 1.03 % of the elementary rate.
-"""
 
 
 class Facts(NamedTuple):
@@ -117,7 +93,7 @@ def exact(top: Top) -> Exact:
     Raises LagtopError for an impossible start: precession on the vertical.
     """
     check_type("top", top, Top)
-    given = [Fraction(x) for x in top.parts.body.values()]
+    given = [top.exact(x) for x in ("m", "A", "C", "s", "g")]
     m, A, C, s, g = given
     r0, theta_rate, psi_rate = (Fraction(x) for x in (top.r0, top.thetadot0, top.psidot0))
     a, b, tilt = 2 * m * g * s / A, C * r0 / A, top.angle

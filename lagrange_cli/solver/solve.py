@@ -6,13 +6,11 @@ import warnings
 from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.rounding import rounded
 from ..errors import LagtopError, OutOfRangeWarning
 from ..top.top import Top
-from .numbers import Numbers, record_in_range
-from .record import KEYS, NUMBER_KEYS, all_keys, requested_keys
-from .regime import Regime, exact
-from .spin_precession import Nutating
+from .facts import Regime, facts_of
+from .keys import KEYS, NUMBER_KEYS, NUMBERS, all_keys
+from .record import Solution, record_in_range
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,10 +29,10 @@ def solve(top: Top) -> Motion:
     >>> solve(Top(theta0_deg=30)).T_nutation
     0.4292501244785477
     """
-    return Motion(exact(top))
+    return Motion(facts_of(top))
 
 
-class Motion(Numbers):
+class Motion(Solution):
     """The motion of one top: the numbers of its record as attributes, and its angles over time.
 
     Each number is correctly rounded, as proved by an enclosure on first use.  It is None if the
@@ -42,8 +40,8 @@ class Motion(Numbers):
     u2, u3, k, T_nutation, mean_precession_rate ... `record` returns all of them.
 
     >>> motion = solve(Top(theta0_deg=30))
-    >>> motion.regime, motion.path, motion.remark, motion.phase, motion.swing
-    (<Regime.REGULAR: 'regular'>, 'cusped', None, 0.0, None)
+    >>> motion.regime, motion.path, motion.remark
+    (<Regime.REGULAR: 'regular'>, 'cusped', None)
     >>> motion.numbers()["k"], motion.record(digits=20, keys=["K"]), motion.top.r0
     (0.7623941363992914, {'K': '1.9298038860786499602'}, 50.0)
     >>> motion.angles([0.0, 0.1]).theta.shape, motion.axis([0.0, 0.1]).shape
@@ -53,52 +51,11 @@ class Motion(Numbers):
     >>> axes, page = motion.plot("cubic"), motion.view()
     """
 
-    @property
-    def path(self) -> str | None:
-        """Path of the figure axis: `cusped`, `looping` or `wavy`; None if there is no such path."""
-        return self.decide("path", lambda kind: kind.path)
-
-    @property
-    def remark(self) -> str | None:
-        """One line on special properties of the motion, or None."""
-        return self.decide("remark", lambda kind: kind.remark())
-
-    @property
-    def phase(self) -> float | None:
-        """Nutation periods from the nearest highest point of the axis to t = 0: w/2K (4,22).
-
-        The phase is in (-1/2, 1/2], and negative if the axis rises.  It is correctly rounded.  None
-        if the tilt has no period.
-        """
-        if not issubclass(self.kind_class, Nutating):
-            return None
-        from .series import phase_at_start  # start-up: not for a record
-
-        kind: Callable[[int], Any] = self.kind
-        return rounded("phase", lambda digits: phase_at_start(kind(digits)))
-
-    @property
-    def swing(self) -> Swing[float] | None:
-        """The only swing on the separatrix, with its `rate` and its `lowest` point; else None.
-
-        The cosine of the tilt is u = u2 + (1 - u2) tanh^2(rate (t - lowest)).  The rate, in radians
-        per unit of time, and the time `lowest` are correctly rounded.
-        """
-        if self.regime is not Regime.SEPARATRIX:
-            return None
-        from .series import Swing, swing_of  # start-up: not for a record
-
-        kind: Callable[[int], Any] = self.kind
-
-        def number(name: str) -> float:
-            return rounded(name, lambda digits: getattr(swing_of(kind(digits)), name))
-
-        return Swing(number("rate"), number("lowest"))
-
     def __dir__(self) -> Sequence[str]:
         """Return the public names: methods, and the keys of the record and on request."""
-        methods = [name for name in vars(Motion) if not name.startswith("_")]
-        return [*methods, "top", "regime", *NUMBER_KEYS, *requested_keys()]
+        methods = vars(Motion) | vars(Solution)
+        public = [name for name in methods if not name.startswith("_")]
+        return [*public, "facts", *NUMBERS]
 
     def __eq__(self, other: object) -> bool:
         """Return whether `other` is the motion of the same top."""
@@ -110,6 +67,25 @@ class Motion(Numbers):
     def __reduce__(self) -> tuple[Callable[[Top], Motion], tuple[Top]]:
         """Return the constructor and the top, for copies and pickles."""
         return solve, (self.top,)
+
+    @property
+    def swing(self) -> Swing[float] | None:
+        """The only swing on the separatrix, with its `rate` and its `lowest` point; else None.
+
+        The cosine of the tilt is u = u2 + (1 - u2) tanh^2(rate (t - lowest)).  The rate, in radians
+        per unit of time, and the time `lowest` are correctly rounded.
+        """
+        if self.regime is not Regime.SEPARATRIX:
+            return None
+        from ..arithmetic.rounding import rounded
+        from .series import Swing, swing_of  # start-up: not for a record
+
+        kind: Callable[[int], Any] = self.old.kind
+
+        def number(name: str) -> float:
+            return rounded(name, lambda digits: getattr(swing_of(kind(digits)), name))
+
+        return Swing(number("rate"), number("lowest"))
 
     def numbers(self) -> dict[str, float | None]:
         """Return the numbers of the record by key, angles in degrees; see `record`."""

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from .regime import Facts
+from .facts import Facts
 
 _ENDS = "between {least} and {most} {angle}"
 
@@ -56,11 +56,11 @@ def summary(record: Mapping[str, Any], facts: Facts, named: Callable[[str], str]
     turns = record["mean_precession_rate"]
     true = {
         "regime": facts.regime.value,
-        "stable": bool(facts.stable),
+        "stable": facts.stable,
         "constant": low == high,
-        "turns_over": facts.plane and facts.upper_root == 1,
+        "turns_over": facts.plane and facts.over_top,
         "plane": facts.plane,
-        "spins": facts.spins,
+        "spins": bool(facts.spin),
         "precesses": turns is None or float(turns) != 0,
         "path": record["path"],
         "unit": named("time"),

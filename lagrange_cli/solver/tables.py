@@ -33,8 +33,8 @@ from .columns import (
     headings,
 )
 from .kinds import Constant, Separatrix
-from .numbers import Numbers
 from .quantity import quantity
+from .record import Solution as Numbers
 from .sampling import Attitude, near
 from .series import ExactAttitude, exact_attitude
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import math
+from collections.abc import Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.ball import balls, exact_fraction, pi_to
+from ..arithmetic.enclosures import pi_to, rounded
 from ..top.top import Top
 from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, size_of
-from .quantity import degree_name
-from .record import TEXT_KEYS
+from .keys import INPUTS, TEXT_KEYS, degree_name
 from .solve import Motion
 
 if TYPE_CHECKING:
@@ -49,43 +49,41 @@ class FirstOrder:
     A key in radians ends in `_rad`.
     """
 
-    def __init__(self, motion: Motion, stds: Mapping[str, float], given: Collection[str]) -> None:
-        """Take the uncertainties of the inputs as given, and the names of all given inputs."""
-        self.motion, self.stds, self.given = motion, stds, given
+    def __init__(self, motion: Motion, stds: Mapping[str, float]) -> None:
+        """Take the uncertainties of the inputs as given."""
+        self.motion, self.stds = motion, stds
         self.derivatives = Derivatives(motion)
-        self._chain = by_given(motion.top, given)
 
     def has(self, key: str) -> bool:
-        """Return whether a key is an input, or a number that the motion has."""
+        """Return whether a key is an input, or a number of the motion with derivatives."""
         name = degree_name(key)
-        if name in self.motion.top.fields or name in self.given:
-            return True
-        return name in DIFFERENTIABLE and self.derivatives.has(name)
+        return name in INPUTS or (name in DIFFERENTIABLE and self.motion.has(name))
 
     def slope(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a key or input by a given input, or None."""
-        row, same = self._chain[name], degree_name(key)
+        same = degree_name(key)
         if same == "theta0_deg":
             same = tilt_of(self.motion.top)
-        if same in self.derivatives.inputs or same in self.given:
-            total = row.get(same, Fraction(0))
+        if same in self.derivatives.inputs:
+            total = Fraction(same == name)
         else:
-            found = {one: self.derivatives.of(same, one) for one in row}
-            if None in found.values():
+            found = self.derivatives.of(same, name)
+            if found is None:
                 return None
-            total = sum(((found[one] or 0) * factor for one, factor in row.items()), Fraction(0))
+            total = found
         if same == key:
             return total
         degree = pi_to(60) / 180
         return total * degree if key.endswith("_rad") else total / degree
 
     def std(self, key: str) -> float | None:
-        """Return the standard uncertainty of a key or an input, or None."""
+        """Return the standard uncertainty of a key or an input; None without one in doubles."""
         variance = self._variance(key) if self.has(key) else None
         if variance is None:
             return None
         ratio = Decimal(variance.numerator), Decimal(variance.denominator)
-        return float(_CONTEXT.sqrt(_CONTEXT.divide(*ratio)))
+        found = float(_CONTEXT.sqrt(_CONTEXT.divide(*ratio)))
+        return found if math.isfinite(found) else None
 
     def _variance(self, key: str) -> Fraction | None:
         slopes = {name: self.slope(key, name) for name in self.stds}
@@ -100,40 +98,23 @@ class FirstOrder:
         `given` holds the values of the inputs.  The key must have an uncertainty.
         """
         found = self.motion.number(degree_name(key), 40)
-        value = Fraction(found.value) if found else 0
-        variance, lines = self._variance(key) or 0, []
+        value = Fraction(found.value) if found else None
+        variance, lines = self._variance(key), []
         for name, std in self.stds.items():
-            slope, in_degrees = (self.slope(x, name) or 0 for x in (key, degree_name(key)))
+            slope, in_degrees = (
+                self.slope(x, name) or Fraction(0) for x in (key, degree_name(key))
+            )
             part = slope * Fraction(std)
-            elasticity = float(in_degrees * Fraction(given[name]) / value) if value else None
-            share = float(part * part / variance) if variance else None
-            numbers = float(slope), float(part), elasticity, share
-            lines.append(Contribution(name, given[name], std, *numbers))
+            elasticity = in_degrees * Fraction(given[name]) / value if value else None
+            share = part * part / variance if variance else None
+            parts: dict[str, Fraction | None] = {"sensitivity": slope, "contribution": part}
+            parts |= {"elasticity": elasticity, "share": share}
+            numbers = {
+                x: None if y is None else rounded(f"the {x} of {name}", y, None)
+                for x, y in parts.items()
+            }
+            lines.append(Contribution(name, given[name], std, **numbers))
         return sorted(lines, key=lambda line: -abs(line.contribution or 0))
-
-
-def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, Fraction]]:
-    """Return the derivatives of the inputs of a solved top by the given inputs.
-
-    The two sets differ only by A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
-    """
-    tilt, one, m, s = tilt_of(top), Fraction(1), Fraction(top.m), Fraction(top.s)
-    names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
-    chain = {name: {name: one} for name in names if not (name == "psidot0" and top.steady_word)}
-    if "A_cm" in given:
-        del chain["A"]
-        chain["A_cm"] = {"A": one}
-        chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
-    if "phidot0" in given:
-        arc = one if top.theta0_deg is None else pi_to(60) / 180
-        with balls(60) as ar:
-            tilt_now = top.tilt(ar)
-            cos, sin = (exact_fraction(x.middle.x) for x in (tilt_now.cos, tilt_now.sin))
-        del chain["r0"]
-        chain["phidot0"] = {"r0": one}
-        chain["psidot0"]["r0"] = cos
-        chain[tilt]["r0"] = -Fraction(top.psidot0) * sin * arc
-    return chain
 
 
 def tilt_of(top: Top) -> str:
@@ -153,14 +134,11 @@ def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float
 class AngleStds:
     """Uncertainties of tilt, spin and precession of a top over time."""
 
-    def __init__(self, motion: Motion, stds: Mapping[str, float], given: Collection[str]) -> None:
-        """Take the uncertainties of the inputs as given, and the names of all given inputs."""
-        self.motion, chain = motion, by_given(motion.top, given)
-        self.changes: list[dict[str, float]] = []
+    def __init__(self, motion: Motion, stds: Mapping[str, float]) -> None:
+        """Take the uncertainties of the inputs as given."""
+        self.motion = motion
+        self.changes = [{name: std} for name, std in stds.items() if std]
         """The change of each input by one standard deviation of each uncertain input."""
-        for name, std in stds.items():
-            changes = {one: std * float(slope) for one, slope in chain[name].items()}
-            self.changes.append({one: change for one, change in changes.items() if change})
 
     @cached_property
     def derivatives(self) -> AngleDerivatives:

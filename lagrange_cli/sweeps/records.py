@@ -18,10 +18,10 @@ from numpy.typing import ArrayLike
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..names import check_names
-from ..solver import record as motion_record
-from ..solver.numbers import record_in_range
-from ..solver.quantity import degree_name
-from ..solver.regime import FAST, Regime
+from ..solver import keys as motion_record
+from ..solver.facts import FAST, Regime
+from ..solver.keys import degree_name
+from ..solver.record import record_in_range
 from ..solver.solve import solve
 from ..top.top import Top
 from .elementary import ELEMENTARY, Elementary

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arithmetic.pairs import DoubleDouble, pair, two_sum
 from ..arithmetic.types import Array, Mask
-from ..solver.regime import FAST, Regime
+from ..solver.facts import FAST, Regime
 from ..top.top import Top
 from ..top.values import STEADY_WORDS
 from .formulas import Start, where

@@ -1,7 +1,8 @@
-"""Inputs that are derived from others: A from A_cm, r0 from phidot0, steady precession rates.
+"""Exact tilts, and inputs that are derived from others: A, r0 and the rates of steady precession.
 
 The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0.  With a = 2mgs/A (4,4) and b
-= C r0/A (4,5) this is cos(theta) Omega^2 - b Omega + a/2 = 0.
+= C r0/A (4,5) this is cos(theta) Omega^2 - b Omega + a/2 = 0.  If phidot0 is given in place of r0 =
+phidot0 + Omega cos(theta), it is (1 - C/A) cos(theta) Omega^2 - C/A phidot0 Omega + a/2 = 0.
 """
 
 from __future__ import annotations
@@ -9,127 +10,153 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from ..arithmetic.angle import Angle
-from ..arithmetic.ball import Ball, balls
-from ..arithmetic.numbers import Number, R
-from ..arithmetic.rounding import equal_digits, nearest_double, rounding_of, settled
+from flint import arb, arb_poly, fmpq, fmpq_poly
+
+from ..arithmetic.enclosures import (
+    at_precision,
+    equal_digits,
+    exact,
+    fraction,
+    root,
+    settled,
+    sign_to,
+)
+from ..arithmetic.numbers import Number
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .values import STEADY_WORDS
 
-if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
-
-EXACT_DIGITS = 1100
-"""Digits of a fraction that approximates an irrational number: more than any output shows."""
 SLOW, FAST = STEADY_WORDS
 
 
-def as_solved(inputs: Mapping[str, Number]) -> dict[str, Number]:
-    """Return the inputs of a top, with A computed from A_cm and r0 from phidot0.
+class Tilt(NamedTuple):
+    """A tilt that is given exactly, in degrees or in radians."""
 
-    Each result is rounded to the nearest double, unless an input is a fraction.  Raises LagtopError
-    for a negative A_cm.
+    degrees: Fraction | None
+    radians: Fraction | None
+
+    @classmethod
+    def of(cls, inputs: Mapping[str, Any]) -> Tilt:
+        """Return the tilt of inputs by key; the missing unit is absent or None."""
+        given = (inputs.get(name) for name in ("theta0_deg", "theta0_rad"))
+        return cls(*(None if x is None else Fraction(x) for x in given))
+
+    @property
+    def number(self) -> Fraction:
+        """The number that was given."""
+        return (self.radians if self.degrees is None else self.degrees) or Fraction(0)
+
+    def angle(self) -> arb:
+        """Return the angle in radians, at the precision in use."""
+        return exact(self.number) if self.degrees is None else exact(self.number / 180) * arb.pi()
+
+    def sine_and_cosine(self) -> tuple[arb, arb]:
+        """Return the sine and the cosine, at the precision in use; rational values are exact."""
+        if self.degrees is None:
+            found: tuple[arb, arb] = exact(self.number).sin_cos()
+        else:
+            turns = self.number / 180
+            found = arb.sin_cos_pi_fmpq(fmpq(turns.numerator, turns.denominator))
+        return found
+
+    def sign(self, polynomial: fmpq_poly, equal: int) -> int:
+        """Return the sign of a polynomial in the cosine; 0 if `equal` digits leave it open."""
+        cosine = self.sine_and_cosine()[1] if polynomial.degree() > 0 else arb(0)
+        if cosine.is_exact():
+            value = polynomial(cosine.fmpq())
+            return int(value > 0) - int(value < 0)
+        return sign_to(lambda _: arb_poly(polynomial)(self.sine_and_cosine()[1]), equal)
+
+
+def rational(x: Fraction | float) -> fmpq:
+    """Return a number as a fraction of FLINT, whose polynomials take it."""
+    return fmpq(*x.as_integer_ratio())
+
+
+def moment(inputs: Mapping[str, Number]) -> Fraction:
+    """Return the moment about the pivot, A = A_cm + m s^2 (Steiner's theorem), exactly.
+
+    Raises LagtopError for a negative A_cm.
     """
-    solved = dict(inputs)
-    if solved.pop("A_cm", None) is not None:
-        solved["A"] = moment(inputs)
-    if solved.pop("phidot0", None) is not None:
-        solved["r0"] = spin(inputs)
-    return solved
-
-
-def moment(inputs: Mapping[str, Number]) -> Number:
-    """Return the moment about the pivot, A = A_cm + m s^2 (Steiner's theorem)."""
-    given = [inputs[name] for name in ("A_cm", "m", "s")]
-    A_cm, m, s = (Fraction(x) for x in given)
+    A_cm, m, s = (Fraction(inputs[name]) for name in ("A_cm", "m", "s"))
     if A_cm < 0:
         raise LagtopError(f"A_cm must be >= 0, got {float(A_cm)}", "A_cm")
-    exact = A_cm + m * s**2
-    return exact if any(isinstance(x, Fraction) for x in given) else float(exact)
+    return A_cm + m * s**2
 
 
-def spin(inputs: Mapping[str, Number]) -> Number:
-    """Return the total rate about the figure axis, r0 = phi' + psi' cos(theta0) (4,1).
-
-    If the cosine is irrational, the fraction has `EXACT_DIGITS` digits.
-    """
-    names = ("phidot0", "psidot0", "theta0_deg", "theta0_rad")
-    given = [x for name in names if (x := inputs.get(name)) is not None]
-    keeps = any(isinstance(x, Fraction) and x for x in given)
+def spin(inputs: Mapping[str, Number]) -> float:
+    """Return the total rate about the axis, r0 = phi' + psi' cos(theta0) (4,1), as a double."""
     phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
-    tilt = Angle.of(inputs.get("theta0_deg"), inputs.get("theta0_rad"))
-    rational = tilt.rational_cosine if psi_rate else Fraction(0)
-    if rational is not None:
-        exact = phi_rate + psi_rate * rational
-        return exact if keeps else float(exact)
+    tilt = Tilt.of(inputs)
 
-    def enclosure(digits: int) -> Ball:
-        ar = balls(digits)
-        return ar.convert(phi_rate) + ar.convert(psi_rate) * tilt.cosine(ar)
+    def ball(_: int) -> arb:
+        return exact(phi_rate) + exact(psi_rate) * tilt.sine_and_cosine()[1]
 
-    digits, rounding = 0, nearest_double("r0")
-    if keeps:
-        digits, rounding = EXACT_DIGITS, rounding_of("r0", EXACT_DIGITS)
-    found = settled("r0", enclosure, rounding, digits=digits)
+    found = settled("r0", ball, None, equal_digits([phi_rate, psi_rate, tilt.number]))
     assert found is not None
-    value: Number = Fraction(found.value) if keeps else found.value
-    return value
+    return float(found.value)
 
 
 class SteadyRates(NamedTuple):
-    """The rates of steady precession of a top at its tilt."""
+    """The rates Omega of steady precession at a tilt, lead cos(tilt) Omega^2 - b Omega + a/2 = 0.
+
+    `b` is C r0/A and `lead` 1 or, if phidot0 is given, C phidot0/A and 1 - C/A.
+    """
 
     a: Fraction
     b: Fraction
-    tilt: Angle
+    lead: Fraction
+    tilt: Tilt
+    equal: int
+    """D: two numbers that agree to D digits are equal."""
 
     def sign(self, *coefficients: Fraction | int) -> int:
         """Return the sign of a polynomial in the cosine of the tilt, the constant first."""
-        inputs = [self.a, self.b, *(x for x in self.tilt if x is not None)]
-        return self.tilt.sign(*coefficients, most=equal_digits(inputs))
+        return self.tilt.sign(fmpq_poly([rational(x) for x in coefficients]), self.equal)
 
     @property
-    def discriminant(self) -> int:
-        """The sign of b^2 - 2 a cos(theta)."""
-        return self.sign(self.b * self.b, -2 * self.a)
+    def is_linear(self) -> bool:
+        """Whether only the slow rate is finite: at 90 degrees, or for phidot0 if A = C."""
+        return not self.sign(0, self.lead)
 
     def exists(self, word: str) -> bool:
-        """Return whether a root is real and finite; at 90 degrees only the slow one is."""
-        if not self.sign(0, 1):
+        """Return whether a rate is real and finite."""
+        if self.is_linear:
             return word == SLOW and bool(self.b)
-        return self.discriminant >= 0
+        return self.sign(self.b * self.b, -2 * self.a * self.lead) >= 0
 
-    def rate(self, ar: Arithmetic[R], a: R, b: R, cos: R, word: str) -> R:
-        """Return an existing root from a, b and the cosine, in the arithmetic `ar`.
+    def rate(self, word: str) -> arb:
+        """Return an existing rate, at the precision in use.
 
-        No digits cancel: with q = b + sgn(b) sqrt(b^2 - 2 a cos(theta)) the fast root is q/(2
-        cos(theta)) and the slow one a/q.  If r0 = 0, both roots have the same size; the slow root
-        is the positive one, as in the limit of small positive r0.
+        With q = b + sgn(b) sqrt(b^2 - 2 a lead cos(tilt)) the fast rate is q/(2 lead cos(tilt)) and
+        the slow one a/q.  If b = 0 both have the same size, and the slow one is positive, as in the
+        limit of small positive b.
         """
         if not (self.a or self.b):
-            return 0 * a
-        root = ar.sqrt(b * b - 2 * a * cos) if self.discriminant else 0 * b
-        q = b - root if self.b < 0 else b + root
-        return q / (2 * cos) if word == FAST else a / q
+            return arb(0)
+        a, b, lead = exact(self.a), exact(self.b), exact(self.lead) * self.tilt.sine_and_cosine()[1]
+        square_root = root(b * b - 2 * a * lead)
+        q = b - square_root if self.b < 0 else b + square_root
+        return q / (2 * lead) if word == FAST else a / q
 
 
 def rates_of(top: Any) -> SteadyRates:
-    """Return the rates of steady precession of a top."""
-    m, A, C, s, g, r0 = (Fraction(getattr(top, x)) for x in ("m", "A", "C", "s", "g", "r0"))
-    return SteadyRates(2 * m * g * s / A, C * r0 / A, top.angle)
+    """Return the rates of steady precession of a top; its own precession rate is not used."""
+    m, A, C, s, g = (Fraction(top.exact(x)) for x in ("m", "A", "C", "s", "g"))
+    spin_rate = Fraction(top.r0 if top.phidot0 is None else top.phidot0)
+    lead = Fraction(1) if top.phidot0 is None else 1 - C / A
+    tilt = top.exact_tilt
+    equal = equal_digits([m, A, C, s, g, spin_rate, tilt.number])
+    return SteadyRates(2 * m * g * s / A, C * spin_rate / A, lead, tilt, equal)
 
 
 def steady_rate_of(top: Any, word: str) -> float:
     """Return the rate of steady precession that a word names, rounded to the nearest double.
 
-    The top's own rate is not used.
-
     Raises LagtopError for an unknown word, and for a top that has no such rate.
     """
-    rates = rates_of(top)
     if word not in STEADY_WORDS:
         wrong = f"psidot0 must be a real number, steady or steady-fast, got {quoted(word)}"
     elif top.thetadot0:
@@ -137,22 +164,28 @@ def steady_rate_of(top: Any, word: str) -> float:
     elif top.pole:
         wrong = f"psidot0 must be 0 if the axis is vertical, got {word} "
         wrong += "(a vertical axis cannot precess)"
-    elif not rates.exists(word) and not rates.sign(0, 1):
-        why = "the fast rate is infinite" if rates.b else "r0 must not be 0"
-        wrong = f"psidot0 cannot be {word}: at 90 degrees {why}"
-    elif not rates.exists(word):
-        cosine = float(rates.tilt.cosine(balls(40)).middle)
-        least = float(top.A / top.C) * math.sqrt(2 * float(rates.a) * cosine)
-        why = f"|r0| must be at least {least:.6g} at this tilt, got r0 = {float(top.r0)}"
-        wrong = f"psidot0 cannot be {word}: {why}"
     else:
-
-        def enclosure(digits: int) -> Ball:
-            ar = balls(digits)
-            a, b = ar.convert(rates.a), ar.convert(rates.b)
-            return rates.rate(ar, a, b, rates.tilt.cosine(ar), word)
-
-        found = settled("psidot0", enclosure, nearest_double("psidot0"))
-        assert found is not None
-        return float(found.value)
+        rates = rates_of(top)
+        if rates.exists(word):
+            found = settled("psidot0", lambda _: rates.rate(word), None, rates.equal)
+            assert found is not None
+            return float(found.value)
+        wrong = f"psidot0 cannot be {word}: {_why_not(top, rates)}"
     raise LagtopError(wrong, wrong.partition(" ")[0])
+
+
+def _why_not(top: Any, rates: SteadyRates) -> str:
+    """Return why a top has no rate of steady precession."""
+    given = "r0" if top.phidot0 is None else "phidot0"
+    if rates.is_linear:
+        where = "" if rates.lead == 0 else "at 90 degrees "
+        return where + ("the fast rate is infinite" if rates.b else f"{given} must not be 0")
+    cosine = at_precision(40, lambda: float(rates.tilt.sine_and_cosine()[1].mid()))
+    size = math.sqrt(2 * float(rates.a * rates.lead) * cosine)
+    least, value = float(top.exact("A") / Fraction(top.C)) * size, float(getattr(top, given))
+    return f"|{given}| must be at least {least:.6g} at this tilt, got {given} = {value}"
+
+
+def middle(x: arb) -> Fraction:
+    """Return the middle of a ball."""
+    return fraction(x.mid())

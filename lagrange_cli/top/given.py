@@ -13,7 +13,7 @@ from .inputs import (
     BODY,
     BODY_IN_SI,
     DECLARED,
-    EXAMPLE,
+    STANDS_FOR,
     TILT,
     checked_double,
     from_example,
@@ -82,11 +82,8 @@ class Given(NamedTuple):
         """
         kept = {key: x for key, x in self.inputs.items() if key not in without}
         numbers = overridden(self.body, kept)
+        exact = exact or (self.si and bool(STANDS_FOR.keys() & numbers))  # then rounded once
         try:
-            if self.si and numbers.get("psidot0") not in STEADY_WORDS:
-                from .derived import as_solved  # start-up
-
-                numbers = as_solved(overridden(EXAMPLE, numbers))  # from exact numbers, once
             return Top(
                 **{
                     key: x if exact or x in STEADY_WORDS else checked_double(key, x)

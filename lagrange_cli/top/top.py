@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import InitVar, dataclass, field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -13,10 +13,10 @@ from ..arithmetic.numbers import DOUBLES, Number, unrounded
 from ..arithmetic.rounding import text_of
 from ..errors import LagtopError
 from .inputs import (
-    BODY,
     DECLARED,
     EXAMPLE,
     NINE,
+    STANDS_FOR,
     TILT,
     checked_double,
     from_example,
@@ -27,6 +27,7 @@ from .inputs import (
 
 if TYPE_CHECKING:
     from ..arithmetic.numbers import Arithmetic
+    from .derived import Tilt as ExactTilt
 
 _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
@@ -67,9 +68,9 @@ class Top:
         psidot0     precession rate at t = 0; "steady" or "steady-fast" is the exact rate of
                     smaller or larger size at which the tilt stays constant, for thetadot0 = 0
 
-    A and r0 computed from A_cm and phidot0 are rounded once, to the nearest double.  They stay
-    exact if one of the inputs they depend on is a Fraction.  Raises LagtopError for a body or a
-    start that is impossible, TypeError for an unknown input.
+    A and r0 that are derived from A_cm and phidot0 are the nearest doubles.  The motion is that of
+    the exact numbers, as it is for the word steady.  Raises LagtopError for a body or a start that
+    is impossible, TypeError for an unknown input.
 
     >>> top = Top(r0=60, theta0_deg=45)
     >>> top.parts.start
@@ -93,8 +94,8 @@ class Top:
     theta0_rad: Number | None = None
     steady_word: str | None = field(default=None, init=False)
     """The word that was given for psidot0, which then is the nearest double; None for a number."""
-    A_cm: InitVar[Number | None] = None
-    phidot0: InitVar[Number | None] = None
+    A_cm: Number | None = None
+    phidot0: Number | None = None
 
     def __new__(cls, **inputs: Any) -> Self:
         """Return a new top.  Raises TypeError for an unknown input with the name that was meant."""
@@ -104,27 +105,20 @@ class Top:
             raise TypeError(f"a top has no input {name!r}{suggestion(name, INPUTS)}")
         return object.__new__(cls)
 
-    def __post_init__(self, A_cm: Number | None, phidot0: Number | None) -> None:
+    def __post_init__(self) -> None:
         """Replace missing inputs by their defaults, derive others, and check all."""
-        given = self.as_dict() | {"A_cm": A_cm, "phidot0": phidot0}
-        given = {name: x for name, x in given.items() if x is not None}
+        given = {name: x for name in INPUTS if (x := getattr(self, name)) is not None}
         psidot0 = given.get("psidot0")
         if word := psidot0 if isinstance(psidot0, str) else None:
             given["psidot0"] = 0.0
-            if phidot0 is not None:
-                raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
         given = {name: _checked(name, x) for name, x in given.items()}
         one_of_each(given)
         inputs = overridden(EXAMPLE, given)
-        if A_cm is not None or phidot0 is not None:
-            from .derived import as_solved  # for few tops only
-
-            inputs = as_solved(inputs)
-            for name in ("A", "r0"):
-                _checked(name, inputs[name])
-        for name in self.fields:
+        for name in INPUTS:
             object.__setattr__(self, name, inputs.get(name))
-        twice = 2 * Fraction(self.A)
+        if self.A_cm is not None:
+            self._derive("A", float(self.exact("A")))
+        twice = 2 * self.exact("A")
         _require(
             twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, "no rigid body has more"
         )
@@ -133,22 +127,49 @@ class Top:
 
             object.__setattr__(self, "psidot0", steady_rate_of(self, word))
             object.__setattr__(self, "steady_word", word)
+        if self.phidot0 is not None:
+            from .derived import spin  # for few tops only
+
+            self._derive("r0", spin(inputs | {"psidot0": self.psidot0}))
         if missing := from_example(given):
             warn_of(missing, stacklevel=4)
 
+    def _derive(self, name: str, value: float) -> None:
+        object.__setattr__(self, name, _checked(name, value))
+
     def __repr__(self) -> str:
-        return f"Top({', '.join(f'{name}={x!r}' for name, x in self.as_dict().items())})"
+        given = self.parts.body | self.parts.start
+        return f"Top({', '.join(f'{name}={x!r}' for name, x in given.items())})"
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the inputs by key; one of the two tilts is None."""
-        inputs = {name: getattr(self, name) for name in self.fields}
-        return inputs | {"psidot0": self.steady_word or self.psidot0}
+        """Return the inputs by key as given; of two that replace each other one is None."""
+        inputs = {name: getattr(self, name) for name in INPUTS}
+        derived = {name: None for key, name in STANDS_FOR.items() if inputs[key] is not None}
+        return inputs | derived | {"psidot0": self.steady_word or self.psidot0}
+
+    def exact(self, name: str) -> Fraction:
+        """Return an input as a fraction; A is exact if it is derived from A_cm.
+
+        A rate that is derived from the tilt is irrational: then `name` must not be r0 or psidot0.
+        """
+        if name == "A" and self.A_cm is not None:
+            from .derived import moment  # for few tops only
+
+            return moment(self.as_dict())
+        return Fraction(getattr(self, name))
+
+    @property
+    def exact_tilt(self) -> ExactTilt:
+        """The tilt, with its exact sine and cosine."""
+        from .derived import Tilt as ExactTilt
+
+        return ExactTilt.of(self.as_dict())
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
 
-        A tilt in either unit replaces the present tilt, A_cm replaces A, and phidot0 replaces r0.
-        Raises LagtopError.
+        An input replaces another way to give it: A replaces A_cm, r0 replaces phidot0, a tilt in
+        radians one in degrees, and vice versa.  Raises LagtopError.
         """
         return type(self)(**overridden(self.parts.body | self.parts.start, changes))
 
@@ -156,12 +177,13 @@ class Top:
     def parts(self) -> Parts:
         """The inputs by key in two parts, `body` and `start`, such as for a sweep of one body."""
         given = {name: x for name, x in self.as_dict().items() if x is not None}
-        return Parts({name: given.pop(name) for name in BODY}, given)
+        body = ("m", "A" if self.A_cm is None else "A_cm", "C", "s", "g")
+        return Parts({name: given.pop(name) for name in body}, given)
 
     def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
-        values = self.as_dict() | {"psidot0": self.psidot0}
+        values: dict[str, Any] = {name: getattr(self, name) for name in self.fields}
         if values[tilt] is None:
             other: Any = self.theta0_deg if radians else self.theta0_rad
             values[tilt] = ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
@@ -196,8 +218,8 @@ class Top:
 
         A disc passes if its A is correct to rounding.
         """
-        offset = Fraction(self.m) * Fraction(self.s) ** 2
-        limit, rounding = 2 * (Fraction(self.A) - offset), Fraction(self.A) * _EPS
+        A, offset = self.exact("A"), Fraction(self.m) * Fraction(self.s) ** 2
+        limit, rounding = 2 * (A - offset), A * _EPS
         if limit + rounding <= 0:
             bound = f"A > m s^2, got {float(self.A)}"
         elif self.C > limit + rounding:
@@ -211,16 +233,18 @@ class Top:
         radians = "--rad " if self.theta0_deg is None else ""
         given = self.parts.body | self.parts.start
         words = [
-            f"{radians if name.startswith(TILT) else ''}--{name.partition('_')[0]} {value!r}"
+            f"{radians}--{TILT} {value!r}"
+            if name.startswith(TILT)
+            else f"--{name.replace('_', '-')} {value!r}"
             for name, value in given.items()
             if value or name not in {"thetadot0", "psidot0"}
         ]
         return " ".join(words).replace("'", "")
 
 
-Top.fields = tuple(name for name in Top.__slots__ if name != "steady_word")
-INPUTS = (*Top.fields, "A_cm", "phidot0")
-"""The keys of all inputs of a top: its fields, and the alternatives to A and r0."""
+INPUTS = tuple(name for name in Top.__slots__ if name != "steady_word")
+"""The keys of all inputs of a top, with the alternatives to A and r0."""
+Top.fields = tuple(name for name in INPUTS if name not in STANDS_FOR)
 
 
 def _checked(name: str, value: Any) -> Number:

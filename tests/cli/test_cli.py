@@ -21,8 +21,8 @@ from lagrange_cli.cli.app import NAMES as COMMANDS
 from lagrange_cli.cli.shared import is_scene
 from lagrange_cli.output.report import record_text
 from lagrange_cli.solver.columns import COLUMNS
-from lagrange_cli.solver.record import KEYS as SHOWN
-from lagrange_cli.solver.record import NUMBER_KEYS, all_keys
+from lagrange_cli.solver.keys import KEYS as SHOWN
+from lagrange_cli.solver.keys import NUMBER_KEYS, all_keys
 
 KEYS = """
     m A C s g r0 theta0_deg thetadot0 psidot0 regime a b u1 u2 u3 k k_prime modular_angle_deg nome

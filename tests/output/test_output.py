@@ -23,7 +23,7 @@ from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
 from lagrange_cli.output.formats import block_text, write
 from lagrange_cli.output.report import Field, Report, drawn, record_text, uncertain_text
-from lagrange_cli.solver.record import shown_keys
+from lagrange_cli.solver.keys import shown_keys
 
 NAMES = ["a", "text", 'b,"', "c", "more"]
 

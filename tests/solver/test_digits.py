@@ -19,7 +19,7 @@ from lagtop import LagtopError, Top, solve, sweep
 from scenes import EVERY_KIND, NAMED, UNIT
 
 from lagrange_cli.errors import OutOfRangeError, OutOfRangeWarning
-from lagrange_cli.solver.record import NUMBER_KEYS, all_keys, requested_keys
+from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS, all_keys
 
 SCENES = EVERY_KIND | NAMED
 HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
@@ -33,7 +33,7 @@ def test_every_number_is_the_nearest_double_and_its_radius_holds(name: str) -> N
     plain = motion.record()
     assert {key: record[key] for key in plain} == plain
     with arb_bits(400):
-        for key in (*NUMBER_KEYS, *requested_keys()):
+        for key in NUMBERS:
             exact, value = balls.exact(key), record[key]
             assert (value is None) == (exact is None) == (record[f"{key}_radius"] is None), key
             if exact is not None:
@@ -165,27 +165,6 @@ def test_a_tilt_that_falls_to_0_on_the_separatrix_keeps_its_digits(t: int) -> No
         assert abs(mpmath.mpf(theta) / exact - 1) < 1e-29
         assert abs(mpmath.mpf(phi) / mpmath.pi - 1) < 1e-29
     assert phi == psi
-
-
-@pytest.mark.parametrize(
-    ("theta0_deg", "thetadot0", "most"),
-    [(1e-150, 5e-324, 512), (1e-150, 1e-200, 512), (1e-100, 0, 128), (1e-12, 1e-13, 128)],
-)
-def test_tiny_tilts_take_few_digits(
-    theta0_deg: float, thetadot0: float, most: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The cost of an upright start is counted in digits, not in seconds."""
-    used = []
-    motion = solve(Top(**UNIT | {"r0": 2, "theta0_deg": theta0_deg, "thetadot0": thetadot0}))
-    kind = motion.kind
-
-    def counted(digits: int) -> Any:
-        used.append(digits)
-        return kind(digits)
-
-    monkeypatch.setattr(motion, "kind", counted)
-    assert motion.T_nutation is not None
-    assert max(used) <= most
 
 
 # Beyond the range of doubles

@@ -61,15 +61,12 @@ def test_a_cusp_on_the_dot(degrees: float, square: int) -> None:
     b = 2 * sin2 / (square + sin2)
     inputs: Inputs = {"r0": b, "theta0_deg": degrees, "psidot0": 1, "thetadot0": math.isqrt(square)}
     motion = of(inputs)
-    if motion.exact.facts.drifts:  # beta/b is u3: the precession never stops
+    if motion.facts.minus * motion.facts.spin > 0:  # beta/b is u3: the precession never stops
         assert motion.mean_spin_rate == float(b / 2)
     else:
         assert motion.path == "cusped"
     for tiny in (TINY, -TINY):
-        beside = of(inputs | {"r0": b + tiny})
-        assert not beside.exact.facts.drifts
-        assert not beside.exact.facts.cusp
-        assert beside.path in {"looping", "wavy"}
+        assert of(inputs | {"r0": b + tiny}).path in {"looping", "wavy"}
 
 
 LEVELS: list[tuple[Inputs, str]] = [

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from lagrange_cli.solver.columns import COLUMNS, SCALARS, shown_columns
 from lagrange_cli.solver.explanation import explanations, listed
-from lagrange_cli.solver.record import TEXT_KEYS, all_keys, number_key
+from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys, bare_name
 
 TOPS = {
     "worked example": Top(),
@@ -75,7 +75,7 @@ def test_the_formula_of_a_key_gives_its_number(top: Top) -> None:
     names = functions(motion) | numbers
     checked = set()
     for key in all_keys():
-        name, shown = key.removesuffix("_deg"), number_key(key)
+        name, shown = key.removesuffix("_deg"), NUMBERS.get(key)
         if shown is None or name not in numbers:
             continue
         left, right = evaluated(shown.formula, names)
@@ -175,13 +175,13 @@ def test_a_missing_number_has_a_reason() -> None:
 
 def cases(motion: Motion) -> dict[str, bool]:
     """Return each case in which a number may not exist, and whether it is that of the motion."""
-    facts, top, record = motion.exact.facts, motion.top, motion.record()
+    facts, top, record = motion.facts, motion.top, motion.record()
     nutates = record["T_nutation"] is not None and not facts.steady
     turning = record["u_quarter"] is not None or motion.angles([0.0]).theta[0] == pytest.approx(
         np.radians(record["theta_max_deg"]), abs=1e-12
     )
     at_top = record["u_quarter"] is not None
-    half_on_pole = turning and (facts.over_bottom if at_top else facts.upper_root == 1)
+    half_on_pole = turning and (facts.over_bottom if at_top else facts.over_top)
     too_slow = abs(top.r0) < motion.r0_steady_min
     level = top.theta0_deg == 90
     moves = bool(top.g or top.r0 or top.thetadot0)
@@ -191,7 +191,7 @@ def cases(motion: Motion) -> dict[str, bool]:
         "if k > 0": record["k"] not in {0, None},
         "if the top moves": moves,
         "if the start is at u1": at_top,
-        "if the top is released from rest": facts.at_rest,
+        "if the top is released from rest": facts.released,
         "if the mean spin rate is not 0": bool(record["mean_spin_rate"]),
         "if the mean precession rate is not 0": bool(record["mean_precession_rate"]),
         "if the axis does not leave the vertical at the start": not (top.pole and top.thetadot0),
@@ -201,9 +201,10 @@ def cases(motion: Motion) -> dict[str, bool]:
             too_slow or (level and not top.r0)
         ),
         "if the top nutates": nutates,
-        "if the top nutates after release from rest": nutates and facts.at_rest,
-        "if the top nutates and does not pass over a pole": nutates and not facts.meets_a_pole,
-        "if the top nutates, and if the axis is not vertical half a period after the start": (
+        "if the top nutates after release from rest": nutates and facts.released,
+        "if the top nutates and does not pass over a pole": nutates
+        and not (facts.over_top or facts.over_bottom),
+        "if the top nutates, and the axis is not vertical half a period after the start": (
             nutates and not half_on_pole
         ),
     }
@@ -214,7 +215,7 @@ def test_the_reason_of_a_missing_number_is_the_case_of_the_motion(scene: dict[st
     motion = solve(Top(**scene))
     holds = cases(motion)
     for name, value in motion.record(keys=all_keys()).items():
-        key = number_key(name)
-        if key is None or name in motion.kind_class.lacks or name == "u2_criterion":
+        key = NUMBERS.get(name)
+        if key is None or bare_name(name) in motion.facts.undefined or name == "u2_criterion":
             continue
         assert (value is None) == (bool(key.only) and not holds[key.only]), name

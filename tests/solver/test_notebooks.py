@@ -8,7 +8,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from ball_reference import BallReference
 from lagtop import LagtopError, Top, compare, fit, solve
 from matplotlib.figure import Figure
 from scenes import EVERY_KIND
@@ -18,20 +17,6 @@ from lagrange_cli.errors import UnavailableError
 SEPARATRIX = EVERY_KIND["separatrix in a plane"]
 MOTION = solve(Top(theta0_deg=30, psidot0=3))
 TIMES = np.array([0.0, 0.1, 1.7])
-
-
-@pytest.mark.parametrize("fall", [-8.0, -0.5, 0.5, 8.0])
-@pytest.mark.parametrize("tilt", [31.0, 60.0, 73.0])
-def test_the_phase_counts_periods_from_the_highest_point(fall: float, tilt: float) -> None:
-    top = Top(theta0_deg=tilt, psidot0=10.0, thetadot0=fall)
-    assert solve(top).phase == pytest.approx(BallReference(top.as_dict()).phase, rel=1e-15, abs=0)
-
-
-def test_the_phase_at_turning_points_is_exact() -> None:
-    assert solve(Top()).phase == 0
-    assert solve(Top(theta0_deg=73.9, psidot0=14.2)).phase == 0.5
-    for top in (Top(theta0_deg=0), Top(r0=60, psidot0="steady"), Top(**SEPARATRIX)):
-        assert solve(top).phase is None
 
 
 @pytest.mark.parametrize("fall", [Fraction(1), Fraction(-1), Fraction(4, 5), Fraction(-4, 5)])

@@ -13,8 +13,7 @@ from conftest import Lagtop
 from errata import FIGURES, round_alike, true_values
 from lagtop import LagtopError, Top, solve
 
-from lagrange_cli.solver.record import requested_keys
-from lagrange_cli.solver.requested import derivation_keys
+from lagrange_cli.solver.keys import FURTHER_KEYS, derivation_keys
 
 
 def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
@@ -44,7 +43,7 @@ def test_what_has_no_derivation_says_so(lagtop: Lagtop, options: str) -> None:
 
 def test_a_record_has_them_only_when_they_are_asked_for(lagtop: Lagtop) -> None:
     motion = solve(Top())
-    assert not set(motion.record()) & set(requested_keys())
+    assert not set(motion.record()) & set(FURTHER_KEYS)
     assert motion.record(keys=["Lz", "a"]) == {"a": motion.a, "Lz": motion.Lz}
     assert motion.record(keys=["psi_half_rad"], radians=True) == {
         "psi_half_rad": pytest.approx(1.715080720900244, rel=1e-15)
@@ -52,7 +51,7 @@ def test_a_record_has_them_only_when_they_are_asked_for(lagtop: Lagtop) -> None:
     assert lagtop("solve", "--get", "Lz").stdout == f"{motion.Lz}\n"
     digits = lagtop("solve", "--get", "phi_half_rad", "--rad", "--digits", "25")
     assert digits.exit_code == 0
-    assert set(requested_keys()) <= set(dir(motion))
+    assert set(FURTHER_KEYS) <= set(dir(motion))
 
 
 @pytest.mark.parametrize(

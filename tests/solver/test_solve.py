@@ -11,7 +11,7 @@ from ball_reference import BallReference
 from lagtop import LagtopError, Top, solve
 from scenes import UNIT
 
-from lagrange_cli.solver.regime import Regime
+from lagrange_cli.solver.facts import Regime
 
 
 @pytest.mark.parametrize("scale", [1e-30, 1e30])

@@ -15,7 +15,7 @@ from hard_scenes import KINDS, in_doubles, nutating
 from lagtop import Top, solve, sweep
 from scenes import EVERY_KIND, UNIT
 
-from lagrange_cli.solver.record import NUMBER_KEYS
+from lagrange_cli.solver.keys import NUMBER_KEYS
 from lagrange_cli.sweeps import records
 from lagrange_cli.sweeps.elementary import ELEMENTARY
 from lagrange_cli.sweeps.records import OF_MODULI

@@ -48,7 +48,7 @@ from lagrange_cli.bench import reference as reference_module
 from lagrange_cli.bench.reference import Reference, rotation_angle
 from lagrange_cli.bench.reference import inputs_of as inputs_in_mpmath
 from lagrange_cli.errors import OutOfRangeError
-from lagrange_cli.solver.record import NUMBER_KEYS, requested_keys
+from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS
 from lagrange_cli.solver.tables import rows
 from lagrange_cli.top.ranges import ListedPoints
 
@@ -155,7 +155,7 @@ def number_of(motion: Motion, key: str) -> float | None:
 
 def check_record(tally: Tally, balls: BallReference, motion: Motion) -> None:
     """Check every number of a motion: the nearest double, or rightly none."""
-    for key in (*NUMBER_KEYS, *requested_keys()):
+    for key in NUMBERS:
         show = f"lagtop solve {motion.top.options()} --get {key}"
         tally.counts["numbers"] += 1
         if pair := tally.both(key, number_of(motion, key), balls.exact(key), show):
@@ -167,7 +167,7 @@ def check_record(tally: Tally, balls: BallReference, motion: Motion) -> None:
 
 def check_digits(tally: Tally, balls: BallReference, motion: Motion, digits: int) -> None:
     """Check every number of a motion with `digits` digits."""
-    found = motion.record(digits=digits, keys=[*NUMBER_KEYS, *requested_keys()])
+    found = motion.record(digits=digits, keys=list(NUMBERS))
     for key, text in found.items():
         show = f"{typed(motion.top)} --digits {digits} --get {key}  # {text}"
         tally.counts["numbers in digits"] += 1

@@ -13,7 +13,7 @@ from lagtop import LagtopError, Regime, Top, solve
 from scenes import UNIT
 
 from lagrange_cli.solver.columns import COLUMNS
-from lagrange_cli.solver.record import all_keys
+from lagrange_cli.solver.keys import all_keys
 from lagrange_cli.solver.tables import ProvedTable
 
 DIGITS = 50
@@ -71,7 +71,9 @@ def test_the_steady_motion_is_that_of_the_exact_root() -> None:
         ({"psidot0": "steady-fast", "theta0_deg": 90}, "at 90 degrees the fast rate is infinite"),
         ({"psidot0": "fast"}, "psidot0 must be a real number, steady or steady-fast, got 'fast'"),
         ({"r0": "steady"}, "r0 must be a real number, got 'steady'"),
-        ({"phidot0": 3}, "psidot0 = steady needs r0 in place of phidot0"),
+        ({"phidot0": 3}, r"steady: \|phidot0\| must be at least 39.0768 at this tilt, got .* 3.0"),
+        ({"phidot0": 0, "theta0_deg": 90}, "at 90 degrees phidot0 must not be 0"),
+        ({"phidot0": 3, "A": 17458, "psidot0": "steady-fast"}, "the fast rate is infinite"),
     ],
 )
 def test_words_that_fit_no_motion_are_refused(inputs: Any, message: str) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 from ...errors import LagtopError, check_type
 from ...output.notebook import Document
 from ...solver.explanation import listed
-from ...solver.record import KEYS
+from ...solver.keys import KEYS
 from ...solver.solve import Motion, solve
 from ...solver.summary import PHRASES
 from ...top.given import read_scene

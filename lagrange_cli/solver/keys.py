@@ -1,0 +1,322 @@
+"""The keys: each number is declared once, with the formula that is printed and evaluated.
+
+A line of the table is
+
+    name | symbol | meaning | unit | equation | formula | condition
+
+and a group of keys begins with `#`.  An indented line continues the line before.  To add a key, add
+a line: `solve`, `explain`, sweeps and the READMEs take it from here.
+
+Formulas use names of keys and inputs, without the unit of an angle, and the functions of `numbers`.
+`left = right` is an equation that the key satisfies.  If a limit needs another form than the
+printed one, the form that is evaluated follows after `~`.  It uses the distances of the roots,
+which are finite without torque, and exactly 0 if two roots coincide:
+
+    swing = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1)
+
+`where` names lines of the last group.  Equation numbers are Chrapan's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+from ..arithmetic.key import Key
+from ..top.derived import FAST, SLOW
+from ..top.inputs import DECLARED, NINE, TILT
+
+_TEXT = """
+# Constants
+a | a | 2mgs/A | 1/time² | (4,4) | 2*m*g*s/A
+b | b | C r0/A | 1/time | (4,5) | C*r0/A
+# Roots
+u1 | u1 | cos ϑ, highest | | (4,9)
+   | (energy_constant - a*u1)*(1 - u1**2) = (momentum_constant - b*u1)**2 ~ roots[1]
+u2 | u2 | cos ϑ, lowest | | (4,11)
+   | (energy_constant - a*u2)*(1 - u2**2) = (momentum_constant - b*u2)**2 ~ roots[0]
+u3 | u3 | third root | | (4,11)
+   | (energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2 ~ u2 + wide/a
+   | if there is a torque
+# Moduli and integrals
+k | k | modulus | | (4,19) | sqrt((u1 - u2)/(u3 - u2)) ~ sqrt(m_k)
+k_prime | k' | complementary modulus | | (4,21) | sqrt((u3 - u1)/(u3 - u2)) ~ sqrt(m_k_prime)
+modular_angle_deg | arcsin k | modular angle | angle | (4,19) | asin(k) ~ atan2(k, k_prime)
+nome | q | nome | | (2,4) | exp(-pi*K_prime/K) ~ nome_of(k, k_prime)
+K | K | integral, first kind, k | | (5,1) | ellint_F(pi/2, k) ~ pi/(2*agm(1, k_prime))
+K_prime | K' | integral, first kind, k' | | (2,4) | ellint_F(pi/2, k_prime) ~ pi/(2*agm(1, k))
+   | if k > 0
+E | E | integral, second kind, k | | (7,3) | ellint_E(pi/2, k) ~ complete_E(k_prime)
+amplitude_deg | am α | amplitude of α | angle | (7,2)
+   | atan(sqrt((u3 - u2)/(1 + u2))) ~ atan2(sqrt(wide), sqrt(a*(1 + u2)))
+   | if the top is released from rest
+alpha | α | parameter | | (1,6) | ellint_F(amplitude, k_prime) | if the top is released from rest
+# Periods
+T_nutation | T | nutation period | time | (5,1) | 4*K/sqrt(a*(u3 - u2)) ~ 4*K/sqrt(wide)
+   | if the top moves
+T_spin | Tφ | mean spin period | time | §8 | 2*pi/abs(mean_spin_rate)
+   | if the mean spin rate is not 0
+T_precession | Tψ | mean precession period | time | §8 | 2*pi/abs(mean_precession_rate)
+   | if the mean precession rate is not 0
+# Turning points
+u_quarter | u(T/4) | cos ϑ at T/4 | | (5,2) | u1 - (u1 - u2)*k_prime/(1 + k_prime)
+   | if the start is at u1
+theta_min_deg | ϑ min | least tilt | angle | (4,9) | acos(u1)
+theta_max_deg | ϑ max | greatest tilt | angle | (4,9) | acos(u2)
+# Mean rates
+mean_spin_rate | φ' mean | mean spin rate | rad/time | (6,3) | r0 - b - (P - Q)/(2*K) where P, Q
+mean_precession_rate | ψ' mean | mean precession rate | rad/time | (7,3) | (P + Q)/(2*K) where P, Q
+# Rates
+spin_rate_start | φ'(0) | spin rate at start | rad/time | (6,2) | r0 - psidot0*cos(theta0)
+   | if the axis does not leave the vertical at the start
+spin_rate_half | φ'(T/2) | spin rate at T/2 | rad/time | (6,2) | r0 - U*precession_rate_half where U
+   | if the axis is not vertical half a period after the start
+precession_rate_start | ψ'(0) | precession rate at start | rad/time | (4,7) | psidot0
+   | if the axis does not leave the vertical at the start
+precession_rate_half | ψ'(T/2) | precession rate at T/2 | rad/time | (4,7)
+   | (momentum_constant - b*U)/(1 - U**2) where U
+   | if the axis is not vertical half a period after the start
+# Constants of section 4
+energy_without_spin | c1 | energy without the spin part | mass len²/time² | (4,2)
+   | A*(thetadot0**2 + psidot0**2*sin(theta0)**2)/2 + m*g*s*cos(theta0)
+Lz | c2 | vertical angular momentum | mass len²/time | (4,3)
+   | A*psidot0*sin(theta0)**2 + C*r0*cos(theta0)
+energy_constant | α₄ | energy constant over A/2 | 1/time² | (4,4) | 2*energy_without_spin/A
+momentum_constant | β | momentum over A | 1/time | (4,5) | Lz/A
+discriminant | D | discriminant, (a (u3 - u2))² | 1/time⁴ | (4,10) | (a*(u3 - u2))**2 ~ wide**2
+f_upright | f(1) | u'² of (4,9) upright | 1/time² | (4,9)
+   | -(momentum_constant - b)**2 ~ -beta_minus_b**2
+f_hanging | f(-1) | u'² of (4,9) hanging | 1/time² | (4,9)
+   | -(momentum_constant + b)**2 ~ -beta_plus_b**2
+f_slope_u1 | f'(u1) | slope of (4,9) at u1 | 1/time² | (4,9)
+   | -a*(u1 - u2)*(u3 - u1) ~ -swing*narrow
+u2_criterion | a u2 u3 | criterion for the sign of u2 | 1/time² | (4,12)
+   | a*u2*u3 ~ u2*(wide + a*u2)
+spin_share | 1 - C/2A | share of steady spin | | (6,1) | 1 - C/(2*A)
+# Angles after half a period and a whole one
+phi_half_deg | φ(T/2) | spin after half a period | angle | §6
+   | integral(phidot, 0, T_nutation/2) ~ half[0]
+   | if the top nutates, and the axis is not vertical half a period after the start
+phi_period_deg | φ(T) | spin after a period | angle | §6 | mean_spin_rate*T_nutation
+   | if the top nutates
+psi_half_deg | ψ(T/2) | precession after half a period | angle | §7
+   | integral(psidot, 0, T_nutation/2) ~ half[1]
+   | if the top nutates, and the axis is not vertical half a period after the start
+psi_period_deg | ψ(T) | precession after a period | angle | §7 | mean_precession_rate*T_nutation
+   | if the top nutates
+# Mean rates of the quarters
+nutation_rate_upper | ϑ' 1st | mean rate, quarter after u1 | rad/time | §5
+   | 4*(acos(V) - theta_min)/T_nutation where V | if the top nutates
+nutation_rate_lower | ϑ' 2nd | mean rate, quarter before u2 | rad/time | §5
+   | 4*(theta_max - acos(V))/T_nutation where V | if the top nutates
+spin_rate_upper | φ' 1st | mean rate, quarters at u1 | rad/time | §6
+   | 4*integral(phidot, t1, t1 + T_nutation/4)/T_nutation ~ 4*quarter[0]/T_nutation
+   | if the top nutates and does not pass over a pole
+spin_rate_lower | φ' 2nd | mean rate, quarters at u2 | rad/time | §6
+   | 2*mean_spin_rate - spin_rate_upper | if the top nutates and does not pass over a pole
+precession_rate_upper | ψ' 1st | mean rate, quarters at u1 | rad/time | §7
+   | 4*integral(psidot, t1, t1 + T_nutation/4)/T_nutation ~ 4*quarter[1]/T_nutation
+   | if the top nutates and does not pass over a pole
+precession_rate_lower | ψ' 2nd | mean rate, quarters at u2 | rad/time | §7
+   | 2*mean_precession_rate - precession_rate_upper
+   | if the top nutates and does not pass over a pole
+# Steps of section 8 | if the top nutates after release from rest
+roots_sum | u3 + u2 | b²/a | | (4,11) | b**2/a
+roots_product | u3 u2 | b² u1/a - 1 | | (4,12) | b**2*u1/a - 1
+roots_sum_squared | (u3 + u2)² | square of the roots' sum | | §8 | roots_sum**2
+roots_product_fourfold | -4 u3 u2 | -4 times the product | | §8 | -4*roots_product
+roots_gap_squared | (u3 - u2)² | square of the distance | | §8
+   | roots_sum_squared + roots_product_fourfold
+roots_gap | u3 - u2 | distance of the roots | | §8 | sqrt(roots_gap_squared)
+u3_twice | 2 u3 | roots' sum + distance | | §8 | roots_sum + roots_gap
+u2_twice | 2 u2 | roots' sum - distance | | §8 | roots_sum - roots_gap
+k_squared | k² | (u1 - u2)/(u3 - u2) | | (4,19) | (u1 - u2)/(u3 - u2)
+comodular_angle_deg | arcsin k' | complementary angle | angle | (4,21)
+   | asin(k_prime) ~ atan2(k_prime, k)
+E_amplitude | E(am, k') | integral, second kind | | (7,1) | ellint_E(amplitude, k_prime)
+# Steady precession and elementary theory
+stability_factor | λ | stability factor C²r0²/(4Amgs) | | b²/2a | b**2/(2*a)
+   | if there is a torque
+r0_sleeping | r0 sleeping | least r0 of a stable upright top | rad/time | 2√(Amgs)/C
+   | 2*sqrt(A*m*g*s)/C
+steady_rate_slow | Ω slow | slow steady precession | rad/time | ϑ'' = 0
+   | m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2 ~ steady_rates[0]
+   | if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees
+steady_rate_fast | Ω fast | fast steady precession | rad/time | ϑ'' = 0
+   | m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2 ~ steady_rates[1]
+   | if |r0| >= r0_steady_min and the tilt is not 90 degrees
+r0_steady_min | r0 steady | least r0 of steady precession | rad/time | 2√(Amgs u0)/C
+   | 2*sqrt(A*m*g*s*max(cos(theta0), 0))/C
+precession_rate_elementary | ψ' elementary | precession of a fast top | rad/time | mgs/(C r0)
+   | m*g*s/(C*r0) | if r0 is not 0
+T_nutation_elementary | T elementary | nutation of a fast top | time | 2πA/(C r0)
+   | 2*pi*A/(C*abs(r0)) | if r0 is not 0
+# where
+P | | mean of (β - b)/(1 - u), times K | | (3,11)
+   | (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2) ~ over_pole(-1)
+Q | | mean of (β + b)/(1 + u), times K | | (3,11)
+   | (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2) ~ over_pole(1)
+U | | cos ϑ half a period after the start | |
+   | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))
+   ~ u2 + (u1 - cos(theta0))*wide/(wide + a*(u2 - cos(theta0)))
+V | | cos ϑ between two quarters | | (5,2) | u1 - (u1 - u2)*k_prime/(1 + k_prime)
+"""
+
+
+CONDITIONS: dict[str, Callable[[Any], bool]] = {
+    "": lambda of: True,
+    "if there is a torque": lambda of: bool(of.facts.a),
+    "if r0 is not 0": lambda of: bool(of.facts.spin),
+    "if k > 0": lambda of: bool(of.facts.a) and not of.facts.steady,
+    "if the top moves": lambda of: of.facts.moves,
+    "if the top is released from rest": lambda of: of.facts.released,
+    "if the start is at u1": lambda of: of.facts.turning > 0,
+    "if the mean spin rate is not 0": lambda of: not of.is_zero("mean_spin_rate"),
+    "if the mean precession rate is not 0": lambda of: not of.is_zero("mean_precession_rate"),
+    "if the axis does not leave the vertical at the start": lambda of: (
+        not of.facts.pole or of.facts.vertical
+    ),
+    "if the axis is not vertical half a period after the start": lambda of: (
+        not of.facts.half_on_pole
+    ),
+    "if the top nutates": lambda of: of.facts.nutates,
+    "if the top nutates, and the axis is not vertical half a period after the start": lambda of: (
+        of.facts.nutates and not of.facts.half_on_pole
+    ),
+    "if the top nutates and does not pass over a pole": lambda of: (
+        of.facts.nutates and not (of.facts.over_top or of.facts.over_bottom)
+    ),
+    "if the top nutates after release from rest": lambda of: of.facts.nutates and of.facts.released,
+    "if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees": lambda of: of.facts.has_steady_rate(
+        SLOW
+    ),
+    "if |r0| >= r0_steady_min and the tilt is not 90 degrees": lambda of: of.facts.has_steady_rate(
+        FAST
+    ),
+}
+"""The condition of a key, as lines and messages name it, and the test of a motion that it is."""
+
+
+class Line(NamedTuple):
+    """A line of the table: what is shown, and the formula that is evaluated."""
+
+    key: Key
+    evaluated: str
+
+
+def _read(table: str) -> Iterator[tuple[str, Line]]:
+    """Yield the lines of the table by name."""
+    group = common = ""
+    for text in table.strip().replace("\n ", " ").splitlines():
+        if text.startswith("# "):
+            group, _, common = text[2:].partition(" | ")
+            continue
+        name, symbol, meaning, unit, equation, formula, *only = map(str.strip, text.split("|", 6))
+        printed, _, evaluated = formula.partition(" ~ ")
+        key = Key(group, symbol, meaning, unit, equation, printed, only[0] if only else common)
+        yield name, Line(key, evaluated or printed.partition(" where ")[0])
+
+
+def _with_definitions(line: Line) -> Line:
+    """Return a line whose printed formula defines the names that follow `where`."""
+    formula, _, names = line.key.formula.partition(" where ")
+    if not names:
+        return line
+    defined = ", ".join(f"{name} = {_TABLE[name].key.formula}" for name in names.split(", "))
+    return line._replace(key=line.key._replace(formula=f"{formula} where {defined}"))
+
+
+_TABLE = dict(_read(_TEXT))
+_LINES = {x: _with_definitions(line) for x, line in _TABLE.items() if line.key.group != "where"}
+_FIRST_FURTHER = list(_LINES).index("energy_without_spin")
+
+
+def bare_name(name: str) -> str:
+    """Return the name of a key without the unit of an angle."""
+    return name.removesuffix("_deg").removesuffix("_rad")
+
+
+def unit_name(name: str, *, radians: bool) -> str:
+    """Return the name of a key in degrees or `radians`: `_deg` becomes `_rad`."""
+    return f"{name.removesuffix('_deg')}_rad" if radians and name.endswith("_deg") else name
+
+
+def degree_name(name: str) -> str:
+    """Return the name of a key in degrees: `_rad` becomes `_deg`."""
+    return f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
+
+
+LINES = {bare_name(name): line for name, line in (_TABLE).items()}
+"""All lines by the names that formulas use."""
+NUMBERS = {name: line.key for name, line in _LINES.items()}
+"""The declaration of each number by key."""
+NUMBER_KEYS = list(NUMBERS)[:_FIRST_FURTHER]
+"""The numbers of a record, in order; `regime` precedes them, `path` and `remark` follow."""
+FURTHER_KEYS = list(NUMBERS)[_FIRST_FURTHER:]
+"""The numbers on request, in order."""
+TEXTBOOK_KEYS = [x for x in FURTHER_KEYS if NUMBERS[x].group.startswith("Steady")]
+"""The keys of the elementary theory: they depend only on the body, the spin and the tilt."""
+TEXT_KEYS = ("regime", "path", "remark")
+"""The keys of a record whose values are words."""
+INPUTS = {
+    f"{name}_deg" if name == TILT else name: Key("Inputs", x.symbol, x.name, x.unit)
+    for name, x in DECLARED.items()
+    if name in NINE
+}
+"""The declaration of each input by key, the tilt in degrees."""
+KEYS = (
+    INPUTS
+    | {"regime": Key("Constants", "", "regime"), "path": Key("Constants", "", "path of the axis")}
+    | {name: NUMBERS[name] for name in NUMBER_KEYS}
+    | {"remark": Key("Remark", "", "special properties of the motion, if any")}
+)
+"""The declaration of each key of a record by name, in the order of the groups of a table."""
+
+
+def record_keys(*, radians: bool = False) -> list[str]:
+    """Return all keys of a record in their order."""
+    names = [*INPUTS, "regime", *NUMBER_KEYS, "path", "remark"]
+    return [unit_name(name, radians=radians) for name in names]
+
+
+def all_keys(*, radians: bool = False) -> list[str]:
+    """Return the keys of a record and those on request, in their order."""
+    further = [unit_name(name, radians=radians) for name in FURTHER_KEYS]
+    return [*record_keys(radians=radians), *further]
+
+
+def shown_keys(
+    *, radians: bool = False, named: Callable[[str], str] = str, requested: bool = False
+) -> dict[str, Key]:
+    """Return the declaration of each key by name in a record; `named` gives the names of units."""
+    further = {name: NUMBERS[name] for name in FURTHER_KEYS} if requested else {}
+    return {
+        unit_name(name, radians=radians): key.in_units(radians=radians, named=named)
+        for name, key in (KEYS | further).items()
+    }
+
+
+CHAIN = {
+    "Inputs": ["m", "A", "C", "s", "g", "r0", "theta0_deg"],
+    "The body": ["a", "spin_share"],
+    "The start": ["u1", "b", "roots_sum", "roots_product"],
+    "The roots": [
+        *("roots_sum_squared", "roots_product_fourfold", "roots_gap_squared", "roots_gap"),
+        *("u3_twice", "u2_twice", "u3", "u2"),
+    ],
+    "Modulus and amplitude": [
+        *("k_squared", "modular_angle_deg", "comodular_angle_deg", "amplitude_deg"),
+    ],
+    "Integrals": ["K", "E", "alpha", "E_amplitude"],
+    "Nutation": ["T_nutation", "u_quarter"],
+    "Spin and precession": [
+        *("mean_spin_rate", "mean_precession_rate", "spin_rate_half", "precession_rate_half"),
+        *("T_spin", "T_precession"),
+    ],
+}
+"""Keys by step of section 8, in the order of the paper."""
+
+
+def derivation_keys(*, radians: bool = False) -> list[str]:
+    """Return the keys of the steps of section 8, in the order of the paper."""
+    return [unit_name(name, radians=radians) for names in CHAIN.values() for name in names]
