@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import LagtopError
+from ..arithmetic.text import shortened
+from ..errors import LagtopError, SomeFailedError
+from ..file_bytes import shown_path
+from ..output.terminal import one_line
 from ..top.scenes import is_scene_file
 from . import shared as opt
 from .app import complain
@@ -81,7 +85,7 @@ def compare_command(
     """
     from ..comparison.compare import compared
     from ..comparison.differences import Alignment
-    from ..comparison.report import comparison_report, read, sentence
+    from ..comparison.report import comparison_report, read
     from ..files.observed import Conventions
     from ..plot.reports import draw_errors
 
@@ -100,11 +104,22 @@ def compare_command(
         results, found = compared(motion, trajectories, max_error, step_sizes)
         if top.scene is None and not top.inputs:
             complain("Warning: no scene and no inputs: compared with the worked example")
-        return comparison_report(motion, results, found, max_error)
+        return comparison_report(motion, results, found, max_error, as_options)
 
     def draw(report: Report) -> Figure:
         return draw_errors(report.rows, max_error, found.errors if found else ())
 
     report = opt.write_report(out, find, plot, draw)
-    failed = [sentence(x) for x in report.rows if x.verdict != "fine"]
-    opt.fail_for(failed, len(report.rows), "trajectories")
+    failed = [one_line(shown_path(x.file)) for x in report.rows if x.verdict != "fine"]
+    if failed:
+        count, names = len(report.rows), shortened(", ".join(failed), 100)
+        raise SomeFailedError(f"{len(failed)} of {count} trajectories not fine: {names}")
+
+
+def as_options(remedy: str) -> str:
+    """Return the arguments of a remedy as options, such as `--align up=y,left`."""
+    return re.sub(r"\b(align|quaternion_order|rates_frame)=", _as_option, remedy)
+
+
+def _as_option(argument: re.Match[str]) -> str:
+    return f"--{argument[1].replace('_', '-')} "

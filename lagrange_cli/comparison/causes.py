@@ -1,201 +1,223 @@
-"""Causes of errors that engines and students produce: each is tried by computing without it."""
+"""The search for the causes of an error: each is tried by computing without it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
-from fractions import Fraction
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable
+from functools import partial
+from itertools import product
 
 import numpy as np
 
+from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files import rotations
 from ..files.observed import Observed
-from ..names import ANGLES
-from ..solver.solve import Motion, solve
-from ..top.top import Top
-from .differences import Alignment, Trajectory, errors, sizes
+from ..solver.solve import solve
+from .differences import Alignment, Exact, Run, errors, sizes, start_of
+from .mistakes import Cause, mistakes, with_changes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
 _AS_GOOD, _ROUNDING = 10.0, 1e-9
 """Factor between the remaining errors of two causes, and least error, that make no difference."""
+_FEW, _SOME, _LEAST = 12, 300, 3
+"""Rows on which causes are tried first and then, and the least number of rows."""
 _MOST_SHIFTS = 500
-_GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
-_FRAMES = {
-    "start": "spin and precession do not start at 0",
-    "left": "the frame is left-handed with z up: read the quaternion as (-x, y, -z, w)",
-    "up=y,left": "the frame is left-handed with y up: read the quaternion as (-x, -z, -y, w)",
-    **{
-        words: "the axes are others"
-        for x in ("x", "y", "-z")
-        for words in (f"axis={x},up={x}", f"axis={x}", f"up={x}")
-    },
-}
-"""Other frames: words of `--align`, with their names."""
-_ANGLES = {
-    "phi and psi are exchanged": {"phi": "psi", "psi": "phi"},
-    "psi is counted backwards": {"psi": "-psi"},
-    "phi is counted backwards": {"phi": "-phi"},
-}
-"""The meanings of columns of angles, by cause; a minus sign reverses the direction."""
+_FRAMES = [
+    *(Alignment(x, x) for x in "zyx"),
+    *(Alignment(up=x, left=True) for x in "zyx"),
+    *(Alignment(x, x) for x in ("-z", "-y", "-x")),
+    *(Alignment(x, y) for x, y in product(["z", "y", "x", "-z", "-y", "-x"], repeat=2) if x != y),
+]
+"""All frames whose axes are those of lagtop in another order or direction, the likeliest first.
+
+A left-handed frame is a right-handed one with all axes reversed, but for the zeros of its angles.
+"""
 
 
-class Cause(NamedTuple):
-    """A cause of errors: the trajectory as it was meant, and inputs of the top that moved."""
-
-    name: str
-    run: Observed
-    inputs: Mapping[str, Any] = MappingProxyType({})
-    """The inputs in which the top that moved differs."""
-    words: str = ""
-    """Words of `--align` that replace the given ones."""
-
-    def error(self, motion: Motion, align: Alignment) -> float:
-        """Return the greatest error without the cause; infinite if there is no such motion."""
-        if self.words:
-            align = Alignment.of(self.words.split(","))._replace(time=align.time)
-        try:
-            moved = solve(motion.top.replace(**self.inputs)) if self.inputs else motion
-            worst = np.fmax.reduce(errors(moved, self.run, align))
-        except LagtopError:
-            return math.inf
-        return math.inf if np.isnan(worst) else float(worst)
-
-
-def likely_cause(motion: Motion, trajectory: Trajectory, limit: float) -> tuple[str, float] | None:
-    """Return the cause that explains the error best, and the greatest error without it.
+def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
+    """Return the cause of an error, and another one that leaves as little, if there is one.
 
     A cause explains an error if it takes off nine tenths.  Of those that bring the error below the
-    limit, return the simplest that leaves about as little as the best; else return the best.
+    limit, return the simplest that leaves about as little as the best.  If there is none, try two
+    causes at once.  Otherwise return the best cause, which explains a part.
     """
-    align, count = trajectory.align, len(trajectory.given["t"])
-    shift = _clock_shift(motion, trajectory)
-    enough = EXPLAINS * Cause("", trajectory.observed()).error(motion, align)
-    some = causes(motion.top, trajectory, shift, 300)
-    hopeful = {x.name for x in some if x.error(motion, align) <= enough}
-    every = causes(motion.top, trajectory, shift, count) if hopeful else ()
-    found = [(x.name, x.error(motion, align)) for x in every if x.name in hopeful]
-    least = min((error for _, error in found), default=math.inf)
-    enough = min(enough, max(least, min(limit, max(_AS_GOOD * least, _ROUNDING))))
-    return next((x for x in found if x[1] <= enough), None)
+    if np.isfinite(errors(exact, run.few(_SOME))).sum() < _LEAST:
+        return []
+    search = Search(exact, run)
+    alone = search.tried(search.single())
+    for more in (list, search.shifts, *search.pairs()):
+        if found := search.best([*alone, *search.tried(more(), limit)], limit):
+            return found
+    return search.best(alone)
 
 
-def causes(top: Top, trajectory: Trajectory, shift: float, most: int) -> Iterator[Cause]:
-    """Yield the causes, the simplest first, with at most so many rows.
+class Search:
+    """The search for the causes of the error of a trajectory."""
 
-    `top` is the intended one, and `shift` the time by which the clock may be shifted.
-    """
-    run = trajectory.few(most).observed()
-    for name, inputs in _other_tops(top).items():
-        words = "up=-z,start" if "upwards" in name else "start" if "theta0" in name else ""
-        yield Cause(name, run, inputs, words)
-    yield from _other_attitudes(top, run)
-    for frame, rates in (("space", run.body_rates), ("body", run.space_rates)):
-        if rates is not None:
-            other = replace(run, body_rates=run.space_rates, space_rates=run.body_rates)
-            yield Cause(f"the rates are in the frame of {frame}: --rates-frame {frame}", other)
-    other_unit = np.radians if trajectory.conventions.radians else np.degrees
-    turned = {x: other_unit(y) for x, y in trajectory.given.items() if x in {*ANGLES, "euler"}}
-    in_other_unit = trajectory._replace(given={**trajectory.given, **turned}).few(most).observed()
-    yield Cause("angles in degrees were taken as radians, or the reverse", in_other_unit)
-    later, earlier = slice(1, None), slice(None, -1)
-    for word, times, states in (("next", later, earlier), ("previous", earlier, later)):
-        given = {key: x[times if key == "t" else states] for key, x in trajectory.given.items()}
-        if len(given["t"]) > 1:
-            moved = trajectory._replace(given=given).few(most).observed()
-            yield Cause(f"rows are off by one: each holds the state of the {word} time", moved)
-    yield Cause("time runs backwards", replace(run, t=-run.t))
-    for more in ("", ",start"):
-        for words, said in _FRAMES.items():
-            yield Cause(f"{said} (--align {words}{more})", run, words=words + more)
-    is_start = math.isclose(shift, trajectory.given["t"][0, 0], rel_tol=1e-4)
-    name = f"the clock is shifted by {shift:.5g}" + " (--align time)" * is_start
-    yield Cause(name, replace(run, t=run.t - shift))
+    def __init__(self, exact: Exact, run: Run) -> None:
+        self.run, self.given = run, exact
+        self.mistakes = mistakes(exact.top, run)
+        self._tops: dict[str, Exact | None] = {str({}): exact}
+        self._runs: dict[Callable[[Run], Run], Run] = {}
+        self.enough = EXPLAINS * self.error(Cause(""), _SOME)
 
+    def exact(self, cause: Cause) -> Exact | None:
+        """Return the motion of the top with a cause, or None if there is no such top."""
+        if (key := str(dict(cause.inputs))) not in self._tops:
+            try:
+                self._tops[key] = Exact(solve(self.given.top.replace(**cause.inputs)))
+            except LagtopError:
+                self._tops[key] = None
+        return self._tops[key]
 
-def _other_tops(top: Top) -> dict[str, dict[str, Any]]:
-    """Return the inputs in which the top that moved differs, by cause."""
-    A, r0, steiner = Fraction(top.A), float(top.r0), Fraction(top.m) * Fraction(top.s) ** 2
-    tilt, rate = float(top.inputs(radians=True)["theta0_rad"]), float(top.thetadot0)
-    folded = math.remainder(math.degrees(tilt), math.tau)
-    gimbal = r0 + float(top.psidot0) * math.cos(tilt)
-    over = {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -top.thetadot0}
-    left_out = "the gyroscopic term is left out of Euler's equations (as if C = A)"
-    return {
-        left_out: {"C": top.A},
-        "A about the pivot was taken as A about the mass centre (A + m s^2)": {"A": A + steiner},
-        "A about the mass centre was taken as A about the pivot (A - m s^2)": {"A": A - steiner},
-        "r0 has the wrong sign": {"r0": -top.r0},
-        "r0 in radians was taken as degrees": {"r0": math.radians(r0)},
-        "r0 in degrees was taken as radians": {"r0": math.degrees(r0)},
-        "r0 in radians was taken as rpm": {"r0": r0 * math.pi / 30},
-        "r0 in rpm was taken as radians": {"r0": r0 * 30 / math.pi},
-        "r0 was taken as the gimbal's rate phi'": {"r0": gimbal},
-        "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
-        "thetadot0 has the wrong sign": {"thetadot0": -rate},
-        "theta0 has the wrong sign": {"theta0_rad": tilt, "thetadot0": -rate},
-        "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
-        "theta0 in degrees was taken as radians": {
-            "theta0_rad": abs(folded),
-            "thetadot0": math.copysign(1.0, folded) * rate,
-        },
-        **{f"g is {g} (or m or s is wrong by as much)": {"g": Fraction(g)} for g in _GRAVITY},
-        "g points upwards": over,
-    }
+    def some(self, cause: Cause) -> Run:
+        """Return some rows of the trajectory as it was meant."""
+        if cause.meant not in self._runs:
+            self._runs[cause.meant] = cause.meant(self.run).few(_SOME)
+        return self._runs[cause.meant]
 
+    def error(self, cause: Cause, most: int = 0) -> float:
+        """Return the greatest error without a cause, on so many rows or on all.
 
-def _other_attitudes(top: Top, run: Observed) -> Iterator[Cause]:
-    """Yield the causes that an attitude was written in another way, or its A and C exchanged."""
-    q = run.quaternion
-    angles = dict(run.angles) if q is None else rotations.angles_of(q)
-    if q is not None:
-        for name, other in {
-            "the conjugate, from space to body": rotations.conjugate(q),
-            "xyzw and was read as wxyz: --quaternion-order xyzw": np.roll(q, 1, 1),
-            "wxyz and was read as xyzw: --quaternion-order wxyz": np.roll(q, -1, 1),
-        }.items():
-            yield Cause(f"the quaternion is {name}", replace(run, quaternion=other))
+        It is infinite if there is no such motion.
+        """
+        if (exact := self.exact(cause)) is None:
+            return math.inf
+        run = self.some(cause).few(most) if most else cause.meant(self.run)
+        try:
+            worst = errors(exact, run._replace(align=cause.align or run.align))
+        except LagtopError:
+            return math.inf
+        return float(np.fmax.reduce(worst, initial=-1.0)) if np.isfinite(worst).any() else math.inf
 
-    def with_angles(changed: dict[str, Any]) -> Observed:
-        other = {"angles": changed} if q is None else {"quaternion": rotations.of_angles(**changed)}
-        return replace(run, **other)
+    def tried(self, causes: Iterable[Cause], limit: float = math.inf) -> list[Cause]:
+        """Return the causes that explain the error of some rows, with the error that remains."""
+        enough = min(self.enough, limit)
+        hopeful = [x for x in causes if self.error(x, _FEW) <= enough]
+        found = [x._replace(error=self.error(x, _SOME)) for x in hopeful]
+        return [x for x in found if x.error <= enough]
 
-    for name, meanings in _ANGLES.items():
-        meant = {meanings.get(x, x): y for x, y in angles.items()}
-        changed = {x.strip("-"): -y if "-" in x else y for x, y in meant.items()}
-        yield Cause(name, with_angles(changed))
-    if angles or run.axis is not None:
-        # A top with the same a and b, which need be no body: its spin differs by a constant rate.
-        ratio = Fraction(top.A) / Fraction(top.C)
-        lag = float(Fraction(top.r0) * (1 - ratio)) * run.t
-        back = with_angles({x: y - lag if x == "phi" else y for x, y in angles.items()})
-        inputs = {"A": top.C, "C": top.C, "r0": Fraction(top.r0) * ratio}
-        back = replace(back, body_rates=None, space_rates=None)
-        yield Cause("A and C are exchanged", back, inputs)
+    def best(self, found: list[Cause], limit: float = math.inf) -> list[Cause]:
+        """Return the simplest cause that leaves about as little as the best, and another one."""
+        enough = min(self.enough, limit)
+        found = [x for x in found if x.error <= enough]
+        while found:
+            bound = min(enough, max(_AS_GOOD * min(x.error for x in found), _ROUNDING))
+            good = [x for x in found if x.error <= bound]
+            mistake = good[0].meant, good[0].inputs
+            others = [x for x in good if (x.meant, x.inputs) != mistake]
+            whole = [x._replace(error=self.error(x)) for x in [good[0], *others[:1]]]
+            if whole[0].error <= enough:
+                return [x for x in whole if x.error <= enough]
+            found.remove(good[0])
+        return []
 
+    def single(self) -> list[Cause]:
+        """Return the single causes, the simplest first."""
+        same, other = self.alignments(Cause(""))
+        early = 1 + next(i for i, x in enumerate(self.mistakes) if x.inputs)
+        return [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
 
-def _clock_shift(motion: Motion, trajectory: Trajectory) -> float:
-    """Return the time by which the clock is shifted, if it is: the time that explains most."""
-    from scipy.optimize import minimize_scalar  # start-up
+    def pairs(self) -> list[Callable[[], list[Cause]]]:
+        """Return groups of two causes at once, the simplest first.
 
-    few, t = trajectory.few(20), trajectory.given["t"][:, 0]
-    step = 0.3 / sizes(motion.top)[2]
-    reach = max(motion.T_nutation or 0.0, 2 * abs(t[0]), 10 * abs(t[-1] - t[0]) / len(t))
-    count = math.ceil(min(reach / step, _MOST_SHIFTS))
-    shifts = step * np.arange(-count, count + 1.0)
-    rows = {key: np.tile(x, (len(shifts), 1)) for key, x in few.given.items()}
-    rows["t"] -= np.repeat(shifts, len(few.given["t"]))[:, np.newaxis]
-    found = errors(motion, few._replace(given=rows).observed(), few.align)
-    worst = np.fmax.reduce(found.reshape(len(shifts), -1), axis=1)
-    best, run = float(shifts[np.argmin(np.nan_to_num(worst, nan=np.inf))]), few.observed()
-    refined = minimize_scalar(
-        lambda shift: Cause("", replace(run, t=run.t - shift)).error(motion, few.align),
-        bounds=(best - step, best + step),
-        method="bounded",
-        options={"xatol": 1e-9 * step},
-    )
-    return float(refined.x)
+        They are a mistake with the zeros of the angles and the clock, a mistake in another frame,
+        and two mistakes.
+        """
+
+        def aligned(group: int) -> list[Cause]:
+            return [x.with_other(y) for y in self.mistakes for x in self.alignments(y)[group]]
+
+        def two() -> list[Cause]:
+            tops = [x for x in self.mistakes if x.inputs]
+            return [x.with_other(y) for x in self.mistakes if not x.inputs for y in tops]
+
+        return [partial(aligned, 0), partial(aligned, 1), two]
+
+    def alignments(self, mistake: Cause) -> tuple[list[Cause], list[Cause]]:
+        """Return other alignments in the frame that is given, and in other frames.
+
+        Under each, the first row has the tilt of the exact motion, or its supplement.
+        """
+        exact, run = self.exact(mistake), self.some(mistake).few(_FEW)
+        found: tuple[list[Cause], list[Cause]] = [], []
+        given, t0 = run.align, float(run.given["t"][0, 0])
+        if exact is None:
+            return found
+        row = run._replace(align=Alignment(), undo=None).observed(slice(1))
+        frames = [given, *(x for x in _FRAMES if x.frame != given.frame)]
+        for start, time in ((False, False), (True, False), (False, True), (True, True)):
+            if (start and given.start) or (time and (given.time or not t0)):
+                continue
+            begins = 0.0 if time or given.time else t0
+            tilt = float(exact.at(np.array([begins]))["theta"][0])
+            for frame in frames:
+                align = frame._replace(start=start or given.start, time=time or given.time)
+                twice = align.start and align.is_reversed  # the same as a left-handed frame
+                if align != given and not twice and self._fits(row, frame, tilt):
+                    found[frame != given].append(self._cause(align, exact, run))
+        return found
+
+    def _fits(self, row: Observed, frame: Alignment, tilt: float) -> bool:
+        if row.quaternion is not None:
+            figure = np.eye(3)["xyz".index(frame.figure[-1])]
+            axis = rotations.rotated(row.quaternion[0], figure)
+        elif row.axis is not None and frame.axis in {"", "z"}:
+            axis = row.axis[0]
+        else:
+            return frame == self.run.align
+        up = abs(axis["xyz".index(frame.up[-1])]) / np.linalg.norm(axis)
+        return not abs(np.arccos(np.minimum(up, 1.0)) - np.arccos(abs(np.cos(tilt)))) > self.enough
+
+    def _cause(self, align: Alignment, exact: Exact, run: Run) -> Cause:
+        """Return an alignment as a cause."""
+        given, (up, figure, left) = run.align, align.frame
+        words, names = [align], []
+        if align.frame == given.frame and align.start and not given.start:
+            seen = run._replace(align=align._replace(start=False)).observed()
+            phi, psi = start_of(seen, exact.at(seen.t)) or (0.0, 0.0)
+            angles = {"psi": math.degrees(psi), "phi": math.degrees(phi)}
+            starts = [f"{x} starts at {y:.4g} degrees" for x, y in angles.items() if abs(y) > 1e-3]
+            names.append(" and ".join(starts))
+        elif align.frame != given.frame and (left or align.is_reversed):
+            axis = up.lstrip("-")
+            down = Alignment(f"-{axis}", f"-{axis}", start=True, time=align.time)
+            words.append(down if left else down._replace(axis="", up=axis, left=True))
+            names.append(f"the frame is left-handed with {axis} up, or has {axis} down")
+        elif align.frame != given.frame:
+            axes = [f"{up} is up"] * (up != given.up or given.left)
+            axes += [f"the figure axis is the body's {figure} axis"] * (figure != given.figure)
+            names.append(" and ".join(axes))
+        if align.time and not given.time:
+            names.append(f"the clock starts at {run.given['t'][0, 0]:.10g}")
+        remedy = " or ".join(f"align={x}" for x in words)
+        return Cause("; ".join(filter(None, names)), align=align, remedy=remedy)
+
+    def shifts(self) -> list[Cause]:
+        """Return the shift of the clock that explains most."""
+        from scipy.optimize import minimize_scalar  # start-up
+
+        exact, few, t = self.given, self.run.few(20), self.run.given["t"][:, 0]
+        if self.run.align.start:
+            return []
+
+        def error(shifts: float | Array) -> Array:
+            rows = {key: np.tile(x, (np.size(shifts), 1)) for key, x in few.given.items()}
+            rows["t"] -= np.repeat(shifts, len(few.given["t"]))[:, np.newaxis]
+            found = errors(exact, few._replace(given=rows, missing=None))
+            return np.asarray(np.fmax.reduce(found.reshape(np.size(shifts), -1), axis=1))
+
+        step = 0.3 / sizes(exact.top)[2]
+        reach = max(exact.motion.T_nutation or 0.0, 10 * abs(t[-1] - t[0]) / len(t))
+        count = math.ceil(min(reach / step, _MOST_SHIFTS))
+        near = step * np.arange(-count, count + 1.0)
+        shifts = np.unique([near, t[0] + near])
+        best = float(shifts[np.argmin(np.nan_to_num(error(shifts), nan=np.inf))])
+        ends, options = (best - step, best + step), {"xatol": 1e-9 * step}
+        found = minimize_scalar(
+            lambda x: float(error(x)[0]), bounds=ends, method="bounded", options=options
+        )
+        meant = partial(with_changes, {"t": lambda t: t - float(found.x)})
+        return [Cause(f"the clock is shifted by {found.x:.5g}", meant)]

@@ -18,8 +18,8 @@ from ..names import ANGLES, check_names
 from ..output.notebook import HasRecord
 from ..solver.solve import Motion, solve
 from ..top.top import Top
-from .causes import likely_cause
-from .differences import Alignment, Trajectory, differences
+from .causes import likely_causes
+from .differences import CONSERVED, Alignment, Exact, Run, blocks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 LIMIT = 1e-3
 """The error in radians up to which a trajectory is fine by default."""
 VERDICTS = {
-    "fine": "the errors of attitude and rates stay below the limit, 1e-3 or --max-error",
-    "drifts": "the first row is right, but an error grows beyond the limit",
-    "another top": "an error exceeds the limit and does not fall with the step, or has a cause",
+    "fine": "the errors of attitude and rates stay below the limit, by default 1e-3",
+    "drifts": "the first row is right, but an error grows beyond the limit, or the pivot slips",
+    "another top": "the error does not fall with the step, or other inputs explain it",
     "off from the start": "the first row already exceeds the limit: another start, other frames",
     "lost": "a row is not finite",
 }
@@ -39,10 +39,13 @@ LOST_PHASE, ROUNDING = 0.3, 1e-8
 """Errors beyond which no order can be measured, and below which an error need not fall."""
 LEAST_ORDER = 0.5
 """Least order of a method that converges."""
+_RISES, _SPREAD = 1.2, 1.0
+"""Ratio of errors above which a finer step is worse; greatest spread of one method's orders."""
 _SURE = 2.0
 """Largest change of a difference from row to row, in radians, for whole turns to be counted."""
 _COMPARED = {"attitude": "attitude", "axis": "axis", **dict.fromkeys(ANGLES, "angles")}
-_KEYS = {"error": "error_max", "norm": "norm_error", "energy": "energy_drift", "Lz": "Lz_drift"}
+_KEYS = {"error": "error_max", "norm": "norm_error", "distance": "pivot_slip"}
+_KEYS |= {"energy": "energy_drift", "Lz": "Lz_drift"}
 """Keys of greatest differences; the others end in `_error_max`."""
 
 
@@ -60,9 +63,10 @@ class Comparison(HasRecord):
     """
 
     file: str | None = _key("the file, `-` for standard input")
-    step: float | None = _key("step size of the trajectory (--step-sizes)")
+    step: float | None = _key("step size of the trajectory, if it was given")
     verdict: str = _key("verdict on the trajectory", "fine")
     rows: int = _key("the number of rows", 0)
+    rows_missing: int = _key("the number of rows with empty cells", 0)
     compared: str = _key("the quantity of the error: attitude, axis, angles or rates", "")
     error_max: float | None = _key("greatest error of that quantity")
     error_final: float | None = _key("its error in the last row")
@@ -76,15 +80,19 @@ class Comparison(HasRecord):
     phi_drift: float | None = _key("the same of the spin")
     psi_drift: float | None = _key("the same of the precession")
     norm_error: float | None = _key(
-        "greatest distance from 1: of the norm of a quaternion or axis, of the matrix R R^T, or "
-        "of the mass centre's distance divided by s"
+        "greatest distance from 1 of the norm of a quaternion or axis, or of the matrix R R^T"
+    )
+    pivot_slip: float | None = _key(
+        "greatest change of the mass centre's distance from the pivot, over that in the first row"
     )
     energy_drift: float | None = _key("greatest change of energy, over its size at the start")
     Lz_drift: float | None = _key("greatest change of the vertical angular momentum, likewise")
     lost_at: float | None = _key("time of the first row that is not finite")
-    order: float | None = _key("order of convergence of all files (--step-sizes)")
-    cause: str | None = _key("the most likely cause of the error")
+    order: float | None = _key("order of convergence of all trajectories")
+    cause: str | None = _key("the cause of the error")
+    explained: str | None = _key("`most likely`: below the limit without the cause; else `partly`")
     cause_error: float | None = _key("greatest error with this cause corrected")
+    remedy: str | None = _key("arguments that take the cause into account, as `name=value`")
 
     error_start: float = field(default=0.0, compare=False)
     """Error of the first row, or of its rates."""
@@ -120,7 +128,7 @@ def compare(
     quaternion_order: str = "wxyz",
     euler_sequence: str = "xyz",
     rates_frame: str = "body",
-    align: Sequence[str] = (),
+    align: str | Sequence[str] = (),
     max_error: float = LIMIT,
     **arrays: ArrayLike | None,
 ) -> Comparison:
@@ -134,9 +142,10 @@ def compare(
     `angle_rates` (n, 3), the rates of theta, phi, psi.
 
     Angles are in radians; a masked element is a missing number.  `align` changes the trajectory
-    first, as in `lagtop compare`.  A trajectory is fine up to `max_error` radians.
+    first, as in `lagtop compare`: words or a text such as "up=y,left".  A trajectory is fine up to
+    `max_error` radians.
 
-    Raises LagtopError for a bad argument, and for times that are not finite or not monotonic.
+    Raises LagtopError for a bad argument, and for times that are not finite or that turn back.
 
     >>> motion, t = solve(Top()), np.linspace(0, 1, 50)
     >>> found = compare(motion, t, theta=motion.angles(t).theta + 1e-4)
@@ -150,21 +159,25 @@ def compare(
         raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
     check_names("arrays", [*given], [x for x in QUANTITIES if x != "t"])
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
-    trajectory = Trajectory(quantities_of(t, given), conventions, Alignment.of(align))
-    times = trajectory.given["t"]
-    before, after = times[:-1], times[1:]
+    masks = [x.mask for x in given.values() if isinstance(x, np.ma.MaskedArray)]
+    run = Run(quantities_of(t, given), conventions, Alignment.of(align))
+    if masks:
+        each = [np.resize(x, (np.size(t), x.size // np.size(t) or 1)) for x in masks]
+        run = run._replace(missing=np.any(np.hstack(each), axis=1))
+    times = run.given["t"][:, 0]
     if not len(times):
         raise LagtopError("t must have at least one row, got none", "t")
-    if not np.isfinite(times).all() or not ((before < after).all() or (before > after).all()):
+    steps = np.diff(times)
+    if not np.isfinite(times).all() or not ((steps >= 0).all() or (steps <= 0).all()):
         raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
     motion = top if isinstance(top, Motion) else solve(top)
-    return compared(motion, [trajectory], max_error)[0][0]
+    return compared(motion, [run], max_error)[0][0]
 
 
 @np.errstate(all="ignore")  # rows that are not finite raise no warnings
 def compared(
     motion: Motion,
-    trajectories: Sequence[Trajectory],
+    runs: Sequence[Run],
     limit: float = LIMIT,
     step_sizes: Sequence[float] | None = None,
 ) -> tuple[list[Comparison], Convergence | None]:
@@ -174,90 +187,140 @@ def compared(
     then the top is right.  Raises LagtopError for bad step sizes, DataError for times that are
     too late in a file.
     """
-    if step_sizes is not None and len(step_sizes) != len(trajectories):
-        wanted = f"one number per trajectory ({len(trajectories)})"
+    if step_sizes is not None and len(step_sizes) != len(runs):
+        wanted = f"one number per trajectory ({len(runs)})"
         raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
     if wrong := [step for step in step_sizes or [] if not step > 0]:
         raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
+    exact = Exact(motion)
     steps = step_sizes or repeat(None)
-    results = [_measured(motion, x, step) for x, step in zip(trajectories, steps, strict=False)]
+    results = [_measured(exact, x, step) for x, step in zip(runs, steps, strict=False)]
     found = convergence(results) if step_sizes else None
-    for i, (x, trajectory) in enumerate(zip(results, trajectories, strict=True)):
-        verdict, cause = "fine", None
-        if max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit:
-            cause = None if found and found.falls else likely_cause(motion, trajectory, limit)
-            is_known = cause is not None and cause[1] <= limit
-            verdict = "another top" if is_known or (found and not found.falls) else "drifts"
+    for i, (x, run) in enumerate(zip(results, runs, strict=True)):
+        is_wrong = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
+        converges = found is not None and (found.falls or found.best <= limit)
+        causes = likely_causes(exact, run, limit) if is_wrong and not converges else []
+        is_known = any(y.inputs and y.error <= limit for y in causes)
+        verdict = "drifts" if is_wrong or (x.pivot_slip or 0.0) > limit else "fine"
+        if is_wrong and (is_known or (found and not converges)):
+            verdict = "another top"
         verdict = "off from the start" if x.error_start > limit else verdict
         verdict = "lost" if x.lost_at is not None else verdict
-        name, remaining = cause or (None, None)
-        order = found and found.order
-        results[i] = replace(x, verdict=verdict, order=order, cause=name, cause_error=remaining)
+        results[i] = replace(x, verdict=verdict, order=found and found.order)
+        if causes:
+            results[i] = replace(
+                results[i],
+                cause="; or ".join(y.name for y in causes),
+                explained="most likely" if causes[0].error <= limit else "partly",
+                cause_error=max(y.error for y in causes),
+                remedy=" or ".join(y.remedy for y in causes if y.remedy) or None,
+            )
     return results, found
 
 
-def _measured(motion: Motion, trajectory: Trajectory, step: float | None) -> Comparison:
+def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
-    run = trajectory.align.aligned(trajectory.observed(), motion)
+    whole: dict[str, list[Array]] = {"t": []}
+    extremes: dict[str, list[float]] = {}
+    starts: list[float] = []
     try:
-        found = differences(motion, run)
+        for t, found in blocks(exact, run):
+            starts = starts or [float(max(found["error"][0], found.get("rates", [0.0])[0]))]
+            whole["t"].append(t)
+            for name, values in found.items():
+                if name in {"error", *ANGLES}:
+                    whole.setdefault(name, []).append(values)
+                if (finite := values[np.isfinite(values)]).size:
+                    ends = [float(finite[0]), float(finite.min()), float(finite.max())]
+                    extremes.setdefault(name, []).extend(ends)
     except LagtopError as wrong:
-        if trajectory.file is None or wrong.key != "t":
+        if run.file is None or wrong.key != "t":
             raise
-        raise DataError(f"{shown_path(trajectory.file)}: {wrong}") from None
-    error, t, known = found["error"], run.t, dict[str, Any]()
-    for name, values in found.items():
-        finite = np.isfinite(values)
-        if finite.any():
-            known[_KEYS.get(name, f"{name}_error_max")] = float(abs(values[finite]).max())
-        if name in ANGLES and finite.sum() > 2:
-            times, angle = t[finite] - t[finite].mean(), np.unwrap(values[finite])
-            if abs(np.diff(angle)).max() <= _SURE:
-                known[f"{name}_drift"] = float(np.polyfit(times, angle, 1)[0])
-    lost = np.flatnonzero(np.isnan(error))
+        raise DataError(f"{shown_path(run.file)}: {wrong}") from None
+    columns = {name: np.concatenate(x) for name, x in whole.items()}
+    t, error = columns["t"], columns["error"]
+    known: dict[str, Any] = {}
+    for name, ends in extremes.items():
+        first = ends[0] if name in CONSERVED else 0.0
+        over = first if name == "distance" else 1.0
+        greatest = float(max(abs(x - first) for x in ends) / over)
+        known[_KEYS.get(name, f"{name}_error_max")] = greatest
+        if name in ANGLES:
+            known[f"{name}_drift"] = _slope(t, columns[name])
+    lost = np.isnan(error) & (True if run.missing is None else np.logical_not(run.missing))
     return Comparison(
-        file=trajectory.file and utf8_path(trajectory.file),
+        file=run.file and utf8_path(run.file),
         step=step,
         rows=t.size,
-        compared=next((word for name, word in _COMPARED.items() if name in found), "rates"),
+        rows_missing=0 if run.missing is None else int(run.missing.sum()),
+        compared=next((word for name, word in _COMPARED.items() if name in extremes), "rates"),
         error_final=None if np.isnan(error[-1]) else float(error[-1]),
-        lost_at=float(t[lost[0]]) if lost.size else None,
-        error_start=float(max(error[0], found.get("rates", error)[0])),
+        lost_at=float(t[np.argmax(lost)]) if lost.any() else None,
+        error_start=starts[0],
         t=t,
         error=error,
         **known,
     )
 
 
+def _slope(t: Array, angle: Array) -> float | None:
+    """Return the fitted growth of an angle per unit of time, None if whole turns may be missing."""
+    finite = np.isfinite(angle)
+    times, angle = t[finite], np.unwrap(angle[finite])
+    span = abs(times - times[0]).max() if times.size > 2 else 0.0
+    if not span or abs(np.diff(angle)).max() > _SURE:
+        return None
+    times = (times - times[0]) / span
+    times -= times.mean()
+    slope = float(times @ angle / (times @ times) / span)
+    return slope if np.isfinite(slope) else None
+
+
 class Convergence(NamedTuple):
     """The dependence of the error on the step."""
 
     order: float | None
-    """Fitted exponent; None if there are fewer than two errors to fit."""
+    """Fitted exponent; None if there are fewer than two errors to fit, or no single order."""
     falls: bool
-    """Whether the error depends on the step, or is a rounding error."""
+    """Whether the error falls with the step, or is a rounding error."""
     errors: Sequence[float]
     """Greatest error of each trajectory, up to the time at which the first one loses the phase."""
+    rise: tuple[float, float] | None = None
+    """A step and a finer one at which the error is greater, if there are such steps."""
+
+    @property
+    def best(self) -> float:
+        """The least error, infinite if it rises with finer steps."""
+        return float("inf") if self.rise else min(self.errors)
 
 
 def convergence(results: Sequence[Comparison]) -> Convergence | None:
     """Return how the errors of trajectories fall with their steps, or None for fewer than two.
 
     The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
-    rad.  Steps finer than the step of the least error do not count, because rounding grows there.
+    rad, other than at its start.  Rounding errors are left out, because they grow with finer steps.
+    If the orders between neighbours differ by more than 1, there is no single order.
     """
     if len({x.step for x in results}) < 2:
         return None
     curves = [
         (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf))) for x in results
     ]
-    until = min(t[max(np.searchsorted(error, LOST_PHASE) - 1, 0)] for t, error in curves)
+    lost = [int(np.searchsorted(error, LOST_PHASE)) for _, error in curves]
+    until = min((t[i - 1] for i, (t, _) in zip(lost, curves, strict=True) if i > 1), default=np.inf)
     errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
     step, error = np.array(sorted((x.step, y) for x, y in zip(results, errors, strict=True))).T
-    least = error.min()
-    falls = least < ROUNDING or error.max() >= least * (step[-1] / step[0]) ** LEAST_ORDER
-    usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
+    rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)
+    if rises.any():
+        i = int(np.argmax(rises))
+        return Convergence(None, False, errors, (float(step[i + 1]), float(step[i])))
+    falls = error[0] < ROUNDING or error[1] >= error[0] * (step[1] / step[0]) ** LEAST_ORDER
+    usable = (error >= ROUNDING) & (error < LOST_PHASE)
+    if len({*step[usable]}) < 2:
+        usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
     if len({*step[usable]}) < 2:
         return Convergence(None, bool(falls), errors)
-    slope = np.polyfit(np.log(step[usable]), np.log(error[usable]), 1)[0]
-    return Convergence(float(slope), bool(falls), errors)
+    x, y = np.log(step[usable]), np.log(error[usable])
+    orders = np.diff(y) / np.diff(x)
+    slope = float(np.polyfit(x, y, 1)[0]) if np.ptp(orders) <= _SPREAD else None
+    return Convergence(slope, bool(falls), errors)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -28,14 +28,18 @@ WORDS = {
     "start": "spin and precession are 0 in the first row",
     "time": "the first row is at time 0",
 }
-"""The words of `--align`, with their meanings."""
-
+"""The words of an alignment, with their meanings."""
+CONSERVED = {"energy", "Lz", "distance"}
+"""Differences that are counted from the first row."""
 _EXCHANGE_XY = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-_NEAR_POLE = 1e-9
+_NEAR_POLE, _OFF_POLE = 1e-9, 0.01
+"""Sines of the tilt: up to which only one angle is defined, and from which the azimuth is exact."""
+_BLOCK, _KEPT = 1 << 14, 300
+"""Rows of a block, and the most times whose exact motion is kept."""
 
 
 class Alignment(NamedTuple):
-    """Changes of a trajectory before it is compared: the words of `--align`."""
+    """Changes of a trajectory before it is compared."""
 
     axis: str = ""
     up: str = "z"
@@ -44,100 +48,188 @@ class Alignment(NamedTuple):
     time: bool = False
 
     @classmethod
-    def of(cls, words: Sequence[str]) -> Alignment:
-        """Return the alignment of some words.  Raises LagtopError for an unknown word."""
+    def of(cls, words: str | Sequence[str]) -> Alignment:
+        """Return the alignment of some words, or of a text in which commas separate them.
+
+        Raises LagtopError for an unknown word.
+        """
         found: dict[str, Any] = {}
-        for word in words:
-            if not re.fullmatch("(axis|up)=-?[xyz]|left|start|time", str(word)):
+        for word in filter(None, words.split(",")) if isinstance(words, str) else words:
+            if not re.fullmatch("(axis|up)=-?[xyz]|left|start|time", str(word).strip()):
                 wanted = f"align must be among {', '.join(WORDS)}"
                 raise LagtopError(f"{wanted}, got {quoted(word)}", "align")
-            key, _, axis = word.partition("=")
+            key, _, axis = str(word).strip().partition("=")
             found[key] = axis or True
         return cls(**found)
 
-    def aligned(self, run: Observed, motion: Motion) -> Observed:
-        """Return a trajectory in the frames of lagtop and with its clock.
+    def __str__(self) -> str:
+        has_axis = self.figure != (self.up if self.left else "z")
+        words = [f"axis={self.figure}"] * has_axis
+        words += [f"up={self.up}"] * (self.up != "z")
+        words += [x for x in ("left", "start", "time") if getattr(self, x)]
+        return ",".join(words) or "up=z"
+
+    @property
+    def frame(self) -> tuple[str, str, bool]:
+        """The axes and the handedness of the frames."""
+        return self.up, self.figure, self.left
+
+    @property
+    def is_reversed(self) -> bool:
+        """Whether the frames are right-handed and have the same axis down, as NED has z."""
+        return not self.left and self.up.startswith("-") and self.figure == self.up
+
+    @property
+    def figure(self) -> str:
+        """The axis of the body that is the figure axis."""
+        return self.axis or (self.up if self.left else "z")
+
+    def framed(self, run: Observed) -> Observed:
+        """Return a motion in the frames of lagtop.
 
         Raises LagtopError if the attitude is not complete enough.
         """
-        axis = self.axis or (self.up if self.left else "z")
-        if run.quaternion is None and (axis != "z" or self.left):
-            raise LagtopError("align axis and left need the whole attitude: omit them", "align")
-        if self.up != "z" and all(x is None for x in (run.quaternion, run.axis, run.space_rates)):
+        has_axis = run.quaternion is not None or run.axis is not None
+        if run.quaternion is None and self.axis not in {"", "z"}:
+            raise LagtopError("align axis needs the whole attitude: omit it", "align")
+        if self.left and not has_axis:
+            raise LagtopError("align left needs the axis or the whole attitude: omit it", "align")
+        if self.up != "z" and not has_axis and run.space_rates is None:
             raise LagtopError("align up needs the axis or the whole attitude: omit it", "align")
-        run = run.turned(rotations.to_z(self.up), rotations.to_z(axis))
+        if self.figure != "z" or self.up != "z":
+            run = run.turned(rotations.to_z(self.up), rotations.to_z(self.figure))
         if self.left:  # as is usual: Unreal turns y round, Unity exchanges y and z
             run = _mirrored(run, np.diag([1.0, -1, 1]) if self.up[-1] == "z" else _EXCHANGE_XY)
-        if self.time:
-            run = replace(run, t=run.t - run.t[0])
-        return _counted_from_start(run, motion) if self.start else run
+        return run
 
 
 def _mirrored(run: Observed, mirror: Array) -> Observed:
     """Return the motion after a reflection of both frames, a matrix of shape (3, 3)."""
-    assert run.quaternion is not None
     names = (x for x in ("body_rates", "space_rates") if getattr(run, x) is not None)
-    rates = {x: -getattr(run, x) @ mirror for x in names}
-    q = np.concatenate([run.quaternion[:, :1], -run.quaternion[:, 1:] @ mirror], axis=1)
-    return replace(run, quaternion=q, **rates)
+    changed: dict[str, Any] = {x: -getattr(run, x) @ mirror for x in names}
+    if (q := run.quaternion) is not None:
+        changed["quaternion"] = np.concatenate([q[:, :1], -q[:, 1:] @ mirror], axis=1)
+    if run.axis is not None:
+        changed["axis"] = run.axis @ mirror
+    return replace(run, **changed)
 
 
-def _counted_from_start(run: Observed, motion: Motion) -> Observed:
-    """Return the motion turned about the vertical and the figure axis, to fit its first row."""
-    given = dict(run.angles) if run.axis is None else rotations.angles_of_axis(run.axis)
-    given = given if run.quaternion is None else rotations.angles_of(run.quaternion)
-    row = int(np.argmax(np.isfinite([*given.values()]).all(axis=0)))
-    exact = {x: float(y[0]) for x, y in motion.table(run.t[[row]], ANGLES, wrap=True).items()}
-    phi, psi = (float(given[x][row]) - exact[x] if x in given else 0.0 for x in ("phi", "psi"))
-    if run.quaternion is not None and math.sin(exact["theta"]) < _NEAR_POLE:  # one angle is free
-        phi, psi = (phi + psi if exact["theta"] < 1 else phi - psi), 0.0
-    shifts = {"theta": 0.0, "phi": phi, "psi": psi}
-    angles = {key: x - shifts[key] for key, x in run.angles.items()}
-    return replace(run.turned(rotations.about_z(-psi), rotations.about_z(phi)), angles=angles)
-
-
-class Trajectory(NamedTuple):
-    """A trajectory as it is given, with its conventions."""
+class Run(NamedTuple):
+    """A trajectory as it is given, and how it is read."""
 
     given: Quantities
     """Arrays of quantities, with all angles in radians."""
     conventions: Conventions
     align: Alignment = Alignment()
     file: str | None = None
+    missing: Array | None = None
+    """Whether each row has empty cells; such a row counts as far as it has numbers."""
+    undo: Callable[[Observed], Observed] | None = None
+    """Undoes a mistake in the motion, after its frames and its clock are those of lagtop."""
 
-    def few(self, most: int) -> Trajectory:
+    def few(self, most: int) -> Run:
         """Return at most so many rows, evenly spread."""
-        every = -(-len(self.given["t"]) // most)
-        return self._replace(given=rows_of(self.given, slice(None, None, every)))
+        rows = slice(None, None, -(-len(self.given["t"]) // most))
+        missing = self.missing if self.missing is None else self.missing[rows]
+        return self._replace(given=rows_of(self.given, rows), missing=missing)
 
-    def observed(self) -> Observed:
-        """Return the motion of the trajectory, in its own frames."""
-        return observe(self.given, self.conventions)
+    def observed(self, rows: slice = slice(None)) -> Observed:
+        """Return the motion of some rows, in the frames of lagtop and with its clock."""
+        seen = self.align.framed(observe(rows_of(self.given, rows), self.conventions))
+        if self.align.time:
+            seen = replace(seen, t=seen.t - self.given["t"][0, 0])
+        return self.undo(seen) if self.undo else seen
 
 
-def errors(motion: Motion, run: Observed, align: Alignment) -> Array:
+class Exact:
+    """The exact motion of a top; its states at few times are kept."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion, self.top = motion, motion.top
+        self._kept: dict[bytes, dict[str, Array]] = {}
+
+    def at(self, t: Array) -> dict[str, Array]:
+        """Return the angles, and the `quaternion` and `rates` as arrays of shape (n, parts)."""
+        key = t.tobytes() if t.size <= _KEPT else b""
+        if key in self._kept:
+            return self._kept[key]
+        found = self.motion.table(t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
+        states = {x: found[x] for x in ANGLES}
+        states["quaternion"] = np.stack([found[f"quaternion_{x}"] for x in "wxyz"], axis=1)
+        states["rates"] = np.stack([found[x] for x in "pqr"], axis=1)
+        if key:
+            self._kept[key] = states
+        return states
+
+
+def angles_of(seen: Observed) -> dict[str, Array]:
+    """Return tilt, spin and precession of a motion, as far as they are known."""
+    if seen.quaternion is not None:
+        return rotations.angles_of(seen.quaternion)
+    return dict(seen.angles) if seen.axis is None else rotations.angles_of_axis(seen.axis)
+
+
+def start_of(seen: Observed, exact: dict[str, Array]) -> tuple[float, float] | None:
+    """Return the spin and the precession less those of the exact motion, in the first row.
+
+    If the axis starts next to the vertical, they are taken from the first row off it.  Return None
+    if no row is finite.
+    """
+    given = angles_of(seen)
+    finite = np.isfinite([*given.values()]).all(axis=0) if given else np.isfinite(seen.t)
+    rows = np.flatnonzero(finite)[:1000]
+    if not rows.size:
+        return None
+    sine = np.sin(exact["theta"][rows])
+    row = int(rows[np.argmax(sine >= min(_OFF_POLE, sine.max() / 2))])
+    phi, psi = (float(given[x][row] - exact[x][row]) if x in given else 0.0 for x in ANGLES[1:])
+    if seen.quaternion is not None and math.sin(exact["theta"][row]) < _NEAR_POLE:
+        phi, psi = (phi + psi if exact["theta"][row] < 1 else phi - psi), 0.0  # one angle is free
+    return phi, psi
+
+
+def blocks(exact: Exact, run: Run) -> Iterator[tuple[Array, dict[str, Array]]]:
+    """Yield the times of some rows and their differences from the exact motion, block by block.
+
+    Raises LagtopError if the attitude is not complete enough for the alignment.
+    """
+    start = None
+    for first in range(0, len(run.given["t"]), _BLOCK):
+        rows = slice(first, first + _BLOCK)
+        seen = run.observed(rows)
+        states = exact.at(seen.t)
+        if run.align.start and (start := start or start_of(seen, states)):
+            phi, psi = start
+            shifts = {"theta": 0.0, "phi": phi, "psi": psi}
+            angles = {key: x - shifts[key] for key, x in seen.angles.items()}
+            seen = seen.turned(rotations.about_z(-psi), rotations.about_z(phi))
+            seen = replace(seen, angles=angles)
+        missing = None if run.missing is None else run.missing[rows]
+        yield seen.t, differences(exact.motion, seen, states, missing)
+
+
+def errors(exact: Exact, run: Run) -> Array:
     """Return the error of each row, or that of its rates if it is greater."""
-    found = differences(motion, align.aligned(run, motion))
-    worst: Array = np.maximum(found["error"], found.get("rates", 0.0))
-    return worst
+    found = (x for _, x in blocks(exact, run))
+    return np.concatenate([np.fmax(x["error"], x.get("rates", x["error"])) for x in found])
 
 
-def differences(motion: Motion, run: Observed) -> dict[str, Array]:
+def differences(
+    motion: Motion, run: Observed, states: dict[str, Array], missing: Array | None = None
+) -> dict[str, Array]:
     """Return the differences from the exact motion in each row, by name; missing if not given.
 
     `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
-    top; `energy` and `Lz` are the changes of (4,2) and (4,3) since the first row, over their sizes;
-    `norm` is the distance of a norm from 1.  `error` is the error of the attitude, or else of the
-    axis, the angles, or the rates; it is NaN in a row with a value that is not finite.
+    top; `energy` and `Lz` (4,2), (4,3) are over their sizes; `distance` is that of the mass centre
+    from the pivot, and `norm` the distance of a norm from 1.  `error` is the error of the attitude,
+    or else of the axis, the angles, or the rates.  It is NaN in a row with a value that is not
+    finite, unless only another quantity has `missing` cells.
     """
-    exact = motion.table(run.t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
-    q = np.stack([exact[f"quaternion_{x}"] for x in "wxyz"], axis=1)
-    angles, axis, found = dict(run.angles), run.axis, dict[str, Array]()
+    q, exact = states["quaternion"], {x: states[x] for x in ANGLES}
+    angles, axis, found = angles_of(run), run.axis, dict[str, Array]()
     if run.quaternion is not None:
         found["attitude"] = rotations.angle_between(q, run.quaternion)
-        angles, axis = rotations.angles_of(run.quaternion), rotations.axis_of(run.quaternion)
-    elif axis is not None:
-        angles = rotations.angles_of_axis(axis)
+        axis = rotations.axis_of(run.quaternion)
     if axis is not None:
         found["axis"] = rotations.angle_between_vectors(rotations.axis_of(q), axis)
     if axis is not None and motion.regime in {Regime.SLEEPING, Regime.HANGING}:
@@ -145,19 +237,20 @@ def differences(motion: Motion, run: Observed) -> dict[str, Array]:
             one["phi"] = one["phi"] + (1 if motion.regime is Regime.SLEEPING else -1) * one["psi"]
         del angles["psi"]
     found |= {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
-    found |= _rates(motion.top, run, q, np.stack([exact[x] for x in "pqr"], axis=1))
+    found |= _rates(motion.top, run, q, states["rates"])
     if run.norm is not None:
         found["norm"] = abs(run.norm)
-    if run.distance is not None and motion.top.s:
-        found["norm"] = abs(run.distance / float(motion.top.s) - 1.0)
+    if run.distance is not None:
+        found["distance"] = run.distance
     parts = [abs(found[key]) for key in angles] or [found["rates"]]
     error = np.array(found.get("attitude", found.get("axis", np.max(parts, axis=0))))
-    error[~np.all([np.isfinite(x) for x in found.values()], axis=0)] = np.nan
+    lost = ~np.all([np.isfinite(x) for x in found.values()], axis=0)
+    error[lost & (True if missing is None else np.logical_not(missing))] = np.nan
     return found | {"error": error}
 
 
 def _rates(top: Top, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
-    """Return the differences of the angular velocity, and the changes of what it conserves."""
+    """Return the differences of the angular velocity, and the energy and Lz of the motion."""
     swing, torque, size = sizes(top)
     own, fixed = run.body_rates, run.space_rates
     given = own if fixed is None else fixed
@@ -175,8 +268,8 @@ def _rates(top: Top, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
     energy = (moments * own**2).sum(axis=1) / 2 + torque * up[:, 2]
     momentum = (moments * own * up).sum(axis=1)
     kinetic, spin = (A * swing**2 + C * r0**2) / 2, math.hypot(A * swing, C * r0)
-    found["energy"] = (energy - energy[0]) / (kinetic + torque or 1.0)
-    found["Lz"] = (momentum - momentum[0]) / (spin + math.sqrt(A * torque) or 1.0)
+    found["energy"] = energy / (kinetic + torque or 1.0)
+    found["Lz"] = momentum / (spin + math.sqrt(A * torque) or 1.0)
     return found
 
 

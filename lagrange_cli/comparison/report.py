@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from ..errors import DataError, LagtopError
 from ..file_bytes import shown_path
@@ -12,7 +12,7 @@ from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import one_line
 from ..solver.solve import Motion
 from .compare import COMPARISON_KEYS, LEAST_ORDER, LIMIT, Comparison, Convergence
-from .differences import Alignment, Trajectory
+from .differences import Alignment, Run
 
 _WRONG_NORM = 1e-6
 _COLUMNS = (
@@ -33,7 +33,7 @@ def read(
     align: Alignment,
     columns: Sequence[str] | None = None,
     decimal: str = "",
-) -> Trajectory:
+) -> Run:
     """Return the trajectory in a file, or on standard input for `-`.
 
     `columns` names all columns from the left; `decimal` is the decimal mark.  Raises DataError for
@@ -44,39 +44,52 @@ def read(
     if not len(rows["t"]):
         raise DataError(f"{file.name}: t must have at least one row")
     file.check_times(rows["t"][:, 0])
-    trajectory = Trajectory(rows, file.conventions(conventions), align, path)
+    run = Run(rows, file.conventions(conventions), align, path)
     try:
-        trajectory.observed()
+        run.observed(slice(1))
     except LagtopError as error:
         raise DataError(f"{file.name}: {error}") from None
-    return trajectory
+    return run
 
 
 def comparison_report(
-    motion: Motion, results: Sequence[Comparison], found: Convergence | None, limit: float = LIMIT
+    motion: Motion,
+    results: Sequence[Comparison],
+    found: Convergence | None,
+    limit: float = LIMIT,
+    argument: Callable[[str], str] = str,
 ) -> Report:
-    """Return the report on trajectories."""
+    """Return the report on trajectories; `argument` writes a remedy such as `align=start`."""
     shown = [x for x in _COLUMNS if any(getattr(row, x.key) is not None for row in results)]
     conditions = {
         "scene": motion.top.options(),
         "regime": motion.regime,
         "errors": f"radians, those of rates relative; greatest of all rows; fine up to {limit:g}",
     }
-    lines = [line for x in results for line in _conclusions(x, limit, found)]
+    lines = [line for x in results for line in _conclusions(x, limit, found, argument)]
     if found is not None:
         lines.append(_order(results, found))
     return Report(conditions, fields_of([*COMPARISON_KEYS], *shown), results, lines)
 
 
-def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iterator[str]:
+def _conclusions(
+    x: Comparison, limit: float, found: Convergence | None, argument: Callable[[str], str]
+) -> Iterator[str]:
     yield f"{sentence(x)}."
+    if x.rows_missing:
+        yield f"{x.rows_missing} of {x.rows} rows have empty cells."
     if x.compared == "attitude" and (x.norm_error or 0.0) > _WRONG_NORM:
         yield f"The norm of its quaternion or matrix is up to {x.norm_error:.1e} off 1."
-    if x.cause is not None and x.cause_error is not None:
-        words = "Most likely cause" if x.cause_error <= limit else "Partly explained"
-        yield f"{words}: {x.cause}. With that corrected, the error is at most {x.cause_error:.1e}."
-    elif x.verdict not in {"fine", "lost"} and not (found and found.falls):
-        hint = ": check the step with --step-sizes" if x.verdict == "drifts" and not found else ""
+    if (slip := x.pivot_slip or 0.0) > limit:
+        yield f"The pivot slips: the mass centre's distance from it changes by up to {slip:.1%}."
+    if x.cause is not None:
+        words = (x.explained or "").capitalize() + " cause" * (x.explained == "most likely")
+        words = "Partly explained" if x.explained == "partly" else words
+        remedy = f" ({argument(x.remedy)})" if x.remedy else ""
+        error = f"With that corrected, the error is at most {x.cause_error:.1e}"
+        yield f"{words}: {x.cause}{remedy}. {error}."
+    elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (found and found.falls):
+        hint = ": compare runs with other step sizes" if x.verdict == "drifts" and not found else ""
         yield f"None of the known causes explains the error{hint}."
 
 
@@ -91,12 +104,21 @@ def sentence(x: Comparison) -> str:
 
 
 def _order(results: Sequence[Comparison], found: Convergence) -> str:
+    if found.rise is not None:
+        (coarse, _), (fine, _) = pairs = [
+            next((x.step, y) for x, y in zip(results, found.errors, strict=True) if x.step == step)
+            for step in found.rise
+        ]
+        how = f"from {pairs[0][1]:.1e} to {pairs[1][1]:.1e} as the step falls from {coarse:g}"
+        why = "the order of the step sizes is wrong, the method varies, or the top is another one"
+        return f"The error rises {how} to {fine:g}: {why}."
     if not found.falls:
         is_fine = all(x.verdict == "fine" for x in results)
         why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
         return f"The error does not fall with the step: {why}."
-    if found.order is None:
-        return "The errors are too small or too large to show an order of convergence."
-    if found.order < LEAST_ORDER:
-        return "The error depends on the step, but shows no order: give runs of one method."
+    if found.order is None or found.order < LEAST_ORDER:
+        return (
+            "The error falls with the step, but shows no single order of convergence: the errors "
+            "are too small or too large, or the method varies."
+        )
     return f"The error falls with the step; the order of convergence is {found.order:.2f}."

@@ -12,7 +12,7 @@ from lagtop import Comparison, LagtopError, Top, compare, solve
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.comparison.compare import compared
-from lagrange_cli.comparison.differences import Trajectory
+from lagrange_cli.comparison.differences import Run as Trajectory
 from lagrange_cli.files.observed import Conventions
 
 TOP = Top(thetadot0=1, psidot0=3)

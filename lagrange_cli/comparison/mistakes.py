@@ -1,0 +1,184 @@
+"""Mistakes of engines and students, in the writing of a trajectory or in the inputs of a top."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..files import rotations
+from ..files.observed import ORDERS, Observed
+from ..names import ANGLES
+from ..top.top import Top
+from .differences import Alignment, Run
+
+_GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
+_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0}
+_FRAME_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 250, 480, 500, 960)
+
+
+def as_given(run: Run) -> Run:
+    """Return the trajectory itself."""
+    return run
+
+
+class Cause(NamedTuple):
+    """A cause of errors: an alignment, a way of writing, other inputs, or two of them."""
+
+    name: str
+    meant: Callable[[Run], Run] = as_given
+    """Returns the trajectory as it was meant."""
+    inputs: Mapping[str, Any] = MappingProxyType({})
+    """The inputs in which the top that moved differs."""
+    align: Alignment | None = None
+    remedy: str = ""
+    """The arguments of `compare` that take the cause into account, as `name=value`."""
+    error: float = math.inf
+    """The greatest error without the cause."""
+
+    def with_other(self, other: Cause) -> Cause:
+        """Return this cause and another one at once."""
+        meant = other.meant
+        if self.meant is not as_given:
+            meant = lambda run: other.meant(self.meant(run))  # noqa: E731
+        remedy = " and ".join(filter(None, (self.remedy, other.remedy)))
+        name, inputs = f"{self.name}; {other.name}", {**self.inputs, **other.inputs}
+        return Cause(name, meant, inputs, self.align or other.align, remedy)
+
+
+def mistakes(top: Top, run: Run) -> list[Cause]:
+    """Return all mistakes, the simplest first."""
+    found = [*_of_time(run), *_of_inputs(top, run), *_of_writing(run)]
+    backwards = Cause("time runs backwards", partial(with_changes, {"t": np.negative}))
+    t = run.given["t"]
+    return [backwards, *found] if t[0] > t[-1] else [*found, backwards]
+
+
+def with_changes(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
+    """Return a trajectory with changes of some quantities."""
+    return run._replace(given={x: changes.get(x, np.asarray)(y) for x, y in run.given.items()})
+
+
+def _of_time(run: Run) -> Iterator[Cause]:
+    t = run.given["t"]
+    factors = {f"t is in {x}": y for x, y in _UNITS.items()}
+    if (t == np.rint(t)).all():
+        factors |= {f"t counts frames, {x} per second": 1 / x for x in _FRAME_RATES}
+    for name, factor in factors.items():
+        yield Cause(name, partial(with_changes, {"t": partial(np.multiply, factor)}))
+
+
+def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
+    A, r0, steiner = Fraction(top.A), float(top.r0), Fraction(top.m) * Fraction(top.s) ** 2
+    tilt, rate = float(top.inputs(radians=True)["theta0_rad"]), float(top.thetadot0)
+    left = " (in a left-handed frame a positive turn is clockwise)" * run.align.left
+    inputs: dict[str, dict[str, Any]] = {
+        f"r0 has the wrong sign{left}": {"r0": -top.r0},
+        "the gyroscopic term is left out of Euler's equations (as if C = A)": {"C": top.A},
+        "A about the pivot was taken as A about the mass centre (A + m s^2)": {"A": A + steiner},
+        "A about the mass centre was taken as A about the pivot (A - m s^2)": {"A": A - steiner},
+        "r0 in radians was taken as degrees": {"r0": math.radians(r0)},
+        "r0 in degrees was taken as radians": {"r0": math.degrees(r0)},
+        "r0 in radians was taken as rpm": {"r0": r0 * math.pi / 30},
+        "r0 in rpm was taken as radians": {"r0": r0 * 30 / math.pi},
+        "r0 was taken as the gimbal's rate phi'": {"r0": r0 + float(top.psidot0) * math.cos(tilt)},
+        "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
+        "thetadot0 has the wrong sign": {"thetadot0": -rate},
+        "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
+        **{f"g is {g} (or m or s is wrong by as much)": {"g": Fraction(g)} for g in _GRAVITY},
+    }
+    yield from (Cause(name, inputs=changed) for name, changed in inputs.items())
+    yield Cause("theta0 has the wrong sign", _undone(half=True), {"thetadot0": -rate})
+    folded = math.remainder(math.degrees(tilt), math.tau)
+    changed: dict[str, Any] = {
+        "theta0_rad": abs(folded),
+        "thetadot0": math.copysign(rate, rate * folded),
+    }
+    yield Cause("theta0 in degrees was taken as radians", _undone(half=folded < 0), changed)
+    over = {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -rate}
+    yield Cause("g points upwards", _undone(half=True, over=True), over)
+    if {*run.given} - {"t", "rates"}:
+        # A top with the same a and b, which need be no body: its spin differs by a constant rate.
+        ratio = A / Fraction(top.C)
+        changed = {"A": top.C, "C": top.C, "r0": Fraction(top.r0) * ratio}
+        lag = float(Fraction(top.r0) * (1 - ratio))
+        yield Cause("A and C are exchanged", _undone(spin=lag), changed)
+
+
+def _undone(half: bool = False, over: bool = False, spin: float = 0.0) -> Callable[[Run], Run]:
+    """Return what undoes half turns of spin and precession, a space turned over, or more spin.
+
+    With more spin, the angular velocity is left out.
+    """
+
+    def undo(seen: Observed) -> Observed:
+        turn, lag, angles = np.pi * half, np.asarray(spin * seen.t), dict(seen.angles)
+        space, body = rotations.about_z(turn), rotations.about_z(turn + lag)
+        if over:
+            space = rotations.product(space, rotations.HALF_TURN_X)
+            of = {
+                "theta": lambda x: np.pi - x,
+                "psi": lambda x: np.pi - x,
+                "phi": lambda x: x + np.pi,
+            }
+            angles = {key: of[key](x) for key, x in angles.items()}
+        shifts: dict[str, Any] = {"theta": 0.0, "phi": turn + lag, "psi": turn}
+        angles = {key: x - shifts[key] for key, x in angles.items()}
+        if spin:
+            seen = replace(seen, body_rates=None, space_rates=None)
+        return replace(seen.turned(space, body), angles=angles)
+
+    return lambda run: run._replace(undo=undo)
+
+
+def _of_writing(run: Run) -> Iterator[Cause]:
+    how, order = run.conventions, run.conventions.quaternion or ORDERS[0]
+    if "quaternion" in run.given:
+        other = ORDERS[order == ORDERS[0]]
+        meant = partial(Run._replace, conventions=how._replace(quaternion=other))
+        remedy = f"quaternion_order={other}"
+        yield Cause(f"the quaternion is {other} and was read as {order}", meant, remedy=remedy)
+    if "rates" in run.given:
+        frame = "body" if how.rates == "space" else "space"
+        meant = partial(Run._replace, conventions=how._replace(rates=frame))
+        remedy = f"rates_frame={frame}"
+        yield Cause(f"the rates are in the frame of {frame}", meant, remedy=remedy)
+    flipped = np.array([1.0 if x == "w" else -1.0 for x in order])
+    unit = np.radians if how.radians else np.degrees
+    changes: dict[str, dict[str, Callable[[Array], Array]]] = {
+        "the attitude is the conjugate, from space to body": {
+            "quaternion": lambda q: q * flipped,
+            "matrix": lambda rows: rows.reshape(-1, 3, 3).transpose(0, 2, 1).reshape(-1, 9),
+            "rotvec": np.negative,
+        },
+        "angles in degrees were taken as radians, or the reverse": dict.fromkeys(
+            (*ANGLES, "euler"), unit
+        ),
+        "psi is counted backwards": {"psi": np.negative},
+        "phi is counted backwards": {"phi": np.negative},
+    }
+    for name, changed in changes.items():
+        if changed.keys() & run.given.keys():
+            yield Cause(name, partial(with_changes, changed))
+    if {"phi", "psi"} <= run.given.keys():
+        yield Cause("phi and psi are exchanged", _exchanged)
+    for word, times, states in (("next", (1, None), (0, -1)), ("previous", (0, -1), (1, None))):
+        moved = partial(_moved, times=slice(*times), states=slice(*states))
+        yield Cause(f"rows are off by one: each holds the state of the {word} time", moved)
+
+
+def _exchanged(run: Run) -> Run:
+    return run._replace(given={**run.given, "phi": run.given["psi"], "psi": run.given["phi"]})
+
+
+def _moved(run: Run, times: slice, states: slice) -> Run:
+    given = {x: y[times if x == "t" else states] for x, y in run.given.items()}
+    missing = run.missing if run.missing is None else run.missing[states]
+    return run._replace(given=given, missing=missing)
