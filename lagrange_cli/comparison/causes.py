@@ -12,7 +12,6 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files import rotations
-from ..files.observed import Observed
 from ..solver.solve import solve
 from .differences import Alignment, Exact, Run, errors, sizes, start_of
 from .mistakes import Cause, mistakes, with_changes
@@ -127,14 +126,12 @@ class Search:
         and two mistakes.
         """
 
-        def aligned(group: int) -> list[Cause]:
-            return [x.with_other(y) for y in self.mistakes for x in self.alignments(y)[group]]
-
-        def two() -> list[Cause]:
-            tops = [x for x in self.mistakes if x.inputs]
-            return [x.with_other(y) for x in self.mistakes if not x.inputs for y in tops]
-
-        return [partial(aligned, 0), partial(aligned, 1), two]
+        aligned = [(y, self.alignments(y)) for y in self.mistakes]
+        same = [x.with_other(y) for y, found in aligned for x in found[0]]
+        other = [x.with_other(y) for y, found in aligned for x in found[1]]
+        tops = [x for x in self.mistakes if x.inputs]
+        two = [x.with_other(y) for x in self.mistakes if not x.inputs for y in tops]
+        return [lambda: same, lambda: other, lambda: two]
 
     def alignments(self, mistake: Cause) -> tuple[list[Cause], list[Cause]]:
         """Return other alignments in the frame that is given, and in other frames.
@@ -147,29 +144,27 @@ class Search:
         if exact is None:
             return found
         row = run._replace(align=Alignment(), undo=None).observed(slice(1))
-        frames = [given, *(x for x in _FRAMES if x.frame != given.frame)]
+        frames, cosines = [given], np.full((3, 3), np.nan)
+        if row.quaternion is not None:
+            frames += _FRAMES
+            cosines = abs(rotations.rotated(row.quaternion, np.eye(3)))
+        elif row.axis is not None:
+            frames += [x for x in _FRAMES if x.axis in {"", "z"}]
+            cosines[:] = abs(row.axis) / np.linalg.norm(row.axis)
+        tilts = np.arccos(np.minimum(cosines, 1.0))
         for start, time in ((False, False), (True, False), (False, True), (True, True)):
             if (start and given.start) or (time and (given.time or not t0)):
                 continue
-            begins = 0.0 if time or given.time else t0
-            tilt = float(exact.at(np.array([begins]))["theta"][0])
+            t = run.given["t"][:, 0] - t0 * (time or given.time)
+            tilt = np.arccos(abs(np.cos(exact.at(t)["theta"][0])))
             for frame in frames:
                 align = frame._replace(start=start or given.start, time=time or given.time)
+                off = tilts["xyz".index(frame.figure[-1]), "xyz".index(frame.up[-1])] - tilt
                 twice = align.start and align.is_reversed  # the same as a left-handed frame
-                if align != given and not twice and self._fits(row, frame, tilt):
-                    found[frame != given].append(self._cause(align, exact, run))
+                known = frame.frame == given.frame and frame is not given
+                if not (align == given or twice or known or abs(off) > self.enough):
+                    found[frame is not given].append(self._cause(align, exact, run))
         return found
-
-    def _fits(self, row: Observed, frame: Alignment, tilt: float) -> bool:
-        if row.quaternion is not None:
-            figure = np.eye(3)["xyz".index(frame.figure[-1])]
-            axis = rotations.rotated(row.quaternion[0], figure)
-        elif row.axis is not None and frame.axis in {"", "z"}:
-            axis = row.axis[0]
-        else:
-            return frame == self.run.align
-        up = abs(axis["xyz".index(frame.up[-1])]) / np.linalg.norm(axis)
-        return not abs(np.arccos(np.minimum(up, 1.0)) - np.arccos(abs(np.cos(tilt)))) > self.enough
 
     def _cause(self, align: Alignment, exact: Exact, run: Run) -> Cause:
         """Return an alignment as a cause."""

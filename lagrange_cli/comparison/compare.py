@@ -318,7 +318,7 @@ def convergence(results: Sequence[Comparison]) -> Convergence | None:
     usable = (error >= ROUNDING) & (error < LOST_PHASE)
     if len({*step[usable]}) < 2:
         usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
-    if len({*step[usable]}) < 2:
+    if not falls or len({*step[usable]}) < 2:
         return Convergence(None, bool(falls), errors)
     x, y = np.log(step[usable]), np.log(error[usable])
     orders = np.diff(y) / np.diff(x)

@@ -188,10 +188,13 @@ def start_of(seen: Observed, exact: dict[str, Array]) -> tuple[float, float] | N
     return phi, psi
 
 
-def blocks(exact: Exact, run: Run) -> Iterator[tuple[Array, dict[str, Array]]]:
+def blocks(
+    exact: Exact, run: Run, *, whole: bool = True
+) -> Iterator[tuple[Array, dict[str, Array]]]:
     """Yield the times of some rows and their differences from the exact motion, block by block.
 
-    Raises LagtopError if the attitude is not complete enough for the alignment.
+    The differences are all, or for attitudes as few as `error` and `rates`.  Raises LagtopError if
+    the attitude is not complete enough for the alignment.
     """
     start = None
     for first in range(0, len(run.given["t"]), _BLOCK):
@@ -205,17 +208,22 @@ def blocks(exact: Exact, run: Run) -> Iterator[tuple[Array, dict[str, Array]]]:
             seen = seen.turned(rotations.about_z(-psi), rotations.about_z(phi))
             seen = replace(seen, angles=angles)
         missing = None if run.missing is None else run.missing[rows]
-        yield seen.t, differences(exact.motion, seen, states, missing)
+        yield seen.t, differences(exact.motion, seen, states, missing, whole=whole)
 
 
 def errors(exact: Exact, run: Run) -> Array:
     """Return the error of each row, or that of its rates if it is greater."""
-    found = (x for _, x in blocks(exact, run))
+    found = (x for _, x in blocks(exact, run, whole=False))
     return np.concatenate([np.fmax(x["error"], x.get("rates", x["error"])) for x in found])
 
 
 def differences(
-    motion: Motion, run: Observed, states: dict[str, Array], missing: Array | None = None
+    motion: Motion,
+    run: Observed,
+    states: dict[str, Array],
+    missing: Array | None = None,
+    *,
+    whole: bool = True,
 ) -> dict[str, Array]:
     """Return the differences from the exact motion in each row, by name; missing if not given.
 
@@ -226,10 +234,11 @@ def differences(
     finite, unless only another quantity has `missing` cells.
     """
     q, exact = states["quaternion"], {x: states[x] for x in ANGLES}
-    angles, axis, found = angles_of(run), run.axis, dict[str, Array]()
+    axis, found = run.axis, dict[str, Array]()
+    angles = angles_of(run) if whole or run.quaternion is None else {}
     if run.quaternion is not None:
         found["attitude"] = rotations.angle_between(q, run.quaternion)
-        axis = rotations.axis_of(run.quaternion)
+        axis = rotations.axis_of(run.quaternion) if whole else None
     if axis is not None:
         found["axis"] = rotations.angle_between_vectors(rotations.axis_of(q), axis)
     if axis is not None and motion.regime in {Regime.SLEEPING, Regime.HANGING}:
@@ -237,19 +246,20 @@ def differences(
             one["phi"] = one["phi"] + (1 if motion.regime is Regime.SLEEPING else -1) * one["psi"]
         del angles["psi"]
     found |= {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
-    found |= _rates(motion.top, run, q, states["rates"])
+    found |= _rates(motion.top, run, q, states["rates"], whole)
     if run.norm is not None:
         found["norm"] = abs(run.norm)
     if run.distance is not None:
         found["distance"] = run.distance
-    parts = [abs(found[key]) for key in angles] or [found["rates"]]
-    error = np.array(found.get("attitude", found.get("axis", np.max(parts, axis=0))))
+    parts: Sequence[str] = [*angles] or ["rates"]
+    parts = [x for x in ("attitude", "axis") if x in found][:1] or parts
+    error = np.max([abs(found[x]) for x in parts], axis=0)
     lost = ~np.all([np.isfinite(x) for x in found.values()], axis=0)
     error[lost & (True if missing is None else np.logical_not(missing))] = np.nan
     return found | {"error": error}
 
 
-def _rates(top: Top, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
+def _rates(top: Top, run: Observed, q: Array, exact: Array, whole: bool) -> dict[str, Array]:
     """Return the differences of the angular velocity, and the energy and Lz of the motion."""
     swing, torque, size = sizes(top)
     own, fixed = run.body_rates, run.space_rates
@@ -258,7 +268,7 @@ def _rates(top: Top, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
         return {}
     off = given - (exact if fixed is None else rotations.rotated(q, exact))
     found = {"rates": np.linalg.norm(off, axis=1) / size}
-    if run.quaternion is None:
+    if run.quaternion is None or not whole:
         return found
     to_body = rotations.conjugate(run.quaternion)
     own = given if fixed is None else rotations.rotated(to_body, fixed)

@@ -1,6 +1,6 @@
 """Right trajectories of every form are fine; planted mistakes are found and named.
 
-`pytest tests/compare -m ""` tries all of them: 60 right trajectories and 108 mistakes.
+`pytest tests/comparison -m ""` tries all of them.
 """
 
 from __future__ import annotations
@@ -89,20 +89,35 @@ READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
     },
     "phi is counted backwards": lambda turn, _: angles(turn, phi=-1),
     "psi is counted backwards": lambda turn, _: angles(turn, psi=-1),
-    "--rates-frame space": lambda turn, rates: {
+    "the rates are in the frame of space": lambda turn, rates: {
         "quaternion": wxyz(turn),
         "rates": turn.apply(rates),
     },
-    "--align axis=y,up=y": lambda turn, _: framed(turn, [[0, 1, 0], [0, 0, 1], [1, 0, 0]]),
-    "--align up=y,left": lambda turn, _: framed(turn, [[1, 0, 0], [0, 0, 1], [0, 1, 0]]),
-    "--align left": lambda turn, _: framed(turn, [[1, 0, 0], [0, -1, 0], [0, 0, 1]]),
-    "spin and precession do not start at 0 (--align start)": lambda turn, _: {
+    "y is up and the figure axis is the body's y axis": lambda turn, _: framed(
+        turn, [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
+    ),
+    "the frame is left-handed with y up, or has y down": lambda turn, _: framed(
+        turn, [[1, 0, 0], [0, 0, 1], [0, 1, 0]]
+    ),
+    "the frame is left-handed with z up, or has z down": lambda turn, _: framed(
+        turn, [[1, 0, 0], [0, -1, 0], [0, 0, 1]]
+    ),
+    "phi starts at 57.3 degrees": lambda turn, _: {
         "quaternion": wxyz(turn * Rotation.from_euler("z", 1))
     },
-    "the clock is shifted by 0.0123": lambda turn, _: {"t": T + 0.0123, "quaternion": wxyz(turn)},
-    "the state of the next time": lambda turn, _: {"t": T[:-1], "quaternion": wxyz(turn[1:])},
+    "the clock starts at 0.0123": lambda turn, _: {"t": T + 0.0123, "quaternion": wxyz(turn)},
+    "rows are off by one: each holds the state of the next": lambda turn, _: {
+        "t": T[:-1],
+        "quaternion": wxyz(turn[1:]),
+    },
     "the state of the previous": lambda turn, _: {"t": T[1:], "quaternion": wxyz(turn[:-1])},
     "time runs backwards": lambda turn, _: {"t": -T, "quaternion": wxyz(turn)},
+    "t is in ms": lambda turn, _: {"t": 1000 * T, "quaternion": wxyz(turn)},
+    "t counts frames, 200 per second": lambda turn, _: {
+        "t": np.rint(200 * T),
+        "quaternion": wxyz(turn),
+    },
+    "the clock is shifted by -0.125": lambda turn, _: {"t": T[:-25], "quaternion": wxyz(turn[25:])},
     "the clock is 1 % fast": lambda turn, _: {"t": 1.01 * T, "quaternion": wxyz(turn)},
 }
 """What is given to `compare` with a mistake in it, by a part of the name of the mistake."""
@@ -148,3 +163,85 @@ def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
     assert found.verdict != "fine"
     assert mistake in UNKNOWN if found.cause is None else mistake in found.cause
     assert (found.cause_error or 0) < 1e-5
+
+
+FRAMES = {
+    "up=y,left": [[1, 0, 0], [0, 0, 1], [0, 1, 0]],  # Unity
+    "left": [[1, 0, 0], [0, -1, 0], [0, 0, 1]],  # Unreal
+    "axis=y,up=y": [[1, 0, 0], [0, 0, 1], [0, -1, 0]],  # Godot
+    "axis=-z,up=-z": [[1, 0, 0], [0, -1, 0], [0, 0, -1]],  # NED
+}
+"""The axes of engines in the coordinates of lagtop, by their words."""
+TWO = [
+    ("up=y,left", "up=y,left", "A and C are exchanged", "psi starts at 20 degrees; A and C"),
+    ("axis=y,up=y", "axis=y,up=y", "A and C are exchanged", "degrees; A and C are exchanged"),
+    (
+        "",
+        "axis=y,up=y",
+        "the gyroscopic term is left out",
+        "the body's y axis; the gyroscopic term is left",
+    ),
+    ("", "left", "(A + m s^2)", "the frame is left-handed with z up, or has z down; A about the p"),
+    (
+        "axis=-z,up=-z",
+        "axis=-z,up=-z",
+        "g is 10 (or m or s is wrong by as",
+        "the clock starts at 10; g is 10",
+    ),
+    (
+        "",
+        "up=y,left",
+        "r0 in rpm was taken as radians",
+        "left-handed with y up, or has y down; r0 in rpm",
+    ),
+    ("left", "left", "r0 has the wrong sign", "r0 has the wrong sign (in a left-handed frame a"),
+    ("up=y,left", "left", "", "the frame is left-handed with z up"),
+    (
+        "",
+        "axis=-z,up=-z",
+        "",
+        "the frame is left-handed with z up, or has z down; the clock starts",
+    ),
+]
+"""The given words, the true frame, the mistake, and a part of the name of the cause."""
+
+
+@pytest.mark.parametrize(("words", "frame", "mistake", "name"), TWO)
+def test_two_causes_at_once_are_named(words: str, frame: str, mistake: str, name: str) -> None:
+    """The remedy leaves the mistake alone."""
+    turn, _ = run("toy", mistake)
+    zeros = Rotation.from_euler("z", -30 if "phi" in name else 0, degrees=True)
+    if "psi" in name:
+        turn = Rotation.from_euler("z", 20, degrees=True) * turn
+    given: Given = {"t": T + 10 * ("clock" in name)} | framed(turn * zeros, FRAMES[frame])
+    found = compare(TOPS["toy"], **given, align=words)
+    assert name in (found.cause or "")
+    assert (found.explained, (found.cause_error or 1) < 1e-5) == ("most likely", True)
+    if found.remedy:
+        first = found.remedy.split(" or ")[0].removeprefix("align=")
+        again = compare(TOPS["toy"], **given, align=first)
+        assert (again.cause or "").startswith(name.rpartition("; ")[2] if mistake else "")
+        assert (again.verdict == "fine") == (not mistake)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_mirrored_motions_have_two_names(sign: int) -> None:
+    """Released from rest, a top with reversed spin moves as in a mirror."""
+    top = Top(m=1.2, A=0.018, C=0.004, s=0.1, g=9.81, r0=60, theta0_deg=55)
+    _, states = dop853(Body.of(top.replace(r0=-60)), T, 1e-10)
+    turn = Rotation.from_quat(states[:, :4], scalar_first=True)
+    found = compare(top, T, quaternion=wxyz(turn))
+    both = "r0 has the wrong sign; or the frame is left-handed with z up, or has z down"
+    assert (found.cause, found.verdict) == (both, "another top")
+    assert found.remedy == "align=axis=-z,up=-z or align=left,start"
+    first = compare(top, T, quaternion=wxyz(turn), align="left,start")
+    assert first.verdict == "fine"
+    turned = compare(top, T, quaternion=wxyz(turn * Rotation.from_euler("z", sign)), align="start")
+    assert "r0 has the wrong sign" in (turned.cause or "")
+
+
+def test_no_cause_is_named_for_few_rows() -> None:
+    """Two rows can be explained by too many causes."""
+    turn, _ = run("toy")
+    late = Rotation.from_euler("z", 1) * turn[:2]
+    assert compare(TOPS["toy"], T[:2], quaternion=wxyz(late)).cause is None

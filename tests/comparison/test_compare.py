@@ -11,12 +11,13 @@ from engines import Array, Body, dop853, rk4, semi_implicit_euler, wxyz
 from lagtop import Comparison, LagtopError, Top, compare, solve
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.comparison.compare import compared
-from lagrange_cli.comparison.differences import Run as Trajectory
+from lagrange_cli.comparison.compare import Convergence, compared
+from lagrange_cli.comparison.differences import Run
 from lagrange_cli.files.observed import Conventions
 
 TOP = Top(thetadot0=1, psidot0=3)
 T = np.linspace(0, 2, 201)
+ROWS = np.sort([*range(201), 5, 6])
 _, STATES = dop853(Body.of(TOP), T)
 Q, RATES = STATES[:, :4], STATES[:, 4:]
 TURN = Rotation.from_quat(Q, scalar_first=True)
@@ -78,19 +79,23 @@ def test_wrong_rates_of_a_right_attitude_are_not_fine() -> None:
     off = np.linalg.norm(RATES[-1]) * 0.01 / size
     assert found.rates_error_max == pytest.approx(off, rel=0.01)
     assert compare(TOP, T, quaternion=Q, rates=1.0001 * RATES).verdict == "fine"
-    assert compare(TOP, T, quaternion=Q, rates=1.01 * RATES).verdict == "off from the start"
+    start = compare(TOP, T[:2], quaternion=Q[:2], rates=1.01 * RATES[:2])
+    assert start.verdict == "off from the start"
     assert compare(TOP, T, rates=1.01 * RATES).cause is None
 
 
 @pytest.mark.parametrize("rate", [1e-6, -0.1, 25.0])
 def test_drift_is_separated_from_oscillation(rate: float) -> None:
     wobble = 1e-3 * np.sin(7 * T)
-    found = compare(TOP, T, phi=PHI + rate * T + wobble, theta=THETA)
+    found = compare(TOP, T, phi=PHI + rate * T + wobble, theta=THETA, max_error=4)
     assert found.phi_drift == pytest.approx(rate + np.polyfit(T, wobble, 1)[0], rel=1e-6)
     last = math.remainder(rate * T[-1] + wobble[-1], 2 * math.pi)
     assert found.error_final == pytest.approx(abs(last), rel=1e-6)
     assert found.psi_drift is None
-    assert (compare(TOP, T, phi=PHI + 2.1 * (T > 1)).phi_drift, found.rows) == (None, 201)
+    assert (compare(TOP, T, phi=PHI + 2.1 * (T > 1), max_error=4).phi_drift, found.rows) == (
+        None,
+        201,
+    )
 
 
 def test_drift_of_energy_momentum_and_norm_of_an_integrator() -> None:
@@ -108,8 +113,10 @@ def test_drift_of_energy_momentum_and_norm_of_an_integrator() -> None:
     assert found.Lz_drift == pytest.approx(abs(Lz - Lz[0]).max() / size, rel=1e-6)
     norms = np.linalg.norm(states[:, :4], axis=1)
     assert found.norm_error == pytest.approx(abs(norms - 1).max(), rel=1e-9)
-    far = compare(TOP, T, position=TURN.apply([0, 0, 6.0]))
-    assert far.norm_error == pytest.approx(0.5)
+    far = TURN.apply([0, 0, 600.0])  # a marker, in other units
+    assert compare(TOP, T, position=far).verdict == "fine"
+    slips = compare(TOP, T, position=far * (1 + T[:, np.newaxis] / 4))
+    assert (slips.verdict, slips.pivot_slip, slips.cause) == ("drifts", pytest.approx(0.5), None)
 
 
 @pytest.mark.parametrize(("tilt", "off"), [(0, 0.15), (180, 0.35)])
@@ -165,17 +172,22 @@ def test_zeros_that_count_from_the_first_row() -> None:
     assert (found.lost_at, found.verdict) == (0, "lost")
     assert (found.error_max or 0) < 2e-12
     late = compare(TOP, T + 17, quaternion=wxyz(about_z(1.0) * TURN), align=["time"])
-    assert "(--align start)" in (late.cause or "")
+    assert (late.cause, late.remedy) == ("psi starts at 57.3 degrees", "align=start,time")
+    assert compare(TOP, T + 17, quaternion=wxyz(TURN), align="time, start").verdict == "fine"
     parts = {"phi": PHI + 2, "psi": PSI - 1}
     assert (compare(TOP, T, **parts, align=["start"]).error_max or 0) < 2e-12
     axis = about_z(0.7).apply(TURN.apply([0, 0, 1]))
     assert (compare(TOP, T, axis=axis, align=["start"]).error_max or 0) < 2e-12
 
 
-def with_steps(runs: list[tuple[Array, Array]], steps: list[float]) -> list[Comparison]:
+def with_steps(
+    runs: list[tuple[Array, Array]], steps: list[float], limit: float = 1e-3
+) -> tuple[list[Comparison], Convergence]:
     given = [{"t": t[:, np.newaxis], "quaternion": states[:, :4]} for t, states in runs]
     conventions = Conventions("wxyz", radians=True)
-    return compared(solve(TOP), [Trajectory(x, conventions) for x in given], 1e-3, steps)[0]
+    rows, found = compared(solve(TOP), [Run(x, conventions) for x in given], limit, steps)
+    assert found
+    return rows, found
 
 
 @pytest.mark.parametrize(
@@ -184,20 +196,49 @@ def with_steps(runs: list[tuple[Array, Array]], steps: list[float]) -> list[Comp
 )
 def test_order_of_convergence(method: Any, steps: list[float], order: int) -> None:
     """All errors of the first-order method end beyond 0.3 rad: its order shows before."""
-    rows = with_steps([method(Body.of(TOP), h, 1) for h in steps], steps)
+    rows, _ = with_steps([method(Body.of(TOP), h, 1) for h in steps], steps)
     assert rows[0].order == pytest.approx(order, abs=0.5)
     assert {row.verdict for row in rows} <= {"fine", "drifts"}
     assert [(row.step, row.cause) for row in rows] == [(step, None) for step in steps]
 
 
+def off_by(errors: list[float]) -> list[tuple[Array, Array]]:
+    """Return trajectories with errors that grow up to these."""
+    spun = [wxyz(TURN * about_z(error * np.linspace(0, 1, 201))) for error in errors]
+    return [(T, np.concatenate([x, RATES], axis=1)) for x in spun]
+
+
+@pytest.mark.parametrize(
+    ("errors", "order", "falls", "rise"),
+    [
+        ([1e-2, 6.3e-4, 4e-5], 4, True, None),
+        ([1e-3, 2e-11, 3e-11], 26, True, None),  # only rounding grows
+        ([0.4, 0.1, 0.025], 2, True, None),
+        ([1e-2, 1e-2, 1e-2], None, False, None),
+        ([2.9e-2, 2.2e-3, 3.5e-3], None, False, (2e-3, 1e-3)),
+        ([1.5e-7, 1.6e-2, 4e-5], None, False, (4e-3, 2e-3)),  # two methods
+        ([1e-1, 1e-2, 2.5e-6], None, True, None),  # two methods
+    ],
+)
+def test_how_errors_depend_on_the_step(
+    errors: list[float], order: float | None, falls: bool, rise: tuple[float, float] | None
+) -> None:
+    _, found = with_steps(off_by(errors), [4e-3, 2e-3, 1e-3], 1e-1)
+    assert (found.falls, found.rise) == (falls, rise)
+    assert found.order == (order and pytest.approx(order, abs=0.5))
+
+
 def test_the_error_of_another_top_does_not_fall() -> None:
     other = Body.of(TOP.replace(A=39032 * 1.03))
-    rows = with_steps([rk4(other, h, 1) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
+    rows, _ = with_steps([rk4(other, h, 1) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
     assert {(row.verdict, row.cause) for row in rows} == {("another top", None)}
-    other = Body.of(TOP.replace(psidot0=-3))
-    rows = with_steps([rk4(other, h, 0.5) for h in (4e-3, 2e-3)], [4e-3, 2e-3])
-    assert {row.cause for row in rows} == {"psidot0 has the wrong sign"}
-    rounded = with_steps([(T, np.round(STATES, 6))] * 2, [1e-3, 1e-4])
+    for inputs, cause in ({"psidot0": -3}, "psidot0"), ({"r0": -50}, "r0"):
+        other = Body.of(TOP.replace(**inputs))
+        runs = [rk4(other, h, 0.5) for h in (4e-3, 2e-3)]
+        rows, found = with_steps([(t[::25], y[::25]) for t, y in runs], [4e-3, 2e-3])
+        assert {row.cause for row in rows} == {f"{cause} has the wrong sign"}
+        assert not found.falls
+    rounded, _ = with_steps([(T, np.round(STATES, 6))] * 2, [1e-3, 1e-4])
     assert {row.verdict for row in rounded} == {"fine"}
 
 
@@ -209,8 +250,33 @@ def test_rows_that_are_not_finite() -> None:
     assert (nothing.verdict, nothing.lost_at, nothing.error_max) == ("lost", 0, None)
     one = compare(TOP, 0.3, theta=THETA[30] + 1)
     assert (one.rows, one.theta_drift, one.cause) == (1, None, None)
+
+
+def test_missing_numbers_and_repeated_times() -> None:
+    """A masked number is missing: the other rows, and the other numbers of its row, count."""
     masked = np.ma.masked_array(THETA, T > 1)
-    assert compare(TOP, T, theta=masked).lost_at == T[101]
+    found = compare(TOP, T, theta=masked, phi=PHI)
+    assert (found.verdict, found.lost_at, found.rows_missing) == ("fine", None, 100)
+    rates = np.ma.masked_array(RATES, np.zeros(RATES.shape))
+    rates[0, 1] = np.ma.masked
+    found = compare(TOP, np.sort([*T, *T[5:7]]), quaternion=wxyz(TURN[ROWS]), rates=rates[ROWS])
+    assert (found.verdict, found.rows_missing, (found.energy_drift or 1) < 1e-12) == (
+        "fine",
+        1,
+        True,
+    )
+    assert compare(TOP, T * 1e-310, theta=THETA[0] + 0 * T).verdict == "fine"
+
+
+def test_starts_on_the_vertical() -> None:
+    """The first row off the vertical shows the azimuth."""
+    for tilt in (0, 180):
+        top = Top(theta0_deg=tilt, thetadot0=4, r0=6)
+        _, states = dop853(Body.of(top), T)
+        turned = about_z(1.2) * Rotation.from_quat(states[:, :4], scalar_first=True) * about_z(0.7)
+        found = compare(top, T, quaternion=wxyz(turned), align="start")
+        assert (found.error_max or 1) < 1e-9
+        assert compare(top, T, quaternion=wxyz(turned)).remedy == "align=start"
 
 
 @pytest.mark.parametrize(
@@ -220,7 +286,8 @@ def test_rows_that_are_not_finite() -> None:
         ({"angle_rates": RATES}, "angle_rates must come with an attitude or a part of it"),
         ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
         ({"quaternion": Q, "align": ["up=w"]}, "align must be among axis=y"),
-        ({"theta": THETA, "align": ["left"]}, "align axis and left need the whole attitude"),
+        ({"theta": THETA, "align": ["left"]}, "align left needs the axis or the whole attitude"),
+        ({"theta": THETA, "align": "axis=y"}, "align axis needs the whole attitude: omit it"),
         ({"theta": THETA, "align": ["up=y", "start"]}, "align up needs the axis or the"),
         ({"t": [0, 1, 0.5], "theta": [0.1] * 3}, "t must be finite, and increase or decrease"),
         ({"t": [], "theta": []}, "t must have at least one row"),
