@@ -14,7 +14,7 @@ from ..errors import LagtopError
 from ..files import rotations
 from ..solver.solve import solve
 from .differences import Alignment, Exact, Run, errors, sizes, start_of
-from .mistakes import Cause, mistakes, with_changes
+from .mistakes import Cause, mistakes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
@@ -140,7 +140,7 @@ class Search:
         """
         exact, run = self.exact(mistake), self.some(mistake).few(_FEW)
         found: tuple[list[Cause], list[Cause]] = [], []
-        given, t0 = run.align, float(run.given["t"][0, 0])
+        given = run.align
         if exact is None:
             return found
         row = run._replace(align=Alignment(), undo=None).observed(slice(1))
@@ -153,9 +153,9 @@ class Search:
             cosines[:] = abs(row.axis) / np.linalg.norm(row.axis)
         tilts = np.arccos(np.minimum(cosines, 1.0))
         for start, time in ((False, False), (True, False), (False, True), (True, True)):
-            if (start and given.start) or (time and (given.time or not t0)):
+            if (start and given.start) or (time and (given.time or not run.t[0])):
                 continue
-            t = run.given["t"][:, 0] - t0 * (time or given.time)
+            t = run.t - run.t[0] * (time or given.time)
             tilt = np.arccos(abs(np.cos(exact.at(t)["theta"][0])))
             for frame in frames:
                 align = frame._replace(start=start or given.start, time=time or given.time)
@@ -186,7 +186,7 @@ class Search:
             axes += [f"the figure axis is the body's {figure} axis"] * (figure != given.figure)
             names.append(" and ".join(axes))
         if align.time and not given.time:
-            names.append(f"the clock starts at {run.given['t'][0, 0]:.10g}")
+            names.append(f"the clock starts at {run.t[0]:.10g}")
         remedy = " or ".join(f"align={x}" for x in words)
         return Cause("; ".join(filter(None, names)), align=align, remedy=remedy)
 
@@ -194,7 +194,7 @@ class Search:
         """Return the shift of the clock that explains most."""
         from scipy.optimize import minimize_scalar  # start-up
 
-        exact, few, t = self.given, self.run.few(20), self.run.given["t"][:, 0]
+        exact, few, t = self.given, self.run.few(20), self.run.t
         if self.run.align.start:
             return []
 
@@ -214,5 +214,5 @@ class Search:
         found = minimize_scalar(
             lambda x: float(error(x)[0]), bounds=ends, method="bounded", options=options
         )
-        meant = partial(with_changes, {"t": lambda t: t - float(found.x)})
-        return [Cause(f"the clock is shifted by {found.x:.5g}", meant)]
+        shift = float(found.x)
+        return [Cause(f"the clock is shifted by {shift:.5g}", partial(Run.timed, shift=shift))]

@@ -67,6 +67,8 @@ class Comparison(HasRecord):
     verdict: str = _key("verdict on the trajectory", "fine")
     rows: int = _key("the number of rows", 0)
     rows_missing: int = _key("the number of rows with empty cells", 0)
+    columns: str | None = _key("the columns of the file that are used")
+    unused: str | None = _key("its other columns")
     compared: str = _key("the quantity of the error: attitude, axis, angles or rates", "")
     error_max: float | None = _key("greatest error of that quantity")
     error_final: float | None = _key("its error in the last row")
@@ -250,6 +252,8 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
     lost = np.isnan(error) & (True if run.missing is None else np.logical_not(run.missing))
     return Comparison(
         file=run.file and utf8_path(run.file),
+        columns=run.columns[0] or None,
+        unused=run.columns[1] or None,
         step=step,
         rows=t.size,
         rows_missing=0 if run.missing is None else int(run.missing.sum()),

@@ -124,8 +124,22 @@ class Run(NamedTuple):
     file: str | None = None
     missing: Array | None = None
     """Whether each row has empty cells; such a row counts as far as it has numbers."""
+    begins: float = 0.0
+    """The time of the first row, if the times are counted from there."""
+    columns: tuple[str, str] = ("", "")
+    """The names of the columns that are read, and of those that are not."""
     undo: Callable[[Observed], Observed] | None = None
     """Undoes a mistake in the motion, after its frames and its clock are those of lagtop."""
+
+    @property
+    def t(self) -> Array:
+        """The times of all rows."""
+        return self.given["t"][:, 0] + self.begins
+
+    def timed(self, factor: float = 1.0, shift: float = 0.0) -> Run:
+        """Return the trajectory with another unit of time, or an earlier clock."""
+        given = {**self.given, "t": self.given["t"] * factor}
+        return self._replace(given=given, begins=self.begins * factor - shift)
 
     def few(self, most: int) -> Run:
         """Return at most so many rows, evenly spread."""
@@ -136,8 +150,8 @@ class Run(NamedTuple):
     def observed(self, rows: slice = slice(None)) -> Observed:
         """Return the motion of some rows, in the frames of lagtop and with its clock."""
         seen = self.align.framed(observe(rows_of(self.given, rows), self.conventions))
-        if self.align.time:
-            seen = replace(seen, t=seen.t - self.given["t"][0, 0])
+        begins = -self.given["t"][0, 0] if self.align.time else self.begins
+        seen = replace(seen, t=seen.t + begins)
         return self.undo(seen) if self.undo else seen
 
 

@@ -56,23 +56,21 @@ class Cause(NamedTuple):
 def mistakes(top: Top, run: Run) -> list[Cause]:
     """Return all mistakes, the simplest first."""
     found = [*_of_time(run), *_of_inputs(top, run), *_of_writing(run)]
-    backwards = Cause("time runs backwards", partial(with_changes, {"t": np.negative}))
-    t = run.given["t"]
-    return [backwards, *found] if t[0] > t[-1] else [*found, backwards]
+    backwards = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
+    return [backwards, *found] if run.t[0] > run.t[-1] else [*found, backwards]
 
 
-def with_changes(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
+def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
     """Return a trajectory with changes of some quantities."""
     return run._replace(given={x: changes.get(x, np.asarray)(y) for x, y in run.given.items()})
 
 
 def _of_time(run: Run) -> Iterator[Cause]:
-    t = run.given["t"]
     factors = {f"t is in {x}": y for x, y in _UNITS.items()}
-    if (t == np.rint(t)).all():
+    if (run.t == np.rint(run.t)).all():
         factors |= {f"t counts frames, {x} per second": 1 / x for x in _FRAME_RATES}
     for name, factor in factors.items():
-        yield Cause(name, partial(with_changes, {"t": partial(np.multiply, factor)}))
+        yield Cause(name, partial(Run.timed, factor=factor))
 
 
 def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
@@ -166,7 +164,7 @@ def _of_writing(run: Run) -> Iterator[Cause]:
     }
     for name, changed in changes.items():
         if changed.keys() & run.given.keys():
-            yield Cause(name, partial(with_changes, changed))
+            yield Cause(name, partial(_changed, changed))
     if {"phi", "psi"} <= run.given.keys():
         yield Cause("phi and psi are exchanged", _exchanged)
     for word, times, states in (("next", (1, None), (0, -1)), ("previous", (0, -1), (1, None))):

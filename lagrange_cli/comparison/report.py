@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+import numpy as np
+
 from ..errors import DataError, LagtopError
 from ..file_bytes import shown_path
-from ..files.observed import Conventions
+from ..files.observed import Conventions, Quantities, observe, rows_of
 from ..files.trajectory import read_trajectory
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import one_line
@@ -44,12 +46,34 @@ def read(
     if not len(rows["t"]):
         raise DataError(f"{file.name}: t must have at least one row")
     file.check_times(rows["t"][:, 0])
-    run = Run(rows, file.conventions(conventions), align, path)
+    begins, rows["t"] = float(rows["t"][0, 0]), file.elapsed.reshape(-1, 1)
+    conventions = file.conventions(conventions)
     try:
-        run.observed(slice(1))
+        Run(rows, conventions, align).observed(slice(1))
+        used = _used(rows, conventions)
     except LagtopError as error:
         raise DataError(f"{file.name}: {error}") from None
-    return run
+    missing = np.any([x for key, x in file.missing().items() if key in used], axis=0)
+    idle = [file.names[i] for key in rows.keys() - used for i in file.quantities[key].columns]
+    columns = ", ".join(x for x in file.used if x not in idle), ", ".join([*file.unused, *idle])
+    given = {key: rows[key] for key in used}
+    return Run(given, conventions, align, path, missing, begins, columns)
+
+
+def _used(rows: Quantities, conventions: Conventions) -> set[str]:
+    """Return the quantities without which the first row has another motion."""
+    first = rows_of(rows, slice(1))
+
+    def motion(without: str) -> str:
+        return repr(observe({key: x for key, x in first.items() if key != without}, conventions))
+
+    whole, used = motion(""), {"t"}
+    for key in rows.keys() - {"t"}:
+        try:
+            used |= {key} if motion(key) != whole else set()
+        except LagtopError:
+            used.add(key)
+    return used
 
 
 def comparison_report(
@@ -75,6 +99,8 @@ def comparison_report(
 def _conclusions(
     x: Comparison, limit: float, found: Convergence | None, argument: Callable[[str], str]
 ) -> Iterator[str]:
+    if x.columns:
+        yield f"Columns: {x.columns}." + f" Not used: {x.unused}." * bool(x.unused)
     yield f"{sentence(x)}."
     if x.rows_missing:
         yield f"{x.rows_missing} of {x.rows} rows have empty cells."
