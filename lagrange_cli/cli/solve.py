@@ -11,7 +11,7 @@ from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError
 from ..names import check_names
 from ..output.destination import Output
-from ..solver.keys import all_keys, record_keys, shown_keys, unit_name
+from ..solver.keys import all_keys, key_of, record_keys, shown_keys, unit_name
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
 from . import shared as opt
@@ -54,7 +54,7 @@ def solve_command(
     opt.exclude(get=get, derivation=derivation, budget=budget)
     radians = top.radians
     if get is not None:
-        _check_selected(get, radians)
+        get = _selected(get, radians)
     found = top.given()
     if found.stds or budget is not None or any(key.endswith("_std") for key in get or ()):
         from . import uncertainty
@@ -62,6 +62,7 @@ def solve_command(
         uncertainty.check(found, digits=digits, derivation=derivation, certify=certify)
     motion = opt.motion_of(found, exact=digits is not None)
     if budget is not None:
+        budget = key_of(budget, radians=radians)
         uncertainty.write_budget(found, motion, budget, radians, out)
         return
     names = _steps_of_section_8(motion, radians) if derivation else get
@@ -88,11 +89,9 @@ def solve_command(
     record |= sentence
     shown = shown_keys(radians=radians, named=named, requested=names is not None)
     if get is not None:
-        record = _chosen_values(motion, record, get)
-        if out.fmt == "table":
-            out.text("".join(f"{value_text(value)}\n" for value in record.values()))
-            return
-    elif derivation:
+        _write_selected(motion, record, get, out)
+        return
+    if derivation:
         shown = _keys_by_step(shown, radians)
         record = {x: record[x] for x in [*shown, *record]}
     elif found.si and out.fmt in {"json", "ndjson"}:
@@ -100,27 +99,49 @@ def solve_command(
     out.record(record, lambda: shown)
 
 
-def _check_selected(keys: Sequence[str], radians: bool) -> None:
-    """Raise LagtopError for an unknown or repeated key."""
+def _selected(words: Sequence[str], radians: bool) -> list[str]:
+    """Return the keys that words or symbols name.
+
+    Raises LagtopError for an unknown or a repeated key.
+    """
+    keys = [key_of(word, radians=radians) for word in words]
     values = [key.removesuffix("_std") for key in keys]
     if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
         values = list(dict.fromkeys(values))
     known = record_keys(radians=radians)
     check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
+    return keys
 
 
-def _chosen_values(motion: Motion, record: dict[str, Any], keys: Sequence[str]) -> dict[str, Any]:
-    """Return values of the record, each with its radius, if any.
+def _write_selected(
+    motion: Motion, record: dict[str, Any], keys: Sequence[str], out: Output
+) -> None:
+    """Write some values of the record, each with its radius, if any; missing ones are empty.
 
-    Raises AbsentError if the motion has no such number, LagtopError for the uncertainty of a text.
+    Raises AbsentError, after writing, if the motion lacks some of the numbers, and before it if it
+    lacks all.  Raises LagtopError for the uncertainty of a text.
     """
     for key in keys:
         if key not in record:
             text = key.removesuffix("_std")
             raise LagtopError(f"{text} has no uncertainty: leave {key} out of --get")
-        if record[key] is None:
-            raise AbsentError(f"{key} is {motion.absence(key)}")
-    return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
+    reasons = [f"{key} is {_absence(motion, record, key)}" for key in keys if record[key] is None]
+    if len(reasons) < len(keys):
+        record = {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
+        if out.fmt == "table":
+            out.text("".join(f"{value_text(value)}\n" for value in record.values()))
+        else:
+            out.record(record, dict)
+    if reasons:
+        raise AbsentError("; ".join(reasons))
+
+
+def _absence(motion: Motion, record: dict[str, Any], key: str) -> str:
+    """Return why a record has no value for a key."""
+    number = key.removesuffix("_std")
+    if number != key and record.get(number) is not None:
+        return "undefined, as the warning says"
+    return motion.absence(number)
 
 
 def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -36,18 +38,29 @@ def with_stds(
 
     A warning names the numbers that have none.
     """
-    stds = stds_of(record, _first_order(found, motion))
+    stds, beyond = stds_of(record, _first_order(found, motion))
     lost = [x for x in record if record[x] is not None and stds.get(f"{x}_std", 0) is None]
-    if lost:
+    if beyond:
+        complain("Warning: " + "; ".join(map(str, beyond)))
+    elif lost:
         known = any(degree_name(key) in DIFFERENTIABLE for key in lost)
         reason = NO_DERIVATIVE if known else "keys outside the record have none"
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
     texts = {
-        name: NumberText(uncertain_text(float(value), std))
+        name: NumberText(uncertain_text(_to_the_last_digit(motion, name, float(value), std), std))
         for name, value in record.items()
         if shown and value is not None and (std := stds.get(f"{name}_std"))
     }
     return dict(record) | stds | texts
+
+
+def _to_the_last_digit(motion: Motion, key: str, value: float, std: float) -> float | str:
+    """Return a number of a motion with as many digits as its uncertainty has."""
+    digits = math.ceil(math.log10(abs(value) / std)) + 3 if value else 0
+    if digits <= sys.float_info.dig:
+        return value
+    found = motion.number(key, digits)
+    return found.value if found is not None else value
 
 
 def _first_order(found: Given, motion: Motion) -> FirstOrder:
@@ -80,7 +93,8 @@ def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Out
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
     rows = [*uncertain.budget(key, given), Contribution(key, value, whole)]  # last, as in EA-4/02
-    shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
+    text = uncertain_text(_to_the_last_digit(motion, key, value, whole), whole)
+    shown = f"{key} = {text} {units.get(key, '')}".rstrip()
     conclusion = f"{shown}, to first order; inputs are taken as independent."
     write_report(out, lambda: Report({"key": key}, fields, rows, [conclusion], units))
 

@@ -180,22 +180,23 @@ _LEAST_EXPONENT = -4
 """Bound below which numbers have an exponent, as they do if a rounded digit is before the point."""
 
 
-def uncertain_text(value: float, std: float) -> str:
+def uncertain_text(value: float | str, std: float) -> str:
     """Return a number with its standard uncertainty, such as 0.4293(48) or 73.9(1.2).
 
     The uncertainty is rounded by the rule of the Particle Data Group.  It has two digits if its
     first three are at most 354, and one digit up to 949; beyond, it is rounded up to 1000.  A
-    number without uncertainty is written in full.
+    number without uncertainty is written in full.  A value with more digits than a double has is
+    given as a text.
     """
     if not std:
-        return double_text(value)
+        return double_text(float(value))
     with localcontext() as context:
         context.prec = 800
         context.rounding = ROUND_HALF_EVEN
         exact = Decimal(repr(std))
         leading = exact.adjusted()
         last = leading - 1 if int(exact.scaleb(2 - leading)) <= 354 else leading
-        number, spread = (Decimal(repr(x)).quantize(Decimal(1).scaleb(last)) for x in (value, std))
+        number, spread = (Decimal(str(x)).quantize(Decimal(1).scaleb(last)) for x in (value, std))
         leading = max(x.adjusted() for x in (number, spread) if x)
         shift = 0 if leading >= _LEAST_EXPONENT and last <= 0 else leading
         places = max(shift - last, 0)

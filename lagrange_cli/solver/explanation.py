@@ -84,10 +84,13 @@ def explanations(
 ) -> list[Explained]:
     """Return some keys and columns, with formulas that show the numbers of a motion.
 
-    Raises LagtopError for an unknown name.
+    A symbol stands for its key or column, if there is only one.  Raises LagtopError for an unknown
+    name.
     """
     rows = listed(radians=radians, named=named)
-    check_names("KEY", names, list(dict.fromkeys(row.name for row in rows)))
+    known = list(dict.fromkeys(row.name for row in rows))
+    names = [_named_by(word, rows) if word not in known else word for word in names]
+    check_names("KEY", names, known)
     chosen = [
         row._replace(text=_with_limits(row.text, motion.facts))
         for name in names
@@ -120,6 +123,12 @@ def explanations(
             )
         )
     return found
+
+
+def _named_by(symbol: str, rows: Sequence[Explained]) -> str:
+    """Return the key or column with a symbol, if there is only one; else the symbol."""
+    found = [row.name for row in rows if row.symbol == symbol]
+    return found[0] if len(found) == 1 else symbol
 
 
 def _reasons(motion: Motion, absent: Sequence[str]) -> str:

@@ -273,6 +273,17 @@ KEYS = (
 """The declaration of each key of a record by name, in the order of the groups of a table."""
 
 
+def key_of(word: str, *, radians: bool = False) -> str:
+    """Return the key that a symbol stands for, if it stands for one only; else the word itself.
+
+    The key of an uncertainty, such as `T_std`, is that of its number with `_std`.
+    """
+    symbol, std, _ = word.partition("_std")
+    named = [name for name, key in (INPUTS | NUMBERS).items() if symbol and key.symbol == symbol]
+    is_key = unit_name(degree_name(symbol), radians=radians) in all_keys(radians=radians)
+    return word if is_key or len(named) != 1 else unit_name(named[0], radians=radians) + std
+
+
 def record_keys(*, radians: bool = False) -> list[str]:
     """Return all keys of a record in their order."""
     names = [*INPUTS, "regime", *NUMBER_KEYS, "path", "remark"]

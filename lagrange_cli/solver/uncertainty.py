@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -10,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.enclosures import pi_to, rounded
+from ..errors import OutOfRangeError
 from ..top.top import Top
 from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, size_of
 from .keys import INPUTS, TEXT_KEYS, degree_name
@@ -77,13 +77,17 @@ class FirstOrder:
         return total * degree if key.endswith("_rad") else total / degree
 
     def std(self, key: str) -> float | None:
-        """Return the standard uncertainty of a key or an input; None without one in doubles."""
+        """Return the standard uncertainty of a key or an input, or None.
+
+        Raises OutOfRangeError if it is beyond the doubles.
+        """
         variance = self._variance(key) if self.has(key) else None
         if variance is None:
             return None
         ratio = Decimal(variance.numerator), Decimal(variance.denominator)
-        found = float(_CONTEXT.sqrt(_CONTEXT.divide(*ratio)))
-        return found if math.isfinite(found) else None
+        found = _CONTEXT.sqrt(_CONTEXT.divide(*ratio))
+        nearest: float = rounded(f"the uncertainty of {key}", found, None) if float(found) else 0.0
+        return nearest
 
     def _variance(self, key: str) -> Fraction | None:
         slopes = {name: self.slope(key, name) for name in self.stds}
@@ -122,13 +126,20 @@ def tilt_of(top: Top) -> str:
     return "theta0_deg" if top.theta0_rad is None else "theta0_rad"
 
 
-def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
-    """Return `KEY_std` for every number of a record, in its units."""
-    return {
-        f"{name}_std": None if value is None else uncertain.std(name)
-        for name, value in record.items()
-        if not isinstance(value, str) and name not in TEXT_KEYS
-    }
+def stds_of(
+    record: Mapping[str, Any], uncertain: FirstOrder
+) -> tuple[dict[str, float | None], list[OutOfRangeError]]:
+    """Return `KEY_std` for every number of a record, in its units, and those beyond the doubles."""
+    stds: dict[str, float | None] = {}
+    beyond = []
+    for name, value in record.items():
+        if not isinstance(value, str) and name not in TEXT_KEYS:
+            stds[f"{name}_std"] = None
+            try:
+                stds[f"{name}_std"] = None if value is None else uncertain.std(name)
+            except OutOfRangeError as error:
+                beyond.append(error)
+    return stds, beyond
 
 
 class AngleStds:

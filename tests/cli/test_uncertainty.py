@@ -157,8 +157,8 @@ def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Pat
         (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
         (["--get", "T_nutation_std"], "no input is uncertain"),
         (
-            ["--theta0", "30(1)", "--budget", "T"],
-            "--budget must be among 33 names, got 'T' (did you",
+            ["--theta0", "30(1)", "--budget", "period"],
+            "--budget must be among 33 names, got 'period' (did you",
         ),
     ],
 )
@@ -245,3 +245,19 @@ def test_angles_are_drawn_with_bands(lagtop: Lagtop, tmp_path: Path) -> None:
         assert lagtop("plot", "angles", "--theta0", tilt, "-o", path).exit_code == 0
     plain, bands = ((tmp_path / f"{name}.svg").read_text() for name in ("plain", "bands"))
     assert bands.count("FillBetweenPolyCollection") == 3 + plain.count("FillBetweenPolyCollection")
+
+
+def test_an_uncertainty_below_the_last_digit_of_a_double_has_all_digits(lagtop: Lagtop) -> None:
+    ask = ["solve", "--get", "T_nutation", "--format", "table", "--r0"]
+    assert lagtop(*ask, "50+/-1e-18").stdout == "0.429250124478547737375(5)\n"
+    assert lagtop(*ask, "50+/-1e-40").stdout.startswith("0.4292501244785477373754037500")
+
+
+def test_an_uncertainty_beyond_the_doubles_is_null_or_refused(lagtop: Lagtop) -> None:
+    top = "solve --m 1 --A 1 --C .5 --s 1 --r0 1 --psidot0 1 --theta0 50 --g".split()
+    line = "the uncertainty of u3 must be within 1.8e308 in size, got 4.184e+319: change the units"
+    record = lagtop(*top, "1e-160+/-1", "--format", "json")
+    assert json.loads(record.stdout)["u3_std"] is None
+    assert f"Warning: {line}" in record.stderr
+    budget = lagtop(*top, "1e-160+/-1", "--budget", "u3")
+    assert (budget.exit_code, budget.stderr.splitlines()[-1]) == (2, f"Error: {line}")

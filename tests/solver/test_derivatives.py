@@ -187,3 +187,21 @@ def test_an_uncertainty_of_0_is_0() -> None:
     """At 90 degrees r0_steady_min is 0 for every r0."""
     motion = solve(Top(theta0_deg=90, r0=50))
     assert FirstOrder(motion, {"r0": 2.0}).std("r0_steady_min") == 0.0
+
+
+EDGE = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": 1.5, "psidot0": 1, "theta0_deg": 60}
+
+
+@pytest.mark.parametrize("fall", [1e-50, 1e-70, 1e-90])
+def test_the_step_is_smaller_than_the_distance_of_a_degenerate_motion(fall: float) -> None:
+    """Without nutation rate the precession is steady, and the derivative does not exist."""
+    found = sensitivities(Top(**EDGE, thetadot0=fall), ["theta_max_deg", "k"]).derivatives
+    assert found["theta_max_deg"]["r0"] == pytest.approx(-49.6196005879, rel=1e-11)
+    k = solve(Top(**EDGE, thetadot0=fall)).k
+    assert found["k"]["thetadot0"] == pytest.approx(k / fall / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("inputs", [{"g": 1e-160}, {"r0": 1e-200}])
+def test_a_derivative_beyond_the_doubles_is_refused(inputs: dict[str, float]) -> None:
+    with pytest.raises(LagtopError, match=r"the derivative of .* must be within 1.8e308 in size"):
+        sensitivities(Top(**EDGE | {"psidot0": 0, "theta0_deg": 30} | inputs))

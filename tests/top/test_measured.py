@@ -72,6 +72,46 @@ def test_digits_are_those_of_the_decimals(lagtop: Lagtop) -> None:
     assert given == "0.1\n"
 
 
+SPHERE = "--m .5 --s 1 --g 1 --A 1 --C 1"
+STEADY = "steady precession 0.0"
+EXACT = [
+    ("--digits 20 --phidot0 1 --psidot0 1 --theta0 45 --get spin_rate_start", "1.0"),
+    ("--digits 20 --phidot0 1.1 --psidot0 1 --theta0 45 --get spin_rate_start", "1.1"),
+    ("--digits 20 --phidot0 0 --psidot0 1.1 --theta0 41 --get spin_rate_start", "0.0"),
+    ("--digits 3 --phidot0 1.125 --psidot0 1.1 --theta0 41 --get spin_rate_start", "1.12"),
+    ("--digits 20 --m 3 --s 134217729 --g 1 --A-cm 1 --C 1 --get A", "5.4043196333752324e+16"),
+    (f"--digits 20 {SPHERE} --phidot0 1 --psidot0 .5 --theta0 45 --get regime,k", STEADY),
+    (f"--digits 3 {SPHERE} --m .77 --phidot0 1.1 --psidot0 .7 --theta0 45 --get regime,k", STEADY),
+    (f"--digits 20 {SPHERE} --phidot0 1.1 --psidot0 1.1 --theta0 45 --get f_upright", "0.0"),
+    ("--phidot0=-1 --psidot0 2 --theta0 60 --get regime,b", "no spin 0.0"),
+]
+"""Steady precession of a sphere: A = C and C phi' psi' = mgs; if phi' = psi' too, beta = b."""
+
+
+@pytest.mark.parametrize(("options", "printed"), EXACT)
+def test_derived_inputs_are_exact(lagtop: Lagtop, options: str, printed: str) -> None:
+    assert lagtop("solve", *options.split()).stdout == printed.replace(" 0", "\n0") + "\n"
+
+
+STEADY_BODY = "--m 1 --s .5 --g 9.8 --C .08 --A .29 --theta0 54 --phidot0 30"
+
+
+@pytest.mark.parametrize(
+    ("word", "rate", "r0"),
+    [
+        ("steady", 2.318016982401538, 31.3624961968),
+        ("steady-fast", 17.12543006564509, 40.06607523175),
+    ],
+)
+def test_a_steady_rate_for_a_rate_of_phi(lagtop: Lagtop, word: str, rate: float, r0: float) -> None:
+    """The roots of (A - C) cos(theta) x^2 - C phidot0 x + m g s = 0."""
+    keys = "regime,precession_rate_start,r0,spin_rate_start,mean_spin_rate"
+    ask = ["solve", *STEADY_BODY.split(), "--psidot0", word, "--get", keys]
+    regime, *numbers = lagtop(*ask).stdout.split("\n")[:5]
+    assert regime == "steady precession"
+    assert [float(x) for x in numbers] == pytest.approx([rate, r0, 30, 30], rel=1e-12)
+
+
 def test_one_of_each_pair(tmp_path: Path, lagtop: Lagtop) -> None:
     whole = ["--m", "1", "--C", "1", "--s", "1", "--g", "1"]
     both = lagtop("solve", "--A", "1", "--A-cm", "2", *whole)
