@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
 
@@ -14,7 +14,7 @@ from ..errors import LagtopError
 from ..files import rotations
 from ..solver.solve import solve
 from .differences import Alignment, Exact, Run, errors, sizes, start_of
-from .mistakes import Cause, mistakes
+from .mistakes import BACKWARDS, Cause, mistakes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
@@ -46,8 +46,8 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
         return []
     search = Search(exact, run)
     alone = search.tried(search.single())
-    for more in (list, search.shifts, *search.pairs()):
-        if found := search.best([*alone, *search.tried(more(), limit)], limit):
+    for more in search.groups():
+        if found := search.best([*alone, *search.tried(more, limit)], limit):
             return found
     return search.best(alone)
 
@@ -119,19 +119,20 @@ class Search:
         early = 1 + next(i for i, x in enumerate(self.mistakes) if x.inputs)
         return [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
 
-    def pairs(self) -> list[Callable[[], list[Cause]]]:
-        """Return groups of two causes at once, the simplest first.
+    def groups(self) -> Iterator[list[Cause]]:
+        """Yield groups of causes that are tried if no single cause explains the error.
 
-        They are a mistake with the zeros of the angles and the clock, a mistake in another frame,
-        and two mistakes.
+        They are a shift of the clock, a mistake with other zeros of the angles and the clock, a
+        mistake in another frame, two mistakes, and the reverse of time.
         """
-
+        yield []
+        yield self.shifts()
         aligned = [(y, self.alignments(y)) for y in self.mistakes]
-        same = [x.with_other(y) for y, found in aligned for x in found[0]]
-        other = [x.with_other(y) for y, found in aligned for x in found[1]]
+        for group in (0, 1):
+            yield [x.with_other(y) for y, found in aligned for x in found[group]]
         tops = [x for x in self.mistakes if x.inputs]
-        two = [x.with_other(y) for x in self.mistakes if not x.inputs for y in tops]
-        return [lambda: same, lambda: other, lambda: two]
+        yield [x.with_other(y) for x in self.mistakes if not x.inputs for y in tops]
+        yield [BACKWARDS]
 
     def alignments(self, mistake: Cause) -> tuple[list[Cause], list[Cause]]:
         """Return other alignments in the frame that is given, and in other frames.

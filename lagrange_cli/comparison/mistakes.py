@@ -53,11 +53,12 @@ class Cause(NamedTuple):
         return Cause(name, meant, inputs, self.align or other.align, remedy)
 
 
+BACKWARDS = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
+
+
 def mistakes(top: Top, run: Run) -> list[Cause]:
     """Return all mistakes, the simplest first."""
-    found = [*_of_time(run), *_of_inputs(top, run), *_of_writing(run)]
-    backwards = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
-    return [backwards, *found] if run.t[0] > run.t[-1] else [*found, backwards]
+    return [*_of_time(run), *_of_inputs(top, run), *_of_writing(run)]
 
 
 def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
@@ -66,6 +67,8 @@ def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
 
 
 def _of_time(run: Run) -> Iterator[Cause]:
+    if run.t[0] > run.t[-1]:
+        yield BACKWARDS
     factors = {f"t is in {x}": y for x, y in _UNITS.items()}
     if (run.t == np.rint(run.t)).all():
         factors |= {f"t counts frames, {x} per second": 1 / x for x in _FRAME_RATES}

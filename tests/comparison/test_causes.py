@@ -71,7 +71,7 @@ def bodies(top: Top) -> dict[str, Body]:
     }
 
 
-def framed(turn: Rotation, rows: list[list[float]]) -> Given:
+def framed(turn: Rotation, rows: Any) -> Given:
     """Return the attitude in other axes of space and body, right-handed or left-handed."""
     return {"quaternion": wxyz(Rotation.from_matrix(rows @ turn.as_matrix() @ np.transpose(rows)))}
 

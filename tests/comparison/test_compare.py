@@ -116,7 +116,8 @@ def test_drift_of_energy_momentum_and_norm_of_an_integrator() -> None:
     far = TURN.apply([0, 0, 600.0])  # a marker, in other units
     assert compare(TOP, T, position=far).verdict == "fine"
     slips = compare(TOP, T, position=far * (1 + T[:, np.newaxis] / 4))
-    assert (slips.verdict, slips.pivot_slip, slips.cause) == ("drifts", pytest.approx(0.5), None)
+    assert (slips.verdict, slips.cause) == ("drifts", None)
+    assert slips.pivot_slip == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize(("tilt", "off"), [(0, 0.15), (180, 0.35)])
@@ -257,7 +258,7 @@ def test_missing_numbers_and_repeated_times() -> None:
     masked = np.ma.masked_array(THETA, T > 1)
     found = compare(TOP, T, theta=masked, phi=PHI)
     assert (found.verdict, found.lost_at, found.rows_missing) == ("fine", None, 100)
-    rates = np.ma.masked_array(RATES, np.zeros(RATES.shape))
+    rates = np.ma.masked_array(RATES, np.zeros(RATES.shape, bool))
     rates[0, 1] = np.ma.masked
     found = compare(TOP, np.sort([*T, *T[5:7]]), quaternion=wxyz(TURN[ROWS]), rates=rates[ROWS])
     assert (found.verdict, found.rows_missing, (found.energy_drift or 1) < 1e-12) == (
