@@ -86,6 +86,7 @@ class LagtopGroup(click.Group):
         if sys.stderr is None:  # closed by the caller: the next file would get its number
             sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         try:
+            _check_epoch()
             sys.exit(run(*args, **extra | {"standalone_mode": False}) or 0)
         except click.ClickException as error:
             text, code = _usage_message(error), error.exit_code
@@ -106,6 +107,13 @@ class LagtopGroup(click.Group):
             text, code = f"{_COMPLETION} needs the variables that a shell sets: unset it", 2
         complain(f"Error: {text}")
         sys.exit(code)
+
+
+def _check_epoch() -> None:
+    """Raise UnavailableError for a SOURCE_DATE_EPOCH at which NumPy or matplotlib would fail."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "0")
+    if not (epoch.isascii() and epoch.isdecimal() and len(epoch) <= 11):
+        raise UnavailableError(f"SOURCE_DATE_EPOCH must be a number of seconds, got {epoch!r}")
 
 
 def _with_options(error: LagtopError, params: list[click.Parameter]) -> str:

@@ -222,12 +222,8 @@ def test_ctrl_c_while_modules_are_imported(module: str) -> None:
     ("settings", "line", "code", "said"),
     [
         ("MPLBACKEND=nonsense", "plot -o {}/a.png", 69, "'nonsense' is not a valid value"),
-        (
-            "SOURCE_DATE_EPOCH=abc",
-            "plot -o {}/a.pdf",
-            69,
-            "invalid literal for int() with base 10: 'abc'",
-        ),
+        ("SOURCE_DATE_EPOCH=abc", "plot -o {}/a.pdf", 69, "must be a number of seconds, got 'abc'"),
+        ("SOURCE_DATE_EPOCH=", "bench --n 3", 69, "must be a number of seconds, got ''"),
         ("_LAGTOP_COMPLETE=bash_complete", "", 2, "_LAGTOP_COMPLETE needs"),
         ("ulimit -v 250000;", "table --n 100000 --format json -o {}/a.json", 69, "out of memory"),
     ],
