@@ -18,7 +18,7 @@ from typing import Any
 
 from lagtop import LagtopError, Top, solve
 
-from lagrange_cli.bench.work_precision import exact_motion
+from lagrange_cli.bench.reference import exact_motion
 
 Scene = dict[str, Any]
 _HALF_PI = Decimal("1.57079632679489661923132169163975144209858469968755291048747")

@@ -21,6 +21,7 @@ import numpy as np
 from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..files.rotations import of_angles
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 
@@ -42,6 +43,8 @@ Sample = Callable[[Array, float], Run]
 
 It may raise SlowError, or ArithmeticError if the method fails.
 """
+STATE = "r0", "theta0_rad", "thetadot0", "psidot0"
+"""The inputs of the start."""
 Slope = Callable[[float, Any], list[Any]]
 """The derivative of p, q (body axes) and of the quaternion, by time and state."""
 
@@ -97,12 +100,7 @@ def counted(slope: Slope, limit: float) -> tuple[Slope, list[int]]:
 
 def attitudes(columns: Sequence[Array] | Array) -> Array:
     """Return the quaternions, of shape (times, 4), from the columns of a run."""
-    if len(columns) == 3:
-        theta, plus, minus = columns[0], columns[2] + columns[1], columns[2] - columns[1]
-        cos, sin = np.cos(theta / 2), np.sin(theta / 2)
-        x, y = sin * np.cos(minus / 2), sin * np.sin(minus / 2)
-        columns = [cos * np.cos(plus / 2), x, y, cos * np.sin(plus / 2)]
-    return np.stack([*columns], axis=1)
+    return of_angles(*columns) if len(columns) == 3 else np.stack([*columns], axis=1)
 
 
 def lagtop(motion: Motion, output: str) -> Sample:
@@ -115,50 +113,21 @@ def lagtop(motion: Motion, output: str) -> Sample:
     return lambda t, _: ([*fresh.table(t, names).values()], None)
 
 
-def closed_form_in_doubles(motion: Motion, _: Any) -> Sample:
-    """Return Legendre's integrals in plain doubles, as a user of SciPy would write them.
+def scipy_special(motion: Motion, _: Any) -> Sample:
+    """Return the closed form in plain doubles: SciPy's elliptic functions, and Carlson's for psi.
 
-    The roots are those of NumPy for the cubic (4,9).  With sn^2 counted from u1 and
-    n = k^2 (1 +- u3)/(1 +- u1):
-
-        1/(1 +- u) = 1/(1 +- u3) + (1/(1 +- u1) - 1/(1 +- u3))/(1 - n sn^2).
+    It is the function that `fit` uses.  Differences of roots follow from the cubic and not from
+    subtractions, so that it keeps its digits in hard scenes as far as doubles allow.
     """
-    from scipy.special import ellipj, ellipk, ellipkinc, elliprf, elliprj
+    from ..inverse.motions import angles
 
-    top = motion.top
-    a, b = constants(top)
-    psi_rate, theta_rate, u0 = float(top.psidot0), float(top.thetadot0), top.tilt(DOUBLES).cos
-    beta = psi_rate * (1 - u0 * u0) + b * u0
-    alpha = theta_rate**2 + psi_rate**2 * (1 - u0 * u0) + a * u0
-    cubic = [a, -(alpha + b * b), 2 * b * beta - a, alpha - beta * beta]
-    u2, u1, u3 = np.sort(np.roots(cubic).real)
-    m = (u1 - u2) / (u3 - u2)
-    K, speed = ellipk(m), math.sqrt(a * (u3 - u2)) / 2
-
-    def third(sign: int, w: Array) -> Array:
-        at_u1, at_u3 = 1 + sign * u1, 1 + sign * u3
-        n, turns = m * at_u3 / at_u1, np.rint(w / (2 * K))
-        sn, cn, dn, _ = ellipj(w - turns * 2 * K, m)
-        whole = K + n / 3 * elliprj(0.0, 1 - m, 1.0, 1 - n)
-        part = elliprf(cn * cn, dn * dn, 1.0)
-        part += n / 3 * sn * sn * elliprj(cn * cn, dn * dn, 1.0, 1 - n * sn * sn)
-        integral = w / at_u3 + (1 / at_u1 - 1 / at_u3) * (2 * turns * whole + sn * part)
-        half: Array = (beta + sign * b) / 2 * (integral / speed)
-        return half
-
-    start = 0.0
-    if theta_rate or abs(u0 - u2) < abs(u0 - u1):
-        sn2 = (u1 - u0) * (u3 - u2) / ((u3 - u0) * (u1 - u2))
-        start = float(ellipkinc(math.asin(math.sqrt(min(max(sn2, 0), 1))), m))
-        start = math.copysign(start, theta_rate)
-    first = [third(sign, np.array(start)) for sign in (1, -1)]
+    (a, b), inputs = constants(motion.top), motion.top.inputs(radians=True)
+    r0, theta, theta_rate, psi_rate = (float(inputs[x]) for x in STATE)
+    state = np.array([[a, b, theta, theta_rate, psi_rate]])
 
     def sample(t: Array, _: float) -> Run:
-        w, drift = start + speed * t, (float(top.r0) - b) * t
-        plus, minus = (third(sign, w) - then for sign, then in zip((1, -1), first, strict=True))
-        sn, _, dn, _ = ellipj(w - np.rint(w / (2 * K)) * 2 * K, m)
-        theta = np.arccos(np.clip(u1 - (u1 - u2) * (1 - m) * (sn / dn) ** 2, -1, 1))  # (4,20)
-        return [theta, plus - minus + drift, plus + minus], None
+        theta, phi, psi = angles(state, t)[:, 0]
+        return [theta, phi + (r0 - b) * t, psi], None
 
     return sample
 
@@ -288,7 +257,7 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
 
 METHODS: dict[str, Method] = {
     "lagtop": Method(["angles", "quaternion"], lagtop),
-    "scipy.special": Method(["double"], closed_form_in_doubles),
+    "scipy.special": Method(["double"], scipy_special),
     "RK45": Method([1e-3, 1e-5, 1e-7, 1e-9], partial(scipy_method, "RK45")),
     "DOP853": Method([1e-4, 1e-7, 1e-10, TIGHTEST], partial(scipy_method, "DOP853")),
     "LSODA": Method([1e-4, 1e-7, 1e-10, 1e-12], partial(scipy_method, "LSODA")),

@@ -17,6 +17,8 @@ from typing import Any
 import mpmath
 
 from ..errors import LagtopError
+from ..solver.facts import Regime
+from ..solver.solve import Motion
 from ..top.top import Top
 
 DIGITS, ROOT_DIGITS = 50, 1000
@@ -123,3 +125,13 @@ class Reference:
             plus, minus = map(mpmath.fsub, self._halves(mpmath.mpf(t)), self.start)
             upright = cos * mpmath.cos(plus), cos * mpmath.sin(plus)
             return upright[0], sin * mpmath.cos(minus), sin * mpmath.sin(minus), upright[1]
+
+
+def exact_motion(motion: Motion) -> Reference:
+    """Return the reference of a motion; raise LagtopError if it cannot check the motion."""
+    if motion.regime not in (Regime.REGULAR, Regime.NO_SPIN):
+        raise LagtopError(f"the scene must nutate, got {motion.regime.value}")
+    try:
+        return Reference(inputs_of(motion.top))
+    except ZeroDivisionError:
+        raise LagtopError("the axis must not pass exactly through the vertical") from None

@@ -9,27 +9,28 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice, product, repeat
 from random import Random
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import mpmath
 
 from ..names import check_names
-from ..output.report import Field, Report, fields_of, short
+from ..output.report import Report
 from ..output.terminal import Progress, silent
+from ..plot.style import LIGHT
 from ..solver.facts import Regime
 from ..solver.solve import Motion, solve
 from ..top.top import Top
+from .measure import ERROR, LEAST_DRAWN, Row, looks, machine, measure, panels_of, report_of, task_of
 from .methods import METHODS
 from .reference import ROOT_DIGITS, Reference, inputs_of, rotation_angle
-from .work_precision import ERROR, LOOKS, drawn, machine, measure, panels_of, task_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SPANS = 1.0, 100.0
 """Spans in nutation periods."""
-TIMES = 12
-"""Number of times in each span that are compared; a third of them for the input rounding."""
+TIMES = 8
+"""Number of times in each span that are compared; a quarter of them for the input rounding."""
 COMPARED = "lagtop", "scipy.special", "DOP853", "Radau", "Taylor"
 LIMIT = 1.0
 """CPU seconds after which a run is too slow."""
@@ -127,31 +128,7 @@ KINDS: dict[str, Callable[[Random], Scene]] = {
 """The function that returns a random scene of each kind."""
 
 
-class Row(NamedTuple):
-    """The worst scene of a kind for one method over one span."""
-
-    kind: str
-    method: str
-    periods: float
-    error_rad: float | None
-    """Greatest rotation from the exact to the computed attitude; None if there is no result."""
-    input_rounding: float
-    """Greatest rotation (rad) that half an ulp of each input causes, added over the inputs."""
-    verdict: str
-    scene: str
-    """The options of the scene."""
-    remark: str | None = None
-
-
-FIELDS = fields_of(
-    Row._fields,
-    Field("kind", "kind", is_text=True),
-    Field("method", "method", is_text=True),
-    Field("periods", "periods", "{:g}".format),
-    Field("error_rad", "error", short),
-    Field("input_rounding", "input rounding", short),
-    Field("verdict", "verdict", is_text=True),
-)
+KEYS = "scene method setting periods error_rad input_rounding verdict options remark"
 
 
 def stability(
@@ -169,9 +146,9 @@ def stability(
     rows = [row for kind, motion in progress(scenes, "scenes") for row in compared(kind, motion)]
     worst: dict[tuple[str, float, str], Row] = {}
     for row in sorted(rows, key=badness, reverse=True):
-        worst.setdefault((row.kind, row.periods, row.method), row)
+        worst.setdefault((row.scene, row.periods, row.method), row)
     found = [worst[x] for x in product(names, SPANS, COMPARED)]
-    return Report(conditions(samples, seed), FIELDS, found, list(conclusions(found)))
+    return report_of(conditions(samples, seed), KEYS, found, list(conclusions(found)))
 
 
 def motions(kind: str, samples: int, seed: int) -> list[Motion]:
@@ -192,19 +169,24 @@ def compared(kind: str, motion: Motion) -> Iterator[Row]:
             for t, exact in list(zip(task.times.tolist(), task.exact.values(), strict=True))[4::4]
         )
         for name in COMPARED:
-            found = measure(task, name, METHODS[name].settings[-1], LIMIT, runs=1)
-            verdict = verdict_of(found.error_rad, rounding, found.remark)
-            scene = motion.top.options()
-            yield Row(kind, name, span, found.error_rad, rounding, verdict, scene, found.remark)
+            row = measure(task, name, METHODS[name].settings[-1], LIMIT, runs=1)
+            verdict = verdict_of(row.error_rad, rounding, row.remark)
+            row = row._replace(input_rounding=rounding, verdict=verdict)
+            yield row._replace(periods=span, options=motion.top.options())
 
 
 def neighbours(top: Top) -> Iterator[Reference]:
-    """Yield the exact motions after each input in turn has grown by half an ulp."""
+    """Yield the exact motions after each input in turn has grown by half an ulp.
+
+    The tilt grows by half an ulp of its degrees, if these are the input.
+    """
     exact = inputs_of(top)
     for name, value in exact.items():
         if value:
             with mpmath.workdps(ROOT_DIGITS):
-                moved = value + math.ulp(float(value)) / 2
+                in_degrees = name == "theta" and top.theta0_deg is not None
+                unit = mpmath.pi / 180 if in_degrees else mpmath.mpf(1)
+                moved = value + math.ulp(float(value / unit)) / 2 * unit
             yield Reference({**exact, name: moved})
 
 
@@ -219,26 +201,31 @@ def verdict_of(error: float | None, rounding: float, remark: str | None = None) 
 
 def badness(row: Row) -> tuple[int, float]:
     """Return a key by which the worst row is the greatest."""
-    return VERDICTS.index(row.verdict), (row.error_rad or 0) / row.input_rounding
+    return VERDICTS.index(str(row.verdict)), (row.error_rad or 0) / (row.input_rounding or 1)
 
 
 def failures(report: Report) -> list[str]:
     """Return the kinds in which lagtop is not at rounding level."""
     bad = [x for x in report.rows if x.method == "lagtop" and x.verdict != VERDICTS[0]]
-    return [f"{x.kind} over {x.periods:g} periods: {x.verdict} ({x.scene})" for x in bad]
+    return [f"{x.scene} over {periods_of(x.periods)}: {x.verdict} ({x.options})" for x in bad]
+
+
+def periods_of(span: float) -> str:
+    """Return a span in words."""
+    return f"{span:g} nutation period{'s' * (span != 1)}"
 
 
 def conclusions(rows: Sequence[Row]) -> Iterator[str]:
     """Yield one line for each method: its kinds by verdict after the longest span."""
     for name in COMPARED:
-        mine = {x.kind: x.verdict for x in rows if (x.method, x.periods) == (name, SPANS[-1])}
+        mine = {x.scene: x.verdict for x in rows if (x.method, x.periods) == (name, SPANS[-1])}
         kinds = {y: [kind for kind, x in mine.items() if x == y] for y in VERDICTS}
         said = [
             f"{verdict} in {'all kinds' if len(found) == len(mine) else ', '.join(found)}"
             for verdict, found in kinds.items()
             if found
         ]
-        yield f"{name} over {SPANS[-1]:g} periods: {'; '.join(said)}."
+        yield f"{name} over {periods_of(SPANS[-1])}: {'; '.join(said)}."
 
 
 def conditions(samples: int, seed: int) -> dict[str, str]:
@@ -258,17 +245,18 @@ def conditions(samples: int, seed: int) -> dict[str, str]:
 
 def stability_figure(report: Report) -> Figure:
     """Return a panel for each span: the error of each method by kind, over the input rounding."""
-    kinds = list(dict.fromkeys(row.kind for row in report.rows))
+    kinds = list(dict.fromkeys(row.scene for row in report.rows))
     figure, panels = panels_of(1, len(SPANS), 13, 5)
     for axes, span in zip(panels, SPANS, strict=True):
         rows = [row for row in report.rows if row.periods == span]
-        bars = [max(x.input_rounding for x in rows if x.kind == kind) for kind in kinds]
-        axes.bar(kinds, bars, color="0.85", label="input rounding")
+        bars = [max(x.input_rounding or 0 for x in rows if x.scene == kind) for kind in kinds]
+        axes.bar(kinds, bars, color=LIGHT.faint, label="input rounding", zorder=0)
         for i, name in enumerate(COMPARED):
             mine = [x for x in rows if x.method == name and x.error_rad is not None]
-            places = [kinds.index(x.kind) + 0.12 * (i - 2) for x in mine]
-            axes.plot(places, [*map(drawn, mine)], ls="none", **LOOKS[name])
-        axes.set(yscale="log", ylim=(1e-17, 10), ylabel=ERROR, title=f"span of {span:g} T")
+            places = [kinds.index(x.scene) + 0.12 * (i - 2) for x in mine]
+            axes.plot(places, [x.drawn_error for x in mine], ls="none", **looks()[name])
+        axes.set(yscale="log", ylim=(LEAST_DRAWN, 10), ylabel=ERROR)
+        axes.set_title(f"over {periods_of(span)}")
         axes.set_xticks(range(len(kinds)), kinds, rotation=40, ha="right")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")
     return figure

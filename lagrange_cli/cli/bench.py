@@ -6,7 +6,7 @@ import os
 
 from ..errors import LagtopError
 from ..output.destination import Output
-from ..output.terminal import with_progress
+from ..output.terminal import one_line, with_progress
 from . import shared as opt
 
 MOST_TIMES, MOST_SCENES, MOST_PERIODS = 10_000_000, 1000, 1e6
@@ -53,14 +53,15 @@ def bench_command(
     formulas.  The column `setting` holds the tolerance of a method, or its number of steps per
     nutation period.  A * marks the front: no other row is both faster and more accurate.
 
-    Taylor's method needs heyoka, and MuJoCo its own package; a missing one is named.
+    Taylor's method needs heyoka, and MuJoCo its own package; a missing one is named.  To check a
+    method of your own, write its trajectory to a file and use lagtop compare.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
     from ..bench.work_precision import PERIODS, bench, methods_figure
-    from ..solver.solve import solve
-    from ..top.given import read_scene
+    from ..file_bytes import shown_path
 
-    motions = {name: solve(read_scene(name)) for name in scenes or ["chrapan-1952"]}
+    founds = {name: opt.TopOptions({}, False, name).given() for name in scenes or ["chrapan-1952"]}
+    motions = {one_line(shown_path(name)): opt.motion_of(x) for name, x in founds.items()}
     opt.write_report(
         out,
         lambda: bench(motions, methods, spans or [PERIODS], n, with_progress),

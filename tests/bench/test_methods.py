@@ -12,15 +12,17 @@ from engines import Body
 from lagtop import LagtopError, Top, solve
 from scipy.integrate import solve_ivp
 
+from lagrange_cli.bench.measure import measure, task_of
 from lagrange_cli.bench.methods import METHODS, Run, SlowError, attitudes, fixed_steps
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
-from lagrange_cli.bench.work_precision import bench, measure, task_of
+from lagrange_cli.bench.stability import motions
+from lagrange_cli.bench.work_precision import bench
 
 START = {"m": 1.2, "A": 0.03, "C": 0.02, "s": 0.1, "g": 9.81}
 START |= {"r0": 40.0, "theta0_deg": 50.0, "thetadot0": -2.0, "psidot0": 3.0}
 MOTION = solve(Top(**START))
 ERRORS = {
-    **{"lagtop": 2e-15, "scipy.special": 1e-12, "Taylor": 1e-13, "DOP853": 1e-11},
+    **{"lagtop": 2e-15, "scipy.special": 1e-13, "Taylor": 1e-13, "DOP853": 1e-11},
     **{"RK45": 1e-5, "LSODA": 1e-8, "Radau": 1e-4, "RK4": 1e-6, "MuJoCo-RK4": 1e-6},
     "MuJoCo-Euler": 3.2,
 }
@@ -82,6 +84,20 @@ def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "heyoka", None)
     report = bench({"scene": MOTION}, ["lagtop", "Taylor"], count=3)
     assert "Not compared: Taylor (not installed: pip install heyoka)." in (report.conclusions)
+
+
+@pytest.mark.parametrize(
+    ("kind", "error"),
+    [
+        *(("fast-spin", 1e-13), ("tiny-tilt-with-rates", 6e-13), ("near-steady", 3e-13)),
+        *(("near-hanging", 3e-10), ("extreme-sizes", 9e-13)),
+    ],
+)
+def test_the_closed_form_in_plain_doubles_is_fair(kind: str, error: float) -> None:
+    """The errors after 100 periods, as found outside the package."""
+    tasks = [task_of(kind, x, 97.0, 9) for x in motions(kind, 1, 1952)]
+    found = max(measure(x, "scipy.special", "double", runs=1).error_rad or 9.0 for x in tasks)
+    assert found <= 3 * error
 
 
 @pytest.mark.slow

@@ -130,7 +130,7 @@ def test_the_sentence_is_that_of_solve() -> None:
     motions += [solve(Top(theta0_deg=120, r0=0, thetadot0=x)) for x in (0, 40)]
     for motion, page in zip(motions, computed(motions), strict=True):
         if not page["isSketch"]:
-            assert page["words"] == summary(motion.record(), motion.exact.facts)
+            assert page["words"] == summary(motion.record(), motion.facts)
 
 
 def test_numbers_follow_the_inputs() -> None:
