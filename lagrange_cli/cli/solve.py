@@ -11,6 +11,7 @@ from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError
 from ..names import check_names
 from ..output.destination import Output
+from ..solver.facts import Regime
 from ..solver.keys import all_keys, key_of, record_keys, shown_keys, unit_name
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
@@ -96,6 +97,8 @@ def solve_command(
         record = {x: record[x] for x in [*shown, *record]}
     elif found.si and out.fmt in {"json", "ndjson"}:
         record["units"] = {x: key.unit for x, key in shown.items() if x in record and key.unit}
+    if out.fmt == "table" and motion.regime is Regime.SLEEPING and not motion.facts.stable:
+        record["regime"] += ", unstable"
     out.record(record, lambda: shown)
 
 

@@ -123,6 +123,16 @@ def test_tables_of_ordinary_tops_fit_80_columns(lagtop: Lagtop) -> None:
         assert max(map(len, shown.stdout.splitlines())) <= 80, options
 
 
+@pytest.mark.parametrize(("r0", "regime"), [(50, "sleeping, unstable"), (60, "sleeping")])
+def test_the_table_says_whether_a_sleeping_top_is_stable(
+    lagtop: Lagtop, r0: int, regime: str
+) -> None:
+    words = ["solve", "--theta0", "0", "--r0", str(r0)]
+    (line,) = (x for x in lagtop(*words).stdout.splitlines() if x.startswith("regime"))
+    assert line.removeprefix("regime").strip() == regime
+    assert '"regime":"sleeping"' in lagtop(*words, "--format", "json").stdout
+
+
 def test_the_remark_stands_below_the_table(lagtop: Lagtop) -> None:
     shown = lagtop("solve", "--theta0", "0").stdout
     assert shown.endswith("\n\nonly phi + psi is defined; unstable (lambda = b^2/2a < 1)\n")
