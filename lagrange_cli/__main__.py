@@ -4,12 +4,16 @@ import gc
 import signal
 import sys
 
+_ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
+"""Signals that end the program; not every system has each."""
+
 
 def main() -> None:
     """Run the command line; a signal ends it without a traceback, and removes temporary files.
 
-    Ctrl-C kills at once while modules are imported.  Later it raises KeyboardInterrupt, and TERM
-    and HUP raise SystemExit, so that `finally` clauses run.  Ignored signals stay ignored.
+    Ctrl-C kills at once while modules are imported.  Later it raises KeyboardInterrupt, and the
+    other signals raise SystemExit, so that `finally` clauses run.  A second signal does not stop
+    them.  Ignored signals stay ignored.
     """
     gc.set_threshold(100_000)  # a start makes no garbage: collections take a tenth of its time
     is_interactive = signal.getsignal(signal.SIGINT) == signal.default_int_handler
@@ -17,21 +21,25 @@ def main() -> None:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     from .cli.app import main as run
 
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)  # not every system has each
-        if number is not None and signal.getsignal(number) == signal.SIG_DFL:
+    for number in _numbers():
+        if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, _unwind)
     try:
-        if is_interactive:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
         run(prog_name="lagtop")
     finally:
         if is_interactive:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+def _numbers() -> list[signal.Signals]:
+    return [signal.Signals[name] for name in _ENDING if hasattr(signal, name)]
+
+
 def _unwind(number: int, _: object) -> None:
-    signal.signal(number, signal.SIG_IGN)  # a second one must not stop the cleaning
+    for each in _numbers():
+        signal.signal(each, signal.SIG_IGN)
+    if number == signal.SIGINT:
+        raise KeyboardInterrupt
     sys.exit(128 + number)
 
 

@@ -16,6 +16,7 @@ from .. import __version__
 from ..errors import CannotWriteError, LagtopError, UnavailableError
 from ..names import suggestion
 from ..output.terminal import one_line
+from ..top.inputs import DECLARED
 
 NAMES = (
     *("solve", "table", "plot", "view", "explain", "scenes"),
@@ -59,9 +60,8 @@ class LagtopGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
         """Return a command.  Raises UsageError for an unknown name."""
         if cmd_name not in NAMES:
-            raise click.UsageError(
-                f"no such command: {cmd_name!r}{suggestion(cmd_name, NAMES)}", ctx
-            )
+            hint = suggestion(cmd_name, [*NAMES, "--help", "--version"])
+            raise click.UsageError(f"no such command: {cmd_name!r}{hint}", ctx)
         module = import_module(f".{_MODULES.get(cmd_name, cmd_name)}", __package__)
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
@@ -87,6 +87,8 @@ class LagtopGroup(click.Group):
             sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         try:
             _check_epoch()
+            if sys.stdout is None and {"-h", "--help", "--version"} & {*sys.argv}:
+                raise CannotWriteError("cannot write standard output: it is closed")
             sys.exit(run(*args, **extra | {"standalone_mode": False}) or 0)
         except click.ClickException as error:
             text, code = _usage_message(error), error.exit_code
@@ -97,8 +99,13 @@ class LagtopGroup(click.Group):
         except OSError as error:  # of a file that no reader or writer has named
             with suppress(OSError, AttributeError):  # what is left in the buffer is lost anyway
                 os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            place = f": {error.filename}" if error.filename else ""
-            text, code = f"{error.strerror or error}{place}", CannotWriteError.exit_code
+            text, code = f"{error.strerror or error}", CannotWriteError.exit_code
+            if error.filename:
+                text += f": {error.filename}"
+            elif isinstance(error, FileNotFoundError):
+                text = "the current folder no longer exists"
+            else:
+                text = f"cannot write standard output: {text}"
         except LagtopError as error:
             text, code = str(error), error.exit_code
         except (KeyError, ValueError):
@@ -124,7 +131,8 @@ def _with_options(error: LagtopError, params: list[click.Parameter]) -> str:
     """
     text, key = str(error), error.key or ""
     for param in params:
-        option, name = param.opts[-1], param.name
+        option = param.opts[-1]
+        name = option.lstrip("-").replace("-", "_")
         if name == key.removesuffix("_deg").removesuffix("_rad") and text.startswith(f"{key} "):
             text = option + text.removeprefix(key)
         if option.startswith("--"):
@@ -135,11 +143,27 @@ def _with_options(error: LagtopError, params: list[click.Parameter]) -> str:
 def _usage_message(error: click.ClickException) -> str:
     """Return the message of click as the end of a sentence, with a reference to the help."""
     text = error.format_message().replace(". (", " (").rstrip(".")
-    if isinstance(error, click.NoSuchOption):  # click suggests --rad for --format
-        known = {x for x in error.possibilities or () if x.startswith(error.option_name[:3])}
-        text = f"no such option {error.option_name}{suggestion(error.option_name, sorted(known))}"
+    if isinstance(error, click.NoSuchOption):
+        text = f"no such option {error.option_name}{_option_meant(error)}"
     path = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "lagtop"
     return f"{text[:1].lower()}{text[1:]}: see {path} --help"
+
+
+def _option_meant(error: click.NoSuchOption) -> str:
+    """Return a hint with the options that a wrong one means: by its letters, then by its word."""
+    params = error.ctx.command.params if error.ctx else []
+    known = [x for param in params for x in param.opts if x.startswith("--")]
+    name = error.option_name.lstrip("-")
+    if error.ctx and error.ctx.parent is None and name in DECLARED:
+        return f": put a command in front of it, as in lagtop solve --{name}"
+    same = [x for x in known if x[2:].lower() == name.lower()] if len(name) == 1 else []
+    begun = sorted((x for x in known if x.startswith(f"--{name}")), key=len)[:1]
+    word = {"omega": "spin"}.get(name.lower(), name.lower())
+    named = [f"--{key}" for key, x in DECLARED.items() if word in x.name.split()]
+    if found := same or (begun if len(name) > 1 else []) or [x for x in named if x in known]:
+        return f" (did you mean {' or '.join(map(repr, found))}?)"
+    alike = [x for x in known if x.startswith(error.option_name[:3])]  # --rad is not --format
+    return suggestion(error.option_name, alike)
 
 
 @click.group(

@@ -5,17 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
+from fractions import Fraction
 from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
 
-from ..arithmetic.text import parse_number, quoted
+from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..errors import LagtopError, SomeFailedError
 from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
-from ..top.inputs import DECLARED, example_options, remark_on
+from ..top.inputs import BODY, DECLARED, example_options, remark_on
 from ..top.values import Value, parse_value, tilt_key
 from .app import complain
 
@@ -81,8 +82,16 @@ def parse_numbers(text: str) -> list[float]:
     return [float(parse_number(part)) for part in split_names(text)]
 
 
+def _parse_list(text: str) -> list[str]:
+    """Return the names of a comma-separated list.  Raises LagtopError for an empty name."""
+    names = split_names(text)
+    if "" in names:
+        raise LagtopError(f"must be names with commas and no blanks between, got {quoted(text)}")
+    return names
+
+
 NUMBER = Parsed("X", parse_number)
-LIST = Parsed("NAME,...", split_names)
+LIST = Parsed("NAME,...", _parse_list)
 TIME = values()
 
 option = click.option
@@ -211,6 +220,8 @@ def top(
             given = {x: others.pop(x) for x in [*others] if x in names}  # as on the command line
             inputs = {x: value for x, value in given.items() if value is not None}
             inputs = {tilt_key(x, y, radians=rad): y for x, y in inputs.items()}
+            for word in words if several else [words]:
+                _check_word(word, inputs)
             if several:
                 scenes = [word for word in words if is_scene and is_scene(word)]
                 if len(scenes) > 1:
@@ -232,6 +243,25 @@ def top(
     return decorate
 
 
+def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
+    """Raise LagtopError for a word that is no file but a unit, or an input with its value."""
+    if not word or not word[0].isalpha() or set(word) & set("-.") or os.path.exists(word):
+        return
+    name, _, value = word.partition("=")
+    if name in DECLARED and is_decimal(value):
+        raise LagtopError(f"an input is no scene: write --{name.replace('_', '-')} {value}")
+    from ..top.units import is_unit  # start-up
+
+    if is_unit(word):
+        bare = [(x, y.number) for x, y in inputs.items() if isinstance(y.number, Fraction)]
+        name, number = bare[-1] if bare else ("m", Fraction(2))
+        option = f"--{name.removesuffix('_deg').removesuffix('_rad').replace('_', '-')}"
+        raise LagtopError(
+            f"{word} is no scene: put a value with its unit in quotes: "
+            f"{option} '{float(number):g} {word}'"
+        )
+
+
 def _help_of(name: str, *, shows_default: bool) -> str:
     """Return the help of an input, with its unit if it is a rate, its bounds and its default."""
     declared = DECLARED[name]
@@ -246,7 +276,12 @@ def motion_of(found: Given, *, exact: bool = False, uses_stds: bool = True) -> M
     """Return the motion of some inputs, kept as decimals if `exact`, after warnings about them."""
     from ..solver.solve import solve  # start-up of commands without a top
 
-    motion = solve(found.top(exact=exact))
+    try:
+        motion = solve(found.top(exact=exact))
+    except LagtopError as error:
+        if error.key not in BODY:  # it may be due to the rest of the body
+            warn(found, uses_stds=uses_stds)
+        raise
     warn(found, uses_stds=uses_stds)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
@@ -257,6 +292,8 @@ def warn(found: Given, *, uses_stds: bool = False) -> None:
     """Warn of a scene without inputs, of defaults for the body, and of unused uncertainties."""
     if found.empty is not None:
         complain(f"Warning: {found.empty} has no inputs: using the worked example")
+    if found.file is not None and found.file.hides:
+        complain(f"Warning: {found.file.name} is read from this folder, not the scene of that name")
     if found.missing:
         words = example_options(found.missing, units=found.si)
         complain(f"Warning: {remark_on(found.missing, words)}")

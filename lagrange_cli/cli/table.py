@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from ..top.given import Given
     from ..top.values import Value
 
-MAX_DRAWN_ROWS = 10_000
-"""Largest number of rows that are drawn: nobody reads more."""
-
 
 @opt.command(
     "table",
@@ -80,8 +77,6 @@ def table_command(
     bounds = {name: x.number for name, x in given.items() if x is not None}
     try:
         at = read_times(times, decimal) if times else grid(motion, n=n, **bounds)
-        if out.fmt == "table" and at.count > MAX_DRAWN_ROWS:
-            raise LagtopError(f"--format table shows at most {MAX_DRAWN_ROWS} rows, got {at.count}")
         if proved:
             header, parts = ProvedTable(motion, names, digits, **how).rows(at, radii=certify)
         else:

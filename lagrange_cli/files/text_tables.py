@@ -394,10 +394,9 @@ def split_row(text: str, delimiter: str) -> list[str]:
         rows = csv.reader([text.strip()], delimiter=delimiter, strict=True, skipinitialspace=True)
         return [x.strip() for x in next(rows)]
     except csv.Error as error:
-        wrong = "a quoted cell must end with its quote, and on its line"
-        if "limit" in str(error):
-            wrong = f"a quoted cell must have at most {csv.field_size_limit()} characters"
-        raise LagtopError(f"{wrong}: {error}") from None
+        limit = "a quoted cell must have at most 131072 characters"
+        wrong = f"a quoted cell must end with its quote, and on its line: {error}"
+        raise LagtopError(limit if "limit" in str(error) else wrong) from None
 
 
 def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:

@@ -135,6 +135,10 @@ def _standard_output() -> Iterator[BinaryIO]:
 def _file(path: str) -> Iterator[BinaryIO]:
     if path.endswith("/"):
         raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if (descriptor := _descriptor(path)) is not None:
+        with open(descriptor, "wb", closefd=False) as stream:
+            yield stream
+        return
     try:
         mode = os.stat(path).st_mode
     except FileNotFoundError:
@@ -158,3 +162,15 @@ def _file(path: str) -> Iterator[BinaryIO]:
     finally:
         with suppress(FileNotFoundError):
             os.unlink(temporary)
+
+
+def _descriptor(path: str) -> int | None:
+    """Return the open descriptor that a path such as /dev/stdout or /dev/fd/3 leads to, or None."""
+    for _ in range(40):  # links, as many as systems follow
+        folder, name = os.path.realpath(os.path.dirname(path)), os.path.basename(path)
+        if folder in {"/dev/fd", f"/proc/{os.getpid()}/fd"} and name.isdigit():
+            return int(name)
+        if not os.path.islink(link := os.path.join(folder, name)):
+            break
+        path = os.path.join(folder, os.readlink(link))
+    return None

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import orjson
 
-from ..arithmetic.text import NumberText
-from ..errors import UnavailableError
+from ..arithmetic.text import NumberText, shortened
+from ..errors import LagtopError, UnavailableError
+from .terminal import printable
 from .text import csv_text, json_text
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ Arrays hold numbers, with one or several columns each and NaN for missing values
 and JSON values.
 """
 Names = Sequence[str]
+MOST_DRAWN_ROWS = 10_000
+"""Most rows of a table for people, because rich takes long for many."""
 
 
 def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
@@ -39,6 +42,8 @@ def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
         return b""
     if fmt == "parquet":
         return _parquet_file(columns, names)
+    if fmt == "table":
+        columns = [[*map(_shown, x)] if isinstance(x, Sequence) else x for x in columns]
     if fmt in {"json", "ndjson"}:
         rows = _json_rows(columns, names)
         return b",\n".join(rows) if fmt == "json" else b"".join(row + b"\n" for row in rows)
@@ -74,6 +79,13 @@ def _csv_cells(column: Any) -> Sequence[bytes]:
     return _array_lines(column).split(b"\n")[:-1]
 
 
+def _shown(value: Any) -> str | None:
+    """Return a text for a table: one line of printable characters, and not too many."""
+    if value is None or isinstance(value, NumberText):
+        return value
+    return shortened(printable(value if isinstance(value, str) else json_text(value), ""), 500)
+
+
 def _json_rows(columns: Columns, names: Names) -> list[bytes]:
     """Return a JSON object per row."""
     lists = chain.from_iterable(
@@ -105,7 +117,12 @@ def write(
     if fmt == "table":
         from .report import drawn
 
-        rows = list(csv.reader(b"".join(blocks).decode().splitlines()))
+        rows: list[list[str]] = []
+        for block in blocks:
+            rows += csv.reader(block.decode().splitlines())
+            if len(rows) > MOST_DRAWN_ROWS:
+                wanted = f"table shows at most {MOST_DRAWN_ROWS} rows"
+                raise LagtopError(f"format {wanted}, got more: use csv", "format")
         stream.write(drawn(names, rows, range(len(names)), width).encode())
         return
     first = next(blocks, b"")  # before anything is written, because most errors occur here

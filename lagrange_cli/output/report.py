@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.key import Key
 from ..arithmetic.text import double_text, value_text
+from ..file_bytes import utf8_path
 from .terminal import printable
 from .text import csv_text
 
@@ -58,7 +59,11 @@ class Report(NamedTuple):
 
     def values(self) -> list[dict[str, Any]]:
         """Return every row by key."""
-        return [{field.key: getattr(row, field.key) for field in self.fields} for row in self.rows]
+        names = [field.key for field in self.fields]
+        values = ({name: getattr(row, name) for name in names} for row in self.rows)
+        return [
+            {x: utf8_path(y) if isinstance(y, str) else y for x, y in z.items()} for z in values
+        ]
 
     def text(self, fmt: str, width: int | None = None) -> bytes:
         """Return the report in a format, in the `width` of a terminal if there is one.
@@ -75,8 +80,11 @@ class Report(NamedTuple):
 
         if fmt == "ndjson":
             return b"".join(orjson.dumps(row) + b"\n" for row in self.values())
-        whole = {"conditions": self.conditions, "rows": self.values()}
-        whole |= {"conclusions": self.conclusions} | ({"units": self.units} if self.units else {})
+        conditions = {name: utf8_path(x) for name, x in self.conditions.items()}
+        whole = {"conditions": conditions, "rows": self.values()}
+        whole |= {"conclusions": [*map(utf8_path, self.conclusions)]} | (
+            {"units": self.units} if self.units else {}
+        )
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
     def _drawn(self, width: int | None) -> str:

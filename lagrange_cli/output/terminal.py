@@ -17,8 +17,8 @@ DELAY = 1.0
 """Seconds of work before the line of progress appears."""
 
 
-def printable(text: str) -> str:
-    """Return a text without the characters that control a terminal, except ends of lines.
+def printable(text: str, kept: str = "\n") -> str:
+    """Return a text without the characters that control a terminal, except those that are `kept`.
 
     Control characters and marks that change the direction of writing become escapes, such as
     `\\x1b`.  File names and data may hold any of them.
@@ -26,7 +26,7 @@ def printable(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(
-        x if x.isprintable() or x == "\n" else x.encode("unicode_escape").decode() for x in text
+        x if x.isprintable() or x in kept else x.encode("unicode_escape").decode() for x in text
     )
 
 

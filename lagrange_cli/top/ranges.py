@@ -174,6 +174,6 @@ def check_reach(name: str, points: Points, limit: float) -> None:
     if abs(farthest) > limit:
         raise LagtopError(
             f"{name} must be within 2^50 periods = {limit:.3g} of 0, got {farthest} "
-            "(or give --digits)",
+            "(or use digits=N)",
             name,
         )

@@ -34,7 +34,7 @@ def scene_names() -> list[str]:
 
 def scene_path(name: str) -> str:
     """Return the path of a scene: the given file, or the file of a shipped scene."""
-    is_word = name.replace("-", "").isalnum() and not os.path.exists(name)
+    is_word = name.replace("-", "").isalnum() and not os.path.isfile(name)
     path = os.path.join(_shipped(), name + _ENDING) if is_word else name
     return path if os.path.exists(path) else name
 
@@ -58,6 +58,8 @@ class SceneFile:
         import tomllib  # start-up
 
         self.name, self._text = shown_path(path), ""
+        self.hides = os.path.isfile(path) and path in scene_names()
+        """Whether it is a file with the name of a shipped scene."""
         try:
             self._text = decoded(read_bytes(scene_path(path), _MOST_BYTES), self.name)
             table = tomllib.loads(self._text, parse_float=NumberText)
@@ -70,6 +72,8 @@ class SceneFile:
             at = re.search(r"at line (\d+)", str(error))
             line = self._text.split("\n")[int(at[1]) - 1] if at else ""
             hint = " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
+            if bare := re.match(r"\s*(\w+)\s*=\s*([-+\d.(][^#\"']*[^\W\d_][^#\"']*)", line):
+                hint = f' (write {bare[1]} = "{bare[2].strip()}")'
             raise SceneError(f"{self.name}: not a TOML file: {error}{hint}") from None
         self.inputs: dict[str, Value] = {}
         for key, value in table.items():

@@ -97,8 +97,10 @@ class Top:
     A_cm: Number | None = None
     phidot0: Number | None = None
 
-    def __new__(cls, **inputs: Any) -> Self:
+    def __new__(cls, *values: Any, **inputs: Any) -> Self:
         """Return a new top.  Raises TypeError for an unknown input with the name that was meant."""
+        if values:
+            raise TypeError("a top takes inputs by name, such as Top(theta0_deg=30, r0=50)")
         for name in inputs.keys() - set(INPUTS):
             from ..names import suggestion  # start-up: for a misspelt name only
 

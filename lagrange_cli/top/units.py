@@ -38,7 +38,7 @@ class Unit(NamedTuple):
 _TABLE = """
 1 0 0 0 | 0 | mg=1e-6 g=1e-3 kg=1 oz=0.028349523125 lb=0.45359237 slug=8896443230521/609600000000
 0 1 0 0 | 0 | um=1e-6 mm=1e-3 cm=1e-2 m=1 km=1000 in=0.0254 ft=0.3048
-0 0 1 0 | 0 | us=1e-6 ms=1e-3 s=1 min=60 h=3600
+0 0 1 0 | 0 | ns=1e-9 us=1e-6 ms=1e-3 s=1 min=60 h=3600 d=86400
 1 1 -2 0 | 0 | N=1 dyn=1e-5
 0 1 -2 0 | 0 | g_0=9.80665
 0 0 0 1 | 0 | rad=1 mrad=1e-3
@@ -61,6 +61,8 @@ EXAMPLES |= dict.fromkeys(("deg", "rad"), "deg or rad")
 """Examples of each unit of an input."""
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _NAME = r"1|°|g_0|[^\W\d_]+"
+_TICKS = re.compile(r"\d{1,9}(?:\.\d{1,9})?(?=\s*[^\W\d])")
+"""A number before a unit, as in ticks of 0.1 ms."""
 _FACTOR = re.compile(rf"\s*([*·/]?)\s*({_NAME})\s*(?:(?:\*\*|\^)?\s*(-?\d)(?!\d))?")
 """A factor of a product: a stroke, a name, and a power of one digit."""
 _ASKED = {
@@ -74,25 +76,39 @@ def unit_of_text(text: str) -> Unit:
 
     Raises LagtopError for an unknown unit, with the nearest name and the known ones.
     """
-    found, place, text = Unit(), 0, text.strip().translate(_RAISED)
+    text = text.strip().translate(_RAISED)
+    ticks = _TICKS.match(text)
+    found, place = Unit(Fraction(ticks[0] if ticks else 1)), ticks.end() if ticks else 0
     while place < len(text):
         match = _FACTOR.match(text, place)
         name = match[2] if match else text[place:]
         unit = Unit() if name == "1" else UNITS.get(name)
         if match is None or unit is None:
-            raise LagtopError(_ASKED.get(name) or f"no such unit{_meant(name)}; known: {_KNOWN}")
+            raise LagtopError(_ASKED.get(name) or f"no such unit{_meant(name, text)}")
         found = found.times(unit, int(match[3] or 1) * (-1 if match[1] == "/" else 1))
         place = match.end()
     return found
 
 
-_KNOWN = f"{', '.join(UNITS)}, their products and powers"
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit."""
+    try:
+        return bool(unit_of_text(text))
+    except LagtopError:
+        return False
 
 
-def _meant(name: str) -> str:
-    """Return a hint with the known unit nearest to a name, such as rpm for RPM, or nothing."""
+def _meant(name: str, text: str) -> str:
+    """Return a hint with the unit that was meant, such as rpm for RPM or kg*m^2 for kgm^2.
+
+    If none is similar, all are listed.
+    """
+    for i in range(1, len(name)):
+        if {name[:i], name[i:]} <= UNITS.keys():
+            return f" (write {text.replace(name, f'{name[:i]}*{name[i:]}')})"
     usual = {unit.lower(): unit for unit in UNITS}.get(name.lower())
-    return f" (did you mean {usual!r}?)" if usual else suggestion(name, UNITS)
+    hint = f" (did you mean {usual!r}?)" if usual else suggestion(name, UNITS)
+    return hint or f"; known: {', '.join(UNITS)}, their products and powers"
 
 
 def unit_to_keep(key: str, unit: str) -> str:
@@ -116,6 +132,8 @@ def factor_of(key: str, unit: str, wanted: str) -> Fraction:
     try:
         given = unit_of_text(unit)
         per_time = into.dimensions == _RATE and given.dimensions == (0, 0, -1, 0)  # as 1/s
+        if per_time and given.size < 1:  # as 1/min, which many write for rpm
+            raise LagtopError("turns or radians? write rpm or rad/min, turn/h or rad/h")
         if given.dimensions != into.dimensions and not per_time:
             raise LagtopError("it measures something else")
     except LagtopError as error:

@@ -94,6 +94,8 @@ def parse_value(
         return Value(number)
     got = f"got {quoted(text.strip())}"
     try:
+        if re.search(r"±|\+/?-", unit):
+            raise LagtopError(f"must have its unit once, at the end, as in '24.0 ± 0.2 cm', {got}")
         plain, std = _split_uncertainty(number)
         if std is not None and not uncertain:
             raise LagtopError(f"must have no uncertainty in this command, {got}: leave it out")
@@ -115,7 +117,9 @@ def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
     found = next((x for form in _UNCERTAIN if (x := re.fullmatch(form, text))), None)
     if found is None:
         forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
-        raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")
+        hint = " (write a decimal point, not a comma)" if "," in text else ""
+        wrong = f"must be a number, or an uncertain one as {forms}, got {quoted(text)}{hint}"
+        raise LagtopError(wrong)
     parts = {"exponent": "", **found.groupdict(default="")}
     number, last = parts["number"], parts.get("last")
     if last is not None:  # in units of the last digit
@@ -258,6 +262,8 @@ def parse_values(text: str) -> Points:
     _refuse_units_inside(text)
     if ":" in text:
         return parse_range(text)
+    if re.fullmatch(rf"\s*{_DECIMAL}\s*-\s*{_DECIMAL}\s*", text):
+        raise LagtopError(f"must be a range start:stop:count, got {quoted(text)}")
     return ListedPoints([parse_number(part) for part in text.split(",")])
 
 

@@ -293,7 +293,7 @@ BAD_TIMES = {
     "--times x --n 3": "use --times or --n, not both",
     "--t-max 1e300": "--t-max must be finite and within 2^50 periods = 4.83e+14, got 1e+300",
     "--t-min -1e30": "--t-min must be finite and within 2^50 periods = 4.83e+14, got -1e+30",
-    "--format table --n 20000": "--format table shows at most 10000 rows, got 20000",
+    "--format table --n 20000": "--format table shows at most 10000 rows, got more",
 }
 
 
