@@ -15,7 +15,9 @@ from ..errors import LagtopError
 from ..top.ranges import ListedPoints, LogPoints, Points
 from ..top.values import LOG, parse_range
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_COMPLEX = re.compile(rf"(?:([+-]?{_UNSIGNED})(?=[+-]))?([+-]?)({_UNSIGNED})?i")
+_MULTIPLE = re.compile(rf"([+-]?)({_UNSIGNED})?\s*K(?:/({_UNSIGNED}))?")
 _LEAST_EXPONENT = -10_000
 """The exponent of the smallest modulus that is accepted."""
 
@@ -61,19 +63,17 @@ class Arguments(NamedTuple):
 def places(points: Points, digits: int | None) -> Iterator[Fraction]:
     """Yield points as the nearest doubles or, if `digits` is a number, as exact decimals.
 
-    The points of a range with equal ratios are then rounded to so many significant digits.
+    The inner points of a range with equal ratios are then rounded to so many significant digits.
     """
     if digits is None:
         return (Fraction(float(x)) for x in points.decimals())
-    return _log_places(points, digits) if isinstance(points, LogPoints) else points.decimals()
-
-
-def _log_places(points: LogPoints, digits: int) -> Iterator[Fraction]:
-    """Yield first (last/first)^(i/(count - 1)), rounded to N digits; both ends are exact."""
+    if not isinstance(points, LogPoints):
+        return points.decimals()
     first, last, steps = points.first, points.last, points.count - 1
     most = equal_digits([first, last], digits)
 
     def place(i: int) -> Fraction:
+        """Return first (last/first)^(i/steps)."""
         if i in {0, steps}:
             return last if i else first
         share = exact(Fraction(i, steps))
@@ -89,25 +89,18 @@ def parse_complex(text: str) -> ExactComplex:
     Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
     """
     text = text.strip()
-    real, imag = _part_texts(text)
-    if _looks_complex(text) and not (is_decimal(real) and is_decimal(imag)):
+    if not _looks_complex(text):
+        return ExactComplex(parse_number(text))
+    found = _COMPLEX.fullmatch(text)
+    if found is None:
         raise LagtopError(f"must be a finite number, complex as 0.3+0.7i, got {quoted(text)}")
-    return ExactComplex(parse_number(real), parse_number(imag))
+    real, sign, imag = found.groups()
+    return ExactComplex(parse_number(real or "0"), parse_number(f"{sign}{imag or 1}"))
 
 
 def _looks_complex(text: str) -> bool:
     """Return whether a text has a letter for the imaginary unit, valid or not."""
     return not set("ijIJ").isdisjoint(text)
-
-
-def _part_texts(text: str) -> tuple[str, str]:
-    """Return the texts of the real and the imaginary part, unparsed."""
-    if not text.endswith("i"):
-        return text, "0"
-    signs = [i for i, sign in enumerate(text) if sign in "+-" and text[i - 1 : i] not in {"e", "E"}]
-    split = signs[-1] if signs else 0
-    imag = text[split:-1]
-    return text[:split] or "0", f"{imag}1" if imag in {"", "+", "-"} else imag
 
 
 def parse_small(text: str) -> ExactComplex:
@@ -154,9 +147,8 @@ def _multiple(text: str) -> tuple[Fraction, bool]:
     """Return a number and False, or the factor of a multiple of K such as `3K/4` and True."""
     if "K" not in text:
         return parse_number(text), False
-    found = re.fullmatch(rf"([+-]|{_NUMBER})?\s*K(?:/({_NUMBER}))?", text.strip())
-    if found is None or parse_number(found[2] or "1") <= 0:
+    found = _MULTIPLE.fullmatch(text.strip())
+    if found is None or parse_number(found[3] or "1") <= 0:
         wanted = "must be a real multiple of K such as K, -2.5K, K/2 or 3K/4"
         raise LagtopError(f"{wanted}, got {quoted(text)}")
-    before = {None: "1", "+": "1", "-": "-1"}.get(found[1], found[1])
-    return parse_number(before) / parse_number(found[2] or "1"), True
+    return parse_number(f"{found[1]}{found[2] or 1}") / parse_number(found[3] or "1"), True

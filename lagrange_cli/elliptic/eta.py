@@ -116,12 +116,12 @@ class Quadrature(NamedTuple):
         """The layout of the outer roots, in words."""
         if self.height:
             return "complex pair"
-        if not self.outer:
-            return "both at infinity"
         above = sum(root > self.upper for root in self.outer)
-        if len(self.outer) == 1:
-            return "one above" if above else "one below"
-        return ("both below", "one on each side", "both above")[above]
+        return (
+            ("both at infinity",),
+            ("one below", "one above"),
+            ("both below", "one on each side", "both above"),
+        )[len(self.outer)][above]
 
     @property
     def kind(self) -> str:
@@ -244,38 +244,30 @@ def eta_columns(
 def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
     """Return the roots and constants, correctly rounded to doubles or to `digits` digits.
 
-    Raises LagtopError as `Quadrature.check` does, and for numbers beyond the doubles.
+    They are None if the layout does not have them.  Raises LagtopError as `Quadrature.check` does,
+    and for numbers beyond the doubles.
     """
     quadrature.check()
-    return numbers(lambda _: _constants_by_key(quadrature), quadrature.inputs, digits)
+    lower, upper, outer, g, height = quadrature
+    real: dict[str, Value] = dict.fromkeys(("p", "q", "q_imag", "outer_root"))
+    if len(outer) > 1:
+        real |= {"p": (outer[0] + outer[1]) / 2, "q": abs(outer[0] - outer[1]) / 2}
+    elif outer:
+        real["outer_root"] = outer[0]
+    if height:
+        real |= {"q": None, "q_imag": height}
+    words: dict[str, Value] = {"g": g, "layout": quadrature.layout, "kind": quadrature.kind}
 
+    def compute(_: int) -> Row:
+        c = eta_constants(quadrature)
+        moduli = {"k": c.k, "k_imag": None, "k1": c.k1, "k1_imag": None}
+        if height:
+            moduli = {"k": None, "k_imag": c.k, "k1": None, "k1_imag": c.k1}
+        return {
+            **{"delta": upper, "delta_star": lower, **real, **words},
+            **{"m_prime": c.m1, "m_double_prime": c.m2, **moduli, "k1_prime": c.k1_prime},
+            **{"K1": c.period * c.sigma1 / 4, "sigma1": c.sigma1, "s": c.s, "d": c.d},
+            **{"gamma": c.gamma, "period": c.period, "tau3": -c.period / 4},
+        }
 
-def _constants_by_key(quadrature: Quadrature) -> Row:
-    """Return the record in balls; None for keys that the layout does not have."""
-    c, outer = eta_constants(quadrature), quadrature.outer
-    is_pair, is_imaginary = len(outer) > 1, bool(quadrature.height)
-    return {
-        "delta": quadrature.upper,
-        "delta_star": quadrature.lower,
-        "p": (outer[0] + outer[-1]) / 2 if is_pair else None,
-        "q": abs(outer[0] - outer[1]) / 2 if is_pair and not is_imaginary else None,
-        "q_imag": quadrature.height if is_imaginary else None,
-        "outer_root": outer[0] if len(outer) == 1 else None,
-        "g": quadrature.g,
-        "layout": quadrature.layout,
-        "kind": quadrature.kind,
-        "m_prime": c.m1,
-        "m_double_prime": c.m2,
-        "k": None if is_imaginary else c.k,
-        "k_imag": c.k if is_imaginary else None,
-        "k1": None if is_imaginary else c.k1,
-        "k1_imag": c.k1 if is_imaginary else None,
-        "k1_prime": c.k1_prime,
-        "K1": c.period * c.sigma1 / 4,
-        "sigma1": c.sigma1,
-        "s": c.s,
-        "d": c.d,
-        "gamma": c.gamma,
-        "period": c.period,
-        "tau3": -c.period / 4,
-    }
+    return numbers(compute, quadrature.inputs, digits)

@@ -106,8 +106,8 @@ class Legendre:
 
     def _carlson(self, s: acb, c2: acb, d: acb) -> Integrals:
         """Return F and E from sin phi, cos^2 phi and Delta^2 (DLMF 19.25.5, 19.25.9)."""
-        F = s * acb.elliptic_rf(c2, d, acb(1))
-        return Integrals(F, s if self.is_1 else F - self.m * s**3 * _rd(c2, d) / 3)
+        F, third = s * acb.elliptic_rf(c2, d, acb(1)), self.m * s**3 / 3
+        return Integrals(F, s if self.is_1 else F - third * acb.elliptic_rd(c2, d, acb(1)))
 
     def _real(self, s: acb, c2: acb, d: acb, square: Fraction | arb) -> Integrals:
         """Return the integrals of a real amplitude; they are real up to the branch point of F."""
@@ -130,10 +130,6 @@ def _each(function: Callable[..., acb], *integrals: Integrals) -> Integrals:
     """Apply a function to F, E and Pi; None stays None."""
     parts = zip(*integrals, strict=True)
     return Integrals(*(None if any(x is None for x in part) else function(*part) for part in parts))
-
-
-def _rd(c2: acb, d: acb) -> acb:
-    return acb.elliptic_rd(c2, d, acb(1))
 
 
 def _side(q: Fraction | arb, square: Fraction | arb) -> int:
