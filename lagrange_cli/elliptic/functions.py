@@ -140,11 +140,8 @@ class Functions:
     ) -> dict[str, tuple[acb | None, acb | None]]:
         """Return Omega_ij(u, v) = log[Theta_ij(u - v)/Theta_ij(u + v)]/2 and Pi_ij(u, v) by index.
 
-        Pi_ij = u Z_ij(v) + Omega_ij; `zetas` are the Z_ij(v) if they are known.  log Theta_ij(z) is
-        continuous between the lines on which Theta_ij has its zeros: Im z = 2nK' for 11, and
-        (2n + 1)K' for 01 and 00.  Its values at conjugate z are conjugate, and on a line of zeros
-        it is the mean of both sides.  For imaginary k, Re K' replaces K'.  For k > 1 the lines of
-        the modulus 1/k apply.  None stands for a pole.
+        Pi_ij = u Z_ij(v) + Omega_ij; `zetas` are the Z_ij(v) if they are known.  The logarithms are
+        those of `_logarithms`.  None stands for a pole.
         """
         less = Point(u.real - v.real, u.imag - v.imag)
         more = Point(u.real + v.real, u.imag + v.imag)
@@ -170,6 +167,8 @@ class Functions:
     def _logarithms(self, at: Point) -> dict[str, acb]:
         """Return log theta_ij of the reduced modulus at a point, up to a constant.
 
+        It is continuous between the lines on which theta_ij has its zeros, conjugate at conjugate
+        points, and the mean of both sides on such a line.
         With z - n tau in the strip |Im z| <= T/2 around the real axis, n even or odd halves,
 
             log theta(z) = i pi (n^2 tau - 2 n z + n a) + log theta_0a(z - n tau),

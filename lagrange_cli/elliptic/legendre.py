@@ -92,7 +92,7 @@ class Legendre:
         c2 = acb(cosine * height.cosh(), sine * abs(height).sinh()) ** 2
         d = c2 + self.complement * s**2
         if height.is_zero():
-            return self._real(s, c2, d if inside else acb(0), square)
+            return self._real(s, c2, d, square)
         is_upper = sign(height) > 0
         at_quarter = square in {0, 1} if isinstance(square, Fraction) else False
         if (at_quarter and inside > 0 and sign(d.real) <= 0) or (is_upper and not inside):
