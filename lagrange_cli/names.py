@@ -29,9 +29,10 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise LagtopError(f"{key} must be a list of names, got {quoted(names)}", key)
     known, names = list(known), list(names)
-    wrong = next((name for name in names or [""] if name not in known), None)
-    if wrong is not None:
-        got = f"got {quoted(wrong)}{suggestion(wrong, known)}" if names else "got an empty list"
+    wrong = [x for x in names or [""] if not (isinstance(x, str) and x in known)]
+    if wrong:
+        hint = f"got {quoted(wrong[0])}{suggestion(wrong[0], known)}"
+        got = hint if names else "got an empty list"
         if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
             raise LagtopError(f"{key} must be among {listed}, {got}", key)
         first = known.index("regime") if "regime" in known else 0  # the results of a record

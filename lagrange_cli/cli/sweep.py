@@ -34,6 +34,10 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
+def _warn(text: str) -> None:
+    complain(f"Warning: {text}")
+
+
 def _parse_jobs(text: str) -> int:
     from ..sweeps.workers import parse_jobs  # start-up of help
 
@@ -116,7 +120,7 @@ def sweep_command(
     folder = None if parts is None else Parts(parts, sweep, todo.description)
     if folder:
         blocks = folder.missing(blocks, count)
-    with closing(in_order(sweep.part, blocks, jobs or 1, dask)) as computed:
+    with closing(in_order(sweep.part, blocks, jobs or 1, dask, _warn)) as computed:
         total = todo.size // every or None
         done = with_progress(count.passing(computed), "tops", total, lambda part: part.size)
         if folder:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -93,6 +94,16 @@ def with_progress(
             if monotonic() - start > DELAY:
                 count = f"{100 * done // total} %" if total else f"{done:,} done"
                 shown = _replace(shown, f"{label}: {count}")
+    finally:
+        _replace(shown, "")
+
+
+@contextmanager
+def waiting(text: str) -> Iterator[None]:
+    """Show a line on standard error, if it is a terminal, while the block runs."""
+    shown = _replace("", text) if is_terminal(sys.stderr) else ""
+    try:
+        yield
     finally:
         _replace(shown, "")
 

@@ -8,7 +8,7 @@ wherever the printed one subtracts nearly equal numbers.  Equation numbers are C
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,21 +35,15 @@ def where(condition: Mask, yes: Numbers, no: Numbers) -> Numbers:
 class Start(NamedTuple):
     """The constants of the motions and their states at t = 0."""
 
-    a: Numbers
-    """2mgs/A (4,4)."""
-    b: Numbers
-    """C r0/A (4,5)."""
+    a: Numbers  # 2mgs/A (4,4)
+    b: Numbers  # C r0/A (4,5)
     r0: Numbers
-    sleep: Numbers
-    """b^2/2 - a, from the inputs: near the threshold of sleeping it cancels."""
-    spin_drift: Numbers
-    """r0 - b/2 = r0 (2A - C)/2A, the spin rate without the effect of the nutation (6,1)."""
+    sleep: Numbers  # b^2/2 - a, from the inputs: it cancels near the threshold of sleeping
+    spin_drift: Numbers  # r0 - b/2 = r0 (2A - C)/2A, the spin rate without the nutation (6,1)
     sin: Numbers
-    cos: Numbers
-    below: Numbers
-    """1 + cos(theta0) = 2 cos^2(theta0/2)."""
-    above: Numbers
-    """1 - cos(theta0) = 2 sin^2(theta0/2)."""
+    cos: Numbers  # u0
+    below: Numbers  # 1 + u0 = 2 cos^2(theta0/2)
+    above: Numbers  # 1 - u0 = 2 sin^2(theta0/2)
     theta_rate: Numbers
     psi_rate: Numbers
 
@@ -80,19 +74,15 @@ class Gaps(NamedTuple):
     u1_u0: Numbers
     u0_u2: Numbers
     u1_u2: Numbers
-    below_u1: Numbers
-    """1 + u1."""
+    below_u1: Numbers  # 1 + u1
     below_u2: Numbers
-    above_u1: Numbers
-    """1 - u1."""
+    above_u1: Numbers  # 1 - u1
     above_u2: Numbers
     a_u3_u0: Numbers
     a_u3_u1: Numbers
     a_u3_u2: Numbers
-    a_u3_above: Numbers
-    """a (u3 - 1)."""
-    momentum_u1: Numbers
-    """beta - b u1, the momentum psi' (1 - u^2) of (4,7) at u1."""
+    a_u3_above: Numbers  # a (u3 - 1)
+    momentum_u1: Numbers  # beta - b u1, the momentum psi' (1 - u^2) of (4,7) at u1
     momentum_u2: Numbers
 
 
@@ -240,7 +230,7 @@ def period_mean(k_prime: Numbers, p: Numbers, x: Numbers, y: Numbers) -> Numbers
             return (x * m + y) / (m + p)
 
 
-def nome_of(m: Array, k_prime: Array) -> Array:
+def nome(m: Array, k_prime: Array) -> Array:
     """Return the nome q = exp(-pi K'/K) of m = k^2 < 1 (2,4).
 
     The exponential would lose log(1/q) digits.  Instead, each step of the AGM of 1 and k' squares
@@ -275,183 +265,120 @@ def turn_time(rate: Array) -> Array:
     return time
 
 
-class Nutations:
-    """The numbers of many nutating tops by key, in doubles.
+class Motions(dict[str, Any]):
+    """The numbers of many tops in doubles, by key; None if the tops lack a number.
 
-    A key that the tops lack is no attribute.
+    Each is computed once, by a formula that takes the motions.
     """
 
-    def __init__(self, start: Start, gaps: Gaps) -> None:
-        self.start, self.gaps = start, gaps
-        self.a, self.b, self.r0 = start.a, start.b, start.r0
-        self.precession_rate_start = start.psi_rate
+    def __init__(self, formulas: Formulas, start: Start, gaps: Gaps | None = None) -> None:
+        super().__init__()
+        self.formulas, self.start, self.gaps = formulas, start, gaps
 
-    @property
-    def u1(self) -> Array:
-        """The upper turning point (4,9)."""
-        u1: Array = self.start.cos + self.gaps.u1_u0
-        return u1
-
-    @property
-    def u2(self) -> Array:
-        """The lower turning point (4,11)."""
-        lower: Array = u2(self.gaps)
-        return lower
-
-    @property
-    def u3(self) -> Array:
-        """The third root (4,11), from its distance to 1."""
-        u3: Array = (self.a + self.gaps.a_u3_above) / self.a
-        return u3
-
-    @cached_property
-    def k2(self) -> Array:
-        """k^2 (4,19)."""
-        m: Array = self.a * self.gaps.u1_u2 / self.gaps.a_u3_u2
-        return m
-
-    @cached_property
-    def k(self) -> Array:
-        """The modulus (4,19)."""
-        return np.sqrt(self.k2)
-
-    @cached_property
-    def k_prime(self) -> Array:
-        """The complementary modulus (4,21), from its own numerator: 1 - k^2 loses digits."""
-        k_prime: Array = np.sqrt(self.gaps.a_u3_u1 / self.gaps.a_u3_u2)
-        return k_prime
-
-    @property
-    def modular_angle_deg(self) -> Array:
-        """The angle arcsin k, near 90 degrees from k'."""
-        return np.degrees(np.arctan2(self.k, self.k_prime))
-
-    @property
-    def nome(self) -> Array:
-        """The nome (2,4)."""
-        return nome_of(self.k2, self.k_prime)
-
-    @cached_property
-    def K(self) -> Array:
-        """The quarter period (5,1)."""
-        return np.pi / 2 / agm(np.ones_like(self.k_prime), self.k_prime)
-
-    @cached_property
-    def K_prime(self) -> Array:
-        """The quarter period of k' (2,4)."""
-        return np.pi / 2 / agm(np.ones_like(self.k), self.k)
-
-    @property
-    def E(self) -> Array:
-        """The integral of the second kind by Legendre's relation, a sum of positive terms.
-
-        E = pi/2K' + K (K' - E')/K', where (K' - E')/K' is the mean of k'^2 sn^2(u, k').
-        """
-        mean = period_mean(self.k, 1.0, 0.0, self.k_prime * self.k_prime)
-        integral: Array = np.pi / (2 * self.K_prime) + self.K * mean
-        return integral
-
-    @cached_property
-    def T_nutation(self) -> Array:
-        """The nutation period 4K/sqrt(a (u3 - u2)) (5,1)."""
-        period: Array = 4 * self.K / np.sqrt(self.gaps.a_u3_u2)
-        return period
-
-    @property
-    def u_quarter(self) -> Array:
-        """cos(theta) at T/4 after a start at u1 (5,2), as a difference from u1; else NaN."""
-        value = self.u1 - self.gaps.u1_u2 * (self.k_prime / (1 + self.k_prime))
-        return np.where(self.gaps.u1_u0 <= 0, value, np.nan)
-
-    @property
-    def theta_min_deg(self) -> Array:
-        """The tilt at u1."""
-        return tilt_deg(self.gaps.above_u1, self.gaps.below_u1)
-
-    @property
-    def theta_max_deg(self) -> Array:
-        """The tilt at u2."""
-        return tilt_deg(self.gaps.above_u2, self.gaps.below_u2)
+    def __missing__(self, key: str) -> Any:
+        formula = self.formulas.get(key)
+        value = self[key] = None if formula is None else formula(self)
+        return value
 
 
-class Released(Nutations):
-    """Tops released from rest with a torque, off the vertical; all of them spin, or none does."""
-
-    def __init__(self, start: Start, *, spins: bool) -> None:
-        super().__init__(start, gaps_from_rest(start))
-        self.spin_rate_start = start.r0
-        if spins:
-            self.spin_rate_half, self.precession_rate_half = rates_half(start, self.gaps)
-        self._spins = spins
-
-    @property
-    def k_squared(self) -> Array:
-        """The square of the modulus."""
-        return self.k2
-
-    @property
-    def comodular_angle_deg(self) -> Array:
-        """The angle arcsin k'."""
-        return np.degrees(np.arctan2(self.k_prime, self.k))
-
-    @property
-    def amplitude_deg(self) -> Array:
-        """The amplitude of alpha (7,2) from its tangent."""
-        gaps = self.gaps
-        tangent = np.sqrt(gaps.a_u3_u2), np.sqrt(self.a * gaps.below_u2)
-        amplitude: Array = np.degrees(np.arctan2(*tangent))
-        return amplitude
-
-    @property
-    def alpha(self) -> Array:
-        """The parameter alpha = F(amplitude, k') (1,6), by Carlson's integral (DLMF 19.25.5).
-
-        Its sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)) and cn^2 are products.
-        """
-        gaps = self.gaps
-        scale = gaps.a_u3_u1 * gaps.above_u2
-        sn2, cn2 = gaps.above_u1 * gaps.a_u3_u2 / scale, gaps.a_u3_above * gaps.u1_u2 / scale
-        alpha: Array = np.sqrt(sn2) * elliprf(cn2, cn2 + self.k2 * sn2, 1.0)
-        return alpha
-
-    @property
-    def mean_spin_rate(self) -> Array:
-        """The mean spin rate (6,3): a drift and one turn per nutation, a sum of one sign."""
-        half_turn = np.pi / self.T_nutation
-        rate: Array = self.start.spin_drift + np.where(self.r0 < 0, -half_turn, half_turn)
-        return rate
-
-    @cached_property
-    def mean_precession_rate(self) -> Array:
-        """The mean precession rate (7,3); a top without spin turns by 180 degrees at the bottom."""
-        if not self._spins:
-            return np.pi / self.T_nutation
-        south, north = mean_parts(self.k_prime, self.gaps)
-        rate: Array = south + north
-        return rate
-
-    @property
-    def T_spin(self) -> Array:
-        """The time of one turn at the mean spin rate."""
-        return turn_time(self.mean_spin_rate)
-
-    @property
-    def T_precession(self) -> Array:
-        """The time of one turn at the mean precession rate."""
-        return turn_time(self.mean_precession_rate)
+Formulas = dict[str, Callable[[Any], Any]]
+"""A formula for each key; those that only other formulas use are not keys of the record."""
 
 
-class ConstantTilt:
-    """Tops released from rest whose tilt stays constant: on the vertical, or without a torque."""
+def second_kind(of: Motions) -> Array:
+    """Return E by Legendre's relation, E = pi/2K' + K (K' - E')/K', a sum of positive terms.
 
-    def __init__(self, start: Start, *, vertical: bool) -> None:
-        zero: Array = 0 * start.a
-        self.a, self.b = start.a, start.b
-        self.u1 = self.u2 = start.cos
-        self.mean_spin_rate = self.spin_rate_start = start.r0
-        self.T_spin = turn_time(start.r0)
-        if not vertical:
-            self.k = self.modular_angle_deg = self.nome = zero
-            self.mean_precession_rate = self.precession_rate_start = zero
-            self.k_prime, self.K, self.E = zero + 1, zero + np.pi / 2, zero + np.pi / 2
-            self.T_nutation = turn_time(start.b)
+    (K' - E')/K' is the mean of k'^2 sn^2(u, k').
+    """
+    mean = period_mean(of["k"], 1.0, 0.0, of["k_prime"] * of["k_prime"])
+    found: Array = np.pi / (2 * of["K_prime"]) + of["K"] * mean
+    return found
+
+
+def alpha(of: Any) -> Array:
+    """Return alpha = F(amplitude, k') (1,6), by Carlson's integral (DLMF 19.25.5).
+
+    Its sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)) and cn^2 are products.
+    """
+    gaps, scale = of.gaps, of.gaps.a_u3_u1 * of.gaps.above_u2
+    sn2, cn2 = gaps.above_u1 * gaps.a_u3_u2 / scale, gaps.a_u3_above * gaps.u1_u2 / scale
+    found: Array = np.sqrt(sn2) * elliprf(cn2, cn2 + of["m"] * sn2, 1.0)
+    return found
+
+
+def u_quarter(of: Any) -> Array:
+    """Return cos(theta) at T/4 after a start at u1 (5,2), as a difference from u1; else NaN."""
+    fall = of.gaps.u1_u2 * (of["k_prime"] / (1 + of["k_prime"]))
+    return np.where(of.gaps.u1_u0 <= 0, of.start.cos - fall, np.nan)
+
+
+def spin_at_rest(of: Any) -> Array:
+    """Return the mean spin rate (6,3), a drift and one turn per nutation, a sum of one sign."""
+    turn = 2 * np.pi / of["T_nutation"]
+    rate: Array = of.start.spin_drift + np.where(of.start.r0 < 0, -turn, turn) / 2
+    return rate
+
+
+_OF_ALL: Formulas = {
+    "a": lambda of: of.start.a,  # (4,4)
+    "b": lambda of: of.start.b,  # (4,5)
+    "T_spin": lambda of: turn_time(of["mean_spin_rate"]),
+    "spin_rate_start": lambda of: of.start.spin_rate,
+}
+OF_VERTICAL: Formulas = _OF_ALL | {
+    "u1": lambda of: of.start.cos,
+    "u2": lambda of: of.start.cos,
+    "mean_spin_rate": lambda of: of.start.r0,
+    "spin_rate_start": lambda of: of.start.r0,
+}
+"""Formulas of tops released on the vertical."""
+OF_TORQUE_FREE: Formulas = OF_VERTICAL | {
+    "k": lambda of: 0 * of.start.a,
+    "modular_angle_deg": lambda of: 0 * of.start.a,
+    "nome": lambda of: 0 * of.start.a,
+    "k_prime": lambda of: 0 * of.start.a + 1,
+    "K": lambda of: 0 * of.start.a + np.pi / 2,
+    "E": lambda of: 0 * of.start.a + np.pi / 2,
+    "T_nutation": lambda of: turn_time(of.start.b),
+    "mean_precession_rate": lambda of: of.start.psi_rate,
+    "precession_rate_start": lambda of: of.start.psi_rate,
+}
+"""Formulas of tops released without a torque."""
+OF_NUTATION: Formulas = _OF_ALL | {
+    "u1": lambda of: of.start.cos + of.gaps.u1_u0,  # (4,9)
+    "u2": lambda of: u2(of.gaps),  # (4,11)
+    "u3": lambda of: (of.start.a + of.gaps.a_u3_above) / of.start.a,
+    "m": lambda of: of.start.a * of.gaps.u1_u2 / of.gaps.a_u3_u2,  # k^2 (4,19)
+    "k": lambda of: np.sqrt(of["m"]),
+    "k_prime": lambda of: np.sqrt(of.gaps.a_u3_u1 / of.gaps.a_u3_u2),  # (4,21); not from k
+    "modular_angle_deg": lambda of: np.degrees(np.arctan2(of["k"], of["k_prime"])),
+    "nome": lambda of: nome(of["m"], of["k_prime"]),
+    "K": lambda of: np.pi / 2 / agm(np.ones_like(of["k_prime"]), of["k_prime"]),
+    "K_prime": lambda of: np.pi / 2 / agm(np.ones_like(of["k"]), of["k"]),
+    "E": second_kind,
+    "T_nutation": lambda of: 4 * of["K"] / np.sqrt(of.gaps.a_u3_u2),  # (5,1)
+    "T_precession": lambda of: turn_time(of["mean_precession_rate"]),
+    "u_quarter": u_quarter,
+    "theta_min_deg": lambda of: tilt_deg(of.gaps.above_u1, of.gaps.below_u1),
+    "theta_max_deg": lambda of: tilt_deg(of.gaps.above_u2, of.gaps.below_u2),
+    "precession_rate_start": lambda of: of.start.psi_rate,
+}
+"""Formulas of all nutations."""
+OF_PENDULUMS: Formulas = OF_NUTATION | {
+    "k_squared": lambda of: of["m"],
+    "comodular_angle_deg": lambda of: np.degrees(np.arctan2(of["k_prime"], of["k"])),
+    "amplitude_deg": lambda of: np.degrees(  # (7,2), from its tangent
+        np.arctan2(np.sqrt(of.gaps.a_u3_u2), np.sqrt(of.start.a * of.gaps.below_u2))
+    ),
+    "alpha": alpha,
+    "mean_spin_rate": spin_at_rest,
+    "mean_precession_rate": lambda of: np.pi / of["T_nutation"],  # a half turn at the bottom
+}
+"""Formulas of tops released from rest without spin."""
+OF_RELEASED: Formulas = OF_PENDULUMS | {
+    "mean_precession_rate": lambda of: sum(mean_parts(of["k_prime"], of.gaps)),  # (7,3)
+    "half": lambda of: rates_half(of.start, of.gaps),
+    "spin_rate_half": lambda of: of["half"][0],
+    "precession_rate_half": lambda of: of["half"][1],
+}
+"""Formulas of tops released from rest with a spin."""

@@ -8,8 +8,11 @@ fill a folder at once.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
+from secrets import token_hex
 from typing import Any
 
 from ..errors import CannotWriteError, LagtopError
@@ -34,8 +37,7 @@ class Parts:
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             if not (file.exists() or any(self.path.glob("part-*"))):
-                with opened(str(file)) as stream:
-                    stream.write(text)
+                _create(file, text)
             is_same = file.exists() and file.read_bytes() == text
         except OSError as error:
             raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
@@ -54,14 +56,10 @@ class Parts:
         """Yield the blocks whose parts are missing; `count` the errors of the others."""
         for number, block in blocks:
             part, errors = self._files(number)
-            try:
-                failed, first = json.loads(errors.read_bytes()) if errors.exists() else (0, "")
-                done = part.exists()
-            except (OSError, ValueError, TypeError):  # it is computed again
-                done = False
-            if done:
+            counted = _counted(errors)
+            if counted and part.is_file() and part.stat().st_size:
                 self.found += 1
-                count.add(Part(number, b"", block.size, failed, first))
+                count.add(Part(number, b"", block.size, *counted))
             else:
                 yield number, block
 
@@ -72,6 +70,30 @@ class Parts:
             if failed:  # before the part, because a part that exists is done
                 with opened(str(errors)) as stream:
                     stream.write(json.dumps([failed, first]).encode())
+            elif errors.is_file():  # that of a damaged part
+                errors.unlink(missing_ok=True)
             content = part_file(self.sweep.fmt, self.sweep.header, number, text)
             with opened(str(part)) as stream:
                 stream.write(content)
+
+
+def _create(file: Path, content: bytes) -> None:
+    """Create a file with its whole content, unless another process has just created it."""
+    temporary = file.with_name(f".lagtop-{token_hex(6)}")
+    try:
+        temporary.write_bytes(content)
+        with suppress(FileExistsError):
+            os.link(temporary, file)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _counted(errors: Path) -> tuple[int, str] | None:
+    """Return the number of errors of a part and the first one, or None for a damaged file."""
+    try:
+        failed, first = json.loads(errors.read_bytes())
+    except FileNotFoundError:
+        return 0, ""
+    except (OSError, ValueError, TypeError, RecursionError):
+        return None
+    return (failed, first) if type(failed) is int and failed > 0 and type(first) is str else None

@@ -7,6 +7,7 @@ single run, wherever they were computed.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from itertools import groupby
@@ -125,9 +126,9 @@ def plan(
 
 
 def digest_of(path: str) -> str:
-    """Return the SHA-256 digest of a file.  Raises LagtopError for standard input."""
-    if path == "-":
-        raise LagtopError("--parts needs a file of tops that can be read again, got -")
+    """Return the SHA-256 digest of a file.  Raises LagtopError for a pipe."""
+    if path == "-" or (os.path.exists(path) and not os.path.isfile(path)):
+        raise LagtopError(f"--parts needs a file of tops that can be read again, got {path}")
     return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
 
 

@@ -8,7 +8,7 @@ invalid top gets an `error` and no numbers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -19,13 +19,21 @@ from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..names import check_names
 from ..solver import keys as motion_record
-from ..solver.facts import FAST, Regime
-from ..solver.keys import degree_name
+from ..solver.facts import Regime
+from ..solver.keys import degree_name, unit_name
 from ..solver.record import record_in_range
 from ..solver.solve import solve
 from ..top.top import Top
 from .elementary import ELEMENTARY, Elementary
-from .formulas import ConstantTilt, Released, Start
+from .formulas import (
+    OF_PENDULUMS,
+    OF_RELEASED,
+    OF_TORQUE_FREE,
+    OF_VERTICAL,
+    Motions,
+    Start,
+    gaps_from_rest,
+)
 from .results import ResultColumn, Results, SweepInputs
 from .tops import TopArrays
 from .trust import AnyStart
@@ -34,6 +42,14 @@ TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
 OF_MODULI = ("k_squared", "comodular_angle_deg")
 """Further keys that are formulas of the moduli."""
+FORMULAS = {
+    Regime.SLEEPING: OF_VERTICAL,
+    Regime.HANGING: OF_VERTICAL,
+    Regime.TORQUE_FREE: OF_TORQUE_FREE,
+    Regime.NO_SPIN: OF_PENDULUMS,
+    Regime.REGULAR: OF_RELEASED,
+}
+"""The formulas of tops of a regime that are released from rest."""
 BLOCK_ROWS = 1 << 12
 """Number of tops computed together, so that their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
@@ -98,12 +114,9 @@ def check_keys(keys: Sequence[str] | None, *, radians: bool = False) -> Sequence
 
     Raises LagtopError for an unknown or repeated key.
     """
-    known = column_keys(radians=radians)
     if keys is None:
-        return known
-    if isinstance(keys, Sequence) and not set(keys) <= set(known):
-        known = [*motion_record.all_keys(radians=radians), "error"]
-    return check_names("keys", keys, known)
+        return column_keys(radians=radians)
+    return check_names("keys", keys, [*motion_record.all_keys(radians=radians), "error"])
 
 
 def records(
@@ -121,8 +134,7 @@ def records(
     """
     with np.errstate(all="ignore"):  # `trust` rejects what an overflow or a 0/0 has touched
         columns = _empty_columns(keys, tops.m.size) if columns is None else columns
-        block = _Block(tops, columns, radians)
-        block.set_errors(errors or {})
+        block = _Block(tops, columns, radians, errors or {})
         for regime, rows in tops.released().items():
             block.fill_released(rows & block.missing, regime)
         block.fill_moving(tops.moving() & block.missing)
@@ -134,31 +146,30 @@ def records(
 class _Block:
     """The columns of a block of tops, while they are being filled."""
 
-    def __init__(self, tops: TopArrays, columns: Mapping[str, ResultColumn], radians: bool) -> None:
+    def __init__(
+        self,
+        tops: TopArrays,
+        columns: Mapping[str, ResultColumn],
+        radians: bool,
+        errors: Mapping[int, str],
+    ) -> None:
         self.tops, self.radians = tops, radians
         self.columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
-        tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians=radians)}
-        inputs = tops._asdict() | tilt
+        inputs = tops._asdict() | {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
         record = motion_record.record_keys(radians=radians)
         self.inputs = [key for key in columns if key in inputs]
         self.texts = [key for key in columns if key in motion_record.TEXT_KEYS]
         self.elementary = [key for key in columns if key in ELEMENTARY]
         others = {*self.inputs, *self.texts, *self.elementary, "error"}
-        self.numbers = [
-            key
-            for key in columns
-            if key not in others and (key in record or degree_name(key) in OF_MODULI)
-        ]
-        self.further = [key for key in columns if key not in {*others, *self.numbers}]
-        self.missing = np.ones(tops.m.shape, dtype=np.bool_)
-        """Tops whose numbers and texts are not filled yet."""
-        self.lost = np.zeros(tops.m.shape, dtype=np.bool_)
-        """Other tops with an elementary key that has lost digits."""
+        known = {*record, *OF_MODULI, *(unit_name(key, radians=True) for key in OF_MODULI)} - others
+        self.numbers = [key for key in columns if key in known]
+        self.further = [key for key in columns if key not in known | others]
         for key, column in self.columns.items():
             column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
-
-    def set_errors(self, errors: Mapping[int, str]) -> None:
-        """Set the errors of rows, which stay empty."""
+        self.missing = np.ones(tops.m.shape, dtype=np.bool_)
+        """Tops whose numbers and texts are not filled yet; those with an error stay empty."""
+        self.lost = np.zeros(tops.m.shape, dtype=np.bool_)
+        """Other tops with an elementary key that has lost digits."""
         for row, error in errors.items():
             self.missing[row], self.columns["error"][row] = False, error
 
@@ -166,66 +177,53 @@ class _Block:
         """Fill tops of one regime that are released from rest."""
         if not rows.any():
             return
-        tops = self._chosen(rows)
-        start = tops.start()
-        constant = regime not in {Regime.REGULAR, Regime.NO_SPIN}
-        motions: ConstantTilt | Released
-        if constant:
-            motions = ConstantTilt(start, vertical=regime != Regime.TORQUE_FREE)
-        else:
-            motions = Released(start, spins=regime == Regime.REGULAR)
+        tops = self.tops if rows.all() else self.tops.part(rows)
+        start, formulas = tops.start(), FORMULAS[regime]
+        nutates = regime in {Regime.REGULAR, Regime.NO_SPIN}
+        motions = Motions(formulas, start, gaps_from_rest(start) if nutates else None)
         texts: dict[str, Any] = {"regime": regime.value}
-        if regime == Regime.REGULAR:
-            texts["path"] = "cusped"
+        texts["path"] = "cusped" if regime == Regime.REGULAR else None
         if "remark" in self.texts:
             texts["remark"] = _remarks(regime, tops, start)
-        tilt = tops.tilt_in(radians=self.radians)
-        given = {"theta_min_deg", "theta_max_deg"} if constant else {"theta_min_deg"}
-
-        def number(key: str) -> Array | None:
-            name = degree_name(key)
-            return tilt if name in given else self._in_unit(key, getattr(motions, name, None))
-
-        self._write(rows, number, texts)
+        tilts = {"theta_min_deg"} if nutates else {"theta_min_deg", "theta_max_deg"}
+        self._write(rows, motions, texts, dict.fromkeys(tilts, tops.tilt_in(self.radians)))
 
     def fill_moving(self, rows: Mask) -> None:
         """Fill the tops with other initial rates that can be trusted."""
         if not rows.any():
             return
-        tops = self._chosen(rows)
+        tops = self.tops if rows.all() else self.tops.part(rows)
         motions = AnyStart(tops.start_in_pairs())
         trusted = motions.trusted(self.numbers)
-        fine: Any = slice(None) if trusted.all() else trusted
-        regimes = np.where(tops.r0 == 0, Regime.NO_SPIN.value, Regime.REGULAR.value).astype(object)
-        texts = {"regime": regimes[fine], "path": motions.paths[fine]}
+        words = np.array([Regime.REGULAR.value, Regime.NO_SPIN.value], dtype=object)
+        texts = {"regime": words[(tops.r0 == 0).astype(np.intp)], "path": motions.paths}
         filled = rows.copy()
         filled[rows] = trusted
-
-        def number(key: str) -> Array | None:
-            value = self._in_unit(key, getattr(motions, degree_name(key), None))
-            return None if value is None else value[fine]
-
-        self._write(filled, number, texts)
-
-    def _chosen(self, rows: Mask) -> TopArrays:
-        """Return some tops, without copies if they are all."""
-        return self.tops if rows.all() else self.tops.part(rows)
-
-    def _in_unit(self, key: str, value: Array | None) -> Array | None:
-        """Return the value of a key, angles in the unit of the columns."""
-        return value if value is None or not key.endswith("_rad") else np.radians(value)
+        self._write(filled, motions, texts, {}, slice(None) if trusted.all() else trusted)
 
     def _write(
-        self, rows: Mask, number: Callable[[str], Array | None], texts: Mapping[str, Any]
+        self,
+        rows: Mask,
+        motions: Motions,
+        texts: Mapping[str, Any],
+        given: Mapping[str, Array],
+        some: Any = slice(None),
     ) -> None:
-        """Write the texts of some tops, and the numbers that a function returns for each key."""
+        """Write the texts and numbers of some motions into rows.
+
+        Numbers that are `given` are in the unit of the columns already.
+        """
         chosen: Any = slice(None) if rows.all() else rows
         for key in texts.keys() & {*self.texts}:
-            self.columns[key][chosen] = texts[key]
+            text = texts[key]
+            self.columns[key][chosen] = text[some] if isinstance(text, np.ndarray) else text
         for key in self.numbers:
-            value = number(key)
+            name = degree_name(key)
+            value = given[name] if name in given else motions[name]
+            if value is not None and name not in given and key != name:
+                value = np.radians(value)
             if value is not None:
-                self.columns[key][chosen] = value
+                self.columns[key][chosen] = value[some]
         self.missing &= ~rows
 
     def fill_elementary(self) -> None:
@@ -274,17 +272,15 @@ class _Block:
 
 def _remarks(regime: Regime, tops: TopArrays, start: Start) -> Any:
     """Return the remarks on tops released from rest: the words of `solve`, without its numbers."""
+    words: list[str | None]
     if regime == Regime.HANGING:
         return _remark_on(theta0_deg=180)
     if regime == Regime.SLEEPING:
-        words: Any = [_remark_on(theta0_deg=0, r0=r0) for r0 in (1.0, 1e3)]
+        words = [_remark_on(theta0_deg=0, r0=1.0), _remark_on(theta0_deg=0, r0=1e3)]
         return np.array(words, dtype=object)[(start.sleep >= 0).astype(np.intp)]
     if regime == Regime.REGULAR:
-        fast = np.zeros(tops.m.shape, dtype=np.bool_)
-        rows = np.flatnonzero(start.b * start.b > 0.99 * FAST * start.a)
-        fast[rows] = tops.part(rows).fast()
-        remarks: Any = [None, _remark_on(r0=1e3)]
-        return np.array(remarks, dtype=object)[fast.astype(np.intp)]
+        words = [None, _remark_on(r0=1e3)]
+        return np.array(words, dtype=object)[tops.fast().astype(np.intp)]
     return None
 
 

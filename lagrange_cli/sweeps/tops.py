@@ -73,7 +73,7 @@ class TopArrays(NamedTuple):
         found: Mask = (self.steady > 0) | ~np.isnan(self.phidot0)
         return found
 
-    def tilt_in(self, *, radians: bool) -> Array:
+    def tilt_in(self, radians: bool) -> Array:
         """Return theta0 in degrees or in radians."""
         if radians:
             return np.where(np.isnan(self.theta0_rad), np.radians(self.theta0_deg), self.theta0_rad)

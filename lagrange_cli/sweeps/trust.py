@@ -24,8 +24,7 @@ of the sizes of the terms.
 from __future__ import annotations
 
 from collections.abc import Collection
-from functools import cached_property, reduce
-from typing import Any
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,14 +32,14 @@ from numpy.typing import NDArray
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from .formulas import (
+    OF_NUTATION,
     Gaps,
-    Nutations,
+    Motions,
     Start,
     cubic_of,
     gaps_from_start,
     mean_parts,
     rates_half,
-    turn_time,
     u2,
 )
 
@@ -61,94 +60,27 @@ In 245,000 random tops the error was at most 5.2 eps of that size.
 _RATES = {"mean_spin_rate", "mean_precession_rate", "T_spin", "T_precession", "spin_rate_start"}
 
 
-class AnyStart(Nutations):
+class AnyStart(Motions):
     """Tops with any initial rates, with a torque and off the vertical.
 
     The gaps and the numbers in which larger ones may cancel are computed in pairs, the others in
     doubles.
     """
 
+    gaps: Gaps
+
     def __init__(self, start: Start) -> None:
         cubic = cubic_of(start)
         D, self._of_D = largest_root(start, cubic)
-        self._pairs = start, gaps_from_start(start, cubic, D)
-        super().__init__(Start(*(x.high for x in start)), Gaps(*(x.high for x in self._pairs[1])))
+        self.pairs = start, gaps_from_start(start, cubic, D)
+        doubles = Gaps(*(x.high for x in self.pairs[1]))
+        super().__init__(_FORMULAS, Start(*(x.high for x in start)), doubles)
         self._bound_gaps()
-
-    @property
-    def u1(self) -> Array:
-        """The upper turning point (4,9)."""
-        start, gaps = self._pairs
-        return _high(start.cos + gaps.u1_u0)
-
-    @property
-    def u2(self) -> Array:
-        """The lower turning point (4,11)."""
-        return _high(u2(self._pairs[1]))
-
-    @cached_property
-    def spin_rate_start(self) -> Array:
-        """The spin rate at the start (4,8)."""
-        return _high(self._pairs[0].spin_rate)
-
-    @property
-    def spin_rate_half(self) -> Array:
-        """The spin rate at T/2 (4,8)."""
-        return _high(self._half[0])
-
-    @property
-    def precession_rate_half(self) -> Array:
-        """The precession rate at T/2 (4,7)."""
-        return _high(self._half[1])
-
-    @cached_property
-    def _half(self) -> Any:
-        return rates_half(*self._pairs)
-
-    @property
-    def mean_spin_rate(self) -> Array:
-        """The mean spin rate (6,3)."""
-        return self._means[0]
-
-    @property
-    def mean_precession_rate(self) -> Array:
-        """The mean precession rate (7,3)."""
-        return self._means[1]
-
-    @property
-    def T_spin(self) -> Array:
-        """The time of one turn at the mean spin rate."""
-        return turn_time(self.mean_spin_rate)
-
-    @property
-    def T_precession(self) -> Array:
-        """The time of one turn at the mean precession rate."""
-        return turn_time(self.mean_precession_rate)
-
-    @cached_property
-    def _means(self) -> tuple[Array, Array]:
-        """The mean rates of spin and precession, in doubles, or in pairs if their parts cancel."""
-        south, north = mean_parts(self.k_prime, self.gaps)
-        size = abs(south) + abs(north)
-        mixed = np.flatnonzero(self.gaps.momentum_u1 * self.gaps.momentum_u2 < 0)
-        if mixed.size:
-            some = Gaps(*(x[mixed] for x in self.gaps))
-            sizes = abs(some.momentum_u1), abs(some.momentum_u2)
-            size[mixed] = sum(mean_parts(self.k_prime[mixed], some, sizes))
-        spin, precession = self.r0 + south - north, south + north
-        cancels = size > _MOST_SIZE * abs(precession)
-        rows = np.flatnonzero(cancels | (size + abs(self.r0) > _MOST_SIZE * abs(spin)))
-        if rows.size:
-            few = Gaps(*(x[rows] for x in self._pairs[1]))
-            south, north = mean_parts((few.a_u3_u1 / few.a_u3_u2).sqrt(), few)
-            precession[rows] = _high(south + north)
-            spin[rows] = _high(DoubleDouble(self.r0[rows]) + south - north)
-        return spin, precession
 
     @property
     def paths(self) -> NDArray[np.object_]:
         """The paths of the axis: looping if the precession turns back at u1."""
-        sign = np.sign(self.b)
+        sign = np.sign(self.start.b)
         looping = (sign * self.gaps.momentum_u1 < 0) & (sign * self.gaps.momentum_u2 > 0)
         paths: NDArray[np.object_] = np.where(looping, "looping", "wavy").astype(object)
         return paths
@@ -196,7 +128,7 @@ class AnyStart(Nutations):
         As dn^2 lies between k'^2 and 1, the mean of (x cn^2 + y sn^2)/(cn^2 + p sn^2) is at most
         x + y/sqrt(p) for p <= 1.
         """
-        gaps, mc = self.gaps, self.k_prime * self.k_prime
+        gaps, mc = self.gaps, self["k_prime"] * self["k_prime"]
         at_u1, at_u2 = self._sizes
 
         def size_of(from_u1: Array, from_u2: Array) -> Array:
@@ -206,17 +138,50 @@ class AnyStart(Nutations):
 
         south = size_of(gaps.below_u1, gaps.below_u2)
         size = south + size_of(gaps.above_u1, gaps.above_u2)
-        spin, precession = self._means
-        r0 = abs(self.r0)
+        spin, precession = self["means"]
+        r0 = abs(self.start.r0)
         known: Mask = self.noise * size < 8 * GOOD * abs(precession)
         known &= self.noise * (size + r0) < 8 * GOOD * abs(spin)
-        parts = r0 + abs(self.precession_rate_start)
-        known &= PAIR_EPS * parts < 8 * GOOD * abs(self.spin_rate_start)
+        parts = r0 + abs(self.start.psi_rate)
+        known &= PAIR_EPS * parts < 8 * GOOD * abs(self["spin_rate_start"])
         return known
 
 
-def _high(x: DoubleDouble) -> Array:
-    return x.high
+def mean_rates(of: AnyStart) -> tuple[Array, Array]:
+    """Return the mean rates of spin (6,3) and precession (7,3).
+
+    They are computed in doubles, or in pairs if their parts cancel.
+    """
+    south, north = mean_parts(of["k_prime"], of.gaps)
+    r0, size = of.start.r0, abs(south) + abs(north)
+    mixed = np.flatnonzero(of.gaps.momentum_u1 * of.gaps.momentum_u2 < 0)
+    if mixed.size:
+        some = Gaps(*(x[mixed] for x in of.gaps))
+        sizes = abs(some.momentum_u1), abs(some.momentum_u2)
+        size[mixed] = sum(mean_parts(of["k_prime"][mixed], some, sizes))
+    spin, precession = r0 + south - north, south + north
+    cancels = size > _MOST_SIZE * abs(precession)
+    rows = np.flatnonzero(cancels | (size + abs(r0) > _MOST_SIZE * abs(spin)))
+    if rows.size:
+        few = Gaps(*(x[rows] for x in of.pairs[1]))
+        south, north = mean_parts((few.a_u3_u1 / few.a_u3_u2).sqrt(), few)
+        precession[rows] = (south + north).high
+        spin[rows] = (DoubleDouble(r0[rows]) + south - north).high
+    return spin, precession
+
+
+_FORMULAS = OF_NUTATION | {
+    "u1": lambda of: (of.pairs[0].cos + of.pairs[1].u1_u0).high,
+    "u2": lambda of: u2(of.pairs[1]).high,
+    "spin_rate_start": lambda of: of.pairs[0].spin_rate.high,
+    "half": lambda of: rates_half(*of.pairs),
+    "spin_rate_half": lambda of: of["half"][0].high,
+    "precession_rate_half": lambda of: of["half"][1].high,
+    "means": mean_rates,
+    "mean_spin_rate": lambda of: of["means"][0],
+    "mean_precession_rate": lambda of: of["means"][1],
+}
+"""The formula of each key, in pairs where larger numbers may cancel."""
 
 
 def _parts(start: Start) -> tuple[tuple[Array, ...], tuple[Array, ...]]:

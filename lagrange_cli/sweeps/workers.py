@@ -12,10 +12,12 @@ import pickle
 import pkgutil
 import signal
 import time
+import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import partial
 from secrets import token_hex
 from tempfile import TemporaryDirectory
 from threading import Thread
@@ -23,11 +25,12 @@ from typing import Any, TypeVar
 
 from .. import __version__
 from ..errors import CannotWriteError, LagtopError, UnavailableError
+from ..output.terminal import waiting
 
 MOST_JOBS = 1024
 _AHEAD = 4
 """Items for each process that are handed out before the next result is taken."""
-_PATIENCE = 8.0
+_PATIENCE = 20.0
 """Seconds to wait for an answer of a cluster."""
 _SIGNALS_TAKE = 0.2
 """Seconds by which a signal may reach another process before it reaches this one."""
@@ -52,9 +55,15 @@ def parse_jobs(text: str) -> int:
 
 
 def in_order(
-    work: Callable[[_T], P], items: Iterable[_T], jobs: int = 1, address: str | None = None
+    work: Callable[[_T], P],
+    items: Iterable[_T],
+    jobs: int = 1,
+    address: str | None = None,
+    warn: Callable[[str], None] = warnings.warn,
 ) -> Generator[P, None, None]:
     """Yield `work(item)` for each item, in order, from `jobs` processes or a Dask cluster.
+
+    `warn` shows a warning about the cluster.
 
     With other processes, work, items and results must be picklable.  Raises UnavailableError if a
     process or the cluster cannot be started or is lost, and LagtopError for a bad address.  Errors
@@ -64,7 +73,8 @@ def in_order(
         yield from map(work, items)
         return
     waiting: deque[Callable[[], P]] = deque()
-    with _processes(jobs) if address is None else _cluster(address) as (submit, count):
+    shared = _processes(jobs) if address is None else _cluster(address, warn)
+    with shared as (submit, count):
         for item in items:
             waiting.append(_unless_lost(submit, work, item))
             if len(waiting) >= _AHEAD * count:
@@ -130,7 +140,8 @@ def _starting() -> Iterator[None]:
     os.environ["PYTHONSAFEPATH"] = "1"
     try:
         if hasattr(signal, "pthread_sigmask"):  # not on Windows
-            blocked = signal.SIGINT, signal.SIGHUP  # of a terminal, to the whole process group
+            # signals of a terminal, which go to the whole process group
+            blocked = signal.SIGINT, signal.SIGHUP, signal.SIGQUIT
             usual = signal.pthread_sigmask(signal.SIG_BLOCK, blocked)
             ensure_running()  # which unblocks Ctrl-C
             signal.pthread_sigmask(signal.SIG_BLOCK, blocked)
@@ -185,51 +196,119 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
+class _Cluster:
+    """A client of a Dask cluster that waits for no answer longer than `_PATIENCE`.
+
+    dask itself waits without end for a stopped process, and for work whose workers are gone.
+    """
+
+    def __init__(self, address: str, warn: Callable[[str], None]) -> None:
+        """Connect to a scheduler.
+
+        Raises UnavailableError if nothing answers, if there is no worker, or one that does not
+        answer or has another version of lagtop, and LagtopError for an invalid address.
+        """
+        self.address, self.client = address, self._connected(address, warn)
+        self._wait(lambda: self.client.wait_for_workers(1, timeout=_PATIENCE))
+        # A function of the standard library, which every worker can unpickle.
+        name = "lagrange_cli:__version__"
+        ask = pkgutil.resolve_name
+        versions = self._wait(lambda: self.client.run(ask, name, on_error="return"))
+        for worker, version in versions.items():
+            if version != __version__:
+                found = f"no lagtop: {version}" if isinstance(version, Exception) else version
+                why = f"the worker {worker} needs lagtop {__version__}, has {found}"
+                raise UnavailableError(why)
+        self.threads: int = sum(self._wait(self.client.nthreads).values())
+
+    def _connected(self, address: str, warn: Callable[[str], None]) -> Any:
+        import dask
+        from distributed import Client
+
+        dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE / 3})
+        try:
+            with warnings.catch_warnings(record=True, action="always") as found:
+                client = _within(_PATIENCE, lambda: Client(address, timeout=_PATIENCE / 3))
+        except (TypeError, ValueError) as error:
+            why = f"dask must be the address of a scheduler, got {address!r}: {error}"
+            raise LagtopError(why, "dask") from None
+        except Exception as error:  # of any kind: it may be no scheduler
+            raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
+        if found:
+            warn("the cluster has other versions of Python packages: results may differ in bits")
+        return client
+
+    def submit(self, work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
+        """Hand out work and an item; return a function that waits for the result."""
+        future = self.client.submit(work, item, pure=False)
+        return lambda: self._result(future)
+
+    def _result(self, future: Any) -> Any:
+        """Return a result.  Raises UnavailableError if the workers no longer answer."""
+        heard = time.monotonic()
+        while not future.done():
+            with suppress(TimeoutError):
+                future.result(_PATIENCE / 10)
+                continue
+            if self._wait(lambda: self.client.run(int)):
+                heard = time.monotonic()
+            elif time.monotonic() - heard > _PATIENCE:
+                raise UnavailableError(f"all workers of the cluster at {self.address} were lost")
+        return future.result()
+
+    def _wait(self, ask: Callable[[], Any]) -> Any:
+        """Return an answer of the cluster.  Raises UnavailableError if it takes too long."""
+        try:
+            return _within(_PATIENCE, ask)
+        except (TimeoutError, CancelledError, OSError, RuntimeError) as error:
+            why = f"the cluster at {self.address} has no worker that answers: {error}"
+            raise UnavailableError(why) from None
+
+    def close(self) -> None:
+        """Leave the cluster."""
+        with suppress(Exception):  # report the error that ended the sweep, not one of closing
+            _within(2.0, lambda: self.client.close(timeout=1))
+
+
+def _within(seconds: float, call: Callable[[], _T]) -> _T:
+    """Return the result of a call in a thread.  Raises TimeoutError after some seconds."""
+    found: list[Callable[[], _T]] = []
+
+    def run() -> None:
+        try:
+            value = call()
+            found.append(lambda: value)
+        except BaseException as error:
+            found.append(partial(_raise, error))
+
+    thread = Thread(target=run, daemon=True)
+    thread.start()
+    thread.join(seconds)
+    if not found:
+        raise TimeoutError(f"no answer in {seconds:g} s")
+    return found[0]()
+
+
+def _raise(error: BaseException) -> Any:
+    raise error
+
+
 @contextmanager
-def _cluster(address: str) -> Iterator[tuple[Submit, int]]:
+def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit, int]]:
     """Yield a function that hands work to a Dask cluster, and the number of its threads.
 
     Raises UnavailableError, and LagtopError for an invalid address.
     """
     try:
-        import dask
-        from distributed import Client
+        import distributed  # noqa: F401
     except ImportError:
         why = "dask needs distributed: pip install 'lagtop[cluster]'"
         raise UnavailableError(why, "dask") from None
     for name in ("distributed", "distributed.client", "asyncio", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # lagtop reports errors in one line
-    dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE})
+    with waiting(f"waiting for the cluster at {address}"):
+        cluster = _Cluster(address, warn)
     try:
-        client = Client(address, timeout=_PATIENCE)
-    except (TypeError, ValueError) as error:
-        why = f"dask must be the address of a scheduler, got {address!r}: {error}"
-        raise LagtopError(why, "dask") from None
-    except Exception as error:  # of any kind: it may be no scheduler
-        raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
-    try:
-        threads = _threads(client)
-        yield lambda work, item: client.submit(work, item, pure=False).result, threads
+        yield cluster.submit, cluster.threads
     finally:
-        with suppress(Exception):  # report the error that ended the sweep, not one of closing
-            client.close(timeout=2)
-
-
-def _threads(client: Any) -> int:
-    """Return the number of threads of a cluster.
-
-    Raises UnavailableError if it has no worker, or one without lagtop or with another version.
-    """
-    try:
-        client.wait_for_workers(1, timeout=_PATIENCE)
-        # A function of the standard library, which every worker can unpickle.
-        name = "lagrange_cli:__version__"
-        versions = client.run(pkgutil.resolve_name, name, on_error="return")
-        threads: int = sum(client.nthreads().values())
-    except (TimeoutError, CancelledError, OSError, RuntimeError) as error:
-        raise UnavailableError(f"the cluster has no worker: {error}") from None
-    for worker, version in versions.items():
-        if version != __version__:
-            found = f"no lagtop: {version}" if isinstance(version, Exception) else version
-            raise UnavailableError(f"the worker {worker} needs lagtop {__version__}, has {found}")
-    return threads
+        cluster.close()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -38,8 +40,9 @@ def test_parts_that_cannot_be(tmp_path: Path, lagtop: Lagtop) -> None:
     assert lagtop("sweep", "--parts", tmp_path, "-o", "x").exit_code == 2
     assert lagtop("sweep", "--parts", tmp_path, "--format", "json").exit_code == 2
     assert_one_line(lagtop("sweep", "--parts", ""), 2, "--parts must name a folder")
-    tops = lagtop("sweep", "-", "--parts", tmp_path / "x", input="r0\n1\n")
-    assert_one_line(tops, 2, "--parts needs a file of tops that can be read again, got -")
+    for name in ("-", "/dev/null"):  # a device, as a pipe of the shell
+        tops = lagtop("sweep", name, "--parts", tmp_path / "x", input="r0\n1\n")
+        assert_one_line(tops, 2, f"--parts needs a file of tops that can be read again, got {name}")
 
 
 @pytest.mark.parametrize(
@@ -77,6 +80,33 @@ def test_a_damaged_description_is_refused(
     assert_one_line(result, 74, f"cannot write {tmp_path}: it holds parts of another sweep")
 
 
+def test_of_two_sweeps_that_start_together_one_ends(
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def late(source: Path, target: Path, link: Callable[..., None] = os.link) -> None:
+        target.write_text("of the other sweep")  # which was the first to create it
+        link(source, target)
+
+    monkeypatch.setattr("os.link", late)
+    result = lagtop(*GRID, "--parts", tmp_path)
+    assert_one_line(result, 74, f"cannot write {tmp_path}: it holds parts of another sweep")
+    assert [x.name for x in tmp_path.iterdir()] == ["sweep.json"]
+
+
+def test_a_damaged_part_is_computed_again(tmp_path: Path, lagtop: Lagtop) -> None:
+    lagtop(*GRID, "--parts", tmp_path)
+    parts, whole = [tmp_path / f"part-00000{i}.csv" for i in range(3)], joined(tmp_path)
+    parts[0].write_bytes(b"")
+    for wrong in ('["a","b"]', "[null,null]", '[-5,"x"]', "[" * 100_000):
+        (tmp_path / "errors-000001.json").write_text(wrong)
+        again = lagtop(*GRID, "--parts", tmp_path)
+        assert (again.exit_code, joined(tmp_path)) == (0, whole)
+        assert not (tmp_path / "errors-000001.json").exists()
+    parts[2].unlink()
+    parts[2].mkdir()
+    assert_one_line(lagtop(*GRID, "--parts", tmp_path), 74, f"cannot write {parts[2]}: Is a dir")
+
+
 def test_a_changed_file_is_another_sweep(tmp_path: Path, lagtop: Lagtop) -> None:
     file, parts = tmp_path / "tops.csv", tmp_path / "parts"
     for text, code in (("r0\n1\n", 0), ("r0\n1\n", 0), ("r0\n2\n", 74)):
@@ -108,9 +138,9 @@ def test_a_part_appears_whole_or_not_at_all(
     def refuse(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("os.replace", refuse)
+    monkeypatch.setattr("os.link", refuse)
     result = lagtop(*GRID, "--parts", tmp_path)
-    assert_one_line(result, 74, f"cannot write {tmp_path}/sweep.json: No space left on device")
+    assert_one_line(result, 74, f"cannot write {tmp_path}: No space left on device")
     assert list(tmp_path.iterdir()) == []
     monkeypatch.undo()
     lagtop(*GRID, "--parts", tmp_path, "--shard", "3/3")

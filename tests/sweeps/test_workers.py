@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -19,6 +20,7 @@ from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, proce
 from lagtop import LagtopError
 
 from lagrange_cli.errors import UnavailableError
+from lagrange_cli.sweeps import workers
 from lagrange_cli.sweeps.workers import in_order, parse_jobs
 
 LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1"]
@@ -93,18 +95,20 @@ def sharing(folder: Path, *options: str) -> Iterator[subprocess.Popen[bytes]]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("send", [os.kill, os.killpg], ids=["process", "group"])
-@pytest.mark.parametrize("name", ["INT", "TERM", "HUP"])
+@pytest.mark.parametrize("name", ["INT", "TERM", "HUP", "QUIT", "INT INT INT", "TERM INT"])
 def test_a_signal_ends_all_processes(
     name: str, send: Callable[[int, int], None], tmp_path: Path
 ) -> None:
     """A terminal that is closed and a batch system send it to the whole group."""
-    number = getattr(signal, f"SIG{name}")
+    numbers = [getattr(signal, f"SIG{x}") for x in name.split()]
     with sharing(tmp_path, "--jobs", "3") as running:
         begun = time.monotonic()
-        send(running.pid, number)
+        for number in numbers:
+            send(running.pid, number)
+            time.sleep(0.05)
         said = running.communicate(timeout=60)[1]
         assert_gone(running.pid)
-    assert running.returncode in (-number, 128 + number)
+    assert running.returncode in (-numbers[0], 128 + numbers[0])
     assert said == b""
     assert list(tmp_path.iterdir()) == []
     assert time.monotonic() - begun < 10  # measured: 0.2 to 0.5
@@ -196,6 +200,29 @@ def test_no_cluster(address: str, code: int) -> None:
     done = process("sweep", "--dask", address, check=False)
     assert (done.returncode, done.stdout, done.stderr.count(b"\n")) == (code, b"", 1)
     assert done.stderr.startswith(b"Error: ")
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers, "_PATIENCE", 1.5)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(UnavailableError, match=f"no scheduler answers at {address}"):
+            list(in_order(str, [1], address=address))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGSTOP, signal.SIGKILL])
+def test_workers_that_do_not_answer(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with cluster(tmp_path, 1) as (address, processes):
+        computed = in_order(str, range(10_000), address=address)
+        assert next(computed) == "0"
+        monkeypatch.setattr(workers, "_PATIENCE", 3.0)
+        processes[1].send_signal(number)
+        with pytest.raises(UnavailableError, match=r"no worker that answers|were lost"):
+            list(computed)
 
 
 def refuse(x: int) -> None:
