@@ -296,7 +296,7 @@ def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
     Raises OutOfRangeError for a number whose size is not within 1e-990000000000000000 and
     1e+990000000000000000.
     """
-    bits = ball.bits() if ball.is_exact() else max(ball.bits(), ball.rel_accuracy_bits())
+    bits = max(80, ball.bits(), 0 if ball.is_exact() else ball.rel_accuracy_bits())
     middle, radius, exponent = map(int, ball.mid_rad_10exp(int(bits / BITS) + 8))
     if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
         raise OutOfRangeError(

@@ -111,6 +111,7 @@ def plot_command(
     founds = [top._replace(scene=name or None).given(**others) for name in scenes or [""]]
     uses_stds = len(founds) == 1 and "angles" in kinds
     motions = [opt.motion_of(found, uses_stds=uses_stds) for found in founds]
+    stds = angle_stds(founds[0], motions[0]) if uses_stds else None
     options = Options(
         t_max=t_max and t_max.number,
         radians=top.radians,
@@ -120,7 +121,7 @@ def plot_command(
         **{x: y and (y[0], next(y[1].number.blocks())) for x, y in axes.items()},
         progress=with_progress,
         unit=founds[0].named,
-        stds=angle_stds(founds[0], motions[0]) if uses_stds else None,
+        stds=stds.at if stds else None,
     )
     with ExitStack() as stack:
         if animate:

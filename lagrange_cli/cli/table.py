@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..errors import DataError, LagtopError
+from ..errors import DataError, LagtopError, OutOfRangeError
 from ..output.terminal import with_progress
 from . import shared as opt
 from .app import complain
 
 if TYPE_CHECKING:
-    from ..arithmetic.types import Array
     from ..output.destination import Output
+    from ..solver.angle_stds import AngleStds
     from ..solver.solve import Motion
     from ..top.given import Given
     from ..top.values import Value
@@ -74,36 +74,53 @@ def table_command(
     names = DEFAULT_COLUMNS if columns is None else columns
     how = {"radians": top.radians, "wrap": wrap}
     parts: Iterable[Any]
+    stds: AngleStds | None = None
     bounds = {name: x.number for name, x in given.items() if x is not None}
     try:
         at = read_times(times, decimal) if times else grid(motion, n=n, **bounds)
         if proved:
             header, parts = ProvedTable(motion, names, digits, **how).rows(at, radii=certify)
         else:
-            header, parts = rows(motion, at, names, stds=angle_stds(found, motion), **how)
+            stds = angle_stds(found, motion)
+            header, parts = rows(motion, at, names, stds=stds.at if stds else None, **how)
         if out.fmt == "table":
             header = _with_units(header, names, found)
         out.table(header, with_progress(parts, "rows", at.count or None, len))
+        warn_if_misleading(stds, names)
     except LagtopError as error:
-        if times is None or error.key != "t":
-            raise
-        raise DataError(f"{shown_path(times)}: {error}") from None
+        late = ": use --digits" if isinstance(error, OutOfRangeError) and error.key else ""
+        if times is not None and error.key == "t":
+            raise DataError(f"{shown_path(times)}: {error}{late}") from None
+        if late:
+            raise OutOfRangeError(f"{error}{late}", error.key) from None
+        raise
 
 
-def angle_stds(found: Given, motion: Motion) -> Callable[[Array], Array] | None:
+def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     """Return the uncertainties of the angles as a function of times, if inputs are uncertain.
 
-    If there are none, a warning states the reason.
+    If they do not exist, a warning states the reason.
     """
     if not found.stds:
         return None
-    from ..solver.derivatives import NO_DERIVATIVE  # for few tops only
-    from ..solver.uncertainty import AngleStds
+    from ..solver.angle_stds import AngleStds  # for few tops only
+    from ..solver.derivatives import NO_DERIVATIVE
 
     stds = AngleStds(motion, found.stds)
     if stds.derivatives.missing:
         complain(f"Warning: no uncertainty of the angles: {NO_DERIVATIVE}")
-    return stds.at
+    return stds
+
+
+def warn_if_misleading(stds: AngleStds | None, names: Sequence[str]) -> None:
+    """Warn of columns for which linear propagation misleads."""
+    misled = [x for x in names if x in stds.misleading] if stds else []
+    if stds and misled:
+        first = min((stds.misleading[x] for x in misled), key=abs)
+        complain(
+            f"Warning: uncertainties of {', '.join(misled)} are not reliable from t = {first:g}: "
+            "inputs one standard deviation away give other changes than linear propagation"
+        )
 
 
 def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> list[str]:

@@ -38,7 +38,8 @@ def with_stds(
 
     A warning names the numbers that have none.
     """
-    stds, beyond = stds_of(record, _first_order(found, motion))
+    uncertain = _first_order(found, motion)
+    stds, beyond = stds_of(record, uncertain)
     lost = [x for x in record if record[x] is not None and stds.get(f"{x}_std", 0) is None]
     if beyond:
         complain("Warning: " + "; ".join(map(str, beyond)))
@@ -46,6 +47,16 @@ def with_stds(
         known = any(degree_name(key) in DIFFERENTIABLE for key in lost)
         reason = NO_DERIVATIVE if known else "keys outside the record have none"
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
+    misled = [
+        x
+        for x in record
+        if (std := stds.get(f"{x}_std")) is not None and uncertain.misleads(x, std)
+    ]
+    if misled:
+        complain(
+            f"Warning: uncertainties of {', '.join(misled)} are not reliable: inputs one standard "
+            "deviation away give other changes than linear propagation"
+        )
     texts = {
         name: NumberText(uncertain_text(_to_the_last_digit(motion, name, float(value), std), std))
         for name, value in record.items()

@@ -47,20 +47,20 @@ def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
     if fmt in {"json", "ndjson"}:
         rows = _json_rows(columns, names)
         return b",\n".join(rows) if fmt == "json" else b"".join(row + b"\n" for row in rows)
-    if len(columns) == 1 and len(names) > 1 and not isinstance(columns[0], Sequence):
-        return _array_lines(columns[0])
+    if len(columns) == 1 and not isinstance(columns[0], Sequence):
+        return _array_lines(columns[0], b"" if len(names) > 1 else b'""')  # no line is empty
     lines = zip(*map(_csv_cells, columns), strict=True)
     return b"".join((b",".join(line) or b'""') + b"\n" for line in lines)  # no line is empty
 
 
-def _array_lines(column: Array) -> bytes:
-    """Return an array of numbers as CSV, a line per row and an empty cell for NaN."""
+def _array_lines(column: Array, missing: bytes = b"") -> bytes:
+    """Return an array of numbers as CSV, a line per row and a `missing` cell for NaN."""
     import numpy as np
 
     rows = column.reshape(len(column), -1)
     text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
     if b"n" in text:
-        text = text.replace(b"null", b"")
+        text = text.replace(b"null", missing)
     # Commas at the ends of rows are replaced in place: a search for `],[` takes twice as long.
     view = np.frombuffer(text, dtype=np.uint8)
     commas = np.flatnonzero(view == ord(","))

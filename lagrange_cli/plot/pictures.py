@@ -57,7 +57,7 @@ class Options(NamedTuple):
     """Azimuth and elevation (radians) of the camera; by default it faces the path."""
     look: Look = LIGHT
     stds: Callable[[Array], Any] | None = None
-    """Standard deviations (radians) of the three angles at given times: bands."""
+    """Standard deviations (radians) of `STD_COLUMNS` at given times: bands."""
     key: str | None = None
     """Key of a map; by default the mean precession rate."""
     x: tuple[str, ArrayLike] | None = None
@@ -267,7 +267,7 @@ def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     look, (factor, unit) = options.look, options.angle_unit
     t_max = last_time(motion, options, usual_span(motion, 3, 3))
     t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
-    stds = [0 * t] * 3 if options.stds is None else options.stds(t)
+    stds = [0 * t] * 3 if options.stds is None else options.stds(t)[[0, 3, 2]]  # of ϑ, Δφ, ψ
     spin, turn = motion.mean_spin_rate or 0.0, motion.mean_precession_rate
     note = ""
     if motion.regime in (Regime.SLEEPING, Regime.HANGING):

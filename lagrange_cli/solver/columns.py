@@ -1,7 +1,13 @@
-"""The columns of `lagtop table`: their presentation, and their formulas.
+"""The columns of `lagtop table`: each is declared once, with its formula.
 
-Formulas are attributes of `Parts`, the motion at one time in balls or at many times in doubles.
-Common parts are computed on first use, from the attitude
+A line of the table is
+
+    name | symbol | meaning | unit | equation | formula
+
+and an indented line continues the line before.  A formula is in names of columns and keys.  If
+digits would be lost, as next to a pole, the form that is evaluated follows after `~`, in names that
+are defined below.  Arrays of doubles (`tables.Sample`) and proved rows (`tables.BallSample`)
+evaluate the same forms; both start from the attitude
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
@@ -12,19 +18,16 @@ up to a common positive factor.  With N = |X|^2 + |Y|^2, both 1 + u = 2 |X|^2/N 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple
+from functools import cache
+from types import CodeType
+from typing import Any
 
+from flint import arb
+
+from ..arithmetic.enclosures import exact
 from ..arithmetic.key import Key
-from ..arithmetic.numbers import R
 from ..names import ANGLES, check_names
-from .kinds import Kind, Vertical
-from .quantity import quantity
-
-if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
-    from .regime import Exact
-
+from .numbers import Numbers
 
 GROUPS = {
     "axis": "figure axis in space: axis_x, axis_y, axis_z",
@@ -32,48 +35,69 @@ GROUPS = {
 }
 """The meanings of names that stand for several columns."""
 
-_DECLARED = r"""
-t | t | time | time
-theta | ϑ | tilt | angle | (4,9) | acos(u)
-phi | φ | spin | angle | (6,1) | integral(phidot, 0, t)
-psi | ψ | precession | angle | (7,1) | integral(psidot, 0, t)
-dphi | Δφ | spin less its mean rate times t, a wave | angle | (6,4) | phi - mean_spin_rate*t
-dpsi | Δψ | precession less its mean rate times t, a wave | angle | (7,4) \
-    | psi - mean_precession_rate*t
-u | u | cos ϑ | | (4,30) | u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2
-thetadot | ϑ' | nutation rate | rad/time | (4,2) \
-    | thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)
-phidot | φ' | spin rate | rad/time | (4,8) | r0 - psidot*u
-psidot | ψ' | precession rate | rad/time | (4,7) | (momentum_constant - b*u)/(1 - u**2)
-p | p | angular velocity about the body's x axis | rad/time | (4,1) \
-    | thetadot*cos(phi) + psidot*sin(theta)*sin(phi)
-q | q | angular velocity about the body's y axis | rad/time | (4,1) \
-    | psidot*sin(theta)*cos(phi) - thetadot*sin(phi)
+_TEXT = """
+t | t | time | time | |
+theta | ϑ | tilt | angle | (4,9) | acos(u) ~ tilt
+phi | φ | spin | angle | (6,1) | integral(phidot, 0, t) ~ spin
+psi | ψ | precession | angle | (7,1) | integral(psidot, 0, t) ~ precession
+dphi | Δφ | spin less its mean rate times t, a wave | angle | (6,4)
+   | phi - mean_spin_rate*t ~ spin_wave
+dpsi | Δψ | precession less its mean rate times t, a wave | angle | (7,4)
+   | psi - mean_precession_rate*t ~ precession_wave
+u | u | cos ϑ | | (4,30)
+   | u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2 ~ (XX - YY)/N
+thetadot | ϑ' | nutation rate | rad/time | (4,2)
+   | thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2) ~ nutation_rate
+phidot | φ' | spin rate | rad/time | (4,8) | r0 - psidot*u ~ drift + south - north
+psidot | ψ' | precession rate | rad/time | (4,7)
+   | (momentum_constant - b*u)/(1 - u**2) ~ south + north
+p | p | angular velocity about the body's x axis | rad/time | (4,1)
+   | thetadot*cos(phi) + psidot*sin(theta)*sin(phi)
+   ~ thetadot*cos(spin_turn) + across*sin(spin_turn)
+q | q | angular velocity about the body's y axis | rad/time | (4,1)
+   | psidot*sin(theta)*cos(phi) - thetadot*sin(phi)
+   ~ across*cos(spin_turn) - thetadot*sin(spin_turn)
 r | r | angular velocity about the figure axis | rad/time | (4,1) | r0
 moment | M | moment of the weight about the line of nodes | mass len²/time² | | m*g*s*sin(theta)
-axis_x | | x part in space | | | sin(theta)*sin(psi)
-axis_y | | y part in space | | | -sin(theta)*cos(psi)
+   ~ torque*sine
+axis_x | | x part in space | | | sin(theta)*sin(psi) ~ sine*sin(precession_turn)
+axis_y | | y part in space | | | -sin(theta)*cos(psi) ~ -sine*cos(precession_turn)
 axis_z | | z part in space | | | u
 quaternion_w | | real part of X = w + i z | | | cos(theta/2)*cos((psi + phi)/2)
+   ~ signed_X*cos(arg_X)/sqrt(N)
 quaternion_x | | real part of Y = x + i y | | | sin(theta/2)*cos((psi - phi)/2)
+   ~ signed_Y*cos(arg_Y)/sqrt(N)
 quaternion_y | | imaginary part of Y = x + i y | | | sin(theta/2)*sin((psi - phi)/2)
+   ~ signed_Y*sin(arg_Y)/sqrt(N)
 quaternion_z | | imaginary part of X = w + i z | | | cos(theta/2)*sin((psi + phi)/2)
-energy | E | energy; constant except for rounding | mass len²/time² | (4,2) \
-    | (A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u
-Lz | c2 | vertical angular momentum; constant except for rounding | mass len²/time | (4,3) \
-    | A*psidot*sin(theta)**2 + C*r0*u
+   ~ signed_X*sin(arg_X)/sqrt(N)
+energy | E | energy; constant except for rounding | mass len²/time² | (4,2)
+   | (A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u ~ A*(thetadot**2 + across**2)/2 + C*r0**2/2 + torque*u
+Lz | c2 | vertical angular momentum; constant except for rounding | mass len²/time | (4,3)
+   | A*psidot*sin(theta)**2 + C*r0*u ~ A*across*sine + C*r0*u
 """
-"""Name, symbol, meaning, unit, equation and formula of each column.
+"""In formulas, t1 is the time of a passage of u1."""
 
-A formula is in names of columns and keys; t1 is the time of a passage of u1.
-"""
+_DEFINED = {
+    "N": "XX + YY",
+    "sine": "2*X*Y/N",  # of the tilt
+    "across": "ratio(plus*Y, X) + ratio(minus*X, Y)",  # psi' sin(theta), across the line of nodes
+    "south": "ratio(plus*N, 2*XX)",  # (beta + b)/2/(1 + u), the part of psi' from the lower pole
+    "north": "ratio(minus*N, 2*YY)",  # (beta - b)/2/(1 - u), the part of psi' from the upper pole
+}
+"""Names in evaluated formulas; `column_constants` and `Columns` have the others."""
 
 SCALARS: dict[str, Key] = {}
 """The presentation of each column; its group is the name of several columns, or empty."""
-for _line in _DECLARED.replace("\\\n", "").strip().splitlines():
-    _name, *_texts = (text.strip() for text in _line.split("|"))
+FORMULAS = dict(_DEFINED)
+"""The form of each column that is evaluated, and of the names in it."""
+for _line in _TEXT.strip().replace("\n ", " ").splitlines():
+    _name, _symbol, _meaning, _unit, _equation, _formula = map(str.strip, _line.split("|"))
+    _printed, _, _evaluated = map(str.strip, _formula.partition("~"))
     _group = _name.partition("_")[0]
-    SCALARS[_name] = Key(_group if _group in GROUPS else "", *_texts)
+    _group = _group if _group in GROUPS else ""
+    SCALARS[_name] = Key(_group, _symbol, _meaning, _unit, _equation, _printed)
+    FORMULAS[_name] = _evaluated or _printed
 
 COLUMNS: dict[str, dict[str, Key]] = {}
 """The columns that each name stands for, in the order of `SCALARS`."""
@@ -120,112 +144,42 @@ def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
     ]
 
 
-class ColumnConstants(NamedTuple, Generic[R]):
-    """The constants of a top used in its columns."""
+def column_constants(of: Numbers) -> dict[str, arb]:
+    """Return the constants in the formulas of columns, in balls.
 
-    A: R
-    C: R
-    torque: R
-    """mgs."""
-    r0: R
-    drift: R
-    """r0 - b, or r0 on the vertical, where `plus` and `minus` are 0."""
-    plus: R
-    """(beta + b)/2."""
-    minus: R
-    """(beta - b)/2."""
-    alpha: R
-    a: R
+    `drift` is r0 - b, `plus` and `minus` are (beta + b)/2 and (beta - b)/2.  On the vertical all of
+    the rotation counts as spin.
+    """
+    facts, r0 = of.facts, of["r0"] if of.facts.spin else arb(0)
+    names = ("A", "C", "a", "energy_constant")
+    found = {name: of[name] for name in names} | {"r0": r0, "torque": of["m"] * of["g"] * of["s"]}
+    if facts.vertical:
+        return found | {"drift": r0, "plus": arb(0), "minus": arb(0)}
+    drift = r0 * exact(1 - facts.inputs["C"] / facts.inputs["A"])
+    plus, minus = of["beta_plus_b"] / 2, of["beta_minus_b"] / 2
+    return found | {"drift": drift, "plus": plus, "minus": minus}
 
 
-def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
-    """Return the constants of a motion in its arithmetic."""
-    ar, state = kind.ar, kind.state
-    A, C = Fraction(exact.top.A), Fraction(exact.top.C)
-    with ar.working():
-        drift, plus, minus = state.pole_drift, kind.gaps.beta_plus_b / 2, kind.gaps.beta_minus_b / 2
-        if isinstance(kind, Vertical):  # all of the rotation counts as spin
-            drift, plus, minus = kind.r0, 0 * kind.r0, 0 * kind.r0
-        inertia = ar.convert(A), ar.convert(C), ar.convert(exact.a * A / 2)
-        alpha = state.energy + state.a * state.cos
-        return ColumnConstants(*inertia, state.r0, drift, plus, minus, alpha, state.a)
+@cache
+def _code(formula: str) -> CodeType:
+    return compile(formula, "<formula>", "eval")
 
 
-class Parts(Generic[R]):
-    """A motion at one or several times.
+class Columns(dict[str, Any]):
+    """Columns of a motion at one or several times by name; each is computed on first use.
 
-    Each column is an attribute of its name; subclasses have `theta`, `phi`, `psi`, `dphi`, `dpsi`
-    and the attributes that are annotated here.
+    The first items are the constants, `t`, and the functions cos, sin, sqrt and ratio (a quotient
+    that is 0 for 0/0: on a pole the momentum about it is 0).  Subclasses have as attributes
+
+    - X, Y, XX, YY: |X|, |Y| and their squares,
+    - tilt, spin, precession, spin_wave, precession_wave, nutation_rate,
+    - spin_turn, precession_turn: spin and precession, perhaps without whole turns,
+    - arg_X, arg_Y: arguments of X and Y, perhaps without whole half turns, and signed_X, signed_Y:
+      |X| and |Y|, negative if an odd number of them is left out.
     """
 
-    ar: Arithmetic[R]
-    t: Any
-    top: ColumnConstants[R]
-    sizes: Any
-    """|X| and |Y|."""
-    moduli: Any
-    """|X|^2 and |Y|^2."""
-    within: Any
-    """The spin, up to whole turns."""
-    around: Any
-    """The precession, up to whole turns."""
-    thetadot: Any
-    """The nutation rate (5,3)."""
-    over: Callable[[R, R], R]
-    """A quotient that is 0 for 0/0: on a pole the momentum about it is 0."""
-
-    @quantity
-    def args(self) -> tuple[R, R]:
-        """(psi + phi)/2 and (psi - phi)/2, up to whole turns of both or half a turn of both."""
-        return (self.around + self.within) / 2, (self.around - self.within) / 2
-
-    @quantity
-    def unit(self) -> Any:
-        """|X| and |Y|, each over sqrt(N)."""
-        size, (x, y) = self.ar.sqrt(self.norm), self.sizes
-        return x / size, y / size
-
-    norm = quantity[Any](lambda at: at.moduli[0] + at.moduli[1])
-    """N."""
-    u = quantity[Any](lambda at: (at.moduli[0] - at.moduli[1]) / at.norm)
-    """cos(theta) (4,6)."""
-    sine = quantity[Any](lambda at: 2 * at.sizes[0] * at.sizes[1] / at.norm)
-    """sin(theta)."""
-    south = quantity[Any](lambda at: at.over(at.top.plus * at.norm, 2 * at.moduli[0]))
-    """(beta + b)/2/(1 + u), the part of the precession rate from the lower pole."""
-    north = quantity[Any](lambda at: at.over(at.top.minus * at.norm, 2 * at.moduli[1]))
-    """(beta - b)/2/(1 - u), the part of the precession rate from the upper pole."""
-    sin_spin = quantity[Any](lambda at: at.ar.sin(at.within))
-    cos_spin = quantity[Any](lambda at: at.ar.cos(at.within))
-
-    @quantity
-    def across(self) -> R:
-        """psi' sin(theta), the angular velocity across the line of nodes (4,1)."""
-        x, y = self.sizes
-        return self.over(self.top.plus * y, x) + self.over(self.top.minus * x, y)
-
-    phidot = property(lambda at: at.top.drift + at.south - at.north)
-    psidot = property(lambda at: at.south + at.north)
-    p = property(lambda at: at.across * at.sin_spin + at.thetadot * at.cos_spin)
-    q = property(lambda at: at.across * at.cos_spin - at.thetadot * at.sin_spin)
-    r = property(lambda at: at.top.r0)
-    moment = property(lambda at: at.top.torque * at.sine)
-    axis_x = property(lambda at: at.sine * at.ar.sin(at.around))
-    axis_y = property(lambda at: -at.sine * at.ar.cos(at.around))
-    axis_z = property(lambda at: at.u)
-    quaternion_w = property(lambda at: at.unit[0] * at.ar.cos(at.args[0]))
-    quaternion_x = property(lambda at: at.unit[1] * at.ar.cos(at.args[1]))
-    quaternion_y = property(lambda at: at.unit[1] * at.ar.sin(at.args[1]))
-    quaternion_z = property(lambda at: at.unit[0] * at.ar.sin(at.args[0]))
-
-    @property
-    def energy(self) -> Any:
-        """A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs u (4,2)."""
-        swing = self.thetadot * self.thetadot + self.across * self.across
-        rotation = self.top.A / 2 * swing + self.top.C / 2 * self.top.r0 * self.top.r0
-        return rotation + self.top.torque * self.u
-
-    @property
-    def Lz(self) -> Any:
-        """A psi' sin^2 theta + C r0 u (4,3)."""
-        return self.top.A * self.across * self.sine + self.top.C * self.top.r0 * self.u
+    def __missing__(self, name: str) -> Any:
+        formula = FORMULAS.get(name)
+        found = getattr(self, name) if formula is None else eval(_code(formula), {}, self)
+        self[name] = found
+        return found

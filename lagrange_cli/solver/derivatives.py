@@ -3,10 +3,6 @@
 The record: each input is moved by 2^-200 of its size to either side, and the numbers have 140
 digits or more.  The difference quotient agrees with the derivative to some 60 digits.  If a
 degenerate motion may be too near, the step is 2^-1000.
-
-The angles: doubles of four neighbours are compared at equal phases of the nutation, so that the
-differences stay small at any time.  The derivatives of the period and of the mean rates, taken from
-the record, give the part that grows with time.
 """
 
 from __future__ import annotations
@@ -29,16 +25,15 @@ from ..arithmetic.enclosures import (
     rounded,
     sign,
 )
-from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError
-from ..names import ANGLES, check_names
+from ..names import check_names
 from ..top.inputs import DECLARED
 from ..top.top import Top
 from .keys import NUMBER_KEYS, TEXTBOOK_KEYS, bare_name
 from .solve import Motion, solve
 
 if TYPE_CHECKING:
-    from ..arithmetic.types import Array
+    pass
 
 DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK_KEYS]
 """The keys that have derivatives."""
@@ -50,16 +45,7 @@ _STEPS, _SHARP = (200, 1_000), 30
 _ALIKE, _NEGLIGIBLE = 1e-20, 1e-55
 _LEAST_DOUBLE = Fraction(1, 2**1075)
 _STENCILS = {-1: -0.5, 0: 0.0, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}
-_FINE_STENCILS = (
-    {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
-    {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4},
-)
 """Weights of neighbours in a derivative, by place in steps: central, and at an end of a range."""
-_ANGLE_STEP, _FINE_ANGLE_STEP, _STEEP = 2.0**-14, 2.0**-11, 16.0
-"""Steps for angles, over the range of an input in which motions are alike; the other step is for a
-range of less than 1/16 of the input."""
-_ANGLE_NOISE = 2.0**-38
-"""Rounding errors of derivatives of angles over that range."""
 
 
 class Sensitivities(NamedTuple):
@@ -256,100 +242,3 @@ def sines(motion: Motion) -> dict[str, float]:
     """Return the sines of the extreme tilts that are not 0, by key."""
     tilts = {key: getattr(motion, key) for key in ("theta_min_deg", "theta_max_deg")}
     return {key: math.sin(math.radians(x)) for key, x in tilts.items() if x and x < 180}
-
-
-class AngleDerivatives:
-    """Derivatives of the angles of one motion over time by some inputs of its top."""
-
-    def __init__(self, motion: Motion, inputs: Sequence[str]) -> None:
-        self.motion, self.inputs, self.record = motion, tuple(inputs), Derivatives(motion)
-        self.period: float | None = motion.T_nutation
-        keys = ("T_nutation", "mean_spin_rate", "mean_precession_rate") if self.period else ()
-        self.slopes = {x: [self.record.nearest(key, x) for key in keys] for x in self.inputs}
-        """Derivatives of the period and of the mean rates of spin and precession, by input."""
-        self.steepness = {x: self._steepness(x) for x in self.inputs}
-        self.noise = {x: _ANGLE_NOISE * steepness for x, steepness in self.steepness.items()}
-        """Sizes of the rounding errors of the derivatives, by input."""
-        self.steps, self.neighbours = {}, {}
-        for x in self.inputs:
-            steep = self.steepness[x] * size_of(motion, x) > _STEEP
-            self.steps[x] = (_FINE_ANGLE_STEP if steep else _ANGLE_STEP) / self.steepness[x]
-            stencils = _FINE_STENCILS if steep else _STENCILS
-            self.neighbours[x] = neighbours(motion, x, Fraction(self.steps[x]), stencils)
-        self.missing = {x for x, slopes in self.slopes.items() if any(map(math.isnan, slopes))}
-        """The inputs by which the angles have no derivative."""
-        if not self.period:  # a neighbour that nutates departs at once
-            nutates = {x: any(y.motion.T_nutation for y in self.neighbours[x]) for x in self.inputs}
-            self.missing = {x for x in self.inputs if nutates[x]}
-
-    def _steepness(self, name: str) -> float:
-        """Return the largest relative change of a size of the motion per unit of an input.
-
-        Next to the separatrix k' is small, and next to a pole the sine of an extreme tilt.
-        """
-        sizes = {"k_prime": self.motion.k_prime, "T_nutation": self.period}
-        sizes |= {key: math.degrees(x) for key, x in sines(self.motion).items()}
-        found = [abs(self.record.nearest(key, name) / x) for key, x in sizes.items() if x]
-        known = [float(x) for x in found if not math.isnan(x)]
-        return max(1 / size_of(self.motion, name), *known, 0.0)
-
-    def at(self, t: Array) -> Array:
-        """Return derivatives of theta, phi and psi at n times, of shape (inputs, 3, n).
-
-        They are NaN after the start if they do not exist.
-        """
-        import numpy as np
-
-        from ..arithmetic.pairs import pair, reduce_phase
-
-        found = np.zeros((len(self.inputs), 3, t.size))
-        if self.period:
-            now = self.motion.table(t, ["thetadot", "phidot", "psidot"])
-            means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
-            exact = self.motion.number("T_nutation", 40)
-            assert exact is not None
-            _, turns = reduce_phase(t, pair(1 / Fraction(exact.value)))
-        for i, name in enumerate(self.inputs):
-            for beside in filter(lambda x: x.weight, self.neighbours[name]):
-                sampler = beside.motion.sampler()
-                if self.period:
-                    values = sampler.waves(turns * beside.motion.T_nutation)
-                else:
-                    values = np.array(sampler.angles(t))
-                values *= beside.weight / self.steps[name]
-                found[i] += values
-            if self.period:
-                by_period, *by_rates = self.slopes[name]
-                for j, (rate, mean) in enumerate(zip(now.values(), means, strict=True)):
-                    grown = (0.0, *by_rates)[j] - (rate - mean) * (by_period / self.period)
-                    found[i, j] += grown * t
-                if self.motion.facts.plane:
-                    found[i, 1:] = 0.0  # they change by half turns only
-        return self._completed(found, t)
-
-    def in_digits(self, t: Array) -> Array:
-        """Return the same as `at` from proved rows, which take some milliseconds per time."""
-        import numpy as np
-
-        from .tables import ProvedTable
-
-        found = np.zeros((len(self.inputs), 3, t.size))
-        for i, name in enumerate(self.inputs):
-            step, beside = self.record.neighbours(name)
-            exact = np.zeros((t.size, 3), dtype=object)
-            for x in beside:
-                table = ProvedTable(x.motion, ANGLES, 90, radians=True)
-                rows = [[Fraction(y.value) for y in table.row(Fraction(z))] for z in t.tolist()]
-                exact = exact + np.array(rows) * (Fraction(x.weight) / step)
-            found[i] = exact.T.astype(float)
-        return self._completed(found, t)
-
-    def _completed(self, found: Array, t: Array) -> Array:
-        """Return derivatives with those at t = 0, and NaN for those that do not exist."""
-        for i, name in enumerate(self.inputs):
-            if name in self.missing:
-                found[i] = math.nan
-            found[i][:, t == 0] = 0.0
-            if name.startswith("theta0"):
-                found[i, 0, t == 0] = unit_in_radians(radians=name == "theta0_rad")
-        return found

@@ -18,6 +18,7 @@ from flint import acb, arb, ctx
 
 from ..arithmetic.enclosures import TooFewDigitsError, at_precision, exact, fraction, root, sign
 from ..top.derived import rates_of
+from .attitude import Course, course_of
 from .facts import Facts
 from .keys import LINES
 
@@ -222,27 +223,20 @@ class Numbers(dict[str, Any]):
         return momentum * self["K"] * mean_of_inverse(at_u1, at_u2, self["m_k_prime"])
 
     @property
+    def course(self) -> Course:
+        """The constants of the attitude over time."""
+        return course_of(self.facts, self)
+
+    @property
     def half(self) -> tuple[arb, arb]:
         """The growth of spin and precession in half a period after the start."""
-        return self._growth(0, 0.5)
+        since = self["course"].since
+        return self["course"].growth(since, since + arb(0.5))
 
     @property
     def quarter(self) -> tuple[arb, arb]:
         """The growth of spin and precession in the quarter after a passage of u1."""
-        return self._growth(None, 0.25)
-
-    def _growth(self, since: float | None, periods: float) -> tuple[arb, arb]:
-        from .old_numbers import OldMotion
-        from .regime import exact as old_exact
-        from .series import exact_attitude, periods_since_top
-
-        kind: Any = OldMotion(old_exact(self.facts.top)).kind(self.digits)
-        attitude = exact_attitude(kind)
-        first = kind.ar.convert(0) if since == 0 else -periods_since_top(kind)
-        T = kind.T_nutation
-        start = attitude(T * first) if since is None else attitude(0 * T)
-        end = attitude(T * (first + kind.ar.convert(periods)))
-        return (end.phi - start.phi).x, (end.psi - start.psi).x
+        return self["course"].growth(arb(0), arb(0.25))
 
 
 def _divided(polynomial: list[arb], known_root: arb) -> list[arb]:

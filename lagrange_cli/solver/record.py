@@ -32,8 +32,6 @@ from .keys import (
     unit_name,
 )
 from .numbers import Numbers
-from .old_numbers import OldMotion
-from .regime import exact
 
 if TYPE_CHECKING:
     from .sampling import Sampler
@@ -47,6 +45,7 @@ class Solution:
         self._balls: dict[int, Numbers] = {}
         self._doubles: dict[str, Rounded | None] = {}
         self._zeros: dict[str, bool] = {}
+        self._sampler: Sampler | None = None
 
     @property
     def top(self) -> Top:
@@ -153,18 +152,13 @@ class Solution:
         """One line on special properties of the motion, or None."""
         return remark_of(self)
 
-    @cached_property
-    def old(self) -> OldMotion:
-        """The motion in the arithmetic that tables still use."""
-        return OldMotion(exact(self.top))
-
     def sampler(self) -> Sampler:
-        """Return the series used by `angles`, computed once."""
-        return self.old.sampler()
+        """Return the constants used by `angles`, computed once."""
+        from .sampling import sampler_of  # start-up: loads NumPy
 
-    exact = property(lambda self: self.old.exact)
-    kind = property(lambda self: self.old.kind)
-    sharp = property(lambda self: self.old.sharp)
+        if self._sampler is None:
+            self._sampler = sampler_of(self.facts, self.balls)
+        return self._sampler
 
 
 def record_in_range(

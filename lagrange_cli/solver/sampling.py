@@ -1,63 +1,49 @@
 """Tilt, spin and precession at arrays of times: about one ulp at any time.
 
-The attitude is a pair of complex numbers, the Cayley-Klein parameters.  Each is a theta function
-times a uniform rotation, and the Pi functions of Chrapan's sections 3 and 4 are their logarithms:
+The attitude is a pair of complex numbers, the Cayley-Klein parameters:
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
-One arctangent each gives the tilt, and the half sum and half difference of the other two angles.
-These are mean rates times t plus periodic parts.  The periodic parts are small, except next to a
-pole, so that sums and differences lose little accuracy.  The real and the imaginary part of X or Y
-vanish separately where the axis passes over a pole, so that no digits cancel.
+1. A time is reduced, exactly, to whole half periods of the nutation and a phase (`whole_periods`).
+2. The times nearer to u1 and those nearer to u2 are evaluated apart (`ThetaSampler.attitudes`).
+3. Real and imaginary part of X and of Y are polynomials (`series`); they vanish separately where
+   the axis passes over a pole, so that no digits cancel (`ThetaAttitude`).
+4. One arctangent each gives the tilt and the periodic parts of arg X and arg Y (`Attitude`).
+5. A mean rate times t is added to each angle (`Growth`).
 
-All constants are computed in many digits and rounded once.  A time is first reduced, exactly, to
-whole steps of half a period and a phase.  Blocks of times share their work arrays, because new
-memory would cost more than most operations.
+All constants are computed in many digits and rounded once.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from fractions import Fraction
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from flint import arb
+from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, order_by_parity, placed, taken
-from ..arithmetic.numbers import power
-from ..arithmetic.pairs import (
-    MANY,
-    PI,
-    Pair,
-    Period,
-    Triple,
-    fraction_of_product,
-    pair,
-    period_of,
-    triple,
-    two_product,
-    two_sum,
-    whole_periods,
-)
+from ..arithmetic.arrays import BLOCK, doubles_of
+from ..arithmetic.enclosures import TooFewDigitsError, decided, nearest
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, OutOfRangeError
 from ..top.ranges import MAX_PERIODS, MAX_TIME
-from .kinds import Constant, Kind, Separatrix
-from .series import Coefficients, Frame, direction, evaluate, separatrix_constants, theta_series
-from .spin_precession import Nutating
+from .attitude import ConstantTilt, Course, Nutation, SingleSwing
+from .facts import Facts
+from .series import Frame, near, theta_series
 
-_ROWS = 26
-"""Work arrays of a block: three for a reduced time, four for growing angles, others for series."""
-_GREATEST = 340.0
-"""Greatest argument: the square of its hyperbolic sine does not overflow in later products."""
-_LEAST = 5e-324
-"""The smallest argument of the functions that is not 0."""
-_NEGLIGIBLE = 2.0**-60
-_SIZE = 2**16
-"""The size of the largest coefficient of a frame, within a factor of 2."""
+MOST_TURNS = 2.0**51
+"""Number of turns beyond which no double holds an angle within a turn."""
+_DIGITS = 24
+"""Digits of mean rates and periods: 2^50 periods use 16 of them, and a double 16 more."""
+_SHARP = 2.0**-106
+"""Largest error of a constant in two doubles, relative to its size."""
+_EXACT = 2.0**26
+"""Whole numbers below it have exact products with the parts of a period."""
+_STEEPEST = 340.0
+"""Greatest argument of sinh: its square does not overflow in later products."""
 
 
 class Angles(NamedTuple):
@@ -68,417 +54,383 @@ class Angles(NamedTuple):
     psi: Array
 
 
-class Growth(NamedTuple):
-    """Growth of an angle from 0 at t = 0: a mean rate times t, and a periodic part.
+class Pair(NamedTuple):
+    """A number as the sum of two doubles."""
 
-    `start` is the periodic part at t = 0, `turn` the time of one turn, and `turns` the rate in
-    turns, as three doubles so that the fraction of a turn is accurate at any time.
+    high: float
+    low: float
+
+
+class Period(NamedTuple):
+    """The length of a period as the sum of three doubles; the first two have 26 and 27 bits."""
+
+    rate: float
+    """Periods per unit of time; 0 if the length is infinite."""
+    high: float
+    middle: float
+    low: float
+
+
+def period_of(length: arb) -> Period:
+    """Return a period from its length, which is positive, negative or infinite.
+
+    Raises TooFewDigitsError if the length is not known to twice the precision of doubles.
     """
+    if not length.is_finite():
+        return Period(0.0, 0.0, 0.0, 0.0)
+    if length.rel_accuracy_bits() < -math.log2(_SHARP):
+        raise TooFewDigitsError
+    long, low = pair_of(length)
+    mantissa, exponent = math.frexp(long)
+    high = math.ldexp(math.trunc(mantissa * _EXACT), exponent - 26)
+    return Period(float((1 / length).mid()), high, long - high, low)
+
+
+def pair_of(x: arb) -> Pair:
+    """Return the middle of a ball as the sum of two doubles."""
+    high = float(x.mid())
+    return Pair(high, float((x.mid() - high).mid()) if math.isfinite(high) else 0.0)
+
+
+def whole_periods(
+    t: Array, period: Period, farthest: float, more: float | Array = 0.0
+) -> tuple[Array, Array, Array]:
+    """Return the integer n nearest to t/period + `more`, and t - n period as a difference.
+
+    The first part of the difference is exact, and the second is tiny.  `farthest` is the largest
+    |t|; n must not exceed 2^51.
+    """
+    n = np.rint(t * period.rate + more)
+    if farthest * abs(period.rate) < _EXACT:
+        return n, (t - n * period.high) - n * period.middle, n * period.low
+    many = np.rint(n / _EXACT) * _EXACT
+    few, rest = n - many, t
+    for part in (period.high, period.middle):
+        rest = (rest - many * part) - few * part
+    lost = n * period.low
+    # t/period was rounded, perhaps to a neighbour of the nearest integer
+    missed = np.rint(((rest - lost) * period.rate + more) * (1 - 2.0**-20))
+    rest = (rest - missed * period.high) - missed * period.middle
+    return n + missed, rest, lost + missed * period.low
+
+
+class Growth(NamedTuple):
+    """The growth of an angle from 0 at t = 0: a mean rate times t, and a periodic part."""
 
     start: Pair
+    """The periodic part at t = 0."""
     rate: Pair
-    turn: Period
-    turns: Triple
+    cycle: Pair
+    """A turn or, for arg X and arg Y, half a turn."""
+    time: Period
+    """The time of a cycle at the mean rate."""
 
-    def since_start(self, periodic: Array) -> Array:
-        """Subtract from a periodic part its value at t = 0, in place."""
-        if self.start.high:
-            periodic -= self.start.high
-            periodic -= self.start.low
-        return periodic
+    def wave(self, periodic: Array, t: Array) -> Array:
+        """Return the periodic part of an angle less its value at t = 0."""
+        return (periodic - self.start.high) - self.start.low if self.start.high else periodic
 
-    def unwrapped(self, periodic: Array, at: Attitude) -> Array:
-        """Return the angle from its periodic part, which is overwritten."""
-        angle, spare = self.since_start(periodic), at.space[3]
-        angle += np.multiply(at.t, self.rate.low, out=spare)
-        angle += np.multiply(at.t, self.rate.high, out=spare)
-        return angle
+    def angle(self, periodic: Array, t: Array) -> Array:
+        """Return the angle from its periodic part."""
+        return (self.wave(periodic, t) + t * self.rate.low) + t * self.rate.high
 
-    def wrapped(self, periodic: Array, at: Attitude) -> Array:
-        """Return the angle in (-pi, pi], as accurate at late times as at early ones.
+    def within_a_cycle(self, periodic: Array, t: Array) -> tuple[Array, Array]:
+        """Return the angle less n cycles, at most half a cycle in size, and n."""
+        wave, farthest = self.wave(periodic, t), float(np.abs(t).max(initial=0.0))
+        n, rest, lost = whole_periods(t, self.time, farthest, wave / self.cycle.high)
+        angle = wave + rest * self.rate.high
+        angle += rest * self.rate.low - lost * self.rate.high
+        more = np.rint(angle / self.cycle.high)
+        return (angle - more * self.cycle.high) - more * self.cycle.low, n + more
 
-        Whole turns are subtracted from the time until the sum of both parts is in this interval.
-        """
-        angle = self.since_start(periodic)
-        turns = np.multiply(angle, 0.5 / PI.high, out=at.space[6])
-        grown, lost = self._within_a_turn(at, turns)
-        angle += grown
-        angle += lost
-        outside = np.abs(angle, out=lost) >= np.pi
-        if outside.any():  # because the turns were rounded
-            rest = angle[outside]
-            rest[rest > np.pi] -= 2.0 * PI.high
-            rest[rest <= -np.pi] += 2.0 * PI.high
-            angle[outside] = rest
-        return angle
-
-    def within_a_quarter(self, periodic: Array, at: Attitude) -> tuple[Array, Array]:
-        """Return the angle minus n half turns, in [-pi/2, pi/2], and (-1)^n."""
-        grown, lost = self._within_a_turn(at)
-        angle, more = two_sum(self.since_start(periodic), grown)
-        halves = np.rint(angle / PI.high)
-        angle = (angle - halves * PI.high) + (lost + more - halves * PI.middle)
-        return angle, 1.0 - 2.0 * (halves % 2.0)
-
-    def _within_a_turn(self, at: Attitude, more: float | Array = 0.0) -> tuple[Array, Array]:
-        """Return the mean rate times t in two parts, reduced by turns to about -`more` turns."""
-        whole, grown, lost = whole_periods(at.t, self.turn, 0.0, at.space[3:6], more)
-        lost *= -self.rate.high
-        lost += grown * self.rate.low
-        grown *= self.rate.high
-        if at.farthest > self.turn.reach:  # the fraction of a turn stays accurate
-            far, turns = np.abs(whole) >= MANY, fraction_of_product(at.t, self.turns)
-            turns -= np.rint(turns + more)
-            product, error = two_product(turns, 2.0 * PI.high)
-            np.copyto(grown, product, where=far)
-            np.copyto(lost, error + turns * (2.0 * PI.middle), where=far)
-        return grown, lost
+    def within_a_turn(self, periodic: Array, t: Array) -> Array:
+        """Return the angle in (-pi, pi]."""
+        angle, _ = self.within_a_cycle(periodic, t)
+        return np.where(angle > -np.pi, np.minimum(angle, np.pi), np.pi)
 
 
-def growth_of(ar: Any, rate: Any, start: Any = 0) -> Growth:
-    """Return the growth of an angle from its mean rate and its periodic part at t = 0."""
-    rate, start = ar.convert(rate), ar.convert(start).middle
-    if not rate.is_known_to(10):  # the digits in use do not distinguish it from 0
-        rate = ar.convert(0)
-    turns = triple((rate / (2 * ar.pi)).middle)
-    turn = pair((2 * ar.pi / rate).middle) if rate else Pair(0.0, 0.0)
-    rate_pair, start_pair = pair(rate.middle), pair(start) if start else Pair(0.0, 0.0)
-    return Growth(start_pair, rate_pair, period_of(turn, float(turns.high)), turns)
+def growth_of(rate: arb, start: arb, unit: arb, turns: float = 1.0) -> Growth:
+    """Return the growth of an angle from its mean rate and its periodic part at t = 0.
+
+    Raises TooFewDigitsError if the rate times a unit of time is not known to twice the precision of
+    doubles.
+    """
+    grown, cycle = rate * unit, 2 * turns * arb.pi()
+    if not (grown.is_finite() and float(grown.rad()) <= _SHARP * (1 + abs(float(grown.mid())))):
+        raise TooFewDigitsError
+    time = cycle / rate if not rate.contains(0) else arb("inf")
+    return Growth(pair_of(start), pair_of(rate), pair_of(cycle), period_of(time))
 
 
-def near(x: Any) -> float:
-    """Return the double nearest to the midpoint of a ball of many digits."""
-    return float(x.middle) + 0.0  # no -0
+Index = slice | NDArray[np.intp]
 
 
 class Attitude:
-    """X and Y at a block of times, up to a common factor; parts are computed on first use.
+    """X and Y at some times, up to a common positive factor; each part is computed on first use.
 
-    By the series of a nutating top, about the nearer turning point.  Times are ordered by that
-    point while the series are evaluated.
+    Subclasses have `parts`: Re X, Im X, Re Y, Im Y, where neither real part is negative; `args`:
+    the periodic parts of arg X and arg Y; and `rate`: the nutation rate times 2 (|X|^2 + |Y|^2)
+    |X| |Y|.
     """
 
-    def __init__(self, sampler: Any, t: Array, farthest: float, space: Array, **parts: Any) -> None:
-        """Take a sampler, times with a bound of |t|, work arrays, and the parts that are known."""
-        self.sampler, self.t, self.farthest, self.space = sampler, t, farthest, space
-        vars(self).update(parts)
+    parts: Any
+    args: Any
+    rate: Any
 
-    def phi(self, *, wrap: bool = False, out: Any = None) -> Array:
-        """Return the spin, arg X - arg Y; if `wrap`, in (-pi, pi]."""
-        return self._grown(self.sampler.phi, np.subtract(self.args[0], self.args[1], out=out), wrap)
-
-    def psi(self, *, wrap: bool = False, out: Any = None) -> Array:
-        """Return the precession, arg X + arg Y; if `wrap`, in (-pi, pi]."""
-        return self._grown(self.sampler.psi, np.add(self.args[0], self.args[1], out=out), wrap)
-
-    def waves(self) -> tuple[Array, Array]:
-        """Return the periodic parts of spin and precession, (6,4) and (7,4)."""
-        x, y = self.args
-        return self.sampler.phi.since_start(x - y), self.sampler.psi.since_start(x + y)
-
-    def _grown(self, growth: Growth, periodic: Array, wrap: bool) -> Array:
-        return (growth.wrapped if wrap else growth.unwrapped)(periodic, self)
-
-    @cached_property
-    def functions(self) -> tuple[Array, Array, Array, Array]:
-        """The argument, S, C and s; of circular series C is 1/cos^2."""
-        sampler, t, space = self.sampler, self.t, self.space
-        step, argument, lost = whole_periods(
-            t, sampler.step, self.farthest, space[:3], sampler.offset or None
-        )
-        argument -= lost
-        argument *= sampler.speed
-        if sampler.first:
-            argument += sampler.first
-        elif sampler.over_a_pole:  # on a pole at t = 0, and beside it at any other time
-            np.copyto(argument, np.copysign(_LEAST, t), where=(argument == 0.0) & (t != 0.0))
-        self.even, self.order = order_by_parity(step)
-        if self.order is not None:
-            argument = taken(argument, self.order, step)
-        S, C, s = space[7:10]
-        if not sampler.hyperbolic:
-            np.tan(argument, out=S)
-        elif sampler.scale > 2 * _GREATEST:  # beyond it the tilt is below 1e-140
-            np.sinh(np.clip(argument, -_GREATEST, _GREATEST, out=S), out=S)
-        else:
-            np.sinh(argument, out=S)
-        np.multiply(S, S, out=s)
-        np.add(s, 1.0, out=C)
-        if sampler.hyperbolic:
-            np.sqrt(C, out=C)
-        else:
-            s /= C
-        return argument, S, C, s
-
-    @property
-    def _pieces(self) -> Iterator[tuple[int, slice, Frame]]:
-        """The rows of both turning points, with their series; 0 is u1 and 1 is u2."""
-        rows = slice(self.even), slice(self.even, None)
-        for i, frame in enumerate(self.sampler.frames):
-            if i == 0 < self.even or (i == 1 and self.even < self.t.size):
-                yield (i + self.sampler.first_point) % 2, rows[i], frame
-
-    def _placed(self, values: Array, row: int) -> Array:
-        """Return ordered values in the order of the times, in a work array."""
-        if self.order is None:
-            return values
-        return placed(values, self.order, self.space[row])
-
-    @cached_property
-    def parts(self) -> Array:
-        """Re X, Im X, Re Y and Im Y, ordered."""
-        _, S, C, s = self.functions
-        parts = self.space[10:14]
-        for _, rows, frame in self._pieces:
-            for coefficients, part in zip(frame.parts, parts, strict=True):
-                _write_polynomial(coefficients, s[rows], part[rows])
-        parts[1::2] *= S
-        if self.sampler.hyperbolic:
-            for point, rows, _ in self._pieces:
-                parts[(slice(1, 3), slice(0, 4, 3))[point], rows] *= C[rows]
-        return parts
-
-    @cached_property
-    def args(self) -> tuple[Array, Array]:
-        """The periodic parts of arg X and arg Y, whose real parts are not negative."""
-        argument = self.functions[0]
-        args = np.divide(self.parts[1::2], self.parts[::2], out=self.space[14:16])
-        np.arctan(args, out=args)
-        if self.sampler.over_a_pole and np.isnan(args).any():
-            # 0/0 next to a pole: the real part is proportional to s, the imaginary part to S
-            for _, rows, frame in self._pieces:
-                for side, (slope, *_) in zip(args[:, rows], frame.parts[1::2], strict=True):
-                    quarter = np.sign(slope) * np.sign(argument[rows]) * (np.pi / 2)
-                    np.copyto(side, quarter, where=np.isnan(side))
-        for i, slope in enumerate(self.sampler.slopes):
-            args[i] += np.multiply(argument, slope, out=self.space[3])
-        return self._placed(args[0], 20), self._placed(args[1], 21)
-
-    @cached_property
-    def squares(self) -> Array:
-        """|X|^2 and |Y|^2, ordered."""
-        squares = np.multiply(self.parts, self.parts, out=self.space[16:20])
-        squares[::2] += squares[1::2]
-        return squares[::2]
+    def __init__(self, sampler: Sampler, t: Array) -> None:
+        self.sampler, self.t = sampler, t
 
     @cached_property
     def moduli(self) -> tuple[Array, Array]:
         """|X|^2 and |Y|^2."""
-        return self._placed(self.squares[0], 22), self._placed(self.squares[1], 23)
+        a, b, c, d = self.parts
+        return a * a + b * b, c * c + d * d
 
     @cached_property
     def tilt(self) -> Array:
-        """The tilt."""
-        x2, y2 = self.squares
-        return self._placed(tilt_of(x2, y2, self.space[17]), 24)
+        """The tilt, 2 arctan(|Y|/|X|)."""
+        x, y = self.moduli
+        return 2.0 * np.arctan(np.sqrt(y / x))
 
-    @cached_property
-    def rate(self) -> Array:
-        """2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
-        _, S, C, s = self.functions
-        rate = self.space[19]
-        for _, rows, frame in self._pieces:
-            _write_polynomial(frame.rate, s[rows], rate[rows])
-        rate *= S
-        rate *= C
-        return self._placed(rate, 25)
+    def phi(self, of: Callable[[Growth, Array, Array], Array] = Growth.angle) -> Array:
+        """Return the spin, arg X - arg Y, by a method of `Growth`."""
+        return of(self.sampler.phi, self.args[0] - self.args[1], self.t)
+
+    def psi(self, of: Callable[[Growth, Array, Array], Array] = Growth.angle) -> Array:
+        """Return the precession, arg X + arg Y, by a method of `Growth`."""
+        return of(self.sampler.psi, self.args[0] + self.args[1], self.t)
+
+    def halves(self) -> list[tuple[Array, Array]]:
+        """Return arg X and arg Y, each less n half turns, with n."""
+        pairs = zip(self.sampler.halves, self.args, strict=True)
+        return [growth.within_a_cycle(arg, self.t) for growth, arg in pairs]
 
 
 class Sampler:
-    """The angles of one motion as functions of time, with constants that are computed once."""
+    """The angles of one motion over time; subclasses yield the attitude at arrays of times."""
 
-    max_time: float
+    def __init__(self, of: Course, starts: Sequence[arb], unit: arb, tilt: float) -> None:
+        """Take the start: arg X and arg Y without mean growth, the tilt; and a unit of time."""
+        (x, y), spin, precession = starts, of.spin, of.precession
+        self.phi = growth_of(spin, x - y, unit)
+        self.psi = growth_of(precession, x + y, unit)
+        plus, minus = (precession + spin) / 2, (precession - spin) / 2
+        self.halves = growth_of(plus, x, unit, 0.5), growth_of(minus, y, unit, 0.5)
+        self.tilt, self.max_time = tilt, MAX_TIME
+        fastest = max(abs(self.phi.rate.high), abs(self.psi.rate.high))
+        self.max_wrapped = MOST_TURNS * 2 * math.pi / fastest if fastest else math.inf
 
-    def __init__(
-        self, motion: Kind[Any], rates: tuple[Any, Any], starts: tuple[Any, Any] = (0, 0)
-    ) -> None:
-        """Take a motion, the mean rates of spin and precession, and arg X and arg Y at t = 0.
+    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
+        """Yield the attitude at some of the times, with their index; `farthest` is max |t|."""
+        raise NotImplementedError
 
-        The rates are separate, because sums and differences lose a much smaller rate.
+    def evaluate(
+        self, t: Array, farthest: float, count: int, compute: Callable[[Attitude], Sequence[Any]]
+    ) -> Array:
+        """Return `count` numbers of the attitude at times, of shape (count, times).
+
+        Blocks of times are short, so that their arrays stay in the cache.
         """
-        self.ar, self._rates, self._starts = motion.ar, rates, starts
-        (phi, psi), (x, y) = rates, starts
-        self.phi, self.psi = growth_of(self.ar, phi, x - y), growth_of(self.ar, psi, x + y)
-        self.tilt = near(2 * self.ar.atan2(motion.state.sin_half, motion.state.cos_half))
-
-    @cached_property
-    def halves(self) -> tuple[Growth, Growth]:
-        """The growths of arg X and arg Y, which few columns need."""
-        (phi, psi), (x, y) = self._rates, self._starts
-        with self.ar.working():
-            return growth_of(self.ar, (psi + phi) / 2, x), growth_of(self.ar, (psi - phi) / 2, y)
-
-    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
-        """Return tilt, spin and precession at the times t; see `Motion.angles`."""
-        times = doubles_of("t", t)
-        flat = np.ascontiguousarray(times).reshape(-1)
-        angles = np.empty((3, flat.size))
-        with ARRAYS.working():
-            for part, at in self.attitudes(flat):
-                angles[0, part] = at.tilt
-                at.phi(wrap=wrap, out=angles[1, part])
-                at.psi(wrap=wrap, out=angles[2, part])
-        angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
-        return Angles(*(angle.reshape(times.shape) for angle in angles))
-
-    def waves(self, t: Array) -> Array:
-        """Return the tilt and the periodic parts of spin and precession, of shape (3, times)."""
-        found = np.empty((3, t.size))
-        with ARRAYS.working():
-            for part, at in self.attitudes(t):
-                found[:, part] = at.tilt, *at.waves()
+        found = np.empty((count, t.size))
+        with np.errstate(all="ignore"):
+            for first in range(0, t.size, BLOCK):
+                block, rows = t[first : first + BLOCK], found[:, first : first + BLOCK]
+                for index, at in self.attitudes(block, farthest):
+                    for row, values in zip(rows, compute(at), strict=True):
+                        row[index] = values
         return found
 
-    def attitudes(self, t: Array) -> Iterator[tuple[slice, Attitude]]:
-        """Yield the attitude at blocks of times; each overwrites the one before.
-
-        Raises LagtopError for a time that is out of range.
-        """
-        farthest, space = self.check(t), np.empty((_ROWS, min(t.size, BLOCK)))
-        for part in blocks(t.size):
-            block = t[part]
-            with ARRAYS.working():
-                attitude = self.attitude(block, farthest, space[:, : block.size])
-            yield part, attitude
-
-    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude at a block of times, none beyond `farthest`."""
-        return Attitude(self, t, farthest, space)
-
-    def check(self, t: ArrayLike, name: str = "t") -> float:
+    def check(self, t: ArrayLike, name: str = "t", *, wrap: bool = False) -> float:
         """Return the greatest |t|.
 
         Raises LagtopError, with the `name` of the argument, if a time is not finite or too large.
         """
-        times, limit = doubles_of("t", t), min(self.max_time, MAX_TIME)
-        if not times.size:
-            return 0.0
-        low, high = float(times.min()), float(times.max())
+        times = doubles_of("t", t)
+        low, high = float(times.min(initial=0.0)), float(times.max(initial=0.0))
+        limit = min(self.max_time, self.max_wrapped if wrap else math.inf)
         if low >= -limit and high <= limit:
             return max(-low, high)
-        bad = times[~(abs(times) <= limit)]
-        raise LagtopError(
-            f"{name} must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", name
-        )
+        bad = float(times[~(abs(times) <= limit)].flat[0])
+        bound = f"finite and within 2^50 periods = {limit:.3g}"
+        if abs(bad) <= self.max_time:
+            bound = f"within 2^51 turns = {limit:.3g} to have angles within a turn"
+        kind = OutOfRangeError if math.isfinite(bad) else LagtopError
+        raise kind(f"{name} must be {bound}, got {bad}", name)
 
+    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
+        """Return tilt, spin and precession at the times t; see `Motion.angles`."""
+        times, farthest = doubles_of("t", t), self.check(t, wrap=wrap)
+        flat, how = times.reshape(-1), Growth.within_a_turn if wrap else Growth.angle
+        angles = self.evaluate(flat, farthest, 3, lambda at: (at.tilt, at.phi(how), at.psi(how)))
+        angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
+        return Angles(*angles.reshape(3, *times.shape))
 
-class ConstantSampler(Sampler):
-    """A constant tilt and constant rates of spin and precession."""
-
-    def __init__(self, motion: Constant[Any]) -> None:
-        rates = motion.mean_spin_rate, motion.state.psi_rate
-        super().__init__(motion, rates)
-        self.x, self.y = near(motion.state.cos_half), near(motion.state.sin_half)
-        self.max_time = _reach(rates)
-
-    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude, which has no phase."""
-        tilt, *moduli = (np.full_like(t, x) for x in (self.tilt, self.x**2, self.y**2))
-        zero = np.zeros_like(t)
-        parts = {"tilt": tilt, "moduli": moduli, "args": (zero, zero), "rate": zero}
-        return Attitude(self, t, farthest, space, **parts)
-
-
-class SeparatrixSampler(Sampler):
-    """The single swing from the upright position down and up again: k = 1, T infinite."""
-
-    def __init__(self, motion: Separatrix[Any]) -> None:
-        offset, x, y, start = separatrix_constants(motion)
-        speed = motion.argument_rate
-        rates = motion.r0 - motion.b / 2, motion.b / 2
-        super().__init__(motion, rates, (start, 0))
-        self.speed, self.offset, self.x, self.y = map(near, (speed, offset, x, y))
-        self.max_time = _reach((*rates, speed))
-
-    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude: 1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
-        h = t * self.speed + self.offset
-        shrink = np.exp(-np.abs(h))
-        sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
-        real, imag, y = np.full_like(h, self.x), self.y * tanh, self.y * sech
-        x2, y2 = real * real + imag * imag, y * y
-        args, rate = (np.arctan2(imag, real), np.zeros_like(h)), -4.0 * self.speed * y2 * tanh
-        parts = {"tilt": tilt_of(x2, y2, h), "moduli": (x2, y2), "args": args, "rate": rate}
-        return Attitude(self, t, farthest, space, **parts)
+    def waves(self, t: Array) -> Array:
+        """Return the tilt and the periodic parts of spin and precession, of shape (3, times)."""
+        wave = Growth.wave
+        farthest = self.check(t)
+        return self.evaluate(t, farthest, 3, lambda at: (at.tilt, at.phi(wave), at.psi(wave)))
 
 
 class ThetaSampler(Sampler):
-    """Sampler of a nutating top, by its theta series."""
+    """The angles of a top that nutates, by its theta series."""
 
-    def __init__(self, motion: Nutating[Any]) -> None:
-        ar: Any = motion.ar
-        series, period = theta_series(motion), motion.T_nutation
-        _, x, _, y = evaluate(ar, series, 0, series.offset, direction(motion))
-        starts = x + series.slopes[0] * series.offset, y + series.slopes[1] * series.offset
-        super().__init__(motion, (motion.mean_spin_rate, motion.mean_precession_rate), starts)
-        self.max_time = near(int(MAX_PERIODS) * period)
-        self.step = period_of(pair((period / 2).middle), near(2 / period))
-        """Half the period of the nutation."""
-        self.offset, self.scale = near(series.offset), near(series.scale)
-        self.speed = near(series.scale * 2 / period)
-        """Argument per unit of time."""
-        self.first = near(series.scale * series.offset)
-        """Argument at t = 0."""
-        self.hyperbolic, self.first_point = series.hyperbolic, series.first
-        self.slopes = [near(slope / series.scale) for slope in series.slopes]
-        """Slopes per unit of the argument that are added to arg X and arg Y."""
-        # the greatest s, sin^2 or sinh^2, is at the end of a step, half of `scale` from 0
-        greatest = ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
-        self.frames = [_kept(ar, frame, greatest.middle) for frame in series.frames]
+    def __init__(self, of: Nutation, tilt: float) -> None:
+        super().__init__(of, of.waves(of.since), of.period, tilt)
+        self.max_time = min(float((int(MAX_PERIODS) * of.period).mid()), MAX_TIME)
+        series = theta_series(of)
+        step = nearest(2 * of.since)
+        offset = 2 * of.since - step
+        self.frames = series.frames[:: -1 if step % 2 else 1]
         """The series about the turning points of the even and of the odd steps."""
-        self.over_a_pole = not all(part[0] for frame in self.frames for part in frame.parts[::2])
-        """Whether the axis passes over a pole: a first real coefficient of X or Y is then 0."""
+        self.half = period_of(of.period / 2)
+        """Half the period of the nutation."""
+        self.offset = near(offset)
+        """Half periods from the turning point of step 0 to t = 0, from -1/2 to 1/2."""
+        self.speed = near(2 * series.scale / of.period)
+        """Argument of the series per unit of time."""
+        self.first = near(series.scale * offset)
+        """Argument at t = 0."""
+        self.slopes = [near(slope / series.scale) for slope in series.slopes]
+        """What is added to arg X and arg Y per unit of the argument to make them periodic."""
+        self.hyperbolic, self.steep = of.hyperbolic, near(series.scale) > 2 * _STEEPEST
+
+    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
+        """Yield the attitude about even and about odd turning points."""
+        step, rest, lost = whole_periods(t, self.half, farthest, self.offset)
+        x = (rest - lost) * self.speed + self.first
+        half = 0.5 * step
+        even = half == np.rint(half)
+        for frame, chosen in zip(self.frames, (even, ~even), strict=True):
+            index = np.flatnonzero(chosen)
+            if index.size == t.size:
+                yield slice(None), ThetaAttitude(self, t, x, frame)
+            elif index.size:
+                yield index, ThetaAttitude(self, t[index], x[index], frame)
 
 
-def sampler_of(motion: Kind[Any]) -> Sampler:
-    """Return the sampler of a motion in balls of many digits."""
-    with motion.ar.working():
-        if isinstance(motion, Nutating):
-            return ThetaSampler(motion)
-        if isinstance(motion, Separatrix):
-            return SeparatrixSampler(motion)
-        return ConstantSampler(motion)
+class ThetaAttitude(Attitude):
+    """X and Y at arguments x of the series about one turning point."""
+
+    sampler: ThetaSampler
+
+    def __init__(self, sampler: ThetaSampler, t: Array, x: Array, frame: Frame) -> None:
+        super().__init__(sampler, t)
+        self.x, self.frame = x, frame
+
+    @cached_property
+    def functions(self) -> tuple[Array, Array, Array]:
+        """S, C and s; of circular series C is 1/cos^2."""
+        if self.sampler.hyperbolic:
+            x = np.clip(self.x, -_STEEPEST, _STEEPEST) if self.sampler.steep else self.x
+            S = np.sinh(x)
+            s = S * S
+            return S, np.sqrt(s + 1.0), s
+        S = np.tan(self.x)
+        s = S * S
+        C = s + 1.0
+        return S, C, s / C
+
+    @cached_property
+    def parts(self) -> tuple[Array, Array, Array, Array]:
+        """Re X, Im X, Re Y, Im Y."""
+        S, C, s = self.functions
+        a, b, c, d = (polynomial(part, s) for part in self.frame.parts)
+        b *= S
+        d *= S
+        if self.sampler.hyperbolic:
+            one, other = (b, c) if self.frame.at_u1 else (a, d)
+            one *= C
+            other *= C
+        return a, b, c, d
+
+    @cached_property
+    def args(self) -> list[Array]:
+        """The periodic parts of arg X and arg Y."""
+        found = []
+        for side, slope in enumerate(self.sampler.slopes):
+            real, imag = self.parts[2 * side : 2 * side + 2]
+            if self.frame.parts[2 * side][0]:
+                arg = np.arctan(imag / real)
+            else:  # a passage over the pole, or a start on it
+                after = np.where(self.x == 0.0, self.t, self.x)
+                arg = np.copysign(np.pi / 2, after * self.frame.parts[2 * side + 1][0])
+            found.append(arg + self.x * slope)
+        return found
+
+    @property
+    def rate(self) -> Array:
+        """2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
+        S, C, s = self.functions
+        return polynomial(self.frame.rate, s) * S * C
 
 
-def _kept(ar: Any, frame: Frame, greatest: Any) -> Frame:
-    """Return a frame in doubles without negligible coefficients; the largest is about `_SIZE`.
-
-    X and Y may have any common factor.  This factor keeps all coefficients in the range of doubles.
-    `greatest` is the largest value of s.
-    """
-    exponent = math.frexp(max(abs(near(part[0])) for part in frame.parts))[1]
-    factor = ar.convert(_SIZE / Fraction(2) ** exponent)
-
-    def kept(coefficients: Coefficients, factor: Any) -> list[float]:
-        middles = [x.middle for x in coefficients]
-        least, count = abs(middles[0]) * _NEGLIGIBLE, len(middles)
-        while count > 2 and abs(middles[count - 1]) * power(greatest, count - 1) <= least:
-            count -= 1
-        return [near(x * factor) for x in middles[:count]]
-
-    parts = tuple(kept(part, factor) for part in frame.parts)
-    return Frame(parts, kept(frame.rate, power(factor, 4)))
-
-
-def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> None:
-    """Write the value of a polynomial with at least two coefficients, the lowest power first."""
-    np.multiply(x, coefficients[-1], out=value)
+def polynomial(coefficients: Sequence[float], x: Array) -> Array:
+    """Return the value of a polynomial with at least two coefficients, the lowest power first."""
+    value = coefficients[-1] * x
     for coefficient in coefficients[-2:0:-1]:
         value += coefficient
         value *= x
     value += coefficients[0]
+    return value
 
 
-def _reach(rates: Sequence[Any]) -> float:
+class SwingSampler(Sampler):
+    """The single swing on the separatrix, from the upright position down and up again."""
+
+    def __init__(self, of: SingleSwing, tilt: float) -> None:
+        super().__init__(of, (of.turn(of.h0), arb(0)), 1 / of.rate, tilt)
+        self.x, self.y, self.speed, self.offset = map(near, (of.x, of.y, of.rate, of.h0))
+        self.max_time = _reach(of.spin, of.precession, of.rate)
+
+    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
+        """Yield the attitude at all times: 1 - u = (1 - u2)/cosh^2 h, lowest at h = 0."""
+        h = t * self.speed + self.offset
+        shrink = np.exp(-np.abs(h))
+        sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
+        real, imag = np.full_like(h, self.x), self.y * tanh
+        at, zero = Attitude(self, t), np.zeros_like(h)
+        at.parts = real, imag, self.y * sech, zero
+        at.args = np.arctan2(imag, real), zero
+        at.rate = -4.0 * self.speed * (self.y * sech) ** 2 * tanh
+        yield slice(None), at
+
+
+class ConstantSampler(Sampler):
+    """A constant tilt, with constant rates of spin and precession."""
+
+    def __init__(self, of: ConstantTilt, tilt: float) -> None:
+        fastest = max(of.spin, of.precession, key=lambda x: abs(float(x.mid())))
+        unit = arb(1) if fastest.contains(0) else 1 / fastest.mid()
+        super().__init__(of, (arb(0), arb(0)), unit, tilt)
+        self.x, self.y = near(of.x), near(of.y)
+        self.max_time = _reach(of.spin, of.precession)
+
+    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
+        """Yield the attitude at all times."""
+        at, zero = Attitude(self, t), np.zeros_like(t)
+        at.tilt, at.parts = np.full_like(t, self.tilt), (zero + self.x, zero, zero + self.y, zero)
+        at.args, at.rate = (zero, zero), zero
+        yield slice(None), at
+
+
+def _reach(*rates: arb) -> float:
     """Return the time of 2^50 radians at the largest rate."""
-    rate = max(abs(near(rate)) for rate in rates)
-    return MAX_PERIODS / rate if rate else math.inf
+    rate = max(abs(float(rate.mid())) for rate in rates)
+    return min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME
 
 
-def tilt_of(x2: Array, y2: Array, out: Array) -> Array:
-    """Return 2 arctan(|Y|/|X|)."""
-    np.divide(y2, x2, out=out)
-    np.sqrt(out, out=out)
-    np.arctan(out, out=out)
-    out *= 2.0
-    return out
+def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampler:
+    """Return the sampler of a motion, from its facts and its numbers in balls of some digits.
+
+    Its constants are computed in as many digits as they need.
+    """
+
+    def sampler(digits: int) -> Sampler:
+        course, tilt = balls(digits)["course"], near(facts.tilt.angle())
+        if isinstance(course, Nutation):
+            return ThetaSampler(course, tilt)
+        if isinstance(course, SingleSwing):
+            return SwingSampler(course, tilt)
+        return ConstantSampler(course, tilt)
+
+    return decided(sampler, facts.equal, digits=_DIGITS)

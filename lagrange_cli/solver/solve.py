@@ -6,9 +6,13 @@ import warnings
 from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
+from flint import arb
+
+from ..arithmetic.enclosures import settled
 from ..errors import LagtopError, OutOfRangeWarning
 from ..top.top import Top
-from .facts import Regime, facts_of
+from .attitude import SingleSwing, Swing
+from .facts import facts_of
 from .keys import KEYS, NUMBER_KEYS, NUMBERS, all_keys
 from .record import Solution, record_in_range
 
@@ -20,7 +24,6 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from ..output.notebook import Document
     from .sampling import Angles
-    from .series import Swing
 
 
 def solve(top: Top) -> Motion:
@@ -69,23 +72,22 @@ class Motion(Solution):
         return solve, (self.top,)
 
     @property
-    def swing(self) -> Swing[float] | None:
+    def swing(self) -> Swing | None:
         """The only swing on the separatrix, with its `rate` and its `lowest` point; else None.
 
         The cosine of the tilt is u = u2 + (1 - u2) tanh^2(rate (t - lowest)).  The rate, in radians
         per unit of time, and the time `lowest` are correctly rounded.
         """
-        if self.regime is not Regime.SEPARATRIX:
+        if not self.facts.separatrix:
             return None
-        from ..arithmetic.rounding import rounded
-        from .series import Swing, swing_of  # start-up: not for a record
 
-        kind: Callable[[int], Any] = self.old.kind
+        def number(name: str, of: Callable[[SingleSwing], arb]) -> float:
+            most = self.facts.equal
+            found = settled(name, lambda digits: of(self.balls(digits)["course"]), None, most)
+            return 0.0 if found is None else float(found.value)
 
-        def number(name: str) -> float:
-            return rounded(name, lambda digits: getattr(swing_of(kind(digits)), name))
-
-        return Swing(number("rate"), number("lowest"))
+        rate = number("rate", lambda course: course.rate)
+        return Swing(rate, number("lowest", lambda course: -course.h0 / course.rate))
 
     def numbers(self) -> dict[str, float | None]:
         """Return the numbers of the record by key, angles in degrees; see `record`."""

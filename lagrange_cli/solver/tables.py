@@ -1,126 +1,152 @@
 """Tables over time: columns at arrays of times in doubles, and proved rows with any digits.
 
-Proved rows come from balls, rounded if both ends of a ball agree.  Balls hold the truncation error
-of the series too, so that whole turns are proved.  Equation numbers are Chrapan's.
+Both evaluate the formulas of `columns`: `Sample` in doubles, from the series of `sampling`, and
+`BallSample` in balls, from theta functions (`attitude`).  A proved row is rounded if both ends of
+its balls agree.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from itertools import islice
 from typing import Any
 
 import numpy as np
+from flint import arb
 from numpy.typing import ArrayLike
 
-from ..arithmetic.arrays import ARRAYS, doubles_of
-from ..arithmetic.ball import Ball, balls
+from ..arithmetic.arrays import doubles_of
+from ..arithmetic.enclosures import (
+    Rounded,
+    TooFewDigitsError,
+    decided,
+    equal_digits,
+    exact,
+    fraction,
+    nearest,
+    root,
+    settled,
+    sign,
+)
 from ..arithmetic.numbers import Number
-from ..arithmetic.rounding import Rounded, equal_digits, rounding_of, settled
 from ..arithmetic.text import NumberText, double_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import ANGLES
 from ..top.ranges import EvenPoints, Points
-from .columns import (
-    DEFAULT_COLUMNS,
-    ColumnConstants,
-    Parts,
-    chosen_columns,
-    column_constants,
-    headings,
-)
-from .kinds import Constant, Separatrix
-from .quantity import quantity
-from .record import Solution as Numbers
-from .sampling import Attitude, near
-from .series import ExactAttitude, exact_attitude
+from .attitude import ConstantTilt, SingleSwing, start_of
+from .columns import DEFAULT_COLUMNS, Columns, chosen_columns, column_constants, headings
+from .record import Solution
+from .sampling import Attitude, Growth
+from .series import near
 
 DEFAULT_ROWS = 101
 _ROWS_AT_ONCE = 64
 """Proved rows that are returned together."""
 _EXTRA = 16
 """Step in digits by which the precision grows with time, so that one precision serves many rows."""
+STD_COLUMNS = (*ANGLES, "dphi", "dpsi")
+"""The columns that have uncertainties."""
+_WITHIN_A_TURN = frozenset(
+    "p q axis_x axis_y quaternion_w quaternion_x quaternion_y quaternion_z".split()
+)
+"""Columns that need an angle within a turn."""
 
 
-class Sample(Parts[Array]):
-    """The motion at a block of times."""
+def _ratio(x: Array, y: Array) -> Array:
+    """Return x/y, and 0 for 0/0."""
+    quotient: Array = np.divide(x, y, out=np.zeros_like(y), where=y != 0.0)
+    return quotient
 
-    ar: Any = ARRAYS
 
-    def __init__(self, attitude: Attitude, top: ColumnConstants[Array], wrap: bool) -> None:
-        self.attitude, self.top, self.wrap, self.t = attitude, top, wrap, attitude.t
+_ARRAYS = {"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "ratio": _ratio}
+_BALLS = {
+    "cos": arb.cos,
+    "sin": arb.sin,
+    "sqrt": root,
+    "ratio": lambda x, y: x if x.is_zero() else x / y,
+}
 
-    theta = property(lambda at: at.attitude.tilt)
-    moduli = property(lambda at: at.attitude.moduli)
-    sizes = quantity[Any](lambda at: [np.sqrt(square) for square in at.moduli])
-    phi = property(lambda at: at.attitude.phi(wrap=at.wrap))
-    psi = property(lambda at: at.attitude.psi(wrap=at.wrap))
-    within = quantity[Any](lambda at: at.attitude.phi(wrap=True))
-    around = quantity[Any](lambda at: at.attitude.psi(wrap=True))
-    dphi = property(lambda at: at.attitude.waves()[0])
-    dpsi = property(lambda at: at.attitude.waves()[1])
 
-    @quantity
-    def thetadot(self) -> Any:
+class Sample(Columns):
+    """Columns at an array of times."""
+
+    def __init__(self, at: Attitude, constants: dict[str, float], wrap: bool) -> None:
+        super().__init__(_ARRAYS, t=at.t, **constants)
+        self.at = at
+        self.angle = Growth.within_a_turn if wrap else Growth.angle
+
+    XX = property(lambda self: self.at.moduli[0])
+    YY = property(lambda self: self.at.moduli[1])
+    X = property(lambda self: np.sqrt(self["XX"]))
+    Y = property(lambda self: np.sqrt(self["YY"]))
+    tilt = property(lambda self: self.at.tilt)
+    spin = property(lambda self: self.at.phi(self.angle))
+    precession = property(lambda self: self.at.psi(self.angle))
+    spin_turn = property(lambda self: self.at.phi(Growth.within_a_turn))
+    precession_turn = property(lambda self: self.at.psi(Growth.within_a_turn))
+    spin_wave = property(lambda self: self.at.phi(Growth.wave))
+    precession_wave = property(lambda self: self.at.psi(Growth.wave))
+    halves = property(lambda self: self.at.halves())
+    arg_X = property(lambda self: self["halves"][0][0])
+    arg_Y = property(lambda self: self["halves"][1][0])
+    signed_X = property(lambda self: self["X"] * (1.0 - 2.0 * (self["halves"][0][1] % 2.0)))
+    signed_Y = property(lambda self: self["Y"] * (1.0 - 2.0 * (self["halves"][1][1] % 2.0)))
+
+    @property
+    def nutation_rate(self) -> Array:
         """The nutation rate (5,3); on a pole, where its sign changes, its size by (4,2)."""
-        product = 2.0 * self.norm * self.sizes[0] * self.sizes[1]
-        speed = np.sqrt(np.maximum(self.top.alpha - self.top.a * self.u, 0.0))
-        return np.divide(self.attitude.rate, product, out=speed, where=product != 0.0)
-
-    @quantity
-    def quarters(self) -> Sequence[tuple[Array, Array]]:
-        """(psi + phi)/2 and (psi - phi)/2, reduced by half turns, with the signs of X and Y."""
-        halves = zip(self.attitude.sampler.halves, self.attitude.args, strict=True)
-        return [half.within_a_quarter(arg.copy(), self.attitude) for half, arg in halves]
-
-    args = property(lambda at: [arg for arg, _ in at.quarters])
-
-    @quantity
-    def unit(self) -> Any:
-        """|X| and |Y|, each over sqrt(N), with the signs that make the quaternion continuous."""
-        return [sign * x for (_, sign), x in zip(self.quarters, super().unit, strict=True)]
-
-    def over(self, value: Array, divisor: Array) -> Array:
-        """Return the quotient, and 0 for 0/0."""
-        return np.divide(value, divisor, out=np.zeros_like(divisor), where=divisor != 0.0)
+        product = 2.0 * self["N"] * self["X"] * self["Y"]
+        size = np.sqrt(np.maximum(self["energy_constant"] - self["a"] * self["u"], 0.0))
+        rate: Array = np.divide(self.at.rate, product, out=size, where=product != 0.0)
+        return rate
 
 
 def columns_at(
-    motion: Numbers, columns: Sequence[str], *, radians: bool, wrap: bool
-) -> Callable[[Array], Iterator[tuple[slice, list[Array]]]]:
-    """Return a function of times that yields blocks of columns; each overwrites the one before.
+    motion: Solution, columns: Sequence[str], *, radians: bool, wrap: bool
+) -> Callable[[Array], Array]:
+    """Return a function of times that returns columns, of shape (columns, times).
 
     Columns at t = 0 are correctly rounded.  Raises LagtopError for an unknown column.
     """
-    chosen, kind = chosen_columns(columns), motion.sharp()
-    constants = ColumnConstants(*(np.array(near(x)) for x in column_constants(kind, motion.exact)))
+    chosen, sampler = chosen_columns(columns), motion.sampler()
+
+    def doubles(digits: int) -> dict[str, float]:
+        found = column_constants(motion.balls(digits))
+        alpha = found.pop("energy_constant")
+        return {name: near(x) for name, x in found.items()} | {
+            "energy_constant": float(alpha.mid())
+        }
+
+    constants = decided(doubles, motion.facts.equal)
+    within = wrap or not _WITHIN_A_TURN.isdisjoint(chosen)
 
     @cache
     def start() -> list[float]:
         table = ProvedTable(motion, columns, radians=radians, wrap=wrap)
         return [number.value for number in table.row(Fraction(0))]
 
-    def at(t: Array) -> Iterator[tuple[slice, list[Array]]]:
-        for part, attitude in motion.sampler().attitudes(t):
-            with ARRAYS.working():
-                sample = Sample(attitude, constants, wrap)
-                found = [np.broadcast_to(getattr(sample, x), sample.t.shape) for x in chosen]
-            for i, column in enumerate(chosen.values()):
-                if column.unit == "angle" and not radians:
-                    found[i] = np.degrees(found[i])
-            first = sample.t == 0
-            if first.any():
-                found = [np.where(first, x, y) for x, y in zip(start(), found, strict=True)]
-            yield part, found
+    def compute(at: Attitude) -> list[Any]:
+        sample = Sample(at, constants, wrap)
+        return [sample[name] for name in chosen]
 
-    return at
+    def found_at(t: Array) -> Array:
+        found = sampler.evaluate(t, sampler.check(t, wrap=within), len(chosen), compute)
+        for row, column in zip(found, chosen.values(), strict=True):
+            if column.unit == "angle" and not radians:
+                np.degrees(row, out=row)
+        if (first := np.flatnonzero(t == 0)).size:
+            found[:, first] = np.array(start())[:, None]
+        found += 0.0  # no -0
+        return found
+
+    return found_at
 
 
 def rows(
-    motion: Numbers,
+    motion: Solution,
     times: Points,
     columns: Sequence[str] = DEFAULT_COLUMNS,
     *,
@@ -130,52 +156,52 @@ def rows(
 ) -> tuple[list[str], Iterator[Array]]:
     """Return the header and blocks of rows; angles in degrees or radians, wrapped or not.
 
-    `stds` returns the uncertainties of the three angles at some times, shape (3, times).  They
-    follow as last columns for each angle among the columns.  Raises LagtopError for an unknown
+    `stds` returns the uncertainties of the angles `STD_COLUMNS` at some times, a row for each.
+    They follow as last columns for each angle among the columns.  Raises LagtopError for an unknown
     column and, before the first block, for a time out of range.
     """
-    header = headings(columns, radians=radians)
+    header, chosen = headings(columns, radians=radians), chosen_columns(columns)
+    within = wrap or not _WITHIN_A_TURN.isdisjoint(chosen)
     ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
     for name, end in zip(ends, times.bounds(), strict=False):  # empty if times are read later
-        motion.sampler().check(end, name)
-    angles = [i for i, name in enumerate(ANGLES) if stds is not None and name in columns]
-    names = [f"{heading}_std" for i in angles for heading in headings([ANGLES[i]], radians=radians)]
+        motion.sampler().check(end, name, wrap=within)
+    angles = [i for i, name in enumerate(STD_COLUMNS) if stds is not None and name in chosen]
+    named = headings([STD_COLUMNS[i] for i in angles], radians=radians) if angles else []
     at = columns_at(motion, columns, radians=radians, wrap=wrap)
 
     def parts() -> Iterator[Array]:
         for t in times.blocks():
-            for part, found in at(t):
-                if stds is not None:
-                    spread = stds(t[part])[angles]
-                    found += [*six_digits(spread if radians else np.degrees(spread))]
-                yield np.stack(found, axis=1)
+            found = at(t)
+            if stds is not None and angles:
+                spread = stds(t)[angles]
+                found = np.concatenate(
+                    [found, six_digits(spread if radians else np.degrees(spread))]
+                )
+            yield found.T
 
-    return [*header, *names], parts()
+    return [*header, *(f"{heading}_std" for heading in named)], parts()
 
 
 def six_digits(x: Array) -> Array:
     """Return numbers rounded to six significant digits."""
-    with ARRAYS.working():
+    with np.errstate(all="ignore"):
         places = 5 - np.floor(np.log10(x))
         finer, coarser = 10.0 ** np.maximum(places, 0), 10.0 ** np.maximum(-places, 0)
         return np.where(x > 0, np.rint(x * finer / coarser) / finer * coarser, x)
 
 
 def table(
-    motion: Numbers, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
+    motion: Solution, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
 ) -> dict[str, Array]:
     """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
     times, at = doubles_of("t", t), columns_at(motion, columns, radians=True, wrap=wrap)
-    flat = np.ascontiguousarray(times).reshape(-1)
-    found = {name: np.empty_like(flat) for name in chosen_columns(columns)}
-    for part, block in at(flat):
-        for values, column in zip(found.values(), block, strict=True):
-            values[part] = column
-    return {name: values.reshape(times.shape) for name, values in found.items()}
+    found = at(times.reshape(-1))
+    names = chosen_columns(columns)
+    return {name: x.reshape(times.shape) for name, x in zip(names, found, strict=True)}
 
 
 def grid(
-    motion: Numbers,
+    motion: Solution,
     t_min: Fraction | None = None,
     t_max: Fraction | None = None,
     *,
@@ -206,64 +232,66 @@ def grid(
         raise LagtopError(f"the grid of times {error}") from None
 
 
-class BallSample(Parts[Ball]):
-    """A motion at one time in balls."""
-
-    ar: Any
+class BallSample(Columns):
+    """Columns at one time, in balls of the precision in use."""
 
     def __init__(
-        self,
-        motion: Numbers,
-        digits: int,
-        top: ColumnConstants[Ball],
-        t: Ball,
-        at: ExactAttitude[Ball],
+        self, motion: Solution, digits: int, time: Fraction, constants: dict[str, arb]
     ) -> None:
-        self.motion, self.kind, self.ar = motion, motion.kind(digits), balls(digits)
-        self.top, self.t, self.tilting = top, t, at.tilting
-        self.sizes, self.moduli = (at.x, at.y), (at.x * at.x, at.y * at.y)
-        self.within, self.around = self.phi, self.psi = at.phi, at.psi
+        """Raise TooFewDigitsError if the digits do not separate the roots or the half periods."""
+        t, of = exact(time), motion.balls(digits)
+        super().__init__(_BALLS, t=t, **constants)
+        self.motion, self.course = motion, of["course"]
+        at = self.at = self.course.at(t) if time else start_of(motion.facts, of)
+        self.X, self.Y, self.spin, self.precession = at.x, at.y, at.phi, at.psi
+        if motion.facts.plane:  # these angles change only at the poles, by half turns
+            self.spin, self.precession = (
+                arb.pi() * nearest(x / arb.pi()) for x in (at.phi, at.psi)
+            )
+        self.spin_turn, self.precession_turn = self.spin, self.precession
+        self.signed_X, self.signed_Y = self.X, self.Y
 
-    theta = property(lambda at: 2 * at.ar.atan2(at.sizes[1], at.sizes[0]))
+    XX = property(lambda self: self.X**2)
+    YY = property(lambda self: self.Y**2)
+    tilt = property(lambda self: 2 * arb.atan2(self.Y, self.X))
+    arg_X = property(lambda self: (self.precession + self.spin) / 2)
+    arg_Y = property(lambda self: (self.precession - self.spin) / 2)
+    spin_wave = property(lambda self: self.wave(self.spin, "spin"))
+    precession_wave = property(lambda self: self.wave(self.precession, "precession"))
 
-    def over(self, value: Ball, divisor: Ball) -> Ball:
-        """Return a quotient, and 0 if the value is exactly 0."""
-        return value / divisor if value else value
-
-    def wrapped(self, angle: Ball) -> Any:
-        """Return an angle in (-pi, pi]."""
-        ar: Any = self.ar
-        if self.kind.facts.plane:  # half turns: both ends belong to pi
-            return ar.pi * int(ar.nint(angle / ar.pi) % 2)
-        return angle - 2 * ar.pi * int(ar.ceiling(angle / (2 * ar.pi) - ar.convert(0.5)))
-
-    dphi = property(lambda at: at.periodic(at.within, "mean_spin_rate"))
-    dpsi = property(lambda at: at.periodic(at.around, "mean_precession_rate"))
-
-    def periodic(self, angle: Ball, name: str) -> Any:
+    def wave(self, angle: arb, name: str) -> arb:
         """Return an angle less its mean rate times t; on the separatrix the rate is its limit."""
-        if isinstance(self.kind, Constant):
-            return 0 * self.t
-        if isinstance(self.kind, Separatrix):
-            half_b = self.kind.b / 2
-            rate = half_b if name == "mean_precession_rate" else self.kind.state.spin_drift
-            return angle - rate * self.t
-        return angle if self.motion.is_zero(name) else angle - getattr(self.kind, name) * self.t
+        if isinstance(self.course, ConstantTilt):
+            return arb(0)
+        swings = isinstance(self.course, SingleSwing)
+        if not swings and self.motion.is_zero(f"mean_{name}_rate"):
+            return angle
+        waveless: arb = getattr(self.course, name) * self["t"]
+        return angle - waveless
 
-    @quantity
-    def thetadot(self) -> Any:
+    @property
+    def nutation_rate(self) -> arb:
         """The nutation rate by the energy (4,2), with the sign of `tilting`.
 
         On the separatrix it is a product, which keeps its digits at late times.
         """
-        if isinstance(self.kind, Separatrix) and self.t:
-            x, y = self.sizes
-            return 2 * self.kind.argument_rate * y * self.ar.tanh(self.tilting) / x
-        if not self.tilting:
-            return 0 * self.t
-        square = self.top.alpha - self.top.a * self.u - self.across * self.across
-        speed = self.ar.sqrt(square)
-        return speed if self.tilting > 0 else -speed
+        course, tilting = self.course, self.at.tilting
+        if isinstance(course, SingleSwing) and not self["t"].is_zero():
+            return 2 * course.rate * self.Y * tilting.tanh() / self.X
+        if tilting.is_zero():
+            return arb(0)
+        square = self["energy_constant"] - self["a"] * self["u"] - self["across"] ** 2
+        return sign(tilting) * root(square)
+
+
+def within_a_turn(angle: arb, *, plane: bool) -> arb:
+    """Return an angle in (-pi, pi]; in a `plane` it is a multiple of pi."""
+    if plane:
+        return arb.pi() * (nearest(angle / arb.pi()) % 2)
+    turns = (angle / (2 * arb.pi()) - arb(0.5)).ceil()
+    if not turns.is_exact():
+        raise TooFewDigitsError
+    return angle - 2 * arb.pi() * turns
 
 
 class ProvedTable:
@@ -271,7 +299,7 @@ class ProvedTable:
 
     def __init__(
         self,
-        motion: Numbers,
+        motion: Solution,
         columns: Sequence[str],
         digits: int | None = None,
         *,
@@ -282,56 +310,46 @@ class ProvedTable:
         self.motion, self.digits, self.radians, self.wrap = motion, digits, radians, wrap
         self.chosen = chosen_columns(columns)
         self.header = headings(columns, radians=radians)
-        scene = motion.exact
-        psi_rate = Fraction(scene.top.psidot0) if scene.psi_rate is None else scene.psi_rate
-        rates = (scene.b, scene.r0, scene.theta_rate, psi_rate)
-        self._speed = sum(map(abs, rates)) + scene.a + 1
-        self._attitude = cache(lambda digits: exact_attitude(motion.kind(digits)))
-        self._constants = cache(lambda digits: column_constants(motion.kind(digits), scene))
+        self._constants = cache(lambda digits: column_constants(motion.balls(digits)))
+        self._speed = decided(self._fastest, motion.facts.equal)
+
+    def _fastest(self, digits: int) -> Fraction:
+        """Return about the largest number of turns per unit of time."""
+        of = self.motion.balls(digits)
+        rates = (abs(of[name]) for name in ("a", "b", "r0", "thetadot0", "psidot0"))
+        return fraction(sum(rates, arb(1)).mid())
 
     def row(self, time: Fraction) -> list[Rounded]:
         """Return the numbers of the columns at an exact time.
 
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
-        sample = cache(lambda digits: self.sample(time, digits))
+        sample = cache(partial(self._sample, time))
         return [self._number(name, time, sample) for name in self.chosen]
 
-    def sample(self, time: Fraction, digits: int) -> BallSample:
-        """Return the motion at a time in balls of `digits` digits.
-
-        Raises TooFewDigitsError if they do not separate the roots or the half periods.
-        """
-        t, state = balls(digits).convert(time), self.motion.kind(digits).state
-        start = ExactAttitude(state.cos_half, state.sin_half, t, t, state.theta_rate)
-        at = self._attitude(digits)(t) if time else start
-        return BallSample(self.motion, digits, self._constants(digits), t, at)
+    def _sample(self, time: Fraction, digits: int) -> BallSample:
+        return BallSample(self.motion, digits, time, self._constants(digits))
 
     def _number(self, name: str, time: Fraction, sample: Callable[[int], BallSample]) -> Rounded:
         """Return a column at a time; `sample` returns the motion there in a number of digits."""
-        what = f"{name} at t = {float(time)}"
-        rounding = rounding_of(what, self.digits)
-        if name == "t":
-            return Rounded(rounding(time), time)
         turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
         number = settled(
-            what,
-            lambda digits: self._enclosure(name, sample(digits)),
-            rounding,
-            digits=self.digits or 0,
-            more=turns // _EXTRA * _EXTRA,
-            most=max(self.motion.exact.equal, equal_digits([time], self.digits or 0)),
+            f"{name} at t = {float(time)}",
+            lambda digits: self._ball(name, sample(digits)),
+            self.digits,
+            max(self.motion.facts.equal, equal_digits([time], self.digits or 0)),
+            lost=turns // _EXTRA * _EXTRA,
         )
         assert number is not None
         return number
 
-    def _enclosure(self, name: str, sample: BallSample) -> Any:
+    def _ball(self, name: str, sample: BallSample) -> arb:
         """Return a ball that contains a column, with angles in the unit in use."""
-        value: Any = getattr(sample, name)
+        value: arb = sample[name]
         if self.wrap and name in {"phi", "psi"}:
-            value = sample.wrapped(value)
+            value = within_a_turn(value, plane=self.motion.facts.plane)
         in_degrees = self.chosen[name].unit == "angle" and not self.radians
-        return value * 180 / sample.ar.pi if in_degrees else value
+        return value * 180 / arb.pi() if in_degrees else value
 
     def rows(
         self, times: Points, *, radii: bool = False

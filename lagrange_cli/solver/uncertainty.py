@@ -1,4 +1,4 @@
-"""First-order propagation of uncertainties (GUM 5.1.2), for the record and for angles over time."""
+"""First-order propagation of uncertainties (GUM 5.1.2) for the record."""
 
 from __future__ import annotations
 
@@ -6,22 +6,20 @@ from collections.abc import Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ..arithmetic.enclosures import pi_to, rounded
 from ..errors import OutOfRangeError
 from ..top.top import Top
-from .derivatives import DIFFERENTIABLE, AngleDerivatives, Derivatives, size_of
+from .derivatives import DIFFERENTIABLE, Derivatives, moved
 from .keys import INPUTS, TEXT_KEYS, degree_name
 from .solve import Motion
 
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
-
 _CONTEXT = Context(prec=40)
-_TWO_DIGITS, _NEGLIGIBLE = 1e-4, 1e-11
-"""Largest errors of the uncertainty of an angle: relative, and over the largest relative one of an
-input."""
+MISLEADING = 0.25
+"""Least error of linear propagation that is reported, over the uncertainty."""
+_LEAST = 1e-9
+"""Least error that is reported, over the number."""
 
 
 class Contribution(NamedTuple):
@@ -96,6 +94,30 @@ class FirstOrder:
         parts = [(slopes[name] or 0) * Fraction(std) for name, std in self.stds.items()]
         return sum((part * part for part in parts), Fraction(0))
 
+    @cached_property
+    def _away(self) -> list[tuple[str, Motion]]:
+        """Motions with one input, by name, one standard deviation away."""
+        changes = [(x, sign * Fraction(std)) for x, std in self.stds.items() for sign in (-1, 1)]
+        beside = [(name, moved(self.motion, name, change)) for name, change in changes]
+        return [(name, motion) for name, motion in beside if motion]
+
+    def misleads(self, key: str, std: float) -> bool:
+        """Return whether linear propagation misleads for a number with an uncertainty.
+
+        It does if the number of a motion one standard deviation away differs by another amount, or
+        does not exist.
+        """
+        if degree_name(key) not in DIFFERENTIABLE:
+            return False
+        here = _value(self.motion, key) or 0.0
+        limit = MISLEADING * std + _LEAST * abs(here)
+        for name, motion in self._away:
+            there, slope = _value(motion, key), self.slope(key, name) or 0
+            linear = abs(float(slope * Fraction(self.stds[name])))
+            if there is None or abs(abs(there - here) - linear) > limit:
+                return True
+        return False
+
     def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
         """Return the contributions of the uncertain inputs to a key, the greatest first.
 
@@ -121,6 +143,15 @@ class FirstOrder:
         return sorted(lines, key=lambda line: -abs(line.contribution or 0))
 
 
+def _value(motion: Motion, key: str) -> float | None:
+    """Return a number of a motion as a double; None if it does not exist, or not as a double."""
+    try:
+        found = motion.number(key)
+    except OutOfRangeError:
+        return None
+    return None if found is None else float(found.value)
+
+
 def tilt_of(top: Top) -> str:
     """Return the key of the tilt in the unit in use."""
     return "theta0_deg" if top.theta0_rad is None else "theta0_rad"
@@ -140,44 +171,3 @@ def stds_of(
             except OutOfRangeError as error:
                 beyond.append(error)
     return stds, beyond
-
-
-class AngleStds:
-    """Uncertainties of tilt, spin and precession of a top over time."""
-
-    def __init__(self, motion: Motion, stds: Mapping[str, float]) -> None:
-        """Take the uncertainties of the inputs as given."""
-        self.motion = motion
-        self.changes = [{name: std} for name, std in stds.items() if std]
-        """The change of each input by one standard deviation of each uncertain input."""
-
-    @cached_property
-    def derivatives(self) -> AngleDerivatives:
-        """The derivatives by the uncertain inputs."""
-        names = dict.fromkeys(name for changes in self.changes for name in changes)
-        return AngleDerivatives(self.motion, list(names))
-
-    def at(self, t: Array) -> Array:
-        """Return the uncertainties in radians, of shape (3, times); NaN if they do not exist.
-
-        Where the rounding errors of differences would show, proved rows give the derivatives.
-        """
-        found, slopes = self._from(self.derivatives.at(t)), self.derivatives
-        changes = [(name, abs(x)) for row in self.changes for name, x in row.items()]
-        noise = sum(x * slopes.noise[name] for name, x in changes)
-        least = _NEGLIGIBLE * max(
-            (x / size_of(self.motion, name) for name, x in changes), default=0
-        )
-        doubtful = ((found > 0) & (noise > _TWO_DIGITS * found + least)).any(axis=0)
-        if doubtful.any():
-            found[:, doubtful] = self._from(slopes.in_digits(t[doubtful]))
-        return found
-
-    def _from(self, derivatives: Array) -> Array:
-        import numpy as np
-
-        by = dict(zip(self.derivatives.inputs, derivatives, strict=True))
-        square = np.zeros(derivatives.shape[1:])
-        for changes in self.changes:
-            square += sum(change * by[name] for name, change in changes.items()) ** 2
-        return np.asarray(np.sqrt(square))

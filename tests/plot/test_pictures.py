@@ -157,7 +157,8 @@ def test_angles_are_drawn_with_mean_rates_and_periods() -> None:
 
 
 def test_bands_are_one_standard_deviation_wide() -> None:
-    figure = drawn("angles", solve(Top()), stds=lambda t: [0.01 + 0 * t, 0.02 + t, 0 * t])
+    stds = [[0.01], [9.0], [0.0], [0.02], [9.0]]  # of theta, phi, psi, dphi, dpsi
+    figure = drawn("angles", solve(Top()), stds=lambda t: np.array(stds) + 0 * t)
     for axes, std in zip(figure.axes[:2], (0.01, 0.02), strict=False):
         band = np.asarray(axes.collections[0].get_paths()[0].vertices)
         assert np.ptp(band[band[:, 0] == 0.0, 1]) == pytest.approx(np.degrees(2 * std), rel=1e-6)

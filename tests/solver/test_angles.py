@@ -18,7 +18,8 @@ from lagtop import LagtopError, Regime, Top, solve
 from scenes import EVERY_KIND, UNIT, period
 
 from lagrange_cli.names import ANGLES
-from lagrange_cli.solver.columns import ColumnConstants, chosen_columns
+from lagrange_cli.solver.columns import chosen_columns, column_constants
+from lagrange_cli.solver.sampling import Attitude
 from lagrange_cli.solver.tables import ProvedTable, Sample, columns_at
 
 T = np.linspace(-3, 40, 40_000)
@@ -97,11 +98,11 @@ def test_the_angles_of_a_start_with_many_digits() -> None:
     ("columns", "computed"),
     [
         ("t r", ""),
-        ("theta", "functions parts squares tilt"),
-        ("u theta psidot phidot axis_z moment Lz", "functions parts squares tilt moduli"),
-        ("thetadot energy", "functions parts squares moduli rate"),
+        ("theta", "functions parts moduli tilt"),
+        ("u theta psidot phidot axis_z moment Lz", "functions parts moduli tilt"),
+        ("thetadot energy", "functions parts moduli"),
         ("phi psi dphi dpsi", "functions parts args"),
-        ("p", "functions parts args squares moduli rate"),
+        ("p", "functions parts args moduli"),
     ],
 )
 @pytest.mark.parametrize("r0", SERIES)
@@ -109,22 +110,25 @@ def test_columns_that_are_not_requested_are_not_computed(
     r0: float, columns: str, computed: str
 ) -> None:
     seen: set[str] = set()
-    constants: Any = ColumnConstants(*np.ones(9))
-    for _, attitude in solve(Top(r0=r0)).sampler().attitudes(T):
-        sample = Sample(attitude, constants, False)
+    motion = solve(Top(r0=r0))
+
+    def compute(at: Attitude) -> list[float]:
+        sample = Sample(at, dict.fromkeys(column_constants(motion.balls(40)), 1.0), False)
         for column in chosen_columns(columns.split()):
-            getattr(sample, column)
-        seen |= vars(attitude).keys() & set("functions parts squares tilt moduli args rate".split())
+            assert sample[column] is not None
+        seen.update(vars(at).keys() & set("functions parts moduli tilt args".split()))
+        return []
+
+    motion.sampler().evaluate(T, 40.0, 0, compute)
     assert seen == set(computed.split())
 
 
 def test_motions_may_be_sampled_in_turns() -> None:
-    """Blocks of several motions do not share arrays, nor leave NumPy's settings changed."""
+    """Several motions do not share arrays, nor leave NumPy's settings changed."""
     one, other, before = solve(Top()), solve(Top(r0=200)), np.geterr()
-    both = (columns_at(x, ["phi"], radians=True, wrap=False)(T) for x in (one, other))
-    for (rows, mine), (_, theirs) in zip(*both, strict=True):
-        np.testing.assert_array_equal(mine[0], one.angles(T).phi[rows])
-        np.testing.assert_array_equal(theirs[0], other.angles(T).phi[rows])
+    both = [columns_at(x, ["phi"], radians=True, wrap=False)(T) for x in (one, other)]
+    for motion, (phi,) in zip((one, other), both, strict=True):
+        np.testing.assert_array_equal(phi, motion.angles(T).phi)
     assert np.geterr() == before
 
 

@@ -89,7 +89,7 @@ def beside(t: float) -> tuple[float, float, float]:
 
 def turning_times(motion: Motion, rng: random.Random) -> Iterator[float]:
     """Yield doubles at quarters of periods, and both neighbours, from 1 to 1e15 periods."""
-    reach = motion.sampler().max_time
+    reach = min(motion.sampler().max_time, motion.sampler().max_wrapped)
     for exponent in range(15):
         whole = rng.randrange(10**exponent, 10 ** (exponent + 1)) if exponent else 1
         for quarter in (0, 0.25, 0.5, 0.75):

@@ -207,8 +207,8 @@ def check_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[f
     Numbers that differ in 80 and in 240 digits, and zeros, are left out.  So are tops that pass so
     close to the vertical that the parts of Legendre's third integral cancel in all these digits.
     """
-    facts = motion.exact.facts
-    if facts.free or facts.steady or facts.meets_a_pole or not motion.T_nutation:
+    facts = motion.facts
+    if not (facts.a and facts.nutates) or facts.over_top or facts.over_bottom:
         return
     try:
         (exact, _), (rough, reference) = (by_mpmath(motion.top, count) for count in (240, 80))

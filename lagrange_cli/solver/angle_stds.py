@@ -1,0 +1,191 @@
+"""Standard uncertainties of the angles over time, by linear propagation (GUM 5.1.2).
+
+Motions beside the given one are compared with it at the same phase of the nutation, so that the
+differences stay small at any time.  The exact derivatives of the period and of the mean rates give
+the part that grows with time.  Proved rows give the derivatives wherever rounding errors show.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from ..arithmetic.enclosures import decided
+from ..arithmetic.numbers import unit_in_radians
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from .derivatives import Derivatives, moved, neighbours, sines, size_of
+from .sampling import Period, period_of, whole_periods
+from .solve import Motion
+from .tables import STD_COLUMNS, ProvedTable
+from .uncertainty import MISLEADING
+
+_STENCILS = (
+    {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
+    {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4},
+)
+"""Weights of neighbours in a derivative, by place in steps: central, and at an end of a range."""
+_STEP, _NOISE = 2.0**-11, 2.0**-40
+"""Step of a stencil, and rounding errors of a derivative, over the range of an input in which
+motions are alike."""
+_MOST_NOISE = 0.01
+"""Largest error of an uncertainty, over itself."""
+_LEAST = 1e-9
+"""Least error that is reported, in radians."""
+
+
+class AngleDerivatives:
+    """Derivatives of the angles of one motion over time by some inputs of its top."""
+
+    def __init__(self, motion: Motion, inputs: Sequence[str]) -> None:
+        self.motion, self.inputs, self.record = motion, tuple(inputs), Derivatives(motion)
+        self.period: float | None = motion.T_nutation
+        keys = ("T_nutation", "mean_spin_rate", "mean_precession_rate") if self.period else ()
+        self.slopes = {x: [self.record.nearest(key, x) for key in keys] for x in self.inputs}
+        """Derivatives of the period and of the mean rates of spin and precession, by input."""
+        steep = {x: self._steepness(x) for x in self.inputs}
+        self.steps = {x: _STEP / steep[x] for x in self.inputs}
+        self.noise = {x: _NOISE * steep[x] for x in self.inputs}
+        """Sizes of the rounding errors of the derivatives, by input."""
+        self.neighbours = {
+            x: neighbours(motion, x, Fraction(self.steps[x]), _STENCILS) for x in self.inputs
+        }
+        self.missing = {x for x, slopes in self.slopes.items() if any(map(math.isnan, slopes))}
+        """The inputs by which the angles have no derivative."""
+        if not self.period:  # a neighbour that nutates departs at once
+            nutates = {x: any(y.motion.T_nutation for y in self.neighbours[x]) for x in self.inputs}
+            self.missing = {x for x in self.inputs if nutates[x]}
+
+    def _steepness(self, name: str) -> float:
+        """Return the largest relative change of a size of the motion per unit of an input.
+
+        Next to the separatrix k' is small, and next to a pole the sine of an extreme tilt.
+        """
+        sizes = {"k_prime": self.motion.k_prime, "T_nutation": self.period}
+        sizes |= {key: math.degrees(x) for key, x in sines(self.motion).items()}
+        found = [abs(self.record.nearest(key, name) / x) for key, x in sizes.items() if x]
+        known = [float(x) for x in found if not math.isnan(x)]
+        return max(1 / size_of(self.motion, name), *known, 0.0)
+
+    def at(self, t: Array) -> Array:
+        """Return derivatives of the columns `STD_COLUMNS` at n times, of shape (inputs, 5, n).
+
+        They are NaN after the start if they do not exist.
+        """
+        found = np.zeros((len(self.inputs), len(STD_COLUMNS), t.size))
+        phase = t
+        if self.period:
+            rates = self.motion.table(t, ["thetadot", "phidot", "psidot"]).values()
+            means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
+            leaving = [rate - mean for rate, mean in zip(rates, means, strict=True)]
+            phase = _since_whole_periods(self.motion, t) / self.period
+        for values, name in zip(found, self.inputs, strict=True):
+            waves, growths = np.zeros((3, t.size)), np.zeros(2)
+            for _, motion, weight in self.neighbours[name]:
+                if weight:
+                    sampler, share = motion.sampler(), weight / self.steps[name]
+                    waves += share * sampler.waves(phase * (motion.T_nutation or 1.0))
+                    growths += share * np.array([sampler.phi.rate.high, sampler.psi.rate.high])
+            if self.period:
+                by_period, *by_rates = self.slopes[name]
+                growths = np.array(by_rates)
+                waves -= np.array(leaving) * (t * (by_period / self.period))
+            values[[0, 3, 4]] = waves
+            if not self.motion.facts.plane:  # else they change by half turns only
+                values[1:3] = waves[1:] + np.multiply.outer(growths, t)
+            else:
+                values[1:] = 0.0
+        return self._completed(found, t)
+
+    def in_digits(self, t: Array) -> Array:
+        """Return the same as `at` from proved rows, which take some milliseconds per time."""
+        found = np.zeros((len(self.inputs), len(STD_COLUMNS), t.size))
+        for values, name in zip(found, self.inputs, strict=True):
+            step, beside = self.record.neighbours(name)
+            exact = np.zeros((t.size, len(STD_COLUMNS)), dtype=object)
+            for _, motion, weight in beside:
+                if weight:
+                    table = ProvedTable(motion, STD_COLUMNS, 90, radians=True)
+                    rows = [[Fraction(x.value) for x in table.row(Fraction(y))] for y in t.tolist()]
+                    exact = exact + np.array(rows) * (Fraction(weight) / step)
+            values[:] = exact.T.astype(float)
+        return self._completed(found, t)
+
+    def _completed(self, found: Array, t: Array) -> Array:
+        """Return derivatives with those at t = 0, and NaN for those that do not exist."""
+        for values, name in zip(found, self.inputs, strict=True):
+            if name in self.missing:
+                values[:] = math.nan
+            values[:, t == 0] = 0.0
+            if name.startswith("theta0"):
+                values[0, t == 0] = unit_in_radians(radians=name == "theta0_rad")
+        return found
+
+
+def _since_whole_periods(motion: Motion, t: Array) -> Array:
+    """Return times less whole periods of the nutation."""
+
+    def period(digits: int) -> Period:
+        return period_of(motion.balls(digits)["T_nutation"])
+
+    _, rest, lost = whole_periods(
+        t, decided(period, motion.facts.equal, digits=24), float(np.abs(t).max(initial=0.0))
+    )
+    return rest - lost
+
+
+class AngleStds:
+    """Uncertainties of tilt, spin and precession of a top over time."""
+
+    def __init__(self, motion: Motion, stds: Mapping[str, float]) -> None:
+        """Take the uncertainties of the inputs as given."""
+        self.motion, self.stds = motion, {name: std for name, std in stds.items() if std}
+        self.derivatives = AngleDerivatives(motion, list(self.stds))
+        self.misleading: dict[str, float] = {}
+        """The angles for which linear propagation misleads, each with the first such time."""
+        self._away = [
+            (i, beside)
+            for i, (name, std) in enumerate(self.stds.items())
+            for change in (Fraction(-std), Fraction(std))
+            if (beside := moved(motion, name, change))
+        ]
+        """Motions with one input, by its place, one standard deviation away."""
+
+    def at(self, t: Array) -> Array:
+        """Return the uncertainties of `STD_COLUMNS` in radians, of shape (5, times).
+
+        They are NaN if they do not exist.  Proved rows give the derivatives wherever rounding
+        errors would be more than 1 % of an uncertainty.
+        """
+        slopes, stds = self.derivatives, np.array([*self.stds.values()])[:, None, None]
+        changes = slopes.at(t) * stds
+        noise = sum(std * slopes.noise[name] for name, std in self.stds.items())
+        found: Array = np.sqrt((changes**2).sum(axis=0))
+        doubtful = ((found > 0) & (noise > _MOST_NOISE * found)).any(axis=0)
+        if doubtful.any():
+            changes[:, :, doubtful] = slopes.in_digits(t[doubtful]) * stds
+            found = np.sqrt((changes**2).sum(axis=0))
+        self._compare(t, changes, found)
+        return found
+
+    def _compare(self, t: Array, changes: Array, found: Array) -> None:
+        """Compare linear changes with those of motions one standard deviation away."""
+        here = _all_angles(self.motion, t)
+        for i, beside in self._away:
+            try:
+                off = np.abs(np.abs(_all_angles(beside, t) - here) - np.abs(changes[i]))
+            except LagtopError:  # t is beyond 2^50 of its periods
+                continue
+            limits = MISLEADING * found.max(axis=1, initial=0.0) + _LEAST
+            for name, row, limit in zip(STD_COLUMNS, off, limits, strict=True):
+                if (late := np.flatnonzero(row > limit)).size:
+                    first = float(t[late[0]])
+                    self.misleading[name] = min(first, self.misleading.get(name, first), key=abs)
+
+
+def _all_angles(motion: Motion, t: Array) -> Array:
+    """Return the columns `STD_COLUMNS` at some times."""
+    return np.stack([*motion.table(t, STD_COLUMNS).values()])

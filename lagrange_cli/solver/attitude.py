@@ -1,0 +1,258 @@
+"""The attitude of a top at one time, in balls of Arb, by Jacobi's theta functions.
+
+The attitude is a pair of complex numbers, the Cayley-Klein parameters:
+
+    X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
+
+Let z be the number of nutation periods since a passage of u1.  Apart from a uniform rotation and a
+common positive factor, X is theta2 and Y is theta1 of the angle pi (z - i s y), with a sign s and a
+place y of its own.  The phase is counted from the nearer turning point: X or Y then has a positive
+real part, and its argument cannot jump.  Equation numbers are Chrapan's.
+
+The constants below are those of one motion in one precision.  Their methods take and return balls,
+and raise TooFewDigitsError if the precision does not decide them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from flint import acb, arb
+
+from ..arithmetic.enclosures import nearest, root, sign
+from .facts import Facts
+
+Names = Mapping[str, Any]
+"""The numbers of a motion by name, as `numbers.Numbers` has them."""
+
+
+class Attitude(NamedTuple):
+    """The attitude at one time."""
+
+    x: arb
+    """cos(theta/2), up to a positive factor common with y."""
+    y: arb
+    """sin(theta/2), up to that factor."""
+    phi: arb
+    """Spin, unwrapped from 0 at t = 0."""
+    psi: arb
+    """Precession, unwrapped from 0 at t = 0."""
+    tilting: arb
+    """A number with the sign of the nutation rate; on the separatrix the argument -h."""
+
+
+class Swing(NamedTuple):
+    """The motion of the tilt on the separatrix: u = u2 + (1 - u2) tanh^2(rate (t - lowest))."""
+
+    rate: float
+    """Rate of the argument, in radians per unit of time."""
+    lowest: float
+    """Time at which the axis is lowest."""
+
+
+class Side(NamedTuple):
+    """The constants of X or of Y in a motion that nutates."""
+
+    sign: int
+    """s, the direction in which the argument of X or Y turns: by half a turn per period."""
+    place: arb
+    """F/2K or, if the motion is `hyperbolic`, F/2K', with an integral F of modulus k'.
+
+    It is exactly 0 if the axis passes over the pole where X or Y is 0.
+    """
+    size: arb
+    """|X| at u1, or |Y| at u2, where |X|^2 + |Y|^2 is 1 at u1 and k' at u2."""
+
+
+class Nutation(NamedTuple):
+    """The constants of a motion that nutates."""
+
+    period: arb
+    spin: arb
+    """The mean spin rate (6,3)."""
+    precession: arb
+    """The mean precession rate (7,3)."""
+    since: arb
+    """Periods from a passage of u1 to t = 0."""
+    ratio: arb | None
+    """K'/K, or None if k = 0."""
+    hyperbolic: bool
+    """Whether K > K'."""
+    bend: arb
+    """-u'' at u1."""
+    sides: tuple[Side, Side]
+    """The constants of X and of Y."""
+    falls: int
+    """1 if the tilt grows after t = 0, else -1."""
+
+    def at(self, t: arb) -> Attitude:
+        """Return the attitude at a time."""
+        z = self.since + t / self.period
+        n = nearest(2 * z)
+        rest = z - arb(n) / 2
+        x, y = (abs(value) for value in self.values(n, rest))
+        return Attitude(x, y, *self.growth(self.since, z), rest * (-1) ** n)
+
+    def growth(self, first: arb, last: arb) -> tuple[arb, arb]:
+        """Return the growth of spin and precession between two phases z."""
+        (x0, y0), (x, y) = self.waves(first), self.waves(last)
+        t, dx, dy = (last - first) * self.period, x - x0, y - y0
+        return self.spin * t + dx - dy, self.precession * t + dx + dy
+
+    def waves(self, z: arb) -> tuple[arb, arb]:
+        """Return arg X and arg Y at a phase z, without their mean growth.
+
+        Each is the argument of a theta function.  Of the two limits at a passage over a pole it is
+        the one on the side of t = 0.
+        """
+        n = nearest(2 * z)
+        rest, found = z - arb(n) / 2, []
+        for pole, side, value in zip((1, -1), self.sides, self.values(n, rest), strict=True):
+            own = (n % 2 == 0) == (pole > 0)
+            if side.place.is_zero():  # it only turns at the passages
+                turns = arb(0 if own else side.sign * (sign(rest) or -pole * self.falls)) / 2
+            else:
+                turns = arb.atan2(value.imag, value.real) / arb.pi()
+            found.append((turns - side.sign * rest) * arb.pi())
+        return found[0], found[1]
+
+    def values(self, n: int, rest: arb) -> list[acb]:
+        """Return X and Y at `rest` periods from the n-th turning point, without uniform rotations.
+
+        Both have the same positive factor, and arguments counted from this turning point.
+        """
+        found = []
+        for own, side in zip((n % 2 == 0, n % 2 == 1), self.sides, strict=True):
+            y, s = side.place, side.sign
+            if self.hyperbolic and self.ratio is not None:
+                y = y * self.ratio
+            unit = side.size / self._thetas(acb(0, y))[1].real
+            theta1, theta2 = self._thetas(acb(rest, -s * y))
+            found.append(unit * (theta2 if own else acb(0, s) * theta1))
+        return found
+
+    def _thetas(self, z: acb) -> tuple[acb, acb]:
+        """Return theta1 and theta2 of pi z, divided by 2 q^(1/4) if k is 0."""
+        if self.ratio is None:
+            return z.sin_pi(), z.cos_pi()
+        theta1, theta2, *_ = acb.modular_theta(z, acb(0, self.ratio))
+        return theta1, theta2
+
+
+class ConstantTilt(NamedTuple):
+    """The constants of a motion at constant tilt."""
+
+    spin: arb
+    precession: arb
+    x: arb
+    """cos(theta/2)."""
+    y: arb
+    """sin(theta/2)."""
+
+    def at(self, t: arb) -> Attitude:
+        """Return the attitude at a time."""
+        return Attitude(self.x, self.y, self.spin * t, self.precession * t, arb(0))
+
+
+class SingleSwing(NamedTuple):
+    """The constants of a motion on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = h0 + rate t."""
+
+    spin: arb
+    """r0 - b/2, the spin rate without the effect of the swing."""
+    precession: arb
+    """b/2."""
+    x: arb
+    """cos(theta_max/2)."""
+    y: arb
+    """sin(theta_max/2), with the sign of b."""
+    rate: arb
+    h0: arb
+    """h at t = 0, exactly 0 if the axis is lowest then."""
+    falls: int
+    """1 if the tilt grows after t = 0, else -1."""
+
+    def at(self, t: arb) -> Attitude:
+        """Return the attitude at a time."""
+        h = self.h0 + self.rate * t
+        turned = self.turn(h) - self.turn(self.h0)
+        x = root(self.x**2 + (self.y * h.tanh()) ** 2)
+        phi, psi = self.spin * t + turned, self.precession * t + turned
+        return Attitude(x, abs(self.y) * h.sech(), phi, psi, -h)
+
+    def turn(self, h: arb) -> arb:
+        """Return arg X without its mean growth; on the lower pole, the limit at t = 0."""
+        side = arb(-self.falls) if h.is_zero() and self.x.is_zero() else h.tanh()
+        return arb.atan2(self.y * side, self.x)
+
+
+Course = Nutation | ConstantTilt | SingleSwing
+"""The constants from which the attitude of any motion follows."""
+
+
+def course_of(facts: Facts, of: Names) -> Course:
+    """Return the constants of a motion, from its facts and its numbers in the precision in use."""
+    falls = -1 if facts.inputs["thetadot0"] < 0 else 1
+    cosine = of["theta0"].cosine
+    if facts.steady:
+        start, turn = start_of(facts, of), arb(0) if facts.vertical else of["psidot0"]
+        return ConstantTilt(of["r0"] - turn * cosine, turn, start.x, start.y)
+    if facts.separatrix:
+        x = arb(0) if facts.over_bottom else root((1 + of["u2"]) / 2)
+        y = root((1 - of["u2"]) / 2) * (-1 if facts.spin < 0 else 1)
+        h0 = arb(0)
+        if not facts.turning:
+            h0 = -falls * root((cosine - of["u2"]) / (1 - cosine)).asinh()
+        precession = of["b"] / 2
+        return SingleSwing(of["r0"] - precession, precession, x, y, root(of["wide"]) / 2, h0, falls)
+    ratio = None if of["m_k"].is_zero() else of["K_prime"] / of["K"]
+    hyperbolic = ratio is not None and float(ratio.mid()) < 1
+    return Nutation(
+        period=of["T_nutation"],
+        spin=of["mean_spin_rate"],
+        precession=of["mean_precession_rate"],
+        since=_since_u1(facts, of, cosine, falls),
+        ratio=ratio,
+        hyperbolic=hyperbolic,
+        bend=of["swing"] * of["narrow"] / 2,
+        sides=_sides(facts, of, of["K_prime"] if hyperbolic else of["K"]),
+        falls=falls,
+    )
+
+
+def start_of(facts: Facts, of: Names) -> Attitude:
+    """Return the attitude at t = 0, from the inputs of a motion."""
+    pole, half = facts.pole, arb.atan2(*of["theta0"]) / 2
+    x, y = (arb(pole > 0), arb(pole < 0)) if pole else (half.cos(), half.sin())
+    return Attitude(x, y, arb(0), arb(0), of["thetadot0"])
+
+
+def _sides(facts: Facts, of: Names, unit: arb) -> tuple[Side, Side]:
+    """Return the constants of X and Y, with places in units of K or K'.
+
+    For X, sn^2 F = (1 + u2)/(1 + u1).  For Y, sn^2 F = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
+    """
+    swing, wide, low = of["swing"], of["wide"], 1 - of["u2"]
+    far = wide - of["a"] * low  # a (u3 - 1)
+    found = []
+    for over_pole, momentum, sine2, cosine2, size2 in (
+        (facts.over_bottom, facts.plus, 1 + of["u2"], swing, 1 + of["u1"]),
+        (facts.over_top, facts.minus, (1 - of["u1"]) * wide, swing * far, low * of["k_prime"]),
+    ):
+        amplitude = arb.atan2(root(sine2), root(cosine2))
+        F = acb.elliptic_f(acb(amplitude), acb(of["m_k_prime"])).real
+        if not (momentum or over_pole):  # u3 = 1
+            F = of["K_prime"]
+        place = arb(0) if over_pole else arb(0.5) if F is unit else F / unit / 2
+        found.append(Side(momentum or 1, place, root(size2 / 2)))
+    return found[0], found[1]
+
+
+def _since_u1(facts: Facts, of: Names, u0: arb, falls: int) -> arb:
+    """Return the periods from the nearest passage of u1 to t = 0, by (4,22)-(4,24)."""
+    if facts.turning:
+        return arb(1 - facts.turning) / 4
+    sine2, cosine2 = (of["u1"] - u0) * of["wide"], (u0 - of["u2"]) * of["narrow"]
+    amplitude = arb.atan2(root(sine2), root(cosine2))
+    periods: arb = acb.elliptic_f(acb(amplitude), acb(of["m_k"])).real / (2 * of["K"])
+    return falls * periods
