@@ -202,9 +202,9 @@ def eta_command(
     digits: int | None,
     out: Output,
 ) -> None:
-    """Compute Aksenov's coordinate eta of a satellite (1977, 3.2).
+    """Compute eta of Aksenov's intermediate orbit of a satellite (1977, 3.2).
 
-    Eta oscillates between delta* and delta:
+    Eta gives the latitude of the satellite.  It oscillates between delta* and delta:
     (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2).
 
     Give the outer roots of the right-hand side with --p and --q (0.7i for a complex pair), or by

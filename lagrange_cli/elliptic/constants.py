@@ -44,9 +44,9 @@ def constants_record(
         if n is not None:
             found["Pi"] = Legendre(given.reduced(), given.m, n).complete.Pi
         row = real_parts(found) if given.kind is Kind.UNIT else split(found)
-        if given.name in {*row, "m"}:  # exactly
-            row = {given.name: given.value.real} | row | {given.name: given.value.real}
-        return row
+        if given.name == "m":
+            return {"m": given.value.real} | row
+        return row | ({given.name: given.value.real} if given.name in row else {})
 
     return numbers(compute, [*given.value, n or Fraction(0)], digits)
 

@@ -148,13 +148,22 @@ def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
 
 @pytest.mark.parametrize(
     ("modulus", "square"),
-    [("--k-prime 0.5", "0.75"), ("--k 0.8i", "-0.64"), ("--k 1.5", "2.25"), ("--k 0.6", "0.36")],
+    [
+        *(
+            ("--k-prime 0.5", "0.75"),
+            ("--k 0.8i", "-0.64"),
+            ("--k 1.5", "2.25"),
+            ("--k 0.6", "0.36"),
+        ),
+        *(("--m -3", "-3"), ("--m 0.3", "0.3"), ("--m 1.75", "1.75"), ("--k-prime 3", "-8")),
+        *(("--k-prime 0.5i", "1.25"), ("--nome=-0.2", "q = -0.2")),
+    ],
 )
 def test_constants(modulus: str, square: str, lagtop: Lagtop) -> None:
     """Each is the double next to the number of mpmath, on its side of the cuts."""
     record = json.loads(lagtop("jacobi", *modulus.split(), "--format", "json").stdout)
     with mpmath.workdps(40):
-        m = mpmath.mpf(square)
+        m = mpmath.mfrom(q=mpmath.mpf("-0.2")) if "q" in square else mpmath.mpf(square)
         exact = {
             **{"K": mpmath.ellipk(m), "K_prime": mpmath.ellipk(1 - m), "E": mpmath.ellipe(m)},
             **{"E_prime": mpmath.ellipe(1 - m), "nome": mpmath.qfrom(m=m)},
@@ -169,8 +178,50 @@ def test_the_constants_of_whole_moduli(lagtop: Lagtop) -> None:
     one = json.loads(lagtop("jacobi", "--k", "1", "--format", "json").stdout)
     assert (one["k_prime"], one["K"], one["E"], one["nome"]) == (0.0, None, 1.0, 1.0)
     half = json.loads(lagtop("jacobi", "--k-prime", "0.5", "--format", "json").stdout)
+    assert list(half)[:4] == ["k", "k_prime", "modular_angle_deg", "nome"]
     assert (half["modular_angle_deg"], half["k"]) == (60, math.sqrt(0.75))
     assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
+
+
+@pytest.mark.parametrize("k", ["0.8", "0.8i", "1.5"])
+def test_quotients(k: str, lagtop: Lagtop) -> None:
+    """Glaisher's quotients by name are those of mpmath; they have poles at zeros of pq's q."""
+    names = "ns,nc,nd,sc,cs,sd,ds,cd,dc"
+    found = cells(lagtop, f"--k {k} --u 0,0.7,0.2-3i --functions {names}")
+    m = -(mpmath.mpf("0.8") ** 2) if k == "0.8i" else mpmath.mpf(k) ** 2
+    for name in names.split(","):
+        assert bool(found[f"{name}_re"][0]) is not name.endswith("s")
+        for i, u in ((1, 0.7), (2, 0.2 - 3j)):
+            value = complex(*(float(found[f"{name}_{part}"][i]) for part in ("re", "im")))
+            assert value == pytest.approx(complex(mpmath.ellipfun(name, u, m=m)), rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("args", "known"),
+    [
+        ("--k 0.5 --u log:2:3:5", {"u": "2.21336383940064318481758054688"}),
+        (
+            "--nome 1e-2141 --u 0,2479+1020i --functions theta",
+            {"theta10_re": "-5.16051595388114e-93", "theta10_im": "1.50292330378978e-93"},
+        ),
+        ("--nome 0.9999999999 --functions pi --param 0.3 --u 0,1", {"pi00": "0.0"}),
+    ],
+)
+def test_numbers_with_digits(args: str, known: dict[str, str], lagtop: Lagtop) -> None:
+    """A log: range has decimals; a nome may be tiny; a number equal to 0 in 1,200 digits is 0."""
+    digits = 30 if "log" in args else 15
+    found = cells(lagtop, f"{args} --digits {digits}")
+    assert {name: found[name][1] for name in known} == known
+
+
+@pytest.mark.parametrize("v", ["3i", "-3i", "7.7i"])
+def test_imaginary_parameters_beyond_the_first_line_of_zeros(v: str, lagtop: Lagtop) -> None:
+    """Real functions have the branch of the complex ones."""
+    args = f"--k 0.5 --functions omega,pi --param={v} --digits 9"
+    real, complex_ = cells(lagtop, f"{args} --u 1.3"), cells(lagtop, f"{args} --u 1.3+0i")
+    assert {f"{x[:-5]}_im": y for x, y in real.items() if x != "u"} == {
+        x: y for x, y in complex_.items() if x.endswith("_im") and x != "u_im"
+    }
 
 
 def test_a_nome_next_to_1(lagtop: Lagtop) -> None:
