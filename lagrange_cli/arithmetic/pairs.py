@@ -1,8 +1,4 @@
-"""Arithmetic on unevaluated sums of two doubles, about 104 bits (Dekker 1971).
-
-The product of a double and a constant held as two doubles gives the whole periods that have passed.
-It also gives the remaining time exactly, however large the time is.
-"""
+"""Arithmetic on unevaluated sums of two doubles, about 104 bits (Dekker 1971)."""
 
 from __future__ import annotations
 
@@ -16,8 +12,6 @@ import numpy as np
 from .types import Array, Mask
 
 _ZERO = np.zeros(())
-MANY = 2.0**26
-_LESS_THAN_1 = 1 - 2.0**-20
 
 
 class Pair(NamedTuple):
@@ -27,27 +21,13 @@ class Pair(NamedTuple):
     low: float | Array
 
 
-class Triple(NamedTuple):
-    """A number as the sum of three doubles."""
-
-    high: float | Array
-    middle: float | Array
-    low: float | Array
-
-
-PI = Triple(3.141592653589793, 1.2246467991473532e-16, -2.9947698097183397e-33)
+PI = Pair(3.141592653589793, 1.2246467991473532e-16)
 
 
 def pair(value: Any) -> Pair:
     """Return a fraction or a ball as the sum of two doubles."""
     high = float(value)
     return Pair(high, float(_less(value, high)))
-
-
-def triple(value: Any) -> Triple:
-    """Return a fraction or a ball as the sum of three doubles."""
-    high = float(value)
-    return Triple(high, *pair(_less(value, high)))
 
 
 def _less(value: Any, part: float) -> Any:
@@ -71,93 +51,6 @@ def _halves(x: float | Array) -> tuple[Array, Array]:
     bits = np.asarray(x, dtype=np.float64).view(np.int64)
     high: Array = ((bits + (1 << 26)) & -(1 << 27)).view(np.float64)
     return high, x - high
-
-
-def reduce_phase(t: Array, rate: Pair) -> tuple[Array, Array]:
-    """Return the integer nearest to t * rate, and t * rate less it, with all digits."""
-    since, rest = two_product(t, rate.high)
-    rest += t * rate.low
-    step: Array = np.rint(since)
-    return step, (since - step) + rest
-
-
-def fraction_of_product(t: Array, rate: Triple) -> Array:
-    """Return t * rate minus the nearest whole number, without cancellation."""
-    total, lost = t * rate.low, np.zeros_like(t)
-    for part in (rate.middle, rate.high):
-        for term in two_product(t, part):
-            total, more = two_sum(total, term - np.rint(term))
-            lost += more
-    return (total - np.rint(total)) + lost
-
-
-class Period(NamedTuple):
-    """The length of a period as the sum of three doubles, or of three arrays.
-
-    Products of the first two parts with whole numbers below 2^26 are exact, because the parts have
-    26 and 27 bits.
-    """
-
-    rate: float | Array
-    """Periods per unit of time."""
-    high: float | Array
-    middle: float | Array
-    low: float | Array
-    reach: float
-    """Time up to which the number of periods is below 2^26."""
-
-
-def period_of(length: Pair, rate: float | Array) -> Period:
-    """Return a period, or one per top, from its length and rate = 1/length.
-
-    The period is infinite if the rate is 0.
-    """
-    long, low = (np.where(np.isfinite(length.high), part, 0.0)[()] for part in length)
-    mantissa, exponent = np.frexp(long)
-    high = np.ldexp(np.trunc(mantissa * MANY), exponent - 26)
-    fastest = float(np.max(np.abs(rate)))
-    return Period(rate, high, long - high, low, MANY / fastest if fastest else math.inf)
-
-
-def whole_periods(
-    t: Array,
-    period: Period,
-    farthest: float,
-    space: Array,
-    offset: float | Array | None = None,
-) -> tuple[Array, Array, Array]:
-    """Return the integer n nearest to t/period + offset, and t - n period as a difference.
-
-    The first part of the difference is exact, and the second is tiny.  All results are in the three
-    arrays of `space`.  |t| must not exceed `farthest`, nor n exceed 2^51.
-    """
-    whole, rest, lost = space
-    np.multiply(t, period.rate, out=whole)
-    if offset is not None:
-        whole += offset
-    np.rint(whole, out=whole)
-    if farthest > period.reach:
-        return _many_periods(t, period, whole, 0.0 if offset is None else offset)
-    np.subtract(t, np.multiply(whole, period.high, out=lost), out=rest)
-    rest -= np.multiply(whole, period.middle, out=lost)
-    return whole, rest, np.multiply(whole, period.low, out=lost)
-
-
-def _many_periods(
-    t: Array, period: Period, whole: Array, offset: float | Array
-) -> tuple[Array, Array, Array]:
-    """Return the results of `whole_periods` for n with more than 26 bits; identical for fewer."""
-    many = np.rint(whole / MANY) * MANY
-    few, rest = whole - many, t
-    for length in (period.high, period.middle):
-        rest = rest - many * length
-        rest = rest - few * length
-    lost = whole * period.low
-    # rounding t/period may have led to a neighbour of the nearest integer
-    more = np.rint(((rest - lost) * period.rate + offset) * _LESS_THAN_1)
-    rest = rest - more * period.high
-    rest = rest - more * period.middle
-    return whole + more, rest, lost + more * period.low
 
 
 def two_sum(x: float | Array, y: float | Array) -> tuple[Array, Array]:

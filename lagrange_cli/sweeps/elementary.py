@@ -17,7 +17,7 @@ from .trust import GOOD, PAIR_EPS
 
 _LEAST, _MOST = 1e-280, 1e280
 """Sizes between which pairs of doubles keep all of their digits."""
-_TURN = DoubleDouble(np.array([2 * PI.high]), np.array([2 * PI.middle]))
+_TURN = DoubleDouble(np.array([2 * PI.high]), np.array([2 * PI.low]))
 
 
 class Elementary:

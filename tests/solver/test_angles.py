@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import json
 import math
+import random
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,9 +19,11 @@ from flint import ctx
 from lagtop import LagtopError, Regime, Top, solve
 from scenes import EVERY_KIND, UNIT, period
 
+from lagrange_cli.arithmetic.enclosures import at_precision
+from lagrange_cli.arithmetic.enclosures import exact as ball_of
 from lagrange_cli.names import ANGLES
 from lagrange_cli.solver.columns import chosen_columns, column_constants
-from lagrange_cli.solver.sampling import Attitude
+from lagrange_cli.solver.sampling import Attitude, period_of, whole_periods
 from lagrange_cli.solver.tables import ProvedTable, Sample, columns_at
 
 T = np.linspace(-3, 40, 40_000)
@@ -139,6 +143,34 @@ def test_blocks_fit_together(r0: float, count: int) -> None:
     for whole, part in zip(motion.angles(times), motion.angles(T[:count]), strict=True):
         np.testing.assert_array_equal(whole[:count], part)
     np.testing.assert_array_equal(times, T)
+
+
+def times_at(rng: random.Random, exact: Fraction, power: float) -> list[float]:
+    """Return times up to 2^power periods away: any, next to whole periods and next to halves."""
+    found = []
+    for _ in range(20):
+        n = int(2 ** rng.uniform(0, power))
+        for part in (Fraction(rng.random()), Fraction(0), Fraction(1, 2)):
+            t = rng.choice([-1, 1]) * float((n + part) * exact)
+            found += [t, math.nextafter(t, math.inf)]
+    return found
+
+
+@pytest.mark.parametrize("power", [3, 20, 25.9, 40, 51, 52])
+@pytest.mark.parametrize("offset", [0.0, -0.5, 0.31])
+def test_whole_periods_are_taken_off_exactly(power: float, offset: float) -> None:
+    """What is left has an error of 2^-100 of the time, and of 2^-52 of itself; n is the nearest."""
+    rng = random.Random(f"{power} {offset}")
+    for _ in range(10):
+        # a length with more digits than two doubles have
+        exact = Fraction(rng.getrandbits(200) + 1, 2 ** rng.randrange(100, 300))
+        period = at_precision(80, partial(lambda x: period_of(ball_of(x)), exact))
+        t = np.array(times_at(rng, exact, power))
+        whole, rest, lost = whole_periods(t, period, float(np.abs(t).max()), offset)
+        for time, n, left in zip(t.tolist(), whole.tolist(), (rest - lost).tolist(), strict=True):
+            true = Fraction(time) - int(n) * exact
+            assert abs(Fraction(left) - true) <= abs(true) / 2**52 + abs(Fraction(time)) / 2**100
+            assert abs(true / exact + Fraction(offset)) <= Fraction(1, 2) + Fraction(1, 2**19)
 
 
 def results(task: tuple[dict[str, Any], int | None]) -> str:
