@@ -3,8 +3,13 @@
 Examples in docstrings follow `from lagtop import *`, `import numpy as np` and `import warnings`.
 """
 
+from __future__ import annotations
+
 from importlib import import_module
-from typing import Any
+
+TYPE_CHECKING = False  # start-up: Ctrl-C while `typing` is imported gives a traceback
+if TYPE_CHECKING:
+    from typing import Any
 
 __version__ = "0.1.0"
 _MODULES = {

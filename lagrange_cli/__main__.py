@@ -1,7 +1,7 @@
 """The start of the command: `python -m lagrange_cli` and the script `lagtop`."""
 
+import _signal as signal  # type: ignore[import-not-found]  # `signal` itself takes long to import
 import gc
-import signal
 import sys
 
 _ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
@@ -31,8 +31,8 @@ def main() -> None:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def _numbers() -> list[signal.Signals]:
-    return [signal.Signals[name] for name in _ENDING if hasattr(signal, name)]
+def _numbers() -> list[int]:
+    return [getattr(signal, name) for name in _ENDING if hasattr(signal, name)]
 
 
 def _unwind(number: int, _: object) -> None:

@@ -55,6 +55,18 @@ def test_imports_form_no_circles() -> None:
     TopologicalSorter(graph).prepare()
 
 
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_only_the_command_line_names_options(path: Path) -> None:
+    """A message of the library names arguments: `columns=t`; the command line makes options."""
+    if path.relative_to(PACKAGE).parts[0] in {"cli", "inverse"}:
+        return
+    tree = ast.parse(path.read_text())
+    docs = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docs:
+            assert not re.search(r"(?<!-)--[a-z]", node.value), f"{path}, line {node.lineno}"
+
+
 def test_top_of_the_project_holds_only_what_must_be_there() -> None:
     listed = subprocess.run(
         ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False, text=True

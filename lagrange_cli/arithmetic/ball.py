@@ -187,7 +187,7 @@ class Ball:
         if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
             raise OutOfRangeError(
                 "the size of a value is not within 1e-990000000000000000 and "
-                "1e+990000000000000000, the limits of --digits: take a smaller argument"
+                "1e+990000000000000000, the limits of digits: take a smaller argument"
             )
         low, high = Decimal(middle - radius), Decimal(middle + radius)
         return _EXACT.scaleb(low, exponent), _EXACT.scaleb(high, exponent)

@@ -301,7 +301,7 @@ def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
     if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
         raise OutOfRangeError(
             "the size of a value is not within 1e-990000000000000000 and 1e+990000000000000000, "
-            "the limits of --digits: take a smaller argument"
+            "the limits of digits: take a smaller argument"
         )
     low, high = Decimal(middle - radius), Decimal(middle + radius)
     return _EXACT.scaleb(low, exponent), _EXACT.scaleb(high, exponent)
@@ -320,7 +320,7 @@ def rounded(what: str, value: Exact, digits: int | None) -> Any:
         found = math.inf
     if math.isinf(found) or (value and not found):
         bound = "0 or at least 5e-324" if not found else "within 1.8e308"
-        remedy = "use --digits" if not found else "change the units"
+        remedy = "use digits=N" if not found else "change the units"
         raise OutOfRangeError(f"{what} must be {bound} in size, got {_brief(value)}: {remedy}")
     return found
 

@@ -184,7 +184,7 @@ def nearest_double(name: str) -> Callable[[DecimalOrFraction], float]:
             )
         if value and not nearest:
             raise OutOfRangeError(
-                f"{name} must be 0 or at least 5e-324 in size, got {_short(value)}: use --digits"
+                f"{name} must be 0 or at least 5e-324 in size, got {_short(value)}: use digits=N"
             )
         return nearest + 0.0  # never -0.0
 

@@ -172,7 +172,7 @@ def compared(kind: str, motion: Motion) -> Iterator[Row]:
             row = measure(task, name, METHODS[name].settings[-1], LIMIT, runs=1)
             verdict = verdict_of(row.error_rad, rounding, row.remark)
             row = row._replace(input_rounding=rounding, verdict=verdict)
-            yield row._replace(periods=span, options=motion.top.options())
+            yield row._replace(periods=span, options=motion.top.as_text())
 
 
 def neighbours(top: Top) -> Iterator[Reference]:

@@ -109,7 +109,7 @@ def conclusions(rows: Sequence[Row], is_long: bool) -> Iterator[str]:
 
 def conditions(tasks: Sequence[Task]) -> dict[str, str]:
     """Return what the figures depend on."""
-    scenes = dict.fromkeys(f"{x.scene}: {x.motion.top.options()}" for x in tasks)
+    scenes = dict.fromkeys(f"{x.scene}: {x.motion.top.as_text()}" for x in tasks)
     spans = [f"{x:g}" for x in dict.fromkeys(x.periods for x in tasks)]
     return machine() | {
         "scenes": "; ".join(scenes),

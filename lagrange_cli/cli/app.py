@@ -6,6 +6,7 @@ import os
 import re
 import signal
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from typing import Any, NoReturn
@@ -73,7 +74,7 @@ class LagtopGroup(click.Group):
         except LagtopError as error:
             name = ctx.invoked_subcommand
             params = self.get_command(ctx, name).params if name else []
-            error.args = (_with_options(error, params),)
+            error.args = (_naming_option(error, params),)
             raise
         except KeyboardInterrupt:
             _die_by("SIGINT", 130)
@@ -123,21 +124,27 @@ def _check_epoch() -> None:
         raise UnavailableError(f"SOURCE_DATE_EPOCH must be a number of seconds, got {epoch!r}")
 
 
-def _with_options(error: LagtopError, params: list[click.Parameter]) -> str:
-    """Return a message of the library with options in place of arguments.
-
-    An argument is the key of the error at the start of the message, where that of a tilt has a
-    unit, or has a value, as in `columns=t,quaternion`.
-    """
+def _naming_option(error: LagtopError, params: Sequence[click.Parameter]) -> str:
+    """Return a message with the option in place of the key of the error, which it begins with."""
     text, key = str(error), error.key or ""
-    for param in params:
-        option = param.opts[-1]
-        name = option.lstrip("-").replace("-", "_")
-        if name == key.removesuffix("_deg").removesuffix("_rad") and text.startswith(f"{key} "):
-            text = option + text.removeprefix(key)
-        if option.startswith("--"):
-            text = re.sub(rf"\b{name}=(?=[\w(])", f"{option} ", text)
+    if text.startswith(f"{key} ") and (option := _options(params).get(key)):
+        text = option + text.removeprefix(key)
+    return with_options(text, params)
+
+
+def with_options(text: str, params: Sequence[click.Parameter]) -> str:
+    """Return a text of the library with options for arguments, as `--columns t` for `columns=t`."""
+    for name, option in _options(params).items():
+        text = re.sub(rf"\b{name}=(?=[-\w(.])", f"{option} ", text)
     return text
+
+
+def _options(params: Sequence[click.Parameter]) -> dict[str, str]:
+    """Return the options by the names of arguments; those of a tilt have a unit."""
+    found = {x.opts[-1].lstrip("-").replace("-", "_"): x.opts[-1] for x in params}
+    if "theta0" in found:
+        found |= {"theta0_deg": found["theta0"], "theta0_rad": f"--rad {found['theta0']}"}
+    return {name: option for name, option in found.items() if option.startswith("--")}
 
 
 def _usage_message(error: click.ClickException) -> str:

@@ -132,7 +132,7 @@ def plot_command(
             named = list(zip(scenes or [""], motions, strict=True))
             about = title or f"Lagrange top: {', '.join(kinds)}"
             text = "; ".join(
-                f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.options()}"
+                f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.as_text()}"
                 for name, motion in named
             )
             with styled(options.look):

@@ -18,7 +18,7 @@ from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
 from ..top.inputs import BODY, DECLARED, example_options, remark_on
 from ..top.values import Value, parse_value, tilt_key
-from .app import complain
+from .app import complain, with_options
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -221,7 +221,8 @@ def top(
             inputs = {x: value for x, value in given.items() if value is not None}
             inputs = {tilt_key(x, y, radians=rad): y for x, y in inputs.items()}
             for word in words if several else [words]:
-                _check_word(word, inputs)
+                if "CONDITION" not in argument:
+                    _check_word(word, inputs)
             if several:
                 scenes = [word for word in words if is_scene and is_scene(word)]
                 if len(scenes) > 1:
@@ -362,7 +363,7 @@ def write_report(
     """
     check_plot(plot, out.path)
     with opened(plot) if plot else nullcontext() as picture, opened(out.path) as stream:
-        report = find()
+        report = _with_options(find())
         if picture and draw:
             from ..plot.style import report_bytes
 
@@ -372,6 +373,14 @@ def write_report(
         for name, text in report.conditions.items():
             complain(f"{name}: {text}")
     return report
+
+
+def _with_options(report: Report) -> Report:
+    """Return a report with the options of the command in place of arguments."""
+    params = click.get_current_context().command.params
+    conditions = {name: with_options(x, params) for name, x in report.conditions.items()}
+    conclusions = [with_options(x, params) for x in report.conclusions]
+    return report._replace(conditions=conditions, conclusions=conclusions)
 
 
 def check_plot(path: str | None, output: str) -> None:

@@ -86,7 +86,7 @@ def comparison_report(
     """Return the report on trajectories; `argument` writes a remedy such as `align=start`."""
     shown = [x for x in _COLUMNS if any(getattr(row, x.key) is not None for row in results)]
     conditions = {
-        "scene": motion.top.options(),
+        "scene": motion.top.as_text(),
         "regime": motion.regime,
         "errors": f"radians, those of rates relative; greatest of all rows; fine up to {limit:g}",
     }

@@ -68,7 +68,7 @@ class FunctionRequest(NamedTuple):
             if doubles and abs(part) > limit:
                 raise LagtopError(
                     f"param must be within 2^50 periods = {limit:.3g} of 0, "
-                    f"got {self.parameter} (or give --digits)",
+                    f"got {self.parameter} (or use digits=N)",
                     "param",
                 )
 

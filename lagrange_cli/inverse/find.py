@@ -132,7 +132,7 @@ def search_of(
     others = [x for x in found if x.relation != "=" or isinstance(x.value, str)]
     spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
     if not spans:
-        raise LagtopError("no input is unknown: give a range, such as --r0 10:200")
+        raise LagtopError("no input is unknown: give a range, such as r0=10:200")
     if len(spans) > max(COUNTS):
         raise LagtopError(f"find takes 1 to {max(COUNTS)} unknown inputs, got {len(spans)}")
     if len(targets) != len(spans):

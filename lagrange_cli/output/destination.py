@@ -42,7 +42,7 @@ class Output(NamedTuple):
     def record(self, record: Mapping[str, Any], keys: Callable[[], Keys]) -> None:
         """Write one record; a table shows it by its `keys`.  Raises LagtopError for Parquet."""
         if self.fmt == "parquet":
-            raise LagtopError("--format parquet holds tables: use json or csv for constants")
+            raise LagtopError("format parquet holds tables: use json or csv", "format")
         if self.fmt in {"json", "ndjson"}:
             self.text(f"{_json_value(record)}\n")
         elif self.fmt == "csv":

@@ -48,7 +48,7 @@ def draw_errors(
         positive = np.where(x.error > 0, x.error, np.nan)  # 0 and NaN have no logarithm
         name = plain(str(x.file or "trajectory"))
         over_time.plot(x.t, positive, lw=1.2, color=colour, ls=dashes, label=name)
-    over_time.axhline(limit, color=LIGHT.quiet, lw=0.8, ls=":", label="--max-error")
+    over_time.axhline(limit, color=LIGHT.quiet, lw=0.8, ls=":", label="limit")
     over_time.set(yscale="log", xlabel="t (units of the trajectory)", ylabel="error (rad)")
     over_time.set_title("Error over time")
     over_time.legend(loc="upper left", bbox_to_anchor=(0, -0.14), ncols=2)

@@ -31,7 +31,7 @@ class Parts:
         LagtopError for an empty name.
         """
         if not path:
-            raise LagtopError("--parts must name a folder, got ''")
+            raise LagtopError("parts must name a folder, got ''", "parts")
         self.path, self.sweep, self.found = Path(path), sweep, 0
         file, text = self.path / "sweep.json", f"{json.dumps(description, indent=1)}\n".encode()
         try:

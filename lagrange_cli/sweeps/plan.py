@@ -128,7 +128,8 @@ def plan(
 def digest_of(path: str) -> str:
     """Return the SHA-256 digest of a file.  Raises LagtopError for a pipe."""
     if path == "-" or (os.path.exists(path) and not os.path.isfile(path)):
-        raise LagtopError(f"--parts needs a file of tops that can be read again, got {path}")
+        wanted = "a file of tops that can be read again"
+        raise LagtopError(f"parts needs {wanted}, got {path}", "parts")
     return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
 
 

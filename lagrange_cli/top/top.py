@@ -230,18 +230,11 @@ class Top:
             return None
         return f"a rigid body with its mass centre at s has {bound}; computing anyway"
 
-    def options(self) -> str:
-        """Return the top as command-line options."""
-        radians = "--rad " if self.theta0_deg is None else ""
-        given = self.parts.body | self.parts.start
-        words = [
-            f"{radians}--{TILT} {value!r}"
-            if name.startswith(TILT)
-            else f"--{name.replace('_', '-')} {value!r}"
-            for name, value in given.items()
-            if value or name not in {"thetadot0", "psidot0"}
-        ]
-        return " ".join(words).replace("'", "")
+    def as_text(self) -> str:
+        """Return the inputs as a text, such as `m=1587.0 A=39032.0`, without rates that are 0."""
+        given = {name: x for name, x in self.as_dict().items() if x is not None}
+        kept = (x for x in given.items() if x[1] or x[0] not in {"thetadot0", "psidot0"})
+        return " ".join(f"{name}={value}" for name, value in kept)
 
 
 INPUTS = tuple(name for name in Top.__slots__ if name != "steady_word")

@@ -161,7 +161,7 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
 @pytest.mark.parametrize(
     ("conditions", "unknowns", "message"),
     [
-        (["T_nutation=0.4"], {}, "no input is unknown: give a range, such as --r0 10:200"),
+        (["T_nutation=0.4"], {}, "no input is unknown: give a range, such as r0=10:200"),
         (["g=1"], dict.fromkeys(("m", "g", "s", "r0"), "1:2"), "takes 1 to 3 unknown inputs, got"),
         (["T_nutation=0.4"], {"r0": "1:2", "scan": 2}, "scan must be 3 or more values"),
         (["T_nutation=0.4"], {"r0": "1:2", "scan": 20_000_000}, "at most 1e7 tops"),

@@ -307,7 +307,7 @@ def test_errors_are_drawn_over_time_and_step() -> None:
         figure = draw_errors(results, 1e-3, [x**4 for x in steps])
         over_time, over_step = figure.axes
         assert data(over_time.get_lines()[0])[1][1:] == pytest.approx(1e-4 * t[1:])
-        assert data(labelled(over_time)["--max-error"])[1] == pytest.approx([1e-3, 1e-3])
+        assert data(labelled(over_time)["limit"])[1] == pytest.approx([1e-3, 1e-3])
         legend: Any = over_time.get_legend()
         assert legend.get_texts()[0].get_text() == r"\$x_1\$"
         points, *slopes = over_step.get_lines()

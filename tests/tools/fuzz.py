@@ -47,6 +47,8 @@ from lagtop import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.bench import reference as reference_module
 from lagrange_cli.bench.reference import Reference, rotation_angle
 from lagrange_cli.bench.reference import inputs_of as inputs_in_mpmath
+from lagrange_cli.cli.app import with_options
+from lagrange_cli.cli.solve import solve_command
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS
 from lagrange_cli.solver.tables import rows
@@ -60,6 +62,11 @@ COSINES = ("u1", "u2", "u_quarter")
 NEIGHBOURS, ELSEWHERE = 5, 5
 CHUNK, MOST_SHOWN = 50, 40
 T = TypeVar("T")
+
+
+def options_of(top: Top) -> str:
+    """Return a top as options of the command line."""
+    return with_options(top.as_text(), solve_command.params)
 
 
 class Tally:
@@ -136,7 +143,7 @@ def check_angles(
         except Undecided:
             tally.counts["undecided times"] += 1
             continue
-        show = f"lagtop table {motion.top.options()} --columns {{}} --t-min {t!r} --n 1"
+        show = f"lagtop table {options_of(motion.top)} --columns {{}} --t-min {t!r} --n 1"
         shown = (*errors[:3], max(errors[3:]), *remainders, turned)
         for name, error in zip(NAMES, shown, strict=True):
             asked = "t,phi,psi --wrap" if name == "wrapped" else f"t,{name}"
@@ -156,7 +163,7 @@ def number_of(motion: Motion, key: str) -> float | None:
 def check_record(tally: Tally, balls: BallReference, motion: Motion) -> None:
     """Check every number of a motion: the nearest double, or rightly none."""
     for key in NUMBERS:
-        show = f"lagtop solve {motion.top.options()} --get {key}"
+        show = f"lagtop solve {options_of(motion.top)} --get {key}"
         tally.counts["numbers"] += 1
         if pair := tally.both(key, number_of(motion, key), balls.exact(key), show):
             value, exact = pair
@@ -237,7 +244,7 @@ def check_by_mpmath(tally: Tally, motion: Motion, digits: int, times: Sequence[f
             tau = float(mpmath.mpf(time_) - mpmath.nint(time_ / reference.T) * reference.T)
             size = 2.0**-52 * (1 + abs(tau) * speed)
             tally.counts["attitudes by mpmath"] += 1
-            show = f"{motion.top.options()} --columns quaternion --t-min {time_!r} --n 1"
+            show = f"{options_of(motion.top)} --columns quaternion --t-min {time_!r} --n 1"
             tally.note("attitude", away / size, 2 * UNITS, f"lagtop table {show}")
 
 
@@ -292,7 +299,7 @@ def check_sweep(tally: Tally, tilt: str, checks: Sequence[tuple[Scene, BallRefer
         if columns["error"][i] is not None:
             tally.counts["sweep refused"] += 1
             continue
-        options = Top(**scene).options()
+        options = options_of(Top(**scene))
         for key in NUMBER_KEYS:
             value = float(columns[key][i])
             show, known = f"lagtop sweep {options} --keys {key}  # {value!r}", not math.isnan(value)
