@@ -1,34 +1,45 @@
 """`fit`: the top behind a recording, by least squares from the best of many starts.
 
 The starts are closed-form tops with the nutation of the recording.  Their residuals at some rows
-select a few, from which the least squares converge.  If no nutation is visible, or none is
-determined, a steady precession is fitted.
+select a few, from which the least squares converge, first without the known inputs that the
+recording determines.  If these agree, the fit is repeated with them.  If no nutation is visible, or
+none is determined, a steady precession is fitted.  All of this is in units of the nutation period.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from operator import itemgetter
 from types import NoneType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import OptimizeResult, least_squares
 
-from ..arithmetic.numbers import angle_unit
 from ..arithmetic.text import parse_number
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
-from ..solver.keys import shown_keys, unit_name
-from ..sweeps.records import sweep
 from ..top.given import gather
 from ..top.values import value_of
-from .motions import STATE, angles
-from .outcome import CHANCE, GOOD, PERCENT, Outcome, chi2_bounds
-from .recording import Known, Recording, known_inputs, recording_from, turned_up
-from .starts import Signal, noise_of, oscillation_in, signals_in, starts
+from .checks import CHANCE
+from .known import Known, estimates, known_inputs, scaled_known, time_power
+from .motions import STATE
+from .nutation import nutating_outcome
+from .outcome import FAILED, Number, Outcome
+from .problem import Minimum, Problem
+from .recording import Recording, recording_from
+from .signals import (
+    Signal,
+    binned,
+    neighbour_noise,
+    noise_of,
+    oscillation_in,
+    signals_in,
+    step_between,
+)
+from .starts import starts
 from .steady import steady_outcome
 
 _FEW_ROWS, _ROWS, _MANY_ROWS = 12, 50, 300
@@ -41,370 +52,65 @@ _ALIKE = 0.02
 _COMPARABLE, _LIKELY = 50.0, 16.0
 """Factor of chi^2 above the least one, beyond which a start is dropped, and the difference of
 -2 log(likelihood) below which two tops explain a recording equally well."""
-_WINDOWS = (8, 12, 20, 32, 48)
-"""Numbers of windows to suggest if the spin may decay."""
-_ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
-_MEANINGS = {
-    "a": "2mgs/A (4,4)",
-    "b": "C r0/A (4,5)",
-    "r0": "total spin rate",
-    "theta0": "tilt in the first row",
-    "thetadot0": "nutation rate in the first row",
-    "psidot0": "precession rate in the first row",
-    "psi_zero": "psi of the data in the first row",
-    "phi_zero": "phi of the data in the first row",
-}
-_ANGLES = ("theta0", "psi_zero", "phi_zero")
-_ELEMENTARY = {
-    "T_nutation_elementary": "T_nutation",
-    "precession_rate_elementary": "mean_precession_rate",
-}
-_DERIVED = (
-    *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
-    *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
-)
-_DEPENDENT = 1e-7
-"""Ratio of singular values of the slopes below which parameters are not determined."""
-_IMPROVED = 0.999
-"""Standard deviation of a known input after the fit, over the given one, from which it is new."""
-_SHARE = 0.05
-"""Share of a parameter in a direction that is not determined, from which it is not either."""
-_APART, _LEAST, _FASTEST = 4.0, 2.0, 1e6
-"""Standard deviations between different tops, those by which a > 0, and the largest b^2/a at which
-a is determined."""
-_STEP, _SHORT_STEP, _LEAST_SIZE = 1e-6, 1e-7, 1e-3
-"""Steps of central and of forward differences, over the size of a parameter, and its least size."""
-_POLE, _FAR = 1e-9, 1e3
-"""Least distance from a pole, and weighted residual of a motion that does not exist."""
+_COARSE, _FINE, _LEAST_BINS, _MOST_ROWS = 20, 40, 600, 3000
+"""Bins per nutation period for the starts and for the fit, their least number, and the number of
+rows up to which the fit uses all of them."""
+_SURE = 2.0
+"""Standard deviations from which b has a sign, and r0 with it."""
+_FASTER = 3.0
+"""Ratio of spin rates from which the slower one tells the direction of psi."""
+_CONTRADICTS = 3.0
+"""Standard deviations from which a known input contradicts the recording."""
+_LEAST_SIGMA = 1e-12
+_Ways = Sequence[tuple[Recording, Mapping[str, Signal]]]
 
 
-class Problem:
-    """The parameters of a recording, and its residuals for many tops at once.
+class Data(NamedTuple):
+    """A recording in units of its nutation period, and what is known of its noise."""
 
-    Parameters are the state, r0 if the spin is recorded, and the zeros of psi and phi.  Known
-    inputs replace a, b, r0 and the start as far as they determine them.  A known input that is
-    uncertain is a parameter with a prior.
-    """
-
-    def __init__(self, recording: Recording, known: Known, sizes: Array) -> None:
-        self.recording, self.inputs, self.sizes = recording, known, sizes
-        """The `sizes` are the standard deviations of the channels."""
-        self.known = {name: value for name, (value, _) in known.items()}
-        self.stds = {name: std for name, (_, std) in known.items() if std}
-        seen, has, weight = recording.angles.keys(), known.keys(), {"m", "g", "s"}
-        self.spins = "phi" in seen or "r0" in has
-        self.is_even = seen == {"theta"} and self.known.get("psidot0") == 0 and not self.spins
-        """Whether the opposite b leaves the same tilt."""
-        self.has_torque = weight | {"A"} <= has
-        self.is_tied = self.spins and "C" in has and ("A" in has or weight <= has)
-        fixed = {*has, *["a"] * self.has_torque, *["b"] * self.is_tied}
-        self.names = [x for x in (*STATE, *["r0"] * ("phi" in seen)) if x not in fixed]
-        self.names += [f"{x}_zero" for x in ("psi", "phi") if x in seen]
-        self.count = len(self.names)
-        """The number of parameters without a prior."""
-        self.names += self.stds
-
-    def thinned(self, count: int) -> Problem:
-        """Return the same problem for at most `count` rows of the recording."""
-        rows = np.unique(np.linspace(0, self.recording.t.size - 1, count).astype(int))
-        return Problem(self.recording.part(rows), self.inputs, self.sizes)
-
-    def values(self, x: Array) -> dict[str, Array]:
-        """Return the quantities of the motion from parameters, shape (tops, parameters)."""
-        found: dict[str, Any] = {"psi_zero": 0.0, "phi_zero": 0.0, **self.known}
-        found |= dict(zip(self.names, x.T, strict=True))
-        weight = 2 * math.prod(found.get(x, math.nan) for x in ("m", "g", "s"))
-        if self.has_torque:
-            found["a"] = weight / found["A"]
-        if self.is_tied:
-            moment = found["A"] if "A" in found else weight / found["a"]
-            found["b"] = found["C"] / moment * found["r0"]
-        found.setdefault("r0", found["b"])
-        return {name: np.broadcast_to(value, len(x)) for name, value in found.items()}
-
-    def ratio(self, x: Array) -> Array:
-        """Return C/A = b/r0."""
-        value = self.values(x)
-        return value["b"] / value["r0"]
-
-    def angles(self, x: Array, t: Array) -> Array:
-        """Return theta, phi and psi with the zeros of the recording, shape (3, tops, times)."""
-        value = self.values(x)
-        states = np.stack([value[name] for name in STATE], axis=-1)
-        states, tops = np.unique(states, axis=0, return_inverse=True)
-        theta, phi, psi = angles(states, t)[:, tops]
-        phi = phi + np.outer(value["r0"] - value["b"], t) + value["phi_zero"][:, np.newaxis]
-        return np.stack([theta, phi, psi + value["psi_zero"][:, np.newaxis]])
-
-    def residuals(self, x: Array) -> Array:
-        """Return recording minus motion in radians, shape (tops, channels, times)."""
-        return self.recording.residuals(*self.angles(x, self.recording.t))
-
-    def weighted(self, x: Array) -> Array:
-        """Return residuals over standard deviations, a row for each top, and priors at the end."""
-        found = (self.residuals(x) / self.sizes[:, np.newaxis])[:, self.recording.present]
-        value = self.values(x)
-        priors = [(value[y] - self.known[y]) / std for y, std in self.stds.items()]
-        rows: Array = np.nan_to_num(np.column_stack([found, *priors]), nan=_FAR, posinf=_FAR)
-        return rows
-
-    def noise(self, x: Array) -> Array:
-        """Return the logarithm of the noise that each top leaves, summed over the channels."""
-        mean = np.nanmean(self.residuals(x) ** 2, axis=2) + self.sizes**2
-        return np.asarray(np.nan_to_num(np.log(mean).sum(axis=1), nan=np.inf))
-
-    def slopes(
-        self, x: Array, function: Callable[[Array], Array], *, central: bool = True
-    ) -> Array:
-        """Return the derivatives of a function of many tops by the parameters, in the last axis."""
-        steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), _LEAST_SIZE)
-        steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
-        below = x - np.diag(steps) if central else x[np.newaxis]
-        found = function(np.concatenate([x + np.diag(steps), below]))
-        return np.asarray((found[: x.size] - found[x.size :]).T / ((1 + central) * steps))
-
-    def solve(self, x: Array, steps: int) -> OptimizeResult:
-        """Return the least squares from one start."""
-        low = [{"a": 1e-30, "theta0": _POLE}.get(name, -np.inf) for name in self.names]
-        high = [math.pi - _POLE if name == "theta0" else np.inf for name in self.names]
-        return least_squares(
-            lambda at: self.weighted(at[np.newaxis])[0],
-            np.clip(x, low, high),
-            lambda at: self.slopes(at, self.weighted, central=False),
-            bounds=(low, high),
-            x_scale="jac",
-            xtol=1e-12,
-            ftol=1e-11,
-            gtol=1e-12,
-            max_nfev=steps,
-        )
-
-    def parameters_of(self, states: Array, spin: Signal | None) -> Array:
-        """Return the parameters of states, with the best zeros and spin rate of each."""
-        known, seen, t = self.known, self.recording.angles, self.recording.t
-        value: dict[str, Any] = {**known, **dict(zip(STATE, states.T, strict=True))}
-        theta, phi, psi = angles(states, t)
-        if spin is not None:
-            around = t - t.mean()
-            shown = np.interp(t, spin.t, spin.y) + spin.rate * t
-            r0 = value["b"] + (shown - phi) @ around / (around @ around)
-            r0 = np.asarray(known.get("r0", slowest(r0, value["b"], self.recording.frame)))
-            value["r0"] = np.broadcast_to(r0, len(states))
-            turned = seen["phi"] - phi - np.outer(value["r0"] - value["b"], t)
-            value["phi_zero"] = _mean_angle(turned)
-        if "psi" in seen:
-            value["psi_zero"] = _mean_angle(seen["psi"] - psi, np.sin(theta))
-        rows = [np.broadcast_to(value[name], len(states)) for name in self.names]
-        return np.stack(rows, axis=-1)
-
-
-def slowest(r0: Array, b: Array, frame: float) -> Array:
-    """Return the slowest of the spin rates that look alike in frames and have 0 < b/r0 <= 2.
-
-    If there is none, the given rates are returned.
-    """
-    alike = r0 + 2 * math.pi / frame * np.arange(-3, 4)[:, np.newaxis]
-    size = np.where((b / alike > 0) & (b / alike <= 2.05), np.abs(alike), np.inf)
-    best = alike[np.argmin(size, axis=0), np.arange(np.size(r0))]
-    return np.where(np.isfinite(size.min(axis=0)), best, r0)
-
-
-def _mean_angle(turned: Array, weights: Array | float = 1.0) -> Array:
-    found: Array = np.angle(np.nansum(weights * np.exp(1j * turned), axis=1))
-    return found
-
-
-class Minimum(NamedTuple):
-    """One minimum of the least squares."""
-
-    problem: Problem
-    x: Array
-    spread: Array
-    """A matrix S with the covariance S S^T of the parameters."""
-    chi2: float
-    unknown: list[str]
-    """Parameters that the recording does not determine."""
+    recording: Recording
+    coarse: Recording
+    fine: Recording
+    signals: Mapping[str, Signal]
+    """The signals of the coarse recording."""
+    sizes: Array
+    """Standard deviations of the channels in one row."""
+    floors: Array
+    turn: float
+    """2 pi per frame if whole turns of the spin are invisible, else 0."""
 
     @classmethod
-    def of(cls, problem: Problem, start: Array) -> Minimum:
-        """Converge; standard deviations that were not given come from the residuals."""
-        recording = problem.recording
-        problem = Problem(recording, problem.inputs, problem.sizes)
-        found = problem.solve(start, 80)
-        present = recording.present
-        share = present.sum() / max(present.sum() - problem.count, 1)
-        for _ in range(0 if recording.sigma else 4):
-            rest = np.where(present, problem.residuals(found.x[np.newaxis])[0], np.nan)
-            problem.sizes = np.sqrt(np.nanmean(rest**2, axis=1) * share) + 1e-12  # never 0
-            found = problem.solve(found.x, 20)
-        slopes = problem.slopes(found.x, problem.weighted)
-        size = np.linalg.norm(slopes, axis=0) + 1e-300
-        _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
-        sure = values > _DEPENDENT * values[0]
-        loose = np.abs(rows[~sure]).max(axis=0, initial=0.0) > _SHARE
-        spread = rows[sure].T / values[sure] / size[:, np.newaxis]
-        if "a" in problem.names:  # a <= 0 is no top
-            i, b = problem.names.index("a"), problem.values(found.x[np.newaxis])["b"][0]
-            least = max(_LEAST * np.linalg.norm(spread[i]), b * b / _FASTEST)
-            loose[i] |= found.x[i] <= least
-        unknown = [name for name, x in zip(problem.names, loose, strict=True) if x]
-        return cls(problem, found.x, spread, 2 * float(found.cost), unknown)
+    def of(
+        cls, one: Recording, signals: Mapping[str, Signal], scale: float, floors: Array
+    ) -> Data:
+        """Return a recording in units of `scale`."""
+        recording = replace(one, t=one.t / scale)
+        signals = {
+            x: y._replace(t=y.t / scale, rate=y.rate * scale) for x, y in signals.items()
+        }
+        periods = float(recording.t[-1])
+        most = int(max(_COARSE * periods, _LEAST_BINS))
+        coarse, few = binned(recording, signals, most), int(max(_FINE * periods, _LEAST_BINS))
+        is_long = recording.t.size > max(_MOST_ROWS, 1.5 * few)
+        fine = binned(recording, signals, few) if is_long else recording
+        averaged = {x: y.averaged(most) for x, y in signals.items()}
+        sigma = recording.sigma or {
+            x: y * math.sqrt(coarse.rows_per_bin)
+            for x, y in noise_of(averaged, 1.0, coarse).items()
+        }
+        sizes = np.maximum([sigma[x] for x in recording.channels], floors)
+        turn = 2 * math.pi / recording.frame if recording.is_even else 0.0
+        return cls(recording, coarse, fine, averaged, sizes, floors, turn)
 
     @property
-    def badness(self) -> float:
-        """Minus twice the logarithm of the likelihood."""
-        rows = self.problem.recording.present.sum(axis=1)
-        return self.chi2 + 2 * float(rows @ np.log(self.problem.sizes))
-
-    @property
-    def values(self) -> dict[str, float]:
-        """The quantities of the motion, and known inputs."""
-        found = self.problem.values(self.x[np.newaxis])
-        return {name: float(x[0]) for name, x in found.items()}
-
-    def numbers(
-        self, function: Callable[[Array], Mapping[str, Array]]
-    ) -> dict[str, tuple[float, float]]:
-        """Return finite functions of the parameters, with standard deviations."""
-
-        def columns(x: Array) -> Array:
-            return np.stack([*function(x).values()], axis=-1)
-
-        stds = np.linalg.norm(self.problem.slopes(self.x, columns) @ self.spread, axis=1)
-        found = zip(function(self.x[np.newaxis]).items(), stds, strict=True)
-        numbers = {key: (float(value), float(std)) for (key, (value,)), std in found}
-        return {key: x for key, x in numbers.items() if np.isfinite(x).all()}
-
-    def differs(self, other: Minimum) -> bool:
-        """Return whether this is another top: in a, b or r0."""
-        rows = [i for i, name in enumerate(self.problem.names) if name in {"a", "b", "r0"}]
-        near = _APART * np.linalg.norm(self.spread, axis=1) + 1e-6 * np.abs(self.x)
-        return bool(np.any((np.abs(self.x - other.x) > near)[rows]))
-
-
-def nutating_outcome(
-    found: Minimum, rival: Minimum | None, frequency: float, *, radians: bool
-) -> Outcome:
-    """Return the result of a fit; the `rival` is another top that fits as well."""
-    problem, recording = found.problem, found.problem.recording
-    values, names = found.values, problem.names
-    numbers = found.numbers(lambda x: _computed(problem, x, radians=radians))
-    for name, std in zip(names, np.linalg.norm(found.spread, axis=1), strict=True):
-        if std > _IMPROVED * problem.stds.get(name, math.inf):
-            numbers.pop(_named(name, radians=radians), None)
-    notes, faults = [*recording.notes], []
-    if problem.is_even:
-        notes.append("the sign of b is not determined: theta alone does not show the direction")
-    if rival:
-        shown = ", ".join(f"{x} = {rival.values[x]:.6g}" for x in ("a", "b", "r0") if x in names)
-        faults.append(f"another top explains the recording as well: {shown}")
-    if found.unknown:
-        faults.append(f"the recording does not determine {' and '.join(found.unknown)}")
-    if problem.spins:
-        ratio, std = found.numbers(lambda x: {"C/A": problem.ratio(x)}).get("C/A", (0.0, 0.0))
-        if not -_APART * std < ratio < 2 + _APART * std:
-            faults.append(f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2")
-        if "phi" in recording.angles and abs(values["r0"]) * recording.frame > math.pi:
-            notes.append("the spin exceeds half a turn per frame: r0 is the slowest possible rate")
-    if products := [x for x in numbers if set(x) & set("*/")]:
-        notes.append(f"only {' and '.join(products)} can be determined: give known inputs")
-    unit = found.spread / (np.linalg.norm(found.spread, axis=1, keepdims=True) + 1e-300)
-    body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
-    return Outcome(
-        recording,
-        problem.inputs,
-        radians,
-        numbers,
-        {key: _meaning(key, problem, numbers, radians=radians) for key in numbers},
-        lambda t: problem.angles(found.x[np.newaxis], t)[:, 0],
-        problem.count,
-        frequency,
-        faults,
-        notes,
-        _inputs(found, numbers),
-        {f"{x} and {y}": float(unit[i] @ unit[j]) for i, x in body for j, y in body if x < y},
-    )
-
-
-def _named(name: str, *, radians: bool) -> str:
-    """Return the key of a parameter, with the unit of an angle."""
-    return f"{name}_{angle_unit(radians=radians)[1]}" if name in _ANGLES else name
-
-
-def _computed(problem: Problem, x: Array, *, radians: bool) -> dict[str, Array]:
-    """Return the numbers of the motion and of the body for many parameters."""
-    v, scale = problem.values(x), dict.fromkeys(_ANGLES, angle_unit(radians=radians)[0])
-    free = {*problem.names, *["b"] * problem.is_tied}
-    names = [name for name in (*_MEANINGS, *problem.stds) if name in free]
-    found = {_named(name, radians=radians): v[name] * scale.get(name, 1.0) for name in names}
-    has = {name: v[name] for name in (*problem.known, *["r0"] * problem.spins)}
-    found |= body_numbers(v["a"] / 2, v["b"], has)
-    keys = [unit_name(key, radians=radians) for key in _DERIVED]
-    start = {"theta0_rad": v["theta0"], "thetadot0": v["thetadot0"], "psidot0": v["psidot0"]}
-    swept = sweep(keys=keys, radians=radians, m=1, A=1, C=1, s=1, g=v["a"] / 2, r0=v["b"], **start)
-    derived = {key: np.asarray(swept[key], float) for key in keys}
-    derived["mean_spin_rate"] = derived["mean_spin_rate"] + v["r0"] - v["b"]
-    if not problem.spins:
-        del derived["mean_spin_rate"]
-    for key, exact in _ELEMENTARY.items():
-        derived[f"{key}{PERCENT}"] = 100 * (derived[key] / derived[exact] - 1)
-    return found | derived
-
-
-def body_numbers(torque: Array, b: Array, has: Mapping[str, Array]) -> dict[str, Array]:
-    """Return the unknown inputs of the body, or products of them, from mgs/A, b and known inputs.
-
-    The names of products are such as `m*s/A`.
-    """
-    has, found = dict(has), dict[str, Array]()
-    if "A" not in has:
-        if {"m", "g", "s"} <= has.keys():
-            found["A"] = has["m"] * has["g"] * has["s"] / torque
-        elif {"C", "r0"} <= has.keys():
-            found["A"] = has["C"] * has["r0"] / b
-        has |= found
-    over, moment = ("", has["A"]) if "A" in has else ("/A", 1.0)
-    for names, value in ((("C", "r0"), b), (("m", "g", "s"), torque)):
-        if unknown := [x for x in names if x not in has]:
-            rest = math.prod(has[x] for x in names if x in has)
-            found["*".join(unknown) + over] = value * moment / rest
-    return dict(sorted(found.items()))
-
-
-def _meaning(
-    key: str, problem: Problem, numbers: Mapping[str, tuple[float, float]], *, radians: bool
-) -> str:
-    name = key.removesuffix(f"_{angle_unit(radians=radians)[1]}")
-    if name in problem.stds:
-        return "known, improved by the fit"
-    if off := numbers.get(f"{key}{PERCENT}"):
-        word, sigmas = ("small", "large")[off[0] > 0], off[0] / (off[1] or math.inf)
-        sure = f"{sigmas:+.{int(abs(sigmas) < 10)}f} sigma"
-        return f"of a fast top: {abs(off[0]):.2g} % too {word}, {sure}"
-    declared = shown_keys(radians=radians, requested=True)
-    if name not in _MEANINGS and key in declared:
-        return declared[key].meaning
-    return _MEANINGS.get(name, "only this product is known" if set(key) & set("*/") else "")
-
-
-def _inputs(found: Minimum, numbers: Mapping[str, tuple[float, float]]) -> dict[str, float]:
-    """Return inputs of `Top` with this motion.
-
-    Undetermined ones are A = C = g = 1, and m s^2 = A/10.
-    """
-    values, body = found.values, ("m", "s", "g", "A", "C", "r0")
-    has = {x: values[x] for x in body if x in found.problem.known}
-    has |= {x: numbers[x][0] for x in body if x in numbers}
-    moment = has.setdefault("A", has.get("C", 1.0))  # with C and r0, A is a number of the fit
-    has["r0"] = values["b"] * moment / has.setdefault("C", values["b"] / values["r0"] * moment)
-    weight = values["a"] / 2 * moment  # mgs
-    unknown = [x for x in ("g", "s", "m") if x not in has]
-    for name in unknown[:-1]:
-        has[name] = 1.0 if name == "g" else moment * has["g"] / (10 * weight)
-    for name in unknown[-1:]:
-        has[name] = weight / math.prod(has[x] for x in ("m", "g", "s") if x != name)
-    start = {"theta0_deg": math.degrees(values["theta0"])}
-    return {x: has[x] for x in body} | start | {x: values[x] for x in ("thetadot0", "psidot0")}
+    def mirrored(self) -> Data:
+        """The same with psi counted in the other direction."""
+        signals = {
+            x: y._replace(y=-y.y, rate=-y.rate) if x == "psi" else y
+            for x, y in self.signals.items()
+        }
+        parts = (x.mirrored for x in (self.recording, self.coarse, self.fine))
+        return Data(*parts, signals, *self[4:])
 
 
 def best_fit(
@@ -423,115 +129,315 @@ def best_fit(
     """
     for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
         if recording.angles.keys() == {alone} and needed not in known:
-            flag = f"--{needed}" + (" 0 if the top is released from rest" * (alone == "theta"))
-            raise DataError(f"{alone} alone does not determine a top: give {flag}")
-    frequency, visible = oscillation_in(signals_in(recording))
+            when = ": 0 if the top is released from rest" * (alone == "theta")
+            raise DataError(f"{alone} alone does not determine a top: {needed} must be known{when}")
+    signals = signals_in(recording)
+    frequency, visible = oscillation_in(signals)
     lasts = frequency * recording.t[-1] >= 1
-    outcome = None
-    if visible and lasts:
-        outcome = _nutation(recording, known, frequency, radians=radians)
-    outcome = outcome or steady_outcome(recording, known, oscillates=visible, radians=radians)
-    outcome.chance = chance
-    low = chi2_bounds(outcome.dof)[0]
+    noise = _noise(recording, signals)
+    steady = steady_outcome(recording, known, signals, noise, frequency, radians=radians)
+    steady.chance, outcome = chance, steady
+    is_steady = not steady.failures()
+    if visible and lasts and not (is_steady and any(x.is_coarse for x in steady.residuals.values())):
+        found = _nutation(recording, known, signals, frequency, noise, radians=radians)
+        if found is not None:
+            found.chance = chance
+            failed = found.failures() and not found.contradictions
+            outcome = steady if failed and is_steady else found
+    low = outcome.chi2_bounds[0]
     if outcome.chi2_dof is not None and outcome.chi2_dof < low:
         shown = f"{outcome.chi2_dof:.3g} is below {low:.3g}"
         outcome.notes.append(f"chi2/dof = {shown}: the noise is below sigma")
+    widest = max(rest.widening(chance) for rest in outcome.residuals.values())
+    if widest > 1 and outcome.verdict != FAILED:
+        outcome.notes.append(
+            "the residuals correlate from row to row (smoothed data, or an encoder): standard "
+            f"deviations are {widest:.2g} times as large"
+        )
     if helpful and outcome.failures():
-        near = all(rest.rms < 1 for rest in outcome.residuals.values())
-        if visible and not lasts and near:
+        from .advice import hints  # needs this module
+
+        if visible and not lasts:
             outcome.hints.append("a recording must last for a period of the nutation")
-        outcome.hints += _hints(recording, known, frequency)
+        outcome.hints += hints(recording, known, outcome)
     return outcome
 
 
+def _noise(
+    recording: Recording, signals: Mapping[str, Signal]
+) -> dict[str, tuple[float, float]]:
+    """Return the step between values, and the noise of neighbours, of each channel."""
+    if recording.kind != "angles":
+        return dict.fromkeys(recording.channels, (0.0, math.inf))
+    found = {}
+    for name in recording.channels:
+        values = recording.angles[name][np.isfinite(recording.angles[name])]
+        smooth = values if name == "theta" else signals[name].y
+        found[name] = step_between(values), neighbour_noise(smooth)
+    coarsest = max(step for step, _ in found.values())
+    return {x: (step or coarsest, noise) for x, (step, noise) in found.items()}
+
+
 def _nutation(
-    recording: Recording, known: Known, frequency: float, *, radians: bool
+    recording: Recording,
+    known: Known,
+    signals: Mapping[str, Signal],
+    frequency: float,
+    noise: Mapping[str, tuple[float, float]],
+    *,
+    radians: bool,
 ) -> Outcome | None:
-    """Return the best fit of a nutation, with its rival if it has one; None without a start."""
+    """Return the best fit of a nutation; None without a start."""
+    scale = 1 / frequency
+    known = scaled_known(known, scale)
+    floors = np.array([noise[x][0] / math.sqrt(12) + _LEAST_SIGMA for x in recording.channels])
+    data = Data.of(recording, signals, scale, floors)
     both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
-    begun = {}
-    for problem, x in _best_starts([recording, recording.mirrored][: 1 + both], known, frequency):
-        end = problem.thinned(_MANY_ROWS).solve(x, _FIRST_STEPS)
-        begun[problem.recording.notes, f"{end.cost:.6g}"] = problem, end  # each minimum once
-    ends = sorted(begun.values(), key=lambda pair: pair[1].cost)[:_FINISHED]
-    found = [Minimum.of(p, end.x) for p, end in ends if end.cost <= _COMPARABLE * ends[0][1].cost]
-    if not found:
+    ways = [data, data.mirrored][: 1 + both]
+    minima = _minima(ways, known, frequency_free=True)
+    found, rival, other = _chosen(minima, data)
+    if known and (found is None or found.unknown):
+        minima = _minima(ways, known, frequency_free=False)
+        found, rival, other = _chosen(minima, data)
+    if found is None:
         return None
-    best, *others = sorted(found, key=lambda x: x.badness)
-    rivals = [x for x in others if x.badness < best.badness + _LIKELY and x.differs(best)]
-    return nutating_outcome(best, rivals[0] if rivals else None, frequency, radians=radians)
+    way = data if not found.problem.recording.is_mirrored else ways[-1]
+    factors = _widening(found, way)
+    if np.any(factors > 1):
+        found = Minimum.of(found.problem, found.x, floors, factors)
+        found = _slowest(found, data.turn)
+    pairs, texts, distances = _compared(found, known, data.turn, scale)
+    if found.problem.free and known and not texts:
+        found = _constrained(found, known, data.turn, floors, factors)
+    is_sure = abs(found.values["b"]) > _SURE * found.std("b")
+    turns = abs(found.values["r0"]) / data.turn if data.turn and found.problem.spins else 0.0
+    seen = "phi" in recording.angles and not {"r0", "phidot0"} & found.problem.known.keys()
+    result = nutating_outcome(
+        found,
+        replace(way.recording, t=recording.t),
+        scale,
+        noise,
+        radians=radians,
+        is_spin_known=not seen or (is_sure and turns < 0.5),
+        is_even=bool(data.turn),
+    )
+    result.contradictions, result.distances = texts, distances
+    result.notes += pairs
+    if rival:
+        shown = ", ".join(
+            f"{x} = {rival.values[x] * scale ** time_power(x):.6g}"
+            for x in ("a", "b", "r0")
+            if x in rival.problem.names
+        )
+        result.faults.insert(0, f"another top explains the recording as well: {shown}")
+    result.is_spin_slow = not seen or turns < 1 / (1 + _FASTER)
+    result.notes += _assumed(found, other, turns if seen else 0.0, data.turn / scale, scale)
+    return result
+
+
+def _assumed(
+    found: Minimum, other: Minimum | None, turns: float, turn: float, scale: float
+) -> list[str]:
+    """Return what was assumed of the spin and of the direction of psi."""
+    notes = []
+    faster = f"{abs(other.values['r0']) / (turn * scale):.2g}" if other and turn else ""
+    if found.problem.recording.is_mirrored:
+        note = "psi counts in the other direction: its sign was changed"
+        notes.append(note + f" (else the spin makes {faster} turns per row or more)" * bool(faster))
+    elif faster and turns > 1 / (1 + _FASTER):
+        notes.append(
+            f"psi may count in the other direction, if the spin makes {faster} turns per row"
+        )
+    if turns > 0.5:
+        notes.append(
+            f"the spin exceeds half a turn per row: r0 is known up to multiples of {turn:.6g}, and "
+            "is the slowest possible rate"
+        )
+    return notes
+
+
+def _widening(found: Minimum, data: Data) -> Array:
+    """Return the factors of standard deviations for noise that is correlated from row to row."""
+    from .checks import Residuals
+
+    problem = found.problem.of(data.recording)
+    rows = problem.residuals(found.x[np.newaxis])[0]
+    steps = data.floors * math.sqrt(12)
+    t, present = data.recording.t, data.recording.present
+    return np.array(
+        [
+            Residuals(t[is_in], y[is_in], step).widening()
+            for y, is_in, step in zip(rows, present, steps, strict=True)
+        ]
+    )
+
+
+def _minima(ways: Sequence[Data], known: Known, *, frequency_free: bool) -> list[Minimum]:
+    """Return the best minima that differ."""
+    begun: dict[Any, tuple[float, Data, Problem, Array]] = {}
+    for data, problem, x in _best_starts(ways, known, free=frequency_free):
+        end, cost = problem.thinned(_MANY_ROWS).solve(x, _FIRST_STEPS)
+        key = problem.recording.is_mirrored, f"{cost:.6g}"
+        begun[key] = cost, data, problem, end  # each minimum once
+    ends = sorted(begun.values(), key=itemgetter(0))[:_FINISHED]
+    return [
+        Minimum.of(problem.of(data.fine), end, data.floors)
+        for cost, data, problem, end in ends
+        if cost <= _COMPARABLE * ends[0][0]
+    ]
+
+
+def _chosen(
+    minima: Sequence[Minimum], data: Data
+) -> tuple[Minimum | None, Minimum | None, Minimum | None]:
+    """Return the best minimum, a rival that is another top, and its mirror image.
+
+    Minima that differ by whole turns of the spin per row are one.  Of two directions of psi that
+    explain the recording as well, the recorded one is taken, unless its spin is much faster.
+    """
+    if not minima:
+        return None, None, None
+    slow = sorted((_slowest(x, data.turn) for x in minima), key=lambda x: x.badness)
+    likely = [x for x in slow if x.badness < slow[0].badness + _LIKELY]
+    best, image = likely[0], None
+    for one in likely[1:]:
+        if one.problem.recording.is_mirrored is not best.problem.recording.is_mirrored:
+            plain, turned = (
+                (one, best) if best.problem.recording.is_mirrored else (best, one)
+            )
+            is_turned = abs(turned.values["r0"]) * _FASTER < abs(plain.values["r0"])
+            best, image = (turned, plain) if is_turned else (plain, turned)
+            break
+    mirrored = best.problem.recording.is_mirrored
+    rivals = [
+        x
+        for x in likely
+        if x.problem.recording.is_mirrored is mirrored and x is not best and x.differs(best)
+    ]
+    return best, rivals[0] if rivals else None, image
+
+
+def _slowest(found: Minimum, turn: float) -> Minimum:
+    """Return a minimum with the slowest spin of a rigid body that looks alike in the rows."""
+    if not turn or "r0" not in found.problem.names or found.problem.is_tied:
+        return found
+    v, std = found.values, found.std("b")
+    rates = v["r0"] + turn * np.arange(-3, 4)
+    if abs(v["b"]) > _SURE * std:
+        low, high = (v["b"] - 2 * math.copysign(std, v["b"])) / rates, v["b"] / rates
+        rates = rates[(high > 0) & (low <= 2)]
+    rate = float(rates[np.argmin(np.abs(rates))]) if rates.size else v["r0"]
+    return found.turned(rate - v["r0"]) if rate != v["r0"] else found
+
+
+def _compared(
+    found: Minimum, known: Known, turn: float, scale: float
+) -> tuple[list[str], list[str], dict[str, float]]:
+    """Return notes on known inputs that agree, contradictions, and distances in sigmas."""
+    if not found.problem.free:
+        return [], _pulled(found, scale), {}
+    numbers = found.numbers(
+        lambda x: estimates(known, found.problem.values(x), turn, spins="r0" in found.problem.names)
+        or {"": np.zeros(len(x))}
+    )
+    notes, texts, distances = [], [], {}
+    for name, (value, std, _) in numbers.items():
+        if not name:
+            continue
+        given, spread = known[name]
+        size = scale ** time_power(name) * (180 / math.pi if name == "theta0" else 1)
+        far = abs(given - value) / max(math.hypot(std, spread), 1e-9 * abs(value))
+        distances[name] = far
+        unit = " deg" * (name == "theta0")
+        shown = f"known {name} = {_text(given * size, spread * size)}{unit}"
+        own = f"{_text(value * size, std * size)}{unit}"
+        if far > _CONTRADICTS:
+            others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
+            others = others if name in {"A", "A_cm", "C"} else []
+            check = f", or check {', '.join(others)}" * bool(others)
+            text = f"{shown} contradicts the recording, which gives {own}, {far:.2g} sigma apart"
+            texts.append(f"{text}: omit {name}{check}")
+        else:
+            notes.append(f"{shown} agrees with the recording, which gives {own}: {far:.1f} sigma")
+    if "steady" in known:
+        texts.append("known psidot0 = steady contradicts the recording, which nutates: omit psidot0")
+    return notes, texts, distances
+
+
+def _pulled(found: Minimum, scale: float) -> list[str]:
+    """Return contradictions of uncertain inputs that a fit has pulled away from their values."""
+    texts = []
+    for name, std in found.problem.stds.items():
+        given, value = found.problem.known[name], found.values[name]
+        if abs(value - given) > _CONTRADICTS * std:
+            size = scale ** time_power(name)
+            texts.append(
+                f"known {name} = {_text(given * size, std * size)} contradicts the recording, which "
+                f"gives {_text(value * size, found.std(name) * size)}: omit {name}"
+            )
+    return texts
+
+
+def _text(value: float, std: float) -> str:
+    return str(Number(value, std, "")) if std else f"{value:.6g}"
+
+
+def _constrained(
+    found: Minimum, known: Known, turn: float, floors: Array, factors: Array
+) -> Minimum:
+    """Return the minimum with all known inputs, from the one without them."""
+    old, v = found.problem, found.values
+    problem = Problem(old.recording, known, old.sizes, turns=old.turns)
+    moment = v.get("A", v.get("m", math.nan) * v.get("g", 1) * v.get("s", 1) * 2 / v["a"])
+    if turn and "r0" in old.names:
+        wanted = v["r0"]
+        if "r0" in known:
+            wanted = known["r0"][0]
+        elif "phidot0" in known:
+            wanted = known["phidot0"][0] + v["psidot0"] * math.cos(v["theta0"])
+        elif problem.is_tied:
+            wanted = v["b"] * moment / known["C"][0]
+        shift = turn * round((wanted - v["r0"]) / turn)
+        problem.turns += shift
+        v["r0"] += shift
+    x = np.array([problem.known.get(name, v.get(name, 0.0)) for name in problem.names])
+    return Minimum.of(problem, x, floors, factors)
 
 
 def _best_starts(
-    ways: Sequence[Recording], known: Known, frequency: float
-) -> list[tuple[Problem, Array]]:
+    ways: Sequence[Data], known: Known, *, free: bool
+) -> list[tuple[Data, Problem, Array]]:
     """Return the best starts that differ; in each way psi is counted in one direction.
 
     Starts are scored by the logarithm of the noise that they leave.
     """
-    tried: list[tuple[float, Problem, Array]] = []
-    for recording in ways:
-        signals = signals_in(recording)
-        sigma = recording.sigma or noise_of(signals, frequency, recording)
-        problem = Problem(recording, known, np.array([sigma[x] for x in recording.channels]))
-        states = starts(signals, frequency, problem.known.get("theta0"))
-        for name in known.keys() & {*STATE}:
-            states[:, STATE.index(name)] = problem.known[name]
-        if "r0" in known or problem.is_even:  # r0 has the sign of b
-            states = states[states[:, STATE.index("b")] * problem.known.get("r0", 1.0) >= 0]
+    tried: list[tuple[float, Data, Problem, Array]] = []
+    for data in ways:
+        problem = Problem(data.coarse, known, data.sizes, free=free)
+        fixed = problem.known
+        states = starts(data.signals, 1.0, fixed.get("theta0"))
+        for name in fixed.keys() & {*STATE}:
+            states[:, STATE.index(name)] = fixed[name]
+        if "r0" in fixed or problem.is_even:  # r0 has the sign of b
+            states = states[states[:, STATE.index("b")] * fixed.get("r0", 1.0) >= 0]
+        spin, order = data.signals.get("phi"), np.arange(0)
         for count in (_FEW_ROWS, _ROWS) if len(states) > _KEPT else (_ROWS,):
             few = problem.thinned(count)
             blocks = np.array_split(states, len(states) // _BLOCK + 1)
-            x = np.concatenate([few.parameters_of(y, signals.get("phi")) for y in blocks])
+            x = np.concatenate([few.parameters_of(y, spin, 1.0) for y in blocks])
             score = np.concatenate([few.noise(y) for y in np.array_split(x, len(blocks))])
             order = np.argsort(score)[:_KEPT]
             states = states[order]
-        tried += zip(score[order].tolist(), [problem] * len(order), x[order], strict=True)
-    kept: list[tuple[Problem, Array]] = []
-    for size, problem, x in sorted(tried, key=itemgetter(0)):
+        tried += zip(
+            score[order].tolist(), [data] * len(order), [problem] * len(order), x[order], strict=True
+        )
+    kept: list[tuple[Data, Problem, Array]] = []
+    for size, data, problem, x in sorted(tried, key=itemgetter(0)):
         near = _ALIKE * (np.abs(x[:2]) + 1e-300)
-        is_new = all(p is not problem or np.any(np.abs(x - y)[:2] > near) for p, y in kept)
+        is_new = all(p is not problem or np.any(np.abs(x - y)[:2] > near) for _, p, y in kept)
         if is_new and len(kept) < _STARTS and math.isfinite(size):
-            kept.append((problem, x))
+            kept.append((data, problem, x))
     return kept
-
-
-def _hints(recording: Recording, known: Known, frequency: float) -> list[str]:
-    """Return what to try after a failed fit, if another fit confirms it."""
-    for axis in ("y", "x") if recording.kind != "angles" else ():
-        if best_fit(turned_up(recording, axis), known, helpful=False).verdict == GOOD:
-            return [f"the {axis} axis of the data points up: use --align up={axis}"]
-    both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
-    if both and best_fit(recording.exchanged, known, helpful=False).verdict == GOOD:
-        return ["phi and psi are exchanged: here phi is the spin and psi the precession"]
-    body = {name: x for name, x in known.items() if name in {"m", "g", "s", "A", "C"}}
-    for count in _WINDOWS:
-        enough = count * _ROWS_PER_WINDOW < recording.t.size
-        if not enough or frequency * recording.t[-1] < count * _PERIODS_PER_WINDOW:
-            break
-        parts = recording.windows(count)
-        some = (parts[0], parts[count // 2], parts[-1])
-        chance = CHANCE / count
-        if all(best_fit(x, body, chance=chance, helpful=False).verdict == GOOD for x in some):
-            return [
-                f"one top does not explain the motion: the spin may decay, try --window {count}"
-            ]
-    return ["check columns, units and axes, or try --window if the spin may decay"]
-
-
-def fit_windows(
-    recording: Recording, count: int, known: Known, *, radians: bool = False
-) -> list[Outcome]:
-    """Return the fits of equal windows of a recording.
-
-    Raises LagtopError for a bad number of windows, or for a known input of one instant.
-    """
-    for name in known.keys() & {"r0", "theta0", "thetadot0", "psidot0"}:
-        raise LagtopError(f"{name} is not the same in all windows: leave it out", name)
-    return [
-        best_fit(part, known, radians=radians, chance=CHANCE / count, helpful=False)
-        for part in recording.windows(count)
-    ]
 
 
 def fit(
@@ -560,9 +466,9 @@ def fit(
     >>> outcome = fit(t, theta=theta, phi=phi, psi=psi, known={"C": 17458})
     >>> outcome.verdict, outcome.failures()
     ('good', [])
-    >>> [(key, round(x, 1)) for key, (x, std) in outcome.numbers.items()][:3]
+    >>> [(key, round(x.value, 1)) for key, x in outcome.numbers.items()][:3]
     [('a', 319.1), ('b', 22.4), ('r0', 50.0)]
-    >>> round(outcome.numbers["A"][0], -2), outcome.record()["dof"]
+    >>> round(outcome.numbers["A"].value, -2), outcome.record()["dof"]
     (39000.0, 592)
     """
     check_type("known", known, Mapping, NoneType)

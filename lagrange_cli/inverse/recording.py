@@ -1,8 +1,7 @@
-"""What is given to a fit: measured angles, an axis or an attitude, and known inputs."""
+"""Recordings: measured angles, an axis or an attitude over time."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,16 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..files import rotations
 from ..files.observed import Conventions, Quantities, angles_in, observe, quantities_of, rows_of
 from ..files.rotations import within_half_turn
 from ..files.trajectory import read_trajectory
-from ..names import ANGLES, check_names
+from ..names import ANGLES
 from ..top.inputs import checked_double
-from ..top.top import Top
 
 CHANNELS = {
     "angles": ANGLES,
@@ -28,8 +25,6 @@ CHANNELS = {
 }
 """Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
 about the axis."""
-Known = Mapping[str, tuple[float, float]]
-"""Known inputs by key, theta0 in radians, with standard deviations, which may be 0."""
 LEAST_ROWS = 12
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
@@ -40,7 +35,7 @@ class Recording:
     """The measured motion of one top; missing numbers are NaN."""
 
     name: str
-    """The word of these rows in the column of --by, or the number of a window, or empty."""
+    """The number of a window, or empty."""
     t: Array
     """Times since the first row, in ascending order."""
     t_start: float
@@ -52,8 +47,14 @@ class Recording:
     """Standard deviations in radians by channel; empty if they are not given."""
     position: Array | None = None
     """The marker in space, shape (n, 3), if the axis is known from its position."""
-    notes: tuple[str, ...] = ()
-    """How the data were interpreted."""
+    unread: tuple[str, ...] = ()
+    """Columns of the file that were not used."""
+    is_mirrored: bool = False
+    """Whether psi was counted in the other direction."""
+    spread: Array | None = None
+    """Standard deviations of the times of the rows of which each row is the mean."""
+    rows_per_bin: int = 1
+    """The number of rows of which each row is the mean."""
 
     @property
     def channels(self) -> list[str]:
@@ -85,8 +86,13 @@ class Recording:
     def mirrored(self) -> Recording:
         """The recording with psi counted in the other direction."""
         angles = {name: -x if name == "psi" else x for name, x in self.angles.items()}
-        note = "psi counts in the other direction: its sign was changed"
-        return replace(self, angles=angles, notes=(note,))
+        return replace(self, angles=angles, is_mirrored=not self.is_mirrored)
+
+    @property
+    def is_even(self) -> bool:
+        """Whether the rows are whole frames apart, so that whole turns per frame are invisible."""
+        frames = self.t / self.frame
+        return bool(np.mean(np.abs(frames - np.round(frames))) < 0.05)
 
     @property
     def exchanged(self) -> Recording:
@@ -112,12 +118,19 @@ class Recording:
             found.append(within_half_turn(self.angles["phi"] - phi + off["psi"] * np.cos(theta)))
         return np.stack(found, axis=-2)
 
+    def rows(self, rows: Any) -> Recording:
+        """Return some rows, in this order, with the same zero of time."""
+        found: dict[str, Any] = {
+            key: None if (x := getattr(self, key)) is None else x[rows]
+            for key in ("position", "spread")
+        }
+        return replace(self, t=self.t[rows], angles=rows_of(self.angles, rows), **found)
+
     def part(self, rows: Any, name: str = "") -> Recording:
         """Return some rows, in this order, with times since the first of them."""
-        position = None if self.position is None else self.position[rows]
-        t, angles = self.t[rows], rows_of(self.angles, rows)
-        start = self.t_start + float(t[0])
-        return replace(self, name=name, t=t - t[0], t_start=start, angles=angles, position=position)
+        found = self.rows(rows)
+        start = float(found.t[0])
+        return replace(found, name=name, t=found.t - start, t_start=self.t_start + start)
 
     def windows(self, count: int) -> list[Recording]:
         """Return the recording in equal windows of time.  Raises LagtopError for a bad count."""
@@ -131,34 +144,20 @@ class Recording:
         return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]
 
 
-def read_recordings(
-    path: str,
-    columns: Sequence[str] | None = None,
-    decimal: str = "",
-    by: str | None = None,
-    **reading: Any,
-) -> list[Recording]:
-    """Return the recordings of a file, by the words of the column `by`, as they begin.
+def read_recording(
+    path: str, columns: Sequence[str] | None = None, decimal: str = "", **reading: Any
+) -> Recording:
+    """Return the recording in a file; `reading` are the other arguments of `recording_of`.
 
-    The decimal mark may be left to the file.  `reading` are the other arguments of `recording_of`.
-    Raises LagtopError for a file that cannot be read, DataError for one that holds no recording.
+    The decimal mark may be left to the file.  Raises LagtopError for a file that cannot be read,
+    DataError for one that holds no recording.
     """
     trajectory = read_trajectory(path, columns, decimal)
     conventions = reading["conventions"]
-    name, given = trajectory.name, trajectory.values(radians=conventions.radians)
+    given = trajectory.values(radians=conventions.radians)
     reading["conventions"] = trajectory.conventions(conventions)
-    if by is None:
-        return [recording_of(name, given, **reading)]
-    if by not in trajectory.names:
-        shown = ", ".join(trajectory.names)[:100]
-        raise LagtopError(f"by must name a column of {name} ({shown}), got {quoted(by)}", "by")
-    words = np.array(trajectory.words(by))
-    found = []
-    for word in dict.fromkeys(words.tolist()):
-        rows = rows_of(given, np.flatnonzero(words == word))
-        one = recording_of(f"{name}, {by} {word}", rows, **reading)
-        found.append(replace(one, name=word))
-    return found
+    found = recording_of(trajectory.name, given, **reading)
+    return replace(found, unread=tuple(getattr(trajectory, "unread", ())))
 
 
 def recording_from(
@@ -183,15 +182,17 @@ def recording_of(
     *,
     sigma: Mapping[str, float] | float | None = None,
     up: str = "z",
+    axis: str = "z",
 ) -> Recording:
     """Return the recording in some columns, without rows that have no number.
 
     `sigma` are standard deviations in radians: one for all channels, or by channel.  The axis `up`
-    of space points upwards in the file.  Raises LagtopError, DataError for a bad recording.
+    of space points upwards in the file, and the axis `axis` of the body is the figure axis.  Raises
+    LagtopError, DataError for a bad recording.
     """
     t = given["t"][:, 0]
     _check_times(where, t)
-    kind, found = _angles(given, conventions, up)
+    kind, found = _angles(given, conventions, up, axis)
     position = given["position"] if kind == "axis" and "axis" not in given else None
     if not found:
         shown = ", ".join(x for x in given if x != "t")
@@ -234,21 +235,24 @@ def _check_times(where: str, t: Array) -> None:
     if (back := np.flatnonzero(np.diff(t) < 0)).size and not (np.diff(t) <= 0).all():
         before, after = t[back[0] : back[0] + 2].tolist()
         raise DataError(
-            f"{where}: t must not turn back, got {after:g} after {before:g}: if the file holds "
-            "several recordings, name the column that separates them with --by"
+            f"{where}: t must not turn back, got {after:g} after {before:g}: put each recording "
+            "into its own file"
         )
 
 
-def _angles(given: Quantities, conventions: Conventions, up: str) -> tuple[str, dict[str, Array]]:
+def _angles(
+    given: Quantities, conventions: Conventions, up: str, axis: str
+) -> tuple[str, dict[str, Array]]:
     """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
     alone = angles_in(given)
     if alone and not {"quaternion", "matrix", "euler", "rotvec"} & given.keys():
-        if up != "z":
+        if (up, axis) != ("z", "z"):
             raise LagtopError("align needs an axis or an attitude, got angles", "align")
         return "angles", alone
     seen = observe(given, conventions)
-    if up != "z":
-        seen = seen.turned(rotations.to_z(up), rotations.IDENTITY)
+    if axis != "z" and seen.quaternion is None:
+        raise LagtopError("align axis=... needs an attitude, got an axis", "align")
+    seen = seen.turned(rotations.to_z(up), rotations.to_z(axis))
     if seen.quaternion is not None:
         return "attitude", rotations.angles_of(seen.quaternion)
     if seen.axis is not None:
@@ -268,11 +272,17 @@ def _sigma(raw: Recording, sigma: Mapping[str, float] | float | None) -> dict[st
     return found
 
 
-def turned_up(recording: Recording, axis: str) -> Recording:
-    """Return a recording of an axis or attitude in a frame whose z axis is another one of space."""
-    theta, psi, turn = recording.angles["theta"], recording.angles["psi"], rotations.to_z(axis)
-    phi = recording.angles.get("phi", np.zeros_like(theta))
-    found = rotations.angles_of(rotations.product(turn, rotations.of_angles(theta, phi, psi)))
+def reoriented(recording: Recording, *, up: str = "z", axis: str = "z") -> Recording:
+    """Return a recording of an axis or attitude in other frames.
+
+    The axis `up` of space points upwards, and the axis `axis` of the body is the figure axis.
+    """
+    theta, psi = recording.angles["theta"], recording.angles["psi"]
+    turns = rotations.of_angles(theta, recording.angles.get("phi", np.zeros_like(theta)), psi)
+    turns = rotations.product(rotations.to_z(up), turns)
+    found = rotations.angles_of(
+        rotations.product(turns, rotations.conjugate(rotations.to_z(axis)))
+    )
     return replace(recording, angles={name: found[name] for name in recording.angles})
 
 
@@ -295,33 +305,3 @@ def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3)
     gain = float(explained @ explained) / (noise + 1e-30)
     hidden = gain < sure**2 + 3 or np.ptp(explained) < least * distance.mean()
     return None if hidden else offset
-
-
-def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
-    """Return known inputs from inputs of `Top`, and the standard deviations of some.
-
-    A_cm becomes A = A_cm + m s^2.  Raises LagtopError for an input that a fit cannot use.
-    """
-    check_names("known", [*given] or ["m"], [*Top.fields, "A_cm", "phidot0"])
-    known, spread = {name: checked_double(name, x) for name, x in given.items()}, dict(stds)
-    if "phidot0" in known:
-        raise LagtopError("phidot0 is no input of a fit: give r0", "phidot0")
-    for name in ("m", "s", "g", "A", "C", "r0"):
-        if known.get(name) == 0:
-            raise LagtopError(f"{name} must not be 0 in a fit: leave it out", name)
-    if "A_cm" in known:
-        if not {"m", "s"} <= known.keys():
-            raise LagtopError("A_cm must be given with m and s, as A = A_cm + m s^2", "A_cm")
-        m, s = known["m"], known["s"]
-        known["A"] = known.pop("A_cm") + m * s * s
-        parts = [spread.pop("A_cm", 0.0), spread.get("m", 0.0) * s * s]
-        if (std := math.hypot(*parts, spread.get("s", 0.0) * 2 * m * s)) > 0:
-            spread["A"] = std
-    moment = known.get("A", known.get("C", 1.0))
-    Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **known})
-    pairs = {name: (value, spread.get(name, 0.0)) for name, value in known.items()}
-    for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
-        if key in pairs:
-            value, std = pairs.pop(key)
-            pairs["theta0"] = value * unit, std * unit
-    return pairs

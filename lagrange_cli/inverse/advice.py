@@ -1,0 +1,116 @@
+"""What to try after a failed fit: only what another fit confirms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from .checks import CHANCE
+from .fit import best_fit
+from .known import Known
+from .outcome import GOOD, Outcome
+from .recording import Recording, reoriented
+from .signals import noise_of, oscillation_in, signals_in
+
+_AXES = ("x", "y", "-x", "-y", "-z")
+_ROWS = 250
+"""Rows at which axes are compared."""
+_CALMER = 0.7
+"""Noise of harmonics in another frame, over that in the given one, from which a fit is tried."""
+_HELD, _RELEASED = 12, 6.0
+"""Least number of rows before a release, and the standard deviations that show it."""
+_WINDOWS = (8, 16, 32)
+"""Numbers of windows to try if the spin may decay."""
+_ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
+_DECAYS = 4.0
+"""Standard deviations from which the spin has decayed from the first to the last window."""
+
+
+def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
+    """Return what to try after a failed fit, if another fit confirms it."""
+    if not outcome.misfits or outcome.contradictions:
+        return []
+    found = [*_tried(recording, known, outcome)][:1]
+    return found or ["check columns, units and axes"]
+
+
+def _tried(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
+    """Yield what makes the fit good, the likeliest mistakes first."""
+    body = {name: x for name, x in known.items() if name in {"m", "g", "s", "A", "A_cm", "C"}}
+    if recording.kind != "angles":
+        yield from _frames(recording, body)
+    if (row := _release(recording)) and _is_good(recording.part(slice(row, None)), body):
+        at = recording.t_start + float(recording.t[row])
+        yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
+    both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
+    if both and _is_good(recording.exchanged, known):
+        yield "phi and psi are exchanged: here phi is the spin and psi the precession"
+    yield from _decays(recording, body, outcome.frequency)
+
+
+def _is_good(recording: Recording, known: Known, chance: float = CHANCE) -> bool:
+    """Return whether a fit is good and needs no faster spin or reversed angle."""
+    found = best_fit(recording, known, chance=chance, helpful=False)
+    return found.verdict == GOOD and not found.recording.is_mirrored and found.is_spin_slow
+
+
+def _frames(recording: Recording, known: Known) -> Iterator[str]:
+    """Yield the axis of space or of the body in whose frame the motion is that of a top."""
+    few = recording.rows(np.unique(np.linspace(0, recording.t.size - 1, _ROWS).astype(int)))
+    tried = [("up", x) for x in _AXES]
+    tried += [("axis", x) for x in _AXES] * (recording.kind == "attitude")
+    plain, best = _calmness(few), (math.inf, "", "")
+    for word, axis in tried:
+        best = min(best, (_calmness(reoriented(few, **{word: axis})), word, axis))
+    size, word, axis = best
+    is_upside_down = ("-z" in axis) or size < plain + len(few.angles) * math.log(_CALMER)
+    if is_upside_down and _is_good(reoriented(recording, **{word: axis}), known):
+        text = "the {} axis of the data points up" if word == "up" else "the {} axis is the figure axis"
+        yield f"{text.format(axis)}: align {word}={axis}"
+    elif axis != "-z" and _is_good(reoriented(recording, up="-z"), known):
+        yield "the -z axis of the data points up: align up=-z"
+
+
+def _calmness(recording: Recording) -> float:
+    """Return the logarithm of the noise that harmonics of one frequency leave, over the angles."""
+    signals = signals_in(recording)
+    frequency, _ = oscillation_in(signals)
+    return sum(math.log(x) for x in noise_of(signals, frequency, recording).values())
+
+
+def _release(recording: Recording) -> int:
+    """Return the row in which a top that was held begins to move, or 0."""
+    rows = []
+    for name, values in recording.angles.items():
+        y = values if name == "theta" else np.unwrap(values)
+        if name == "phi" or not np.isfinite(y).all():
+            continue
+        head = y[:_HELD]
+        noise = max(float(np.std(head)), 1e-9) * _RELEASED
+        moves = np.flatnonzero(np.abs(y - head.mean()) > noise)
+        rows.append(int(moves[0]) if moves.size else y.size)
+    row = min(rows, default=0)
+    return row if _HELD < row < recording.t.size - 2 * _HELD else 0
+
+
+def _decays(recording: Recording, known: Known, frequency: float) -> Iterator[str]:
+    """Yield the number of windows that are good and show a decay."""
+    for count in _WINDOWS:
+        enough = count * _ROWS_PER_WINDOW < recording.t.size
+        if not enough or frequency * recording.t[-1] < count * _PERIODS_PER_WINDOW:
+            return
+        parts = recording.windows(count)
+        fits = []
+        for i in (0, count - 1, count // 2):
+            fits.append(best_fit(parts[i], known, chance=CHANCE / count, helpful=False))
+            if fits[-1].verdict != GOOD:
+                break
+        else:
+            name = "r0" if all("r0" in x.numbers for x in fits) else "b"
+            first, last = fits[0].numbers[name], fits[1].numbers[name]
+            lost = abs(first.value) - abs(last.value)
+            if lost > _DECAYS * math.hypot(first.own_std, last.own_std):
+                yield f"the spin decays: use window {count}"
+            return

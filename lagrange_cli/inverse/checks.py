@@ -1,0 +1,174 @@
+"""Checks of a fit: why it has failed, in order, and how noisy and correlated the residuals are.
+
+A wrong motion leaves residuals above the noise, or residuals with structure.  Noise may be
+correlated from row to row, as a tracker smooths it, but only within a small part of a period.
+Residuals of an encoder follow its steps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import fdtrc, gammaincinv, ndtri
+
+from ..arithmetic.numbers import angle_unit
+from ..arithmetic.types import Array
+from .recording import shifted_origin
+
+if TYPE_CHECKING:
+    from .outcome import Outcome
+
+CHANCE = 0.0027
+"""Probability that noise fails a test, as for three standard deviations."""
+_MOST, _ABOVE, _ROUNDING = 0.3, 6.0, 1e-10
+"""Largest rms residual of a channel in radians, or over the noise of its neighbours, and rms of
+rounding errors in radians."""
+_ROWS_PER_LAG, _LAGS = 6.0, 12
+"""Least number of rows per period over the reach of a correlation, and the longest reach tried."""
+_COARSE, _WITHIN = 0.6, 0.75
+"""An encoder's residuals: largest rms, and largest 95 % quantile, over its step."""
+
+
+@dataclass
+class Residuals:
+    """The residuals of a channel at times t, in radians."""
+
+    t: Array
+    y: Array
+    step: float = 0.0
+    """The least step between values of the channel."""
+    neighbours: float = math.inf
+    """The noise of the data, from differences of neighbours."""
+
+    @cached_property
+    def rms(self) -> float:
+        """The root mean square."""
+        return float(np.sqrt(np.mean(self.y**2)))
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether the steps of an encoder explain the residuals."""
+        within = float(np.quantile(np.abs(self.y), 0.95)) <= _WITHIN * self.step
+        return within and self.rms <= _COARSE * self.step
+
+    def correlation(self, lag: int) -> float:
+        """Return the correlation of residuals with those `lag` rows later."""
+        if self.rms < _ROUNDING or self.y.size <= lag:
+            return 0.0
+        return float(self.y[lag:] @ self.y[:-lag] / (self.y @ self.y))
+
+    @property
+    def autocorrelation(self) -> float:
+        """The correlation of residuals with the next ones."""
+        return self.correlation(1)
+
+    @cached_property
+    def reach(self) -> int:
+        """The number of rows after which residuals do not correlate, 1 for white noise."""
+        bound = 2 / math.sqrt(self.y.size)
+        lags = [lag for lag in range(1, self.y.size // 4) if abs(self.correlation(lag)) < bound]
+        return lags[0] if lags else self.y.size
+
+    def widening(self, chance: float = CHANCE) -> float:
+        """Return the factor of standard deviations for correlated noise, at least 1.
+
+        Its square is 1 + 2 times the sum of the correlations, (1 + r)/(1 - r) if they are r^n.
+        """
+        if not self.is_coarse and abs(self.autocorrelation) <= _bound(self.y.size, chance):
+            return 1.0
+        sums = sum(self.correlation(lag) for lag in range(1, min(self.reach, self.y.size // 4)))
+        return math.sqrt(max(1 + 2 * sums, 1.0))
+
+    def structure(self, frequency: float, widening: float = 1.0) -> float:
+        """Return the probability that noise resembles a drifting oscillation as much.
+
+        An F test of three harmonics of a frequency, times 1, t and t^2, against the rest.
+        """
+        if self.rms < max(_ROUNDING, self.step / 100):
+            return 1.0
+        size = -(-self.t.size // 4000)
+        t, y = (x[: x.size // size * size].reshape(-1, size).mean(1) for x in (self.t, self.y))
+        x = 2 * t / max(float(t[-1]), 1e-300) - 1
+        waves = np.exp(2j * np.pi * frequency * t[:, np.newaxis] * np.arange(4))
+        waves = np.concatenate([waves.real, waves.imag[:, 1:]], axis=1)
+        drifts = x[:, np.newaxis, np.newaxis] ** range(3)
+        basis = (waves[:, :, np.newaxis] * drifts).reshape(x.size, -1)[:, : max(x.size // 3, 1)]
+        space, sizes, _ = np.linalg.svd(basis, full_matrices=False)
+        count = int(np.sum(sizes > 1e-6 * sizes[0]))
+        explained = float(np.sum((space[:, :count].T @ y) ** 2))
+        rest = max(float(y @ y) - explained, 1e-12 * explained) / (x.size - count) * widening**2
+        return float(fdtrc(count, x.size - count, explained / count / rest))
+
+    def faults(self, name: str, frequency: float, chance: float) -> Iterator[str]:
+        """Yield why the residuals are not noise.
+
+        A wrong motion leaves neighbours alike, unless it oscillates from row to row.
+        """
+        if self.is_coarse:
+            return
+        shown = f"the residuals of {name} are not noise"
+        bound = _bound(self.y.size, chance)
+        if self.rms > _ABOVE * max(self.neighbours, self.step / math.sqrt(12), _ROUNDING):
+            times = self.rms / max(self.neighbours, _ROUNDING)
+            yield f"{shown}: they are {times:.3g} times the differences between neighbours"
+        elif self.autocorrelation < -2 * bound:
+            yield f"{shown}: neighbours correlate by {self.autocorrelation:.2f}"
+        elif self.autocorrelation > bound and self.is_slow(frequency):
+            yield (
+                f"{shown}: neighbours correlate by {self.autocorrelation:.2f}, noise by at most "
+                f"{bound:.2f}"
+            )
+        elif self.structure(frequency, self.widening(chance)) < chance:
+            yield f"{shown}: they drift or oscillate"
+
+    def is_slow(self, frequency: float) -> bool:
+        """Return whether residuals correlate over a part of a period, as a wrong motion does."""
+        period = self.y.size / max(frequency * float(self.t[-1]), 1.0)
+        return self.reach > min(period / _ROWS_PER_LAG, _LAGS)
+
+
+def _bound(count: int, chance: float) -> float:
+    """Return the correlation of neighbours that noise exceeds with a probability."""
+    return -float(ndtri(chance / 2)) / math.sqrt(count)
+
+
+def chi2_bounds(freedom: float, chance: float = CHANCE) -> tuple[float, float]:
+    """Return the bounds that chi^2 per degree of freedom of noise exceeds with this probability."""
+    half = max(freedom, 1) / 2
+    low, high = (float(gammaincinv(half, p)) / half for p in (chance / 2, 1 - chance / 2))
+    return low, high
+
+
+def misfits(outcome: Outcome) -> Iterator[str]:
+    """Yield why the motion does not match the recording."""
+    if (offset := shifted_origin(outcome.recording)) is not None:
+        shown = ", ".join(f"{x:.2g}" for x in offset)
+        yield (
+            "the distance of the marker from the origin varies with its direction: is the "
+            f"origin at the pivot, or is the pivot at about ({shown})?"
+        )
+    scale, unit = angle_unit(radians=outcome.radians)
+    for name, rest in outcome.residuals.items():
+        if rest.rms > _MOST:
+            yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
+    high, chi2 = outcome.chi2_bounds[1], outcome.chi2_dof
+    if chi2 is not None and chi2 > high:
+        yield f"chi2/dof = {chi2:.3g} is above {high:.3g}: another motion, or more noise"
+    for name, rest in outcome.residuals.items():
+        yield from rest.faults(name, outcome.frequency, outcome.chance)
+
+
+def failures(outcome: Outcome) -> list[str]:
+    """Return every reason why a fit has failed, in order.
+
+    A motion that is not determined or impossible comes first, then a known input that contradicts
+    a motion that matches, then a motion that does not match.
+    """
+    found = [*outcome.faults]
+    contradictions = [] if found else outcome.contradictions
+    return [*found, *outcome.misfits, *contradictions] if outcome.misfits else [*found, *contradictions]

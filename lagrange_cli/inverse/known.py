@@ -1,0 +1,127 @@
+"""Known inputs of a fit: what they determine of the body, and whether the recording agrees."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..names import check_names
+from ..top.inputs import checked_double
+from ..top.top import Top
+from ..top.values import STEADY_WORDS
+
+Known = Mapping[str, tuple[float, float]]
+"""Known inputs by key, theta0 in radians, with standard deviations, which may be 0.
+
+The key `steady` stands for `psidot0` if that is one of the STEADY_WORDS.
+"""
+WEIGHT = {"m", "g", "s"}
+_POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1}
+_RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
+
+
+def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
+    """Return known inputs from inputs of `Top`, and the standard deviations of some.
+
+    Raises LagtopError for an input that a fit cannot use.
+    """
+    check_names("known", [*given] or ["m"], [*Top.fields, "A_cm", "phidot0"])
+    words = {name for name in given if given[name] in STEADY_WORDS}
+    known = {x: checked_double(x, y) for x, y in given.items() if x not in words}
+    for name in ("m", "s", "g", "A", "C", "r0"):
+        if known.get(name) == 0:
+            raise LagtopError(f"{name} must not be 0 in a fit: leave it out", name)
+    if "A_cm" in known and not {"m", "s"} <= known.keys():
+        raise LagtopError("A_cm must be given with m and s, as A = A_cm + m s^2", "A_cm")
+    plain = {x: y for x, y in known.items() if x not in {"A_cm", "phidot0"}}
+    if "A_cm" in known:
+        plain["A"] = known["A_cm"] + known["m"] * known["s"] ** 2
+    moment = plain.get("A", known.get("C", 1.0))
+    Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **plain})  # checks the inputs
+    pairs = {name: (value, stds.get(name, 0.0)) for name, value in known.items()}
+    for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
+        if key in pairs:
+            value, std = pairs.pop(key)
+            pairs["theta0"] = value * unit, std * unit
+    return pairs | dict.fromkeys(["steady"] * bool(words), (0.0, 0.0))
+
+
+def time_power(key: str) -> int:
+    """Return the power of time in the unit of a number of a fit, such as -1 for r0."""
+    if key in _RATES or key == "precession_rate_elementary":
+        return -1
+    over, _, _ = key.partition("/")
+    if key == "b/a":
+        return 1
+    if set(key) & set("*/"):
+        below = key[len(over) :]
+        return sum(time_power(x) for x in over.split("*")) - 2 * (-1) * ("g" in below)
+    return _POWERS.get(key.removesuffix("_elementary"), 0)
+
+
+def scaled_known(known: Known, scale: float) -> Known:
+    """Return known inputs in another unit of time, `scale` times as long."""
+    return {
+        key: (value / scale ** time_power(key), std / scale ** time_power(key))
+        for key, (value, std) in known.items()
+    }
+
+
+def body_numbers(torque: Array, b: Array, has: Mapping[str, Array]) -> dict[str, Array]:
+    """Return the unknown inputs of the body, or products of them, from mgs/A, b and known inputs.
+
+    The names of products are such as `m*s/A`.
+    """
+    has, found = dict(has), dict[str, Array]()
+    if "A" not in has:
+        if WEIGHT <= has.keys():
+            found["A"] = has["m"] * has["g"] * has["s"] / torque
+        elif {"C", "r0"} <= has.keys():
+            found["A"] = has["C"] * has["r0"] / b
+        has |= found
+    over, moment = ("", has["A"]) if "A" in has else ("/A", 1.0)
+    for names, value in ((("C", "r0"), b), (("m", "g", "s"), torque)):
+        if unknown := [x for x in names if x not in has]:
+            rest = math.prod(has[x] for x in names if x in has)
+            found["*".join(unknown) + over] = value * moment / rest
+    return dict(sorted(found.items()))
+
+
+def estimates(known: Known, v: Mapping[str, Array], turn: float, *, spins: bool) -> dict[str, Array]:
+    """Return estimates of known inputs from the motion and the other known inputs.
+
+    `v` has the quantities of a motion that was fitted without them, `turn` is 2 pi per frame if
+    whole turns are invisible, else 0, and `spins` is true if the spin is recorded.
+    """
+    found = {x: v[x] for x in ("theta0", "thetadot0", "psidot0") if x in known}
+    spin_rate = v["r0"] - v["psidot0"] * np.cos(v["theta0"])
+    if spins and "r0" in known:
+        found["r0"] = _nearest(v["r0"], known["r0"][0], turn)
+    if spins and "phidot0" in known:
+        found["phidot0"] = _nearest(spin_rate, known["phidot0"][0], turn)
+    moment = v.get("A")
+    if WEIGHT <= known.keys():
+        implied = v["m"] * v["g"] * v["s"] / (v["a"] / 2)
+        if "A_cm" in known:
+            found["A_cm"] = implied - v["m"] * v["s"] ** 2
+        elif "A" in known:
+            found["A"] = implied
+        moment = implied if moment is None else moment
+    if "C" in known and moment is not None and (spins or {"r0", "phidot0"} & known.keys()):
+        r0 = v["r0"]
+        if "r0" in known:
+            r0 = np.full_like(r0, known["r0"][0])
+        elif spins:
+            r0 = _nearest(r0, float((v["b"] * moment)[0] / known["C"][0]), turn)
+        found["C"] = v["b"] * moment / r0
+    return found
+
+
+def _nearest(rate: Array, given: float, turn: float) -> Array:
+    """Return rates that are shifted together by whole turns to be nearest to a given one."""
+    return rate - turn * round((float(rate[0]) - given) / turn) if turn else rate

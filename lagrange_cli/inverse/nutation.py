@@ -1,0 +1,185 @@
+"""The numbers of a nutating top, from a minimum of the least squares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..arithmetic.numbers import angle_unit
+from ..arithmetic.types import Array
+from ..solver.quantity import unit_name
+from ..solver.record import shown_keys
+from ..sweeps.records import sweep
+from .known import body_numbers, time_power
+from .outcome import Number, Outcome
+from .problem import Minimum, Problem
+from .recording import Recording
+
+_MEANINGS = {
+    "a": "2mgs/A (4,4)",
+    "b": "C r0/A (4,5)",
+    "r0": "total spin rate",
+    "theta0": "tilt in the first row",
+    "thetadot0": "nutation rate in the first row",
+    "psidot0": "precession rate in the first row",
+    "psi_zero": "psi of the data in the first row",
+    "phi_zero": "phi of the data in the first row",
+}
+_ANGLES = ("theta0", "psi_zero", "phi_zero")
+_ELEMENTARY = {
+    "T_nutation_elementary": "T_nutation",
+    "precession_rate_elementary": "mean_precession_rate",
+}
+_DERIVED = (
+    *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
+    *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
+)
+_PERCENT = "_percent"
+"""Ending of the keys of relative errors of elementary formulas."""
+_IMPROVED = 0.999
+"""Standard deviation of a known input after the fit, over the given one, from which it is new."""
+
+
+def nutating_outcome(
+    found: Minimum,
+    recording: Recording,
+    scale: float,
+    noise: Mapping[str, tuple[float, float]],
+    *,
+    radians: bool,
+    is_spin_known: bool,
+    is_even: bool,
+) -> Outcome:
+    """Return the result of a fit whose unit of time is `scale` units of the recording.
+
+    Without `is_spin_known` nothing follows from r0.  The `noise` of the channels is that of
+    `Outcome`.
+    """
+    problem, names = found.problem, found.problem.names
+    stds = np.linalg.norm(found.spread, axis=1)
+    pairs = found.numbers(
+        lambda x: _computed(problem, x, radians=radians, is_spin_known=is_spin_known)
+    )
+    for name, std in zip(names, stds, strict=True):
+        if std > _IMPROVED * problem.stds.get(name, math.inf):
+            pairs.pop(_named(name, radians=radians), None)
+    for key in [f"{x}_zero_{angle_unit(radians=radians)[1]}" for x in ("psi", "phi")]:
+        if key in pairs:
+            turn = 2 * math.pi * angle_unit(radians=radians)[0]
+            value = turn / 2 - (turn / 2 - pairs[key][0]) % turn  # in (-turn/2, turn/2]
+            pairs[key] = value, *pairs[key][1:]
+    numbers = {}
+    for key, values in pairs.items():
+        value, std, own = (x * scale ** time_power(key) for x in values)
+        numbers[key] = Number(value, std, _meaning(key, problem, pairs, radians=radians), own)
+    unit = found.spread / (stds[:, np.newaxis] + 1e-300)
+    body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
+    products = [x for x in numbers if set(x) & set("*/") and is_spin_known]
+    notes = [f"only {' and '.join(products)} can be determined: give known inputs"] * bool(products)
+    if problem.is_even:
+        notes.append("the sign of b is not determined: theta alone does not show the direction")
+    inputs = _inputs(found, {x: y[0] for x, y in pairs.items()}, is_spin_known=is_spin_known)
+    return Outcome(
+        recording=recording,
+        known=problem.inputs,
+        radians=radians,
+        numbers={x: y for x, y in numbers.items() if not x.endswith(_PERCENT)},
+        motion=lambda t: problem.angles(found.x[np.newaxis], t / scale)[:, 0],
+        parameters=problem.count,
+        frequency=1 / scale,
+        noise=noise,
+        faults=_faults(found, is_even=is_even),
+        notes=notes,
+        inputs={x: y * scale ** time_power(x) for x, y in inputs.items()},
+        correlations={
+            f"{x} and {y}": float(unit[i] @ unit[j]) for i, x in body for j, y in body if x < y
+        },
+    )
+
+
+def _faults(found: Minimum, *, is_even: bool) -> list[str]:
+    """Return why the top is undetermined or impossible."""
+    problem, values, faults = found.problem, found.values, []
+    if found.unknown:
+        known = [x for x in found.unknown if not x.endswith("_zero")] or found.unknown
+        faults.append(f"the recording does not determine {' and '.join(known)}")
+    if problem.spins and not found.unknown:
+        ratio = values["b"] / (values["r0"] or math.inf)
+        std = found.std("b") / abs(values["r0"] or math.inf)
+        is_free = "phi" in problem.recording.angles and is_even
+        if not -4 * std < ratio < 2 + 4 * std and not (is_free and abs(ratio) < 4 * std):
+            faults.append(f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2")
+    return faults
+
+
+def _named(name: str, *, radians: bool) -> str:
+    """Return the key of a parameter, with the unit of an angle."""
+    return f"{name}_{angle_unit(radians=radians)[1]}" if name in _ANGLES else name
+
+
+def _computed(
+    problem: Problem, x: Array, *, radians: bool, is_spin_known: bool
+) -> dict[str, Array]:
+    """Return the numbers of the motion and of the body for many parameters."""
+    v, scale = problem.values(x), dict.fromkeys(_ANGLES, angle_unit(radians=radians)[0])
+    free = {*problem.names, *["b"] * problem.is_tied, *["a"] * problem.has_torque}
+    free |= {"r0"} if "phidot0" in problem.known else set()
+    free -= {"a"} if problem.has_torque and not problem.stds else set()
+    names = [name for name in (*_MEANINGS, *problem.stds) if name in free]
+    found = {_named(name, radians=radians): v[name] * scale.get(name, 1.0) for name in names}
+    has = {name: v[name] for name in problem.known}
+    has |= {"r0": v["r0"]} if problem.spins and is_spin_known else {}
+    has |= {"A": v["A"]} if "A_cm" in has else {}
+    found |= body_numbers(v["a"] / 2, v["b"], has)
+    keys = [unit_name(key, radians=radians) for key in _DERIVED]
+    start = {"theta0_rad": v["theta0"], "thetadot0": v["thetadot0"], "psidot0": v["psidot0"]}
+    swept = sweep(keys=keys, radians=radians, m=1, A=1, C=1, s=1, g=v["a"] / 2, r0=v["b"], **start)
+    derived = {key: np.asarray(swept[key], float) for key in keys}
+    derived["mean_spin_rate"] = derived["mean_spin_rate"] + v["r0"] - v["b"]
+    if not problem.spins:
+        del derived["mean_spin_rate"]
+    for key, exact in _ELEMENTARY.items():
+        derived[f"{key}{_PERCENT}"] = 100 * (derived[key] / derived[exact] - 1)
+    return found | derived
+
+
+def _meaning(
+    key: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]], *, radians: bool
+) -> str:
+    name = key.removesuffix(f"_{angle_unit(radians=radians)[1]}")
+    if name in problem.stds:
+        return "known, improved by the fit"
+    if off := pairs.get(f"{key}{_PERCENT}"):
+        word, sigmas = ("small", "large")[off[0] > 0], off[0] / (off[1] or math.inf)
+        sure = f"{sigmas:+.{int(abs(sigmas) < 10)}f} sigma"
+        return f"of a fast top: {abs(off[0]):.2g} % too {word}, {sure}"
+    declared = shown_keys(radians=radians, requested=True)
+    if name not in _MEANINGS and key in declared:
+        return declared[key].meaning
+    return _MEANINGS.get(name, "only this product is known" if set(key) & set("*/") else "")
+
+
+def _inputs(
+    found: Minimum, numbers: Mapping[str, float], *, is_spin_known: bool
+) -> dict[str, float]:
+    """Return inputs of `Top` with this motion.
+
+    Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.
+    """
+    values, body = found.values, ("m", "s", "g", "A", "C", "r0")
+    has = {x: values[x] for x in body if x in found.problem.known or x == "A" and x in values}
+    has |= {x: numbers[x] for x in body if x in numbers and (x != "r0" or is_spin_known)}
+    moment = has.setdefault("A", has.get("C", 1.0))  # with C and r0, A is a number of the fit
+    ratio = values["b"] / values["r0"] if found.problem.spins and is_spin_known else 1.0
+    has["r0"] = values["b"] * moment / has.setdefault("C", ratio * moment)
+    weight = values["a"] / 2 * moment  # mgs
+    share = min(0.1, max(1 - has["C"] / (2 * moment), 1e-3) / 2)
+    unknown = [x for x in ("g", "s", "m") if x not in has]
+    for name in unknown[:-1]:
+        has[name] = 1.0 if name == "g" else share * moment * has["g"] / weight
+    for name in unknown[-1:]:
+        has[name] = weight / math.prod(has[x] for x in ("m", "g", "s") if x != name)
+    start = {"theta0_deg": math.degrees(values["theta0"])}
+    return {x: has[x] for x in body} | start | {x: values[x] for x in ("thetadot0", "psidot0")}

@@ -1,0 +1,326 @@
+"""The least squares of a fit: parameters, residuals, covariance, and the numbers of a top."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from .known import WEIGHT, Known
+from .motions import STATE, angles
+from .recording import Recording
+from .signals import Signal
+
+_DEPENDENT = 1e-7
+"""Ratio of singular values of the slopes below which parameters are not determined."""
+_SHARE = 0.05
+"""Share of a parameter in a direction that is not determined, from which it is not either."""
+_LEAST, _FASTEST = 2.0, 1e6
+"""Standard deviations by which a > 0, and the largest b^2/a at which a is determined."""
+_STEP, _SHORT_STEP, _LEAST_SIZE = 1e-6, 1e-7, 1e-3
+"""Steps of central and of forward differences, over the size of a parameter, and its least size."""
+_STEPS = 60
+"""Evaluations of the least squares."""
+_POLE, _FAR = 1e-9, 1e3
+"""Least distance from a pole, and weighted residual of a motion that does not exist."""
+_DAMPING, _STUCK, _GAIN = 1e-3, 1e12, 1e-10
+"""First damping of the least squares, the largest one, and the relative gain of their end."""
+_APART = 4.0
+"""Standard deviations between different tops."""
+_CURVED = 2.0
+"""Standard deviations at which chi^2 is compared with a parabola."""
+
+
+class Problem:
+    """The parameters of a recording, and its residuals for many tops at once.
+
+    Parameters are the state, r0 if the spin is recorded, and the zeros of psi and phi.  Known
+    inputs replace a, b, r0 and the start as far as they determine them, unless the fit is `free`.
+    Then they only serve to compute the body.  A known input that is uncertain is a parameter with
+    a prior.  If whole turns of the spin per row are invisible, r0 is below half a turn per row here,
+    up to the `turns` per unit of time that known inputs add.
+    """
+
+    def __init__(
+        self, recording: Recording, known: Known, sizes: Array, *, free: bool = False, turns: float = 0
+    ) -> None:
+        self.recording, self.sizes, self.turns, self.free = recording, sizes, turns, free
+        """The `sizes` are the standard deviations of the channels."""
+        seen = recording.angles.keys()
+        alone = {"psidot0"} if seen == {"theta"} else {"theta0"} if seen == {"psi"} else set()
+        shown = {*STATE} - alone | ({"r0", "phidot0"} if "phi" in seen else set())
+        self.inputs = known
+        used = {x: y for x, y in known.items() if not (free and x in shown) and x != "steady"}
+        self.known = {name: value for name, (value, _) in used.items()}
+        self.stds = {name: std for name, (_, std) in used.items() if std}
+        has = used.keys()
+        self.is_moment_known = "A" in has or "A_cm" in has
+        self.spins = "phi" in seen or bool({"r0", "phidot0"} & has)
+        self.is_even = seen == {"theta"} and self.known.get("psidot0") == 0 and not self.spins
+        """Whether the opposite b leaves the same tilt."""
+        self.has_torque = WEIGHT <= has and self.is_moment_known and not free
+        self.is_tied = (
+            self.spins and "C" in has and (self.is_moment_known or WEIGHT <= has) and not free
+        )
+        fixed = {*has, *["a"] * self.has_torque, *["b"] * self.is_tied}
+        fixed |= {"r0"} if "phidot0" in has else set()
+        names = [x for x in (*STATE, *["r0"] * ("phi" in seen)) if x not in fixed]
+        names += [f"{x}_zero" for x in ("psi", "phi") if x in seen]
+        self.count = len(names)
+        """The number of parameters without a prior."""
+        self.names = [*names, *self.stds]
+
+    def of(self, recording: Recording, sizes: Array | None = None) -> Problem:
+        """Return the same problem for another form of the recording."""
+        sizes = self.sizes if sizes is None else sizes
+        return Problem(recording, self.inputs, sizes, free=self.free, turns=self.turns)
+
+    def thinned(self, count: int) -> Problem:
+        """Return the same problem for at most `count` rows of the recording."""
+        rows = np.linspace(0, self.recording.t.size - 1, count).astype(int)
+        part = self.recording.rows(np.unique(rows)) if count < self.recording.t.size else None
+        return self.of(part) if part else self
+
+    def values(self, x: Array) -> dict[str, Array]:
+        """Return the quantities of the motion from parameters, shape (tops, parameters)."""
+        found: dict[str, Any] = {"psi_zero": 0.0, "phi_zero": 0.0, **self.known}
+        found |= dict(zip(self.names, x.T, strict=True))
+        if "A_cm" in self.known:
+            found["A"] = found["A_cm"] + found["m"] * found["s"] ** 2
+        weight = 2 * math.prod(found.get(x, math.nan) for x in ("m", "g", "s"))
+        if self.has_torque:
+            found["a"] = weight / found["A"]
+        if "phidot0" in self.known:
+            found["r0"] = found["phidot0"] + found["psidot0"] * np.cos(found["theta0"])
+        if self.is_tied:
+            moment = found["A"] if "A" in found else weight / found["a"]
+            found["b"] = found["C"] / moment * found["r0"]
+        found.setdefault("r0", found["b"])
+        return {name: np.broadcast_to(value, len(x)) for name, value in found.items()}
+
+    def angles(self, x: Array, t: Array) -> Array:
+        """Return theta, phi and psi with the zeros of the recording, shape (3, tops, times)."""
+        value = self.values(x)
+        states = np.stack([value[name] for name in STATE], axis=-1)
+        states, tops = np.unique(states, axis=0, return_inverse=True)
+        theta, phi, psi = angles(states, t)[:, tops]
+        rate = value["r0"] - self.turns - value["b"]
+        phi = phi + np.outer(rate, t) + value["phi_zero"][:, np.newaxis]
+        return np.stack([theta, phi, psi + value["psi_zero"][:, np.newaxis]])
+
+    def residuals(self, x: Array) -> Array:
+        """Return recording minus motion in radians, shape (tops, channels, times)."""
+        recording = self.recording
+        if (spread := recording.spread) is None:
+            return recording.residuals(*self.angles(x, recording.t))
+        both = self.angles(x, np.concatenate([recording.t - spread, recording.t + spread]))
+        return recording.residuals(*np.stack(np.split(both, 2, axis=2)).mean(axis=0))
+
+    def weighted(self, x: Array) -> Array:
+        """Return residuals over standard deviations, a row for each top, and priors at the end."""
+        sizes = self.sizes[:, np.newaxis] / math.sqrt(self.recording.rows_per_bin)
+        found = (self.residuals(x) / sizes)[:, self.recording.present]
+        value = self.values(x)
+        priors = [(value[y] - self.known[y]) / std for y, std in self.stds.items()]
+        rows: Array = np.nan_to_num(np.column_stack([found, *priors]), nan=_FAR, posinf=_FAR)
+        return rows
+
+    def noise(self, x: Array) -> Array:
+        """Return the logarithm of the noise that each top leaves, summed over the channels."""
+        mean = np.nanmean(self.residuals(x) ** 2, axis=2)
+        mean = mean + self.sizes**2 / self.recording.rows_per_bin
+        return np.asarray(np.nan_to_num(np.log(mean).sum(axis=1), nan=np.inf))
+
+    def slopes(
+        self, x: Array, function: Callable[[Array], Array], *, central: bool = True
+    ) -> Array:
+        """Return the derivatives of a function of many tops by the parameters, in the last axis."""
+        steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), _LEAST_SIZE)
+        steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
+        below = x - np.diag(steps) if central else x[np.newaxis]
+        found = function(np.concatenate([x + np.diag(steps), below]))
+        return np.asarray((found[: x.size] - found[x.size :]).T / ((1 + central) * steps))
+
+    def solve(self, x: Array, steps: int) -> tuple[Array, float]:
+        """Return the least squares from one start by Levenberg's and Marquardt's method.
+
+        They are the parameters and half the sum of squares after at most `steps` evaluations.
+        """
+        low = np.array([{"a": 1e-30, "theta0": _POLE}.get(name, -np.inf) for name in self.names])
+        high = np.array([math.pi - _POLE if name == "theta0" else np.inf for name in self.names])
+        x = np.clip(x, low, high)
+        rest = self.weighted(x[np.newaxis])[0]
+        cost, damping, factor = float(rest @ rest), _DAMPING, 2.0
+        slopes, scale = None, np.full(x.size, 1e-300)
+        for _ in range(steps):
+            if slopes is None:
+                slopes = self.slopes(x, self.weighted, central=False)
+                normal, gradient = slopes.T @ slopes, slopes.T @ rest
+                scale = np.maximum(scale, np.diag(normal))
+            step = -np.linalg.lstsq(normal + np.diag(damping * scale), gradient, rcond=None)[0]
+            moved = np.clip(x + step, low, high)
+            found = self.weighted(moved[np.newaxis])[0]
+            gain, wanted = cost - float(found @ found), -float(step @ (gradient + normal @ step / 2))
+            if gain > 0:
+                is_done = gain < _GAIN * cost and 2 * wanted < _GAIN * cost + 1e-300
+                x, rest, cost, slopes = moved, found, cost - gain, None
+                damping = max(damping * max(1 / 3, 1 - (gain / max(wanted, 1e-300) - 1) ** 3), 1e-15)
+                factor = 2.0
+                if is_done:
+                    break
+            else:
+                if 2 * wanted < _GAIN * cost + 1e-300 or damping > _STUCK:
+                    break
+                damping, factor = damping * factor, 2 * factor
+        return x, cost / 2
+
+    def parameters_of(self, states: Array, spin: Signal | None, frequency: float) -> Array:
+        """Return the parameters of states, with the best zeros and spin rate of each."""
+        known, seen, t = self.known, self.recording.angles, self.recording.t
+        value: dict[str, Any] = {**known, **dict(zip(STATE, states.T, strict=True))}
+        theta, phi, psi = angles(states, t)
+        if spin is not None:
+            if "r0" in known:
+                r0 = np.broadcast_to(known["r0"], len(states))
+            elif "phidot0" in known:
+                r0 = known["phidot0"] + value["psidot0"] * np.cos(value["theta0"])
+            else:
+                r0 = self._spin_rates(value["b"], phi, spin, frequency)
+            value["r0"] = r0
+            turned = seen["phi"] - phi - np.outer(r0 - self.turns - value["b"], t)
+            value["phi_zero"] = _mean_angle(turned)
+        if "psi" in seen:
+            value["psi_zero"] = _mean_angle(seen["psi"] - psi, np.sin(theta))
+        rows = [np.broadcast_to(value[name], len(states)) for name in self.names]
+        return np.stack(rows, axis=-1)
+
+    def _spin_rates(self, b: Array, phi: Array, spin: Signal, frequency: float) -> Array:
+        """Return the spin rates that explain phi best; next to a pole it may jump by turns."""
+        t, seen = self.recording.t, self.recording.angles["phi"]
+        around = t - t.mean()
+        shown = np.interp(t, spin.t, spin.y) + spin.rate * t
+        r0 = b + (shown - phi) @ around / (around @ around)
+        rates = r0 + 2 * math.pi * frequency * np.array([[0.0], [1.0], [-1.0]])
+        fits = []
+        for rate in rates:
+            wave = np.exp(1j * (seen - phi - np.outer(rate - b, t)))
+            fits.append(np.abs(np.nansum(wave, axis=1)) * (1.05 if rate is rates[0] else 1.0))
+        return np.asarray(rates[np.argmax(fits, axis=0), np.arange(b.size)])
+
+
+def _mean_angle(turned: Array, weights: Array | float = 1.0) -> Array:
+    found: Array = np.angle(np.nansum(weights * np.exp(1j * turned), axis=1))
+    return found
+
+
+@dataclass
+class Minimum:
+    """One minimum of the least squares."""
+
+    problem: Problem
+    x: Array
+    spread: Array
+    """A matrix S with the covariance S S^T of the parameters."""
+    chi2: float
+    unknown: list[str]
+    """Parameters that the recording does not determine."""
+
+    @classmethod
+    def of(
+        cls, problem: Problem, start: Array, floors: Array, factors: Array | float = 1.0
+    ) -> Minimum:
+        """Converge; standard deviations that were not given come from the residuals.
+
+        They are at least the `floors`.  `factors` widen them for noise that is correlated.
+        """
+        recording = problem.recording
+        problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
+        x, cost = problem.solve(start, _STEPS)
+        present = recording.present
+        share = present.sum() * recording.rows_per_bin
+        share = share / max(present.sum() - problem.count, 1)
+        for _ in range(0 if recording.sigma else 4):
+            rest = np.where(present, problem.residuals(x[np.newaxis])[0], np.nan)
+            size = np.maximum(np.sqrt(np.nanmean(rest**2, axis=1) * share), floors)
+            done = np.allclose(size * factors, problem.sizes, rtol=1e-3)
+            problem.sizes = size * factors
+            if done:
+                break
+            x, cost = problem.solve(x, _STEPS // 4)
+        slopes = problem.slopes(x, problem.weighted)
+        size = np.linalg.norm(slopes, axis=0) + 1e-300
+        _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
+        sure = values > _DEPENDENT * values[0]
+        loose = np.abs(rows[~sure]).max(axis=0, initial=0.0) > _SHARE
+        spread = rows[sure].T / values[sure] / size[:, np.newaxis]
+        spread = spread * _curvature(problem, x, spread)
+        if "a" in problem.names:  # a <= 0 is no top
+            i, b = problem.names.index("a"), problem.values(x[np.newaxis])["b"][0]
+            least = max(_LEAST * np.linalg.norm(spread[i]), b * b / _FASTEST)
+            loose[i] |= x[i] <= least
+        unknown = [name for name, x in zip(problem.names, loose, strict=True) if x]
+        return cls(problem, x, spread, 2 * cost, unknown)
+
+    @property
+    def badness(self) -> float:
+        """Minus twice the logarithm of the likelihood."""
+        rows = self.problem.recording.present.sum(axis=1)
+        return self.chi2 + 2 * float(rows @ np.log(self.problem.sizes))
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The quantities of the motion, and known inputs."""
+        found = self.problem.values(self.x[np.newaxis])
+        return {name: float(x[0]) for name, x in found.items()}
+
+    def std(self, name: str) -> float:
+        """Return the standard deviation of a parameter, 0 if it is none."""
+        names = self.problem.names
+        return float(np.linalg.norm(self.spread[names.index(name)])) if name in names else 0.0
+
+    def turned(self, turns: float) -> Minimum:
+        """Return the minimum with a spin that is faster by whole turns per row."""
+        problem, x = self.problem.of(self.problem.recording), self.x.copy()
+        problem.turns += turns
+        x[problem.names.index("r0")] += turns
+        return replace(self, problem=problem, x=x)
+
+    def numbers(
+        self, function: Callable[[Array], Mapping[str, Array]]
+    ) -> dict[str, tuple[float, float, float]]:
+        """Return finite functions of the parameters, with standard deviations.
+
+        The second one is the standard deviation if known inputs are exact.
+        """
+
+        def columns(x: Array) -> Array:
+            return np.stack([*function(x).values()], axis=-1)
+
+        slopes = self.problem.slopes(self.x, columns) @ self.spread
+        priors, _ = np.linalg.qr(self.spread[self.problem.count :].T)
+        own = np.linalg.norm(slopes - slopes @ priors @ priors.T, axis=1)
+        stds = np.linalg.norm(slopes, axis=1)
+        found = zip(function(self.x[np.newaxis]).items(), stds, own, strict=True)
+        numbers = {key: (float(x), float(y), float(z)) for (key, (x,)), y, z in found}
+        return {key: x for key, x in numbers.items() if np.isfinite(x).all()}
+
+    def differs(self, other: Minimum) -> bool:
+        """Return whether this is another top: in a or b."""
+        rows = [i for i, name in enumerate(self.problem.names) if name in {"a", "b"}]
+        near = _APART * np.linalg.norm(self.spread, axis=1) + 1e-6 * np.abs(self.x)
+        return bool(np.any((np.abs(self.x - other.x) > near)[rows]))
+
+
+def _curvature(problem: Problem, x: Array, spread: Array) -> Array:
+    """Return factors by which the axes of a covariance are too short, at least 1.
+
+    Two standard deviations away on either side, chi^2 should have grown by 4.
+    """
+    ends = x + _CURVED * np.concatenate([spread.T, -spread.T])
+    rows = problem.weighted(np.concatenate([x[np.newaxis], ends]))
+    grown = np.sum(rows[1:] ** 2 - rows[0] ** 2, axis=1).reshape(2, -1).min(axis=0)
+    return np.asarray(np.sqrt(np.clip(_CURVED**2 / np.maximum(grown, 0.04), 1.0, 100.0)))

@@ -1,0 +1,68 @@
+"""The report on a fit, or on the fits of the windows of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from types import SimpleNamespace
+
+from ..arithmetic.numbers import angle_unit
+from ..output.report import Field, Report
+from .decay import decay_text
+from .outcome import Number, Outcome
+
+_COLUMNS = ("r0", "b", "theta0_deg", "theta0_rad", "T_nutation", "mean_precession_rate")
+"""Numbers in the rows of windows."""
+
+
+def fit_report(
+    outcomes: Sequence[Outcome], source: str, units: str, *, is_windows: bool = False
+) -> Report:
+    """Return the report on the fit of a file, or on its windows: a row for each of them.
+
+    `units` are those of the known inputs.
+    """
+    recording, known = outcomes[0].recording, outcomes[0].known
+    count, channels = sum(x.recording.t.size for x in outcomes), ", ".join(recording.channels)
+    shown = [
+        f"{name} = {Number(*x, '')}{' rad' * (name == 'theta0')}"
+        if name != "steady"
+        else "psidot0 = steady"
+        for name, x in known.items()
+    ]
+    data = f"{source}: {count} rows of {channels}, from t = {recording.t_start:g}"
+    conditions = {
+        "data": data + f"; not read: {', '.join(recording.unread)}" * bool(recording.unread),
+        "known": (", ".join(shown) or "nothing") + units,
+        "sigma": "as given" if recording.sigma else "estimated from the residuals",
+    }
+    if is_windows:
+        keys = [x for x in _COLUMNS if any(x in outcome.numbers for outcome in outcomes)]
+        fields = [Field(x, x, is_text=True) for x in ("t", *keys, "verdict")]
+        rows = []
+        for x in outcomes:
+            cells = {y: str(x.numbers[y]) if y in x.numbers else "" for y in keys}
+            cells |= {"t": f"{x.recording.middle:.6g}", "verdict": x.verdict}
+            rows.append(SimpleNamespace(**cells))
+        return Report(conditions, fields, rows, [decay_text(outcomes)])
+    fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
+    numbers = outcomes[0].numbers
+    rows = [
+        SimpleNamespace(key=key, value=str(x), meaning=x.meaning) for key, x in numbers.items()
+    ]
+    return Report(conditions, fields, rows, [*_conclusions(outcomes[0])])
+
+
+def _conclusions(outcome: Outcome) -> Iterator[str]:
+    """Yield sentences on one recording."""
+    yield f"Verdict: {outcome.verdict}."
+    if outcome.chi2_dof is not None:
+        low, high = outcome.chi2_bounds
+        bounds = f"noise {low:.3f} to {high:.3f}; {outcome.dof} dof"
+        yield f"chi2/dof = {outcome.chi2_dof:.3f}, {bounds}."
+    scale, unit = angle_unit(radians=outcome.radians)
+    rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
+    yield f"RMS residual ({unit}): {rest}."
+    if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
+        yield f"Correlation: {pairs}."
+    yield from (f"Note: {text}." for text in outcome.notes)
+    yield from (f"Failed: {text}." for text in [*outcome.failures(), *outcome.hints])
