@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
-from ..errors import LagtopError, SomeFailedError
+from ..errors import DataError, LagtopError, SomeFailedError
 from ..names import split_names
 from ..output.destination import Output, opened
-from ..output.terminal import with_progress
 from ..output.text import json_text
+from ..top.inputs import DECLARED
 from . import shared as opt
 from .app import complain
 
@@ -25,12 +26,26 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
     return {name.strip(): opt.parse_positive(value) for name, _, value in parts}
 
 
-def _parse_up(text: str) -> str:
-    """Return the axis of `up=AXIS`."""
-    key, _, axis = text.partition("=")
-    if key != "up" or axis.removeprefix("-") not in {"x", "y", "z"}:
-        raise LagtopError(f"must be up=x, up=y, up=z, up=-x, up=-y or up=-z, got {text}")
-    return axis
+def _parse_align(text: str) -> dict[str, str]:
+    """Return the axes of `up=AXIS,axis=AXIS`."""
+    found = {}
+    for word in split_names(text):
+        if not re.fullmatch("(up|axis)=-?[xyz]", word):
+            axes = "up=x, up=-x and so on, or axis=x, axis=-x and so on"
+            raise LagtopError(f"must be among {axes}, got {word}")
+        key, _, axis = word.partition("=")
+        found[key] = axis
+    return found
+
+
+_REMEDY = re.compile(
+    rf"\b(use|omit|give|know) ({'|'.join([*DECLARED, 'align', 'sigma', 'window'])})\b"
+)
+
+
+def _with_options(text: str) -> str:
+    """Return a message of the library with options in place of arguments."""
+    return _REMEDY.sub(lambda found: f"{found[1]} --{found[2].replace('_', '-')}", text)
 
 
 @opt.command(
@@ -47,13 +62,11 @@ def _parse_up(text: str) -> str:
     "residuals]",
 )
 @opt.option("--window", type=opt.count(), help="Fit N equal windows, and the decay of the spin.")
-@opt.option("--by", metavar="COLUMN", help="Column that names the recording of each row.")
 @opt.option(
     "--align",
-    metavar="up=AXIS",
-    type=opt.Parsed("AXIS", _parse_up),
-    default="up=z",
-    help="Axis of space that points up in the file.",
+    metavar="WORD,...",
+    type=opt.Parsed("WORD,...", _parse_align),
+    help="Other axes: up=y if y of space points up, axis=y if y is the figure axis of a sensor.",
 )
 @opt.columns
 @opt.quaternion_order
@@ -66,8 +79,7 @@ def fit_command(
     words: list[str],
     sigma: float | dict[str, float] | None,
     window: int | None,
-    by: str | None,
-    align: str,
+    align: dict[str, str] | None,
     columns: list[str] | None,
     quaternion_order: str,
     euler_sequence: str,
@@ -81,23 +93,26 @@ def fit_command(
     with tilt, spin and precession, or with the axis, or with the attitude.  Cells may be missing,
     and angles may be wrapped.
 
-    Known inputs are the inputs given as options.  If the nutation is below the noise, the mean tilt
-    and the mean rates are fitted.  The exit code is 0 if the verdict is good, and 1 if not: the
-    last line then says why, and what to try.  With -o FILE.toml a good fit is written as a scene.
+    Known inputs are the inputs given as options.  The fit fails if the recording contradicts them.
+    If the nutation is below the noise, the mean tilt and the mean rates are fitted.  The exit code
+    is 0 if the verdict is good, and 1 if not: the last line then says why, and what to try.  With
+    -o FILE.toml a good fit is written as a scene.
     """
     from ..file_bytes import shown_path
     from ..files.observed import Conventions
-    from ..inverse.fit import best_fit, fit_windows
-    from ..inverse.recording import known_inputs, read_recordings
-    from ..plot.reports import draw_fits
+    from ..inverse.decay import fit_windows
+    from ..inverse.fit import fit_recording
+    from ..inverse.known import known_inputs
+    from ..inverse.recording import read_recording
+    from ..plot.reports import draw_decay, draw_fit
     from ..plot.style import report_bytes
 
     if len(words) != 1:
-        remedy = "use --by COLUMN" if words else "give a file, or - for standard input"
+        remedy = "fit each file alone" if words else "give a file, or - for standard input"
         raise LagtopError(f"fit takes one recording, got {len(words)}: {remedy}")
     scene_path = out.path if opt.extension(out.path) == "toml" else None
-    if window is not None and (by or plot or scene_path):
-        raise LagtopError("--window goes without --by, --plot and -o FILE.toml")
+    if window is not None and scene_path:
+        raise LagtopError("--window goes without -o FILE.toml")
     opt.check_plot(plot, out.path)
     radians = top.radians
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
@@ -107,37 +122,44 @@ def fit_command(
         if isinstance(sigma, dict)
         else sigma and sigma * unit
     )
-    recordings = read_recordings(
-        words[0], columns, decimal, by, conventions=conventions, sigma=spread, up=align
+    recording = read_recording(
+        words[0], columns, decimal, conventions=conventions, sigma=spread, **(align or {})
     )
     given = top.given()
     known, source = known_inputs(given.inputs, given.stds), shown_path(words[0])
-    units = " (in kg, m and s)" if given.si else ""
-    if scene_path and len(recordings) > 1:
-        raise LagtopError(f"a scene holds one top, got {len(recordings)}: fit one recording")
-    if window is not None:
-        found = fit_windows(recordings[0], window, known, radians=radians)
-    else:
-        found = [best_fit(x, known, radians=radians) for x in with_progress(recordings, "fits")]
+    try:
+        if window is not None:
+            found = fit_windows(recording, window, known, radians=radians)
+        else:
+            found = [fit_recording(recording, known, radians=radians)]
+    except DataError as error:
+        raise DataError(_with_options(str(error))) from None
+    for one in found:
+        one.notes, one.hints = ([*map(_with_options, x)] for x in (one.notes, one.hints))
+        one.faults = [*map(_with_options, one.faults)]
+        one.contradictions = [*map(_with_options, one.contradictions)]
     failed = [x.failure() for x in found if x.failures()]
     with ExitStack() as stack:  # a file is replaced only if the report is written
         if scene_path and not failed and found[0].inputs is not None:
-            stack.enter_context(opened(scene_path)).write(found[0].scene(source).encode())
+            scene = found[0].scene(source, si=given.si)
+            stack.enter_context(opened(scene_path)).write(scene.encode())
         if plot:
-            picture = report_bytes(plot, draw_fits, found)
+            drawn = (draw_fit, found[0]) if window is None else (draw_decay, found)
+            picture = report_bytes(plot, *drawn)
             stack.enter_context(opened(plot)).write(picture)
         out = out._replace(path="-") if scene_path else out
-        _write(found, source, units, window is not None, out)
-    if failed and len(found) == 1:
+        _write(found, source, " (in kg, m and s)" if given.si else "", window is not None, out)
+    if failed and window is None:
         raise SomeFailedError(f"the fit has failed: {failed[0]}")
-    opt.fail_for(failed, len(found), "fits" if window is None else "windows")
+    opt.fail_for(failed, len(found), "windows")
     if scene_path:
         found[0].scene(source)  # raises AbsentError for a steady precession
 
 
 def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out: Output) -> None:
-    """Write a report, or one record for each recording."""
-    from ..inverse.outcome import decay_of, decay_text, fit_report
+    """Write a report, or a record for each window."""
+    from ..inverse.decay import decay_of, decay_text
+    from ..inverse.report import fit_report
 
     if out.fmt == "table":
         opt.write_report(out, lambda: fit_report(found, source, units, is_windows=is_windows))
@@ -146,7 +168,7 @@ def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out:
     if out.fmt == "json" and is_windows:
         decay = decay_of(found)
         out.text(f"{json_text({'decay': decay and decay._asdict(), 'windows': records})}\n")
-    elif out.fmt == "json" and len(records) == 1:
+    elif out.fmt == "json":
         out.record(records[0], dict)
     else:
         out.rows(records, list(dict.fromkeys(key for record in records for key in record)))

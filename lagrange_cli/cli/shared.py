@@ -211,7 +211,7 @@ def top(
     `words`; `is_scene` finds the scene among them, unless it is None.  A top that is not `whole`
     has no defaults.
     """
-    names = [name for name in DECLARED if whole or name != "phidot0"]  # which needs a whole start
+    names = [*DECLARED]
     several = argument != "[SCENE]"
 
     def decorate(function: F) -> F:
@@ -233,7 +233,7 @@ def top(
 
         found: Any = rad(run)
         for name in reversed(names):
-            steady = whole and name == "psidot0"
+            steady = name == "psidot0"
             own = rate if name == "psidot0" else None
             parameter = own or kind or values(uncertain=True, steady=steady)
             flag, text = f"--{name.replace('_', '-')}", _help_of(name, shows_default=whole)

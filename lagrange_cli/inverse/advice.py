@@ -8,10 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from .checks import CHANCE
-from .fit import best_fit
 from .known import Known
 from .outcome import GOOD, Outcome
 from .recording import Recording, reoriented
+from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
 _AXES = ("x", "y", "-x", "-y", "-z")
@@ -52,7 +52,7 @@ def _tried(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str
 
 def _is_good(recording: Recording, known: Known, chance: float = CHANCE) -> bool:
     """Return whether a fit is good and needs no faster spin or reversed angle."""
-    found = best_fit(recording, known, chance=chance, helpful=False)
+    found = best_fit(recording, known, chance=chance)
     return found.verdict == GOOD and not found.recording.is_mirrored and found.is_spin_slow
 
 
@@ -67,10 +67,14 @@ def _frames(recording: Recording, known: Known) -> Iterator[str]:
     size, word, axis = best
     is_upside_down = ("-z" in axis) or size < plain + len(few.angles) * math.log(_CALMER)
     if is_upside_down and _is_good(reoriented(recording, **{word: axis}), known):
-        text = "the {} axis of the data points up" if word == "up" else "the {} axis is the figure axis"
-        yield f"{text.format(axis)}: align {word}={axis}"
+        text = (
+            "the {} axis of the data points up"
+            if word == "up"
+            else "the {} axis is the figure axis"
+        )
+        yield f"{text.format(axis)}: use align {word}={axis}"
     elif axis != "-z" and _is_good(reoriented(recording, up="-z"), known):
-        yield "the -z axis of the data points up: align up=-z"
+        yield "the -z axis of the data points up: use align up=-z"
 
 
 def _calmness(recording: Recording) -> float:
@@ -104,7 +108,7 @@ def _decays(recording: Recording, known: Known, frequency: float) -> Iterator[st
         parts = recording.windows(count)
         fits = []
         for i in (0, count - 1, count // 2):
-            fits.append(best_fit(parts[i], known, chance=CHANCE / count, helpful=False))
+            fits.append(best_fit(parts[i], known, chance=CHANCE / count))
             if fits[-1].verdict != GOOD:
                 break
         else:

@@ -8,20 +8,16 @@ Residuals of an encoder follow its steps.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import fdtrc, gammaincinv, ndtri
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from .recording import shifted_origin
-
-if TYPE_CHECKING:
-    from .outcome import Outcome
+from .recording import Recording, shifted_origin
 
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
@@ -144,31 +140,24 @@ def chi2_bounds(freedom: float, chance: float = CHANCE) -> tuple[float, float]:
     return low, high
 
 
-def misfits(outcome: Outcome) -> Iterator[str]:
-    """Yield why the motion does not match the recording."""
-    if (offset := shifted_origin(outcome.recording)) is not None:
+def misfits(
+    recording: Recording,
+    residuals: Mapping[str, Residuals],
+    *,
+    frequency: float,
+    chance: float,
+    radians: bool,
+) -> Iterator[str]:
+    """Yield why a motion does not match a recording, the plainest reasons first."""
+    if (offset := shifted_origin(recording)) is not None:
         shown = ", ".join(f"{x:.2g}" for x in offset)
         yield (
             "the distance of the marker from the origin varies with its direction: is the "
             f"origin at the pivot, or is the pivot at about ({shown})?"
         )
-    scale, unit = angle_unit(radians=outcome.radians)
-    for name, rest in outcome.residuals.items():
+    scale, unit = angle_unit(radians=radians)
+    for name, rest in residuals.items():
         if rest.rms > _MOST:
             yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
-    high, chi2 = outcome.chi2_bounds[1], outcome.chi2_dof
-    if chi2 is not None and chi2 > high:
-        yield f"chi2/dof = {chi2:.3g} is above {high:.3g}: another motion, or more noise"
-    for name, rest in outcome.residuals.items():
-        yield from rest.faults(name, outcome.frequency, outcome.chance)
-
-
-def failures(outcome: Outcome) -> list[str]:
-    """Return every reason why a fit has failed, in order.
-
-    A motion that is not determined or impossible comes first, then a known input that contradicts
-    a motion that matches, then a motion that does not match.
-    """
-    found = [*outcome.faults]
-    contradictions = [] if found else outcome.contradictions
-    return [*found, *outcome.misfits, *contradictions] if outcome.misfits else [*found, *contradictions]
+    for name, rest in residuals.items():
+        yield from rest.faults(name, frequency, chance)

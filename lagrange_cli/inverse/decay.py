@@ -17,10 +17,10 @@ import numpy as np
 from ..errors import LagtopError
 from ..output.report import uncertain_text
 from .checks import CHANCE
-from .fit import best_fit
 from .known import Known
 from .outcome import GOOD, Outcome
 from .recording import Recording
+from .search import best_fit
 
 _SURE = 3.0
 """Standard deviations from which a decay is significant."""
@@ -38,6 +38,13 @@ class Decay(NamedTuple):
     """The decay time 1/rate; None if no decay is significant."""
     time_std: float | None
     chi2_dof: float
+    level: float
+    """The logarithm of the size at t = 0, and the sign."""
+    sign: float
+
+    def value(self, t: float) -> float:
+        """Return the quantity at a time."""
+        return self.sign * math.exp(self.level - self.rate * t)
 
     def __str__(self) -> str:
         shown = f"does not decay: its relative rate is {uncertain_text(*self[1:3])}"
@@ -57,7 +64,7 @@ def fit_windows(
         key = "psidot0" if name == "steady" else name
         raise LagtopError(f"{key} is not the same in all windows: leave it out", key)
     return [
-        best_fit(part, known, radians=radians, chance=CHANCE / count, helpful=False)
+        best_fit(part, known, radians=radians, chance=CHANCE / count)
         for part in recording.windows(count)
     ]
 
@@ -80,7 +87,8 @@ def decay_of(outcomes: Sequence[Outcome], least: int = 3) -> Decay | None:
     (slope, level), spread = np.polyfit(t, logs, 1, w=weights, cov="unscaled")
     off, rate, std = weights * (logs - level - slope * t), -float(slope), math.sqrt(spread[0, 0])
     time, time_std = (1 / rate, std / rate**2) if rate > _SURE * std else (None, None)
-    return Decay(name, rate, std, time, time_std, float(off @ off) / (len(good) - 2))
+    chi2, sign = float(off @ off) / (len(good) - 2), float(np.sign(values[0]))
+    return Decay(name, rate, std, time, time_std, chi2, float(level), sign)
 
 
 def decay_text(outcomes: Sequence[Outcome]) -> str:

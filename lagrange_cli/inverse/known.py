@@ -92,7 +92,9 @@ def body_numbers(torque: Array, b: Array, has: Mapping[str, Array]) -> dict[str,
     return dict(sorted(found.items()))
 
 
-def estimates(known: Known, v: Mapping[str, Array], turn: float, *, spins: bool) -> dict[str, Array]:
+def estimates(
+    known: Known, v: Mapping[str, Array], turn: float, *, spins: bool
+) -> dict[str, Array]:
     """Return estimates of known inputs from the motion and the other known inputs.
 
     `v` has the quantities of a motion that was fitted without them, `turn` is 2 pi per frame if

@@ -9,8 +9,7 @@ import numpy as np
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from ..solver.quantity import unit_name
-from ..solver.record import shown_keys
+from ..solver.keys import shown_keys, unit_name
 from ..sweeps.records import sweep
 from .known import body_numbers, time_power
 from .outcome import Number, Outcome
@@ -38,6 +37,9 @@ _DERIVED = (
 )
 _PERCENT = "_percent"
 """Ending of the keys of relative errors of elementary formulas."""
+_NEAR_POLE = 0.1
+"""Standard deviation of the tilt over its distance from a pole, beyond which the precession in the
+first row is not determined."""
 _IMPROVED = 0.999
 """Standard deviation of a known input after the fit, over the given one, from which it is new."""
 
@@ -64,6 +66,10 @@ def nutating_outcome(
     )
     for name, std in zip(names, stds, strict=True):
         if std > _IMPROVED * problem.stds.get(name, math.inf):
+            pairs.pop(_named(name, radians=radians), None)
+    tilt = found.values["theta0"]
+    if found.std("theta0") > _NEAR_POLE * min(tilt, math.pi - tilt):
+        for name in ("psidot0", "psi_zero", "phi_zero"):
             pairs.pop(_named(name, radians=radians), None)
     for key in [f"{x}_zero_{angle_unit(radians=radians)[1]}" for x in ("psi", "phi")]:
         if key in pairs:
@@ -169,7 +175,7 @@ def _inputs(
     Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.
     """
     values, body = found.values, ("m", "s", "g", "A", "C", "r0")
-    has = {x: values[x] for x in body if x in found.problem.known or x == "A" and x in values}
+    has = {x: values[x] for x in body if x in found.problem.known or (x == "A" and x in values)}
     has |= {x: numbers[x] for x in body if x in numbers and (x != "r0" or is_spin_known)}
     moment = has.setdefault("A", has.get("C", 1.0))  # with C and r0, A is a number of the fit
     ratio = values["b"] / values["r0"] if found.problem.spins and is_spin_known else 1.0

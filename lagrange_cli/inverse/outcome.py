@@ -13,9 +13,9 @@ from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..errors import AbsentError
 from ..files.rotations import within_half_turn
-from ..output.report import uncertain_text
 from ..output.notebook import HasRecord
-from .checks import CHANCE, Residuals, chi2_bounds, failures, misfits
+from ..output.report import uncertain_text
+from .checks import CHANCE, Residuals, chi2_bounds, misfits
 from .known import Known
 from .recording import Recording
 
@@ -121,11 +121,23 @@ class Outcome(HasRecord):
     @cached_property
     def misfits(self) -> list[str]:
         """Why the motion does not match the recording."""
-        return [*misfits(self)]
+        how: Any = {"frequency": self.frequency, "chance": self.chance, "radians": self.radians}
+        found = [*misfits(self.recording, self.residuals, **how)]
+        high, chi2 = self.chi2_bounds[1], self.chi2_dof
+        if chi2 is not None and chi2 > high:
+            found.append(
+                f"chi2/dof = {chi2:.3g} is above {high:.3g}: another motion, or more noise"
+            )
+        return found
 
     def failures(self) -> list[str]:
-        """Return the reasons why the fit has failed, if there are any."""
-        return failures(self)
+        """Return the reasons why the fit has failed, if there are any.
+
+        A motion that is impossible or not determined comes first, then one that does not match,
+        then a known input that contradicts a motion that matches.
+        """
+        found = [*self.faults, *self.misfits]
+        return found or self.contradictions
 
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""

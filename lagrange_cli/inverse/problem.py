@@ -41,12 +41,18 @@ class Problem:
     Parameters are the state, r0 if the spin is recorded, and the zeros of psi and phi.  Known
     inputs replace a, b, r0 and the start as far as they determine them, unless the fit is `free`.
     Then they only serve to compute the body.  A known input that is uncertain is a parameter with
-    a prior.  If whole turns of the spin per row are invisible, r0 is below half a turn per row here,
-    up to the `turns` per unit of time that known inputs add.
+    a prior.  If whole turns of the spin per row are invisible, r0 exceeds the rate that is seen,
+    which is below half a turn per row, by the `turns` per unit of time.
     """
 
     def __init__(
-        self, recording: Recording, known: Known, sizes: Array, *, free: bool = False, turns: float = 0
+        self,
+        recording: Recording,
+        known: Known,
+        sizes: Array,
+        *,
+        free: bool = False,
+        turns: float = 0,
     ) -> None:
         self.recording, self.sizes, self.turns, self.free = recording, sizes, turns, free
         """The `sizes` are the standard deviations of the channels."""
@@ -164,11 +170,16 @@ class Problem:
             step = -np.linalg.lstsq(normal + np.diag(damping * scale), gradient, rcond=None)[0]
             moved = np.clip(x + step, low, high)
             found = self.weighted(moved[np.newaxis])[0]
-            gain, wanted = cost - float(found @ found), -float(step @ (gradient + normal @ step / 2))
+            gain, wanted = (
+                cost - float(found @ found),
+                -float(step @ (gradient + normal @ step / 2)),
+            )
             if gain > 0:
                 is_done = gain < _GAIN * cost and 2 * wanted < _GAIN * cost + 1e-300
                 x, rest, cost, slopes = moved, found, cost - gain, None
-                damping = max(damping * max(1 / 3, 1 - (gain / max(wanted, 1e-300) - 1) ** 3), 1e-15)
+                damping = max(
+                    damping * max(1 / 3, 1 - (gain / max(wanted, 1e-300) - 1) ** 3), 1e-15
+                )
                 factor = 2.0
                 if is_done:
                     break

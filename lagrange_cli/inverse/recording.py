@@ -47,8 +47,10 @@ class Recording:
     """Standard deviations in radians by channel; empty if they are not given."""
     position: Array | None = None
     """The marker in space, shape (n, 3), if the axis is known from its position."""
-    unread: tuple[str, ...] = ()
-    """Columns of the file that were not used."""
+    used: tuple[str, ...] = ()
+    """Columns of the file that were read."""
+    unused: tuple[str, ...] = ()
+    """Other columns of the file."""
     is_mirrored: bool = False
     """Whether psi was counted in the other direction."""
     spread: Array | None = None
@@ -155,9 +157,12 @@ def read_recording(
     trajectory = read_trajectory(path, columns, decimal)
     conventions = reading["conventions"]
     given = trajectory.values(radians=conventions.radians)
+    first = float(given["t"][0, 0])
+    given["t"] = trajectory.elapsed.reshape(-1, 1)
     reading["conventions"] = trajectory.conventions(conventions)
     found = recording_of(trajectory.name, given, **reading)
-    return replace(found, unread=tuple(getattr(trajectory, "unread", ())))
+    used, unused = tuple(trajectory.used), tuple(trajectory.unused)
+    return replace(found, t_start=first + found.t_start, used=used, unused=unused)
 
 
 def recording_from(
@@ -280,9 +285,7 @@ def reoriented(recording: Recording, *, up: str = "z", axis: str = "z") -> Recor
     theta, psi = recording.angles["theta"], recording.angles["psi"]
     turns = rotations.of_angles(theta, recording.angles.get("phi", np.zeros_like(theta)), psi)
     turns = rotations.product(rotations.to_z(up), turns)
-    found = rotations.angles_of(
-        rotations.product(turns, rotations.conjugate(rotations.to_z(axis)))
-    )
+    found = rotations.angles_of(rotations.product(turns, rotations.conjugate(rotations.to_z(axis))))
     return replace(recording, angles={name: found[name] for name in recording.angles})
 
 

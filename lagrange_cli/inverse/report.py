@@ -29,9 +29,10 @@ def fit_report(
         else "psidot0 = steady"
         for name, x in known.items()
     ]
-    data = f"{source}: {count} rows of {channels}, from t = {recording.t_start:g}"
     conditions = {
-        "data": data + f"; not read: {', '.join(recording.unread)}" * bool(recording.unread),
+        "data": f"{source}: {count} rows of {channels}, from t = {recording.t_start:g}",
+        **({"read": ", ".join(recording.used)} if recording.used else {}),
+        **({"not read": ", ".join(recording.unused)} if recording.unused else {}),
         "known": (", ".join(shown) or "nothing") + units,
         "sigma": "as given" if recording.sigma else "estimated from the residuals",
     }
@@ -46,9 +47,7 @@ def fit_report(
         return Report(conditions, fields, rows, [decay_text(outcomes)])
     fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
     numbers = outcomes[0].numbers
-    rows = [
-        SimpleNamespace(key=key, value=str(x), meaning=x.meaning) for key, x in numbers.items()
-    ]
+    rows = [SimpleNamespace(key=key, value=str(x), meaning=x.meaning) for key, x in numbers.items()]
     return Report(conditions, fields, rows, [*_conclusions(outcomes[0])])
 
 

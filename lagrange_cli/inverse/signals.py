@@ -118,7 +118,7 @@ def binned(recording: Recording, signals: Mapping[str, Signal], most: int) -> Re
     starts = np.arange(0, recording.t.size - size + 1, size)
 
     def mean(x: Array) -> Array:
-        return x[: starts.size * size].reshape(-1, size).mean(axis=1)
+        return np.asarray(x[: starts.size * size].reshape(-1, size).mean(axis=1))
 
     t, angles = mean(recording.t), {}
     for name, values in recording.angles.items():
@@ -139,7 +139,7 @@ def oscillation_in(signals: Mapping[str, Signal]) -> tuple[float, bool]:
     """
     rows = max(x.t.size for x in signals.values())
     best = _best_frequency([x.averaged(_MOST_ROWS) for x in signals.values()])
-    if rows <= _MOST_ROWS or best[1] > 0 and best[0] * best[2] < _MOST_ROWS / 8:
+    if rows <= _MOST_ROWS or (best[1] > 0 and best[0] * best[2] < _MOST_ROWS / 8):
         return best[0], best[1] > 0
     # the nutation may be faster than averages show: search a part at the full rate
     longest = max(signals.values(), key=lambda x: x.t.size).t

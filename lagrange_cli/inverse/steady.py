@@ -47,6 +47,9 @@ class _Mean(NamedTuple):
     start: float
 
 
+_NONE = _Mean(0.0, 0.0, 0.0)
+
+
 def _mean(
     signal: Signal, name: str, recording: Recording, step: float, sigma: float | None
 ) -> _Mean:
@@ -87,72 +90,41 @@ def steady_outcome(
     alias = {"theta": "theta", "psi": "across", "phi": "along"}
     sigma = recording.sigma
     means = {
-        x: _mean(
-            y, x, recording, noise.get(x, (0.0, 0.0))[0], sigma.get(x) or sigma.get(alias[x])
-        )
+        x: _mean(y, x, recording, noise.get(x, (0.0, 0.0))[0], sigma.get(x) or sigma.get(alias[x]))
         for x, y in signals.items()
     }
-    none = _Mean(0.0, 0.0, 0.0)
     tilt = means.get("theta") or (_Mean(*known["theta0"], 0.0) if "theta0" in known else None)
-    turn, spin = means.get("psi", none), means.get("phi", none)
     notes = ["no nutation is visible: the numbers are means over the recording"]
-    r0, whole, is_sure = known.get("r0"), 0.0, "r0" in known
+    turn, spin = means.get("psi", _NONE), means.get("phi", _NONE)
+    r0, is_sure = known.get("r0"), "r0" in known
     if "phi" in means and tilt:
-        whole = 2 * math.pi / recording.frame if recording.is_even else 0.0
-        along = turn.value * math.cos(tilt.value)
-        rate, slow = spin.value + along, abs(spin.value - along) * recording.frame / (2 * math.pi)
-        is_backwards = turn.value * rate < 0 < turn.value * (along - spin.value)  # C/A < 0
-        if recording.kind == "angles" and is_backwards and (slow < _QUARTER or not whole):
-            recording, rate = recording.mirrored, spin.value - along
-            turn = _Mean(-turn.value, turn.std, -turn.start)
-            faster = f"{1 - slow:.2g}"
-            note = "psi counts in the other direction: its sign was changed"
-            assumed = f" (else the spin makes {faster} turns per row or more)" * bool(whole)
-            notes.append(note + assumed)
-        elif is_backwards and whole:
-            rate += math.copysign(whole, turn.value)
-        turns = abs(rate) * recording.frame / (2 * math.pi)
-        is_sure = is_sure or not whole or (turns < _QUARTER and turn.value * rate > 0)
-        std = math.hypot(spin.std, turn.std * math.cos(tilt.value))
-        std = math.hypot(std, turn.value * math.sin(tilt.value) * tilt.std)
-        if r0 is None:
-            r0 = rate, std
-        if whole:
-            notes.append(
-                f"r0 is known only up to whole turns per row, multiples of {whole:.6g}"
-                + "; C and the sign of r0 do not follow" * (not is_sure)
-            )
+        recording, turn, rate, slow = _spin(recording, tilt, turn, spin, notes)
+        r0, is_sure = r0 or rate, is_sure or slow
     elif "phi" in means:
-        notes.append("without the tilt neither r0 nor C follows: theta0 must be known")
+        notes.append("without the tilt neither r0 nor C follows: give theta0")
+    means |= {"psi": turn} if "psi" in means else {}
     numbers: dict[str, Number] = {}
-
-    def add(key: str, value: float, std: float, meaning: str = "") -> None:
-        name = key.removesuffix(f"_{unit}")
-        numbers[key] = Number(value, std, _MEANINGS.get(name, meaning), std)
-
-    for name, key, mean, size in (
-        ("theta", f"mean_tilt_{unit}", tilt or none, scale),
-        ("psi", "mean_precession_rate", turn, 1.0),
-        ("phi", "mean_spin_rate", spin, 1.0),
+    for name, key, size in (
+        ("theta", f"mean_tilt_{unit}", scale),
+        ("psi", "mean_precession_rate", 1.0),
+        ("phi", "mean_spin_rate", 1.0),
     ):
         if name in means:
-            add(key, mean.value * size, mean.std * size)
+            numbers[key] = _number(key.removesuffix(f"_{unit}"), means[name][:2], size)
     if r0 and "r0" not in known:
-        add("r0", *r0)
-    contradictions: list[str] = []
-    distances: dict[str, float] = {}
+        numbers["r0"] = _number("r0", r0)
+    ratio, contradictions, distances = None, list[str](), dict[str, float]()
     if turn.value and r0 and tilt and r0[0]:
         ratio, text = _ratio(turn, tilt, r0, known, is_sure=is_sure)
-        if text:
-            notes.append(text)
-        if ratio:
-            add("b/a", *ratio)
-            key, body = _body(ratio, r0, known, is_sure=is_sure)
-            if key and key not in known:
-                add(key, *body, "from the mean rates")
-            elif key:
-                found, contradictions, distances = _compared(body, known)
-                notes += found
+        notes += [text] * bool(text)
+    if ratio and r0:
+        numbers["b/a"] = _number("b/a", ratio)
+        key, body = _body(ratio, r0, known, is_sure=is_sure)
+        if key in known:
+            found, contradictions, distances = _compared(body, known)
+            notes += found
+        else:
+            numbers[key] = _number(key, body)
     motion_tilt = (tilt or _Mean(math.pi / 2, 0.0, 0.0)).value
 
     def motion(t: Array) -> Array:
@@ -176,6 +148,41 @@ def steady_outcome(
     return result
 
 
+def _number(key: str, pair: _Pair, scale: float = 1.0) -> Number:
+    value, std = pair[0] * scale, pair[1] * scale
+    return Number(value, std, _MEANINGS.get(key, "from the mean rates"), std)
+
+
+def _spin(
+    recording: Recording, tilt: _Mean, turn: _Mean, spin: _Mean, notes: list[str]
+) -> tuple[Recording, _Mean, _Pair, bool]:
+    """Return the recording and psi' in the direction of the spin, r0, and if both are sure.
+
+    Whole turns per row are invisible.  If psi' and r0 have opposite signs, either psi counts in the
+    other direction, if the spin is slow, or the spin is faster.
+    """
+    whole = 2 * math.pi / recording.frame if recording.is_even else 0.0
+    along = turn.value * math.cos(tilt.value)
+    rate, slow = spin.value + along, abs(spin.value - along) * recording.frame / (2 * math.pi)
+    is_backwards = turn.value * rate < 0 < turn.value * (along - spin.value)  # C/A < 0
+    if recording.kind == "angles" and is_backwards and (slow < _QUARTER or not whole):
+        recording, rate = recording.mirrored, spin.value - along
+        turn = _Mean(-turn.value, turn.std, -turn.start)
+        assumed = f" (else the spin makes {1 - slow:.2g} turns per row or more)" * bool(whole)
+        notes.append(f"psi counts in the other direction: its sign was changed{assumed}")
+    elif is_backwards and whole:
+        rate += math.copysign(whole, turn.value)
+    turns = abs(rate) * recording.frame / (2 * math.pi)
+    is_sure = not whole or (turns < _QUARTER and turn.value * rate > 0)
+    if whole:
+        notes.append(
+            f"r0 is known only up to whole turns per row, multiples of {whole:.6g}"
+            + "; C and the sign of r0 do not follow" * (not is_sure)
+        )
+    parts = turn.std * math.cos(tilt.value), turn.value * math.sin(tilt.value) * tilt.std
+    return recording, turn, (rate, math.hypot(spin.std, *parts)), is_sure
+
+
 def _ratio(
     turn: _Mean, tilt: _Mean, r0: _Pair, known: Known, *, is_sure: bool
 ) -> tuple[_Pair | None, str]:
@@ -192,7 +199,9 @@ def _ratio(
         parts += [abs(along / torque) * moment[1] / moment[0]]
         return (value, math.hypot(*parts)), ""
     least, most = (
-        (x := known["C"][0] / moment[0], x) if moment and "C" in known else (_LEAST_RATIO, _MOST_RATIO)
+        (x := known["C"][0] / moment[0], x)
+        if moment and "C" in known
+        else (_LEAST_RATIO, _MOST_RATIO)
     )
     ends = [along / (r0[0] * least), along / (r0[0] * most) if is_sure else 0.0]
     if max(ends) > _MOST_BIAS:
@@ -203,8 +212,8 @@ def _ratio(
     if least != most:
         text = (
             f"b/a and C r0 include A Omega cos(theta) = {100 * min(ends):.2g} to "
-            f"{100 * max(ends):.2g} % of C r0, for C/A from {most:g} to {least:g}: with A, m, g and s "
-            "they are exact"
+            f"{100 * max(ends):.2g} % of C r0, for C/A from {most:g} to {least:g}: known A, m, g "
+            "and s make them exact"
         )
     return (value, math.hypot(abs(value) * spread, bias)), text
 
@@ -242,7 +251,7 @@ def _compared(body: _Pair, known: Known) -> tuple[list[str], list[str], dict[str
     if far <= _CONTRADICTS:
         note = f"{shown[0]} agrees with the recording, {shown[1]}: {far:.1f} sigma"
         return [note], [], {"C": far}
-    text = f"{shown[0]} contradicts the recording, {shown[1]}, {far:.2g} sigma apart: omit C, or"
+    text = f"{shown[0]} contradicts the recording, {shown[1]}, {far:.3g} sigma apart: omit C, or"
     return [], [f"{text} check m, s, g and r0"], {"C": far}
 
 

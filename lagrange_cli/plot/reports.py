@@ -14,9 +14,6 @@ if TYPE_CHECKING:
 
     from ..inverse.outcome import Outcome
 
-MOST_RECORDINGS = 3
-"""Most recordings on one sheet."""
-
 
 def new_figure() -> Figure:
     """Return a new figure of pyplot, which a notebook shows.  Raises UnavailableError."""
@@ -84,29 +81,48 @@ def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
     >>> len(draw_outcome(fit(t, theta=theta, psi=psi)).axes)
     4
     """
-    return draw_fits([outcome], figure or new_figure())
+    return draw_fit(outcome, figure or new_figure())
 
 
-def draw_fits(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Figure:
-    """Draw each channel of at most three recordings with the fit, and its residuals below."""
+def draw_fit(outcome: Outcome, figure: Figure | None = None) -> Figure:
+    """Draw each channel of a recording with the fit, and its residuals below."""
     from matplotlib.figure import Figure
 
-    curves = [(x.angle, curve) for x in outcomes[:MOST_RECORDINGS] for curve in x.curves()]
-    rows = len(curves)
+    curves = [*outcome.curves()]
+    rows, unit = len(curves), outcome.angle
     figure = figure or Figure(figsize=(8.0, 1.0 + 2.8 * rows))
     grid = figure.subplots(2 * rows, squeeze=False, sharex="col", height_ratios=[3, 1] * rows)
-    for (unit, curve), above, below in zip(curves, grid[::2, 0], grid[1::2, 0], strict=True):
-        recording, _, angle = curve.name.rpartition(": ")
-        number = ("theta", "phi", "psi").index(angle)
+    for curve, above, below in zip(curves, grid[::2, 0], grid[1::2, 0], strict=True):
+        number = ("theta", "phi", "psi").index(curve.name)
         symbol, colour = "ϑφψ"[number], LIGHT.lines[number]
         above.plot(curve.t, curve.data, ".", ms=4, color=LIGHT.ink, label="data")
         above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label="fit", alpha=0.8)
-        above.set(ylabel=f"{symbol} ({unit})", title=plain(recording))
+        above.set(ylabel=f"{symbol} ({unit})")
         above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
         below.set(ylabel=f"residual\n({unit})")
     grid[-1, 0].set_xlabel("t (units of the recording)")
-    if len(outcomes) == 1:
-        figure.suptitle(plain(outcomes[0].title), x=0.012, ha="left")
+    figure.suptitle(plain(outcome.title), x=0.012, ha="left")
+    return figure
+
+
+def draw_decay(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Figure:
+    """Draw the spin of each window that is good, and the exponential through them."""
+    from matplotlib.figure import Figure
+
+    from ..inverse.decay import decay_of, decay_text
+
+    figure = figure or Figure(figsize=(7.5, 4.6))
+    axes, decay = figure.subplots(), decay_of(outcomes)
+    name = decay.quantity if decay else "b"
+    found = [(x.recording.middle, *x.numbers[name][:2]) for x in outcomes if name in x.numbers]
+    t, values, stds = zip(*found, strict=True) if found else ((), (), ())
+    axes.errorbar(t, values, stds, fmt="o", ms=4, color=LIGHT.ink, label="windows")
+    if decay:
+        curve = [decay.value(x) for x in t]
+        axes.plot(t, curve, lw=1.2, color=LIGHT.lines[1], label="exponential")
+    axes.set(xlabel="t (units of the recording)", ylabel=f"{name} (rad per unit of time)")
+    axes.set_title(plain(decay_text(outcomes)), loc="left", size=9)
+    axes.legend()
     return figure

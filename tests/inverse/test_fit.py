@@ -19,10 +19,13 @@ from lagtop import LagtopError, Top, fit, read_scene, solve
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.inverse.fit import Problem, body_numbers, fit_windows, slowest
+from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
+from lagrange_cli.inverse.decay import decay_of, fit_windows
+from lagrange_cli.inverse.known import body_numbers, known_inputs
 from lagrange_cli.inverse.motions import angles, nutating
-from lagrange_cli.inverse.outcome import CHANCE, Outcome, Residuals, chi2_bounds, decay_of
-from lagrange_cli.inverse.recording import known_inputs, recording_from, shifted_origin
+from lagrange_cli.inverse.outcome import Outcome
+from lagrange_cli.inverse.problem import Problem
+from lagrange_cli.inverse.recording import recording_from, shifted_origin
 
 sys.path.append(str(Path(__file__).parents[1] / "tools"))
 DEGREE = math.pi / 180
@@ -64,7 +67,7 @@ def fitted(t: Array, seen: Mapping[str, Array], **options: Any) -> Outcome:
 def pulls(outcome: Outcome, truth: Mapping[str, float]) -> dict[str, float]:
     """Return how far numbers are from the truth, in standard deviations."""
     found = outcome.numbers
-    return {x: (found[x][0] - y) / found[x][1] for x, y in truth.items() if x in found}
+    return {x: (found[x].value - y) / found[x].std for x, y in truth.items() if x in found}
 
 
 def assert_true(outcome: Outcome, truth: Mapping[str, float], *, least: int = 2) -> None:
@@ -197,12 +200,8 @@ def test_the_sample_gives_the_body() -> None:
     sigma = {x: y.rms * (count / outcome.dof) ** 0.5 for x, y in outcome.residuals.items()}
     again = fit(t, theta=theta, psi=psi, phi=phi, sigma=sigma)
     assert again.chi2_dof == pytest.approx(1, rel=1e-3)
-    assert again.numbers["b"] == pytest.approx(outcome.numbers["b"], rel=1e-3)
-    off = outcome.numbers["precession_rate_elementary_percent"]
-    elementary = 1.587 * 9.81 * 0.04 / (1.7458e-3 * 50)  # mgs/(C r0)
-    true = 100 * (elementary / exact.mean_precession_rate - 1)
-    assert abs(off[0] - true) < 4 * off[1]
-    assert "11 % too small" in outcome.meanings["precession_rate_elementary"]
+    assert again.numbers["b"][:2] == pytest.approx(outcome.numbers["b"][:2], rel=1e-3)
+    assert "11 % too small" in outcome.numbers["precession_rate_elementary"].meaning
 
 
 def test_the_recordings_are_what_the_script_writes() -> None:
@@ -235,22 +234,23 @@ def test_known_inputs_determine_others(known: dict[str, float], truth: dict[str,
 def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
     t, seen = recorded("theta", "psi", seed=9)
     sure, unsure = (fitted(t, seen, known=LAB | {"C": c}).numbers for c in (2.5e-3, "0.0025(1)"))
-    assert unsure["r0"][1] == pytest.approx(52.36 * 0.04, rel=0.01)
+    assert unsure["r0"].std == pytest.approx(52.36 * 0.04, rel=0.01)
     assert "C" not in unsure  # the recording does not improve it
+    assert unsure["r0"].own_std == pytest.approx(sure["r0"].std, rel=1e-3)
     for key in ("T_nutation", "mean_precession_rate", "b", "A"):
-        assert unsure[key] == pytest.approx(sure[key], rel=1e-5)
+        assert unsure[key][:2] == pytest.approx(sure[key][:2], rel=1e-4)
 
 
 @pytest.mark.slow
 def test_a_prior_lies_between_a_known_input_and_none() -> None:
     """The estimate of A is the mean of prior and data, weighted by their variances."""
     t, seen = recorded("theta", "psi", seed=10)
-    value, std = fitted(t, seen, known=LAB).numbers["A"]
+    value, std, *_ = fitted(t, seen, known=LAB).numbers["A"]
     prior, spread = 4.44e-3, 3 * std
     found = fitted(t, seen, known=LAB | {"A": f"{prior!r} +/- {spread!r}"}).numbers["A"]
     weights = np.array([std**-2, spread**-2])
-    assert found[0] == pytest.approx(weights @ [value, prior] / weights.sum(), abs=0.02 * std)
-    assert found[1] == pytest.approx(weights.sum() ** -0.5, rel=0.02)
+    assert found.value == pytest.approx(weights @ [value, prior] / weights.sum(), abs=0.02 * std)
+    assert found.std == pytest.approx(weights.sum() ** -0.5, rel=0.02)
 
 
 def test_products_of_unknown_inputs() -> None:
@@ -258,12 +258,6 @@ def test_products_of_unknown_inputs() -> None:
     assert body_numbers(4.0, 2.0, {}) == {"C*r0/A": 2, "m*g*s/A": 4}  # type: ignore[arg-type]
     found = body_numbers(np.array([4.0]), np.array([2.0]), {x: one[x] for x in ("g", "C", "r0")})
     assert {x: float(y[0]) for x, y in found.items()} == {"A": 2, "m*s": 4}
-
-
-@pytest.mark.parametrize("sign", [-1, 1])
-def test_of_spins_that_look_alike_the_slowest_possible_is_taken(sign: int) -> None:
-    found = slowest(np.array([sign * 3.0]), np.array([sign * 20.0]), 2 * math.pi / 40)
-    assert found == pytest.approx([sign * 43.0])  # C/A = 20/3 is impossible
 
 
 # Wrong, hopeless and steady recordings
@@ -364,7 +358,7 @@ def test_a_fast_top_has_mean_rates(way: int) -> None:
     outcome = fit(t, theta=seen["theta"], phi=seen["phi"], psi=way * seen["psi"])
     assert outcome.verdict == "good, no nutation"
     assert outcome.inputs is None
-    assert any("only up to whole turns per frame, multiples of 2500.71" in x for x in outcome.notes)
+    assert any("only up to whole turns per row, multiples of 2500.71" in x for x in outcome.notes)
     exact = solve(top)
     tilt = (exact.theta_min_deg + exact.theta_max_deg) / 2
     truth = {"mean_precession_rate": exact.mean_precession_rate, "r0": 400, "mean_tilt_deg": tilt}
@@ -376,16 +370,19 @@ def test_a_fast_top_has_mean_rates(way: int) -> None:
         outcome.scene("data")
 
 
-def test_the_bias_of_the_elementary_theory_is_in_the_uncertainty() -> None:
-    """Steady at 40 degrees: with little noise the bias remains, some four percent."""
-    start = {"m": 1, "s": 1, "g": 50, "A": 1, "C": 0.5, "r0": 60, "theta0_deg": 40}
+@pytest.mark.parametrize("ratio", [0.05, 0.2, 0.5])
+def test_the_term_that_elementary_theory_neglects(ratio: float) -> None:
+    """A Omega cos(theta) is in the uncertainty, or exact if A, m, g and s are known."""
+    start = {"m": 1, "s": 1, "g": 50, "A": 1, "C": ratio, "r0": 30 / ratio, "theta0_deg": 40}
     top = Top(**start, psidot0=solve(Top(**start, psidot0="steady")).steady_rate_slow)
-    t, seen = recorded("theta", "phi", "psi", top=top, rows=100, noise=0.05, seed=16)
-    value, std = fitted(t, seen).numbers["b/a"]
-    assert 30 / 100 / value - 1 == pytest.approx(std / value, rel=0.2)
-    assert 0.03 < std / value < 0.06
-    known = {"A": 1, "C": 0.5}
-    assert fitted(t, seen, known=known).numbers["b/a"][1] == pytest.approx(std, rel=1e-9)
+    t, seen = recorded("theta", "phi", "psi", top=top, rows=100, seconds=0.05, noise=0.02, seed=16)
+    found = fitted(t, seen).numbers["b/a"]
+    assert abs(found.value - 30 / 100) < 2 * found.std < 0.4 * found.value
+    known = {"A": 1, "m": 1, "g": 50, "s": 1}
+    exact = fitted(t, seen, known=known).numbers
+    assert exact["b/a"].std < 0.02 * found.value
+    assert abs(exact["b/a"].value - 30 / 100) < 4 * exact["b/a"].std
+    assert abs(exact["C"].value - ratio) < 4 * exact["C"].std
 
 
 def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
@@ -402,13 +399,13 @@ def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
 
 def test_noise_hardly_ever_fails_a_test() -> None:
     rng, t = np.random.default_rng(18), np.linspace(0, 1, 90)
-    faults = [bool(Residuals(t, rng.normal(size=90)).faults("x", 4.0, CHANCE)) for _ in range(500)]
+    faults = [any(Residuals(t, rng.normal(size=90)).faults("x", 4.0, CHANCE)) for _ in range(500)]
     assert sum(faults) <= 8  # 2.7 expected
     wave = Residuals(t, rng.normal(size=90) + 1.5 * np.sin(2 * math.pi * 22.25 * t))
     assert abs(wave.autocorrelation) < 0.2  # four rows per period
-    assert wave.faults("x", 22.25, CHANCE)[0].endswith("they drift or oscillate")
+    assert next(wave.faults("x", 22.25, CHANCE)).endswith("they drift or oscillate")
     drift = Residuals(t, rng.normal(size=90) + 3 * t * np.sin(8 * math.pi * t))
-    assert drift.faults("x", 4.0, CHANCE)
+    assert any(drift.faults("x", 4.0, CHANCE))
     low, high = chi2_bounds(100)
     chi2 = rng.chisquare(100, size=20_000) / 100
     assert np.mean((chi2 < low) | (chi2 > high)) == pytest.approx(CHANCE, abs=1.2e-3)
@@ -448,12 +445,16 @@ def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None
         ("t,x,y", "{t},1,2", "z is missing"),
         ("t,theta,psi", "0,{t},40,5,1,2", "a comma cannot both separate cells and be the decimal"),
         ("t,phi", "{t},3", "must have theta or psi too: phi alone does not determine a top"),
-        ("t,theta", "{t},40", "theta alone does not determine a top: give --psidot0"),
+        ("t,theta", "{t},40", "theta alone does not determine a top: give --psidot0, 0 if"),
         ("t,psi", "{t},40", "psi alone does not determine a top: give --theta0"),
         ("t,theta,psi", "0,40,{t}", "t must span"),
         ("t,theta,psi", "{t},240,{t}", "theta must be between 0 and 180 deg"),
-        ("t,theta,psi", "-{t},,", "theta is empty (theta): remove its columns, or leave"),
-        ("t,theta,psi", "{back},40,10", "t must not turn back, got 0 after 4: .* --by"),
+        ("t,theta,psi", "-{t},,", r"theta is empty \(theta\): remove its columns, or leave"),
+        (
+            "t,theta,psi",
+            "{back},40,10",
+            "t must not turn back, got 0 after 4: put each",
+        ),
     ],
 )
 def test_bad_data_get_a_line(
@@ -474,16 +475,15 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        (f"{SAMPLE} {SAMPLE}", 2, "fit takes one recording, got 2: use --by COLUMN"),
+        (f"{SAMPLE} {SAMPLE}", 2, "fit takes one recording, got 2: fit each file alone"),
         (f"{SAMPLE} --sigma -1", 2, "--sigma must be > 0, got -1"),
         (f"{SAMPLE} --sigma theta=1", 2, "--sigma must be given for all of theta, phi, psi"),
-        (f"{SAMPLE} --by x", 2, "--by must name a column of"),
         (f"{SAMPLE} --window 1", 2, "--window must be 2 windows or more, got 1"),
         (f"{SAMPLE} --window 100", 2, "--window must hold 12 rows or more, got 1: use fewer"),
         (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
         (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),
         (f"{SAMPLE} --A-cm 1", 2, "--A-cm must be given with m and s, as A = A_cm + m s^2"),
-        (f"{SAMPLE} --align up=w", 2, "--align must be up=x, up=y, up=z, up=-x"),
+        (f"{SAMPLE} --align up=w", 2, "--align must be among up=x, up=-x and so on, or axis=x"),
         (f"{SAMPLE} --align up=y", 2, "--align needs an axis or an attitude, got angles"),
     ],
 )
@@ -491,13 +491,12 @@ def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> No
     assert_one_line(lagtop("fit", *words.split()), code, message)
 
 
-def written(path: Path, *parts: tuple[Array, dict[str, Array]]) -> Path:
-    """Write recordings of theta and psi in degrees, with the column trial."""
-    lines = ["t,theta,psi,trial"]
-    for number, (t, seen) in enumerate(parts):
-        columns = zip(t, np.degrees(seen["theta"]), np.degrees(seen["psi"]), strict=True)
-        lines += [f"{x:.5f},{y:.4f},{z:.4f},run {number}" for x, y, z in columns]
-    path.write_text("\n".join([*lines, ""]))
+def written(path: Path, recording: tuple[Array, dict[str, Array]]) -> Path:
+    """Write a recording of theta and psi in degrees."""
+    t, seen = recording
+    columns = zip(t, np.degrees(seen["theta"]), np.degrees(seen["psi"]), strict=True)
+    lines = ["t,theta,psi", *(f"{x:.5f},{y:.4f},{z:.4f}" for x, y, z in columns), ""]
+    path.write_text("\n".join(lines))
     return path
 
 
@@ -529,21 +528,17 @@ def test_the_record_and_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_several_recordings_and_windows(lagtop: Lagtop, tmp_path: Path) -> None:
-    good, (t, seen) = recorded("theta", "psi", seed=21), recorded("theta", "psi", seed=22)
-    path = written(tmp_path / "data.csv", good, (t, seen | {"theta": seen["theta"][::-1] ** 2}))
-    assert_one_line(lagtop("fit", path), 65, f"{path}: t must not turn back, got 0 after 0.9")
-    result = lagtop("fit", path, "--by", "trial", "--format", "csv")
-    assert result.exit_code == 1
-    assert [line.split(",")[0] for line in result.stdout.splitlines()] == ["name", "run 0", "run 1"]
-    last = result.stderr.splitlines()[-1]
-    assert last.startswith("Error: 1 of 2 fits failed; the first: run 1: ")
+def test_windows(lagtop: Lagtop, tmp_path: Path) -> None:
     path = written(tmp_path / "one.csv", recorded("theta", "psi", rows=150, seconds=3, seed=23))
-    result = lagtop("fit", path, "--window", 3)
+    result = lagtop("fit", path, "--window", 3, "--plot", tmp_path / "decay.svg")
     assert result.exit_code == 0, result.stderr
     assert result.stdout.splitlines()[-1].startswith("b does not decay: its relative rate is")
+    assert "b does not decay" in (tmp_path / "decay.svg").read_text()
     failed = lagtop("fit", path, "--window", 3, "--sigma", 0.1, "--format", "json")
     assert failed.exit_code == 1
-    assert "failed" in {x["verdict"] for x in json.loads(failed.stdout)["windows"]}
+    windows = json.loads(failed.stdout)["windows"]
+    assert "failed" in {x["verdict"] for x in windows}
+    bound = chi2_bounds(windows[0]["dof"], CHANCE / 3)[1]
+    assert windows[0]["chi2_dof_high"] == pytest.approx(bound)
     unwritten = lagtop("fit", path, "--sigma", 0.1, "-o", tmp_path / "no.toml")
     assert (unwritten.exit_code, (tmp_path / "no.toml").exists()) == (1, False)

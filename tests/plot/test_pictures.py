@@ -27,7 +27,7 @@ from lagrange_cli.plot.pictures import (
     sampled,
     usual_span,
 )
-from lagrange_cli.plot.reports import draw_errors, draw_fits
+from lagrange_cli.plot.reports import draw_errors, draw_fit
 from lagrange_cli.plot.style import DARK, LIGHT, Look, figure_bytes, plain, styled
 
 
@@ -324,7 +324,7 @@ def test_a_fit_is_drawn_with_its_residuals() -> None:
     curves = [SimpleNamespace(name=x, **curve) for x in ("theta", "psi")]
     outcome: Any = SimpleNamespace(curves=lambda: curves, angle="deg", title="good")
     with styled(LIGHT):
-        above, below, psi, _ = draw_fits([outcome]).axes
+        above, below, psi, _ = draw_fit(outcome).axes
     assert data(labelled(above)["data"])[1] == pytest.approx(t**2)
     assert data(labelled(above)["fit"])[1] == pytest.approx(2 * t)
     assert data(below.get_lines()[1])[1] == pytest.approx(t**3)

@@ -64,7 +64,7 @@ class Top:
     thetadot0: float
     psidot0: float
 
-    def motion(self, t: Array) -> dict[str, Array]:
+    def motion(self, t: Any) -> dict[str, Array]:
         """Return the angles at times: Euler's equations in a frame that does not turn about the
         axis, to which the spin r0 t is added."""
         half, b = self.a / 2, self.b
@@ -130,7 +130,9 @@ def any_top(rng: np.random.Generator, look: str, noise: float, *, easy: bool) ->
     if look in {"small", "steady"}:  # next to the slow steady precession
         b = math.copysign(math.sqrt(a) * 10 ** rng.uniform(0.4, 1.2), b)
         rate = a / (b + math.copysign(math.sqrt(b * b - 2 * a * math.cos(theta0)), b))
-        swing = noise * 10 ** (rng.uniform(-2.0, -1.2) if look == "steady" else rng.uniform(0.7, 1.4))
+        swing = noise * 10 ** (
+            rng.uniform(-2.0, -1.2) if look == "steady" else rng.uniform(0.7, 1.4)
+        )
         thetadot0 = 0.0
         psidot0 = rate + swing * abs(b) / math.sin(theta0) * rng.choice([-1, 1])
     return Top(a, b, b / ratio, theta0, thetadot0, psidot0)
@@ -194,8 +196,13 @@ def drawn(seed: int, *, easy: bool = False) -> Drawn:
     sigma = {name: sizes[name] for name in names} if given else None
     known = _known(rng, top, look, names) if look in {"known", "wrong"} else {}
     unit = float(rng.choice([1e-9, 1e-6, 1e-3, frame, 1e3])) if look == "units" else 1.0
-    case = Drawn(look, top, t[kept] / unit, {}, sigma, sizes, known, unit, frame, half_range, flipped)
-    case.arrays = _arrays(rng, look, {x: y[kept] for x, y in angles.items()}, exact, kept, sizes)
+    case = Drawn(
+        look, top, t[kept] / unit, {}, sigma, sizes, known, unit, frame, half_range, flipped
+    )
+    case.arrays = {name: x[kept] for name, x in angles.items()}
+    if look in {"axis", "attitude"}:
+        shown = {name: x[kept] for name, x in exact.items()}
+        case.arrays = _arrays(rng, look, shown, sizes["theta"])
     spin, turn = np.unwrap(exact["phi"] - top.r0 * t), np.unwrap(exact["psi"])
     case.means = {
         "mean_tilt_deg": math.degrees(float(exact["theta"].mean())),
@@ -218,15 +225,13 @@ def _noise(rng: np.random.Generator, look: str, count: int, size: float) -> Arra
     return noise
 
 
-def _known(
-    rng: np.random.Generator, top: Top, look: str, names: tuple[str, ...]
-) -> dict[str, Any]:
+def _known(rng: np.random.Generator, top: Top, look: str, names: tuple[str, ...]) -> dict[str, Any]:
     """Return inputs of a body with A = 1; one of them is 2 to 20 per cent wrong."""
     body = {"m": 0.5, "g": 9.81, "s": top.a / 9.81, "A": 1.0, "C": top.b / top.r0}
     choices = [("m", "g", "s", "A"), ("m", "g", "s", "A", "C")]
     if "phi" in names:
         choices.append(("A", "C"))
-    known = {name: body[name] for name in choices[int(rng.integers(len(choices)))]}
+    known: dict[str, Any] = {name: body[name] for name in choices[int(rng.integers(len(choices)))]}
     if "C" in known and "phi" not in names:
         known["r0"] = top.r0
     if look == "wrong":
@@ -235,30 +240,34 @@ def _known(
     elif rng.random() < 0.5:
         name = str(rng.choice(list(known)))
         std = 0.01 * abs(known[name])
-        known[name] = f"{known[name] + rng.normal(scale=std)!r} +/- {std!r}"
+        value = float(known[name] + rng.normal(scale=std))
+        known[name] = f"{value!r} +/- {std!r}"
     return known
 
 
 def _arrays(
-    rng: np.random.Generator,
-    look: str,
-    angles: dict[str, Array],
-    exact: dict[str, Array],
-    kept: Array,
-    sizes: dict[str, float],
+    rng: np.random.Generator, look: str, exact: dict[str, Array], size: float
 ) -> dict[str, Array]:
-    """Return the arguments of `fit`: angles, a noisy axis or a noisy quaternion."""
-    if look not in {"axis", "attitude"}:
-        return angles
-    theta, phi, psi = (exact[name][kept] for name in ("theta", "phi", "psi"))
+    """Return a noisy axis or a noisy quaternion."""
+    theta, phi, psi = (exact[name] for name in ("theta", "phi", "psi"))
     if look == "axis":
         flat = np.sin(theta)
         axis = np.stack([flat * np.sin(psi), -flat * np.cos(psi), np.cos(theta)], axis=-1)
-        return {"axis": axis + rng.normal(scale=sizes["theta"], size=axis.shape)}
-    plus, minus, upper, lower = (psi + phi) / 2, (psi - phi) / 2, np.cos(theta / 2), np.sin(theta / 2)
-    parts = [upper * np.cos(plus), lower * np.cos(minus), lower * np.sin(minus), upper * np.sin(plus)]
+        return {"axis": axis + rng.normal(scale=size, size=axis.shape)}
+    plus, minus, upper, lower = (
+        (psi + phi) / 2,
+        (psi - phi) / 2,
+        np.cos(theta / 2),
+        np.sin(theta / 2),
+    )
+    parts = [
+        upper * np.cos(plus),
+        lower * np.cos(minus),
+        lower * np.sin(minus),
+        upper * np.sin(plus),
+    ]
     quaternion = np.stack(parts, axis=-1)
-    return {"quaternion": quaternion + rng.normal(scale=sizes["theta"] / 2, size=quaternion.shape)}
+    return {"quaternion": quaternion + rng.normal(scale=size / 2, size=quaternion.shape)}
 
 
 def determined(case: Drawn) -> bool:
@@ -325,7 +334,7 @@ def pulls(outcome: Any, case: Drawn, *, mirrored: bool) -> dict[str, float]:
         off = value - y
         if key in {"r0", "mean_spin_rate"}:
             off -= whole * round(off / whole)
-        found[key] = off / std
+        found[key] = off / (std or 1e-300)
     return found
 
 
@@ -355,7 +364,7 @@ def checked(seed: int, *, easy: bool = False) -> Result:
     case = drawn(seed, easy=easy)
     begun = time.process_time()
     plain = {x for x, y in case.known.items() if "+/-" not in str(y)}
-    shown, off, right = "", {}, False
+    shown, off, right = "", dict[str, float](), False
     try:
         outcome = fit(case.t, **case.arrays, sigma=case.sigma, known=case.known)
         word = outcome.verdict
@@ -386,14 +395,14 @@ def checked(seed: int, *, easy: bool = False) -> Result:
 def main() -> int:
     """Check some recordings, write the counts, and return the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    for name, default in {"recordings": 500, "jobs": 2, "seed": 1}.items():
+    for name, default in (("recordings", 500), ("jobs", 2), ("seed", 1)):
         parser.add_argument(f"--{name}", type=int, default=default, help=f"[default: {default}]")
     parser.add_argument("--show", action="store_true", help="show every fit")
     parser.add_argument("--easy", action="store_true", help="draw ordinary tops only")
     given = parser.parse_args()
     seeds = range(given.seed, given.seed + given.recordings)
     counts: Counter[tuple[str, str]] = Counter()
-    results = []
+    results: list[Result] = []
     work = partial(checked, easy=given.easy)
     with Pool(given.jobs) as pool:
         for one in pool.imap(work, seeds) if given.jobs > 1 else map(work, seeds):
@@ -406,7 +415,7 @@ def main() -> int:
                     f"{one.look}; {one.shown}",
                     flush=True,
                 )
-    print(*_table(counts), sep="\n")
+    print("\n".join(_table(counts)))
     ordinary = [x for x in results if not x.look.startswith("wrong ")]
     sure = [x for x in ordinary if x.determined and not x.look.startswith("steady ")]
     good = sum(x.is_right and x.word == "good" for x in sure)
