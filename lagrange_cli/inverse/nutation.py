@@ -12,7 +12,7 @@ from ..arithmetic.types import Array
 from ..solver.keys import shown_keys, unit_name
 from ..sweeps.records import sweep
 from .known import body_numbers, time_power
-from .outcome import Number, Outcome
+from .outcome import PERCENT, Number, Outcome
 from .problem import Minimum, Problem
 from .recording import Recording
 
@@ -35,8 +35,6 @@ _DERIVED = (
     *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
     *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
 )
-_PERCENT = "_percent"
-"""Ending of the keys of relative errors of elementary formulas."""
 _NEAR_POLE = 0.1
 """Standard deviation of the tilt over its distance from a pole, beyond which the precession in the
 first row is not determined."""
@@ -79,6 +77,8 @@ def nutating_outcome(
     numbers = {}
     for key, values in pairs.items():
         value, std, own = (x * scale ** time_power(key) for x in values)
+        if std == 0:  # known inputs determine it
+            continue
         numbers[key] = Number(value, std, _meaning(key, problem, pairs, radians=radians), own)
     unit = found.spread / (stds[:, np.newaxis] + 1e-300)
     body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
@@ -91,7 +91,7 @@ def nutating_outcome(
         recording=recording,
         known=problem.inputs,
         radians=radians,
-        numbers={x: y for x, y in numbers.items() if not x.endswith(_PERCENT)},
+        numbers=numbers,
         motion=lambda t: problem.angles(found.x[np.newaxis], t / scale)[:, 0],
         parameters=problem.count,
         frequency=1 / scale,
@@ -147,7 +147,7 @@ def _computed(
     if not problem.spins:
         del derived["mean_spin_rate"]
     for key, exact in _ELEMENTARY.items():
-        derived[f"{key}{_PERCENT}"] = 100 * (derived[key] / derived[exact] - 1)
+        derived[f"{key}{PERCENT}"] = 100 * (derived[key] / derived[exact] - 1)
     return found | derived
 
 
@@ -157,7 +157,7 @@ def _meaning(
     name = key.removesuffix(f"_{angle_unit(radians=radians)[1]}")
     if name in problem.stds:
         return "known, improved by the fit"
-    if off := pairs.get(f"{key}{_PERCENT}"):
+    if off := pairs.get(f"{key}{PERCENT}"):
         word, sigmas = ("small", "large")[off[0] > 0], off[0] / (off[1] or math.inf)
         sure = f"{sigmas:+.{int(abs(sigmas) < 10)}f} sigma"
         return f"of a fast top: {abs(off[0]):.2g} % too {word}, {sure}"

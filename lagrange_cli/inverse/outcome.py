@@ -26,6 +26,8 @@ _UNITS = {
     **{"m": "kg", "s": "m", "g": "m/s^2", "A": "kg*m^2", "C": "kg*m^2"},
     **dict.fromkeys(("r0", "thetadot0", "psidot0"), "rad/s"),
 }
+PERCENT = "_percent"
+"""Ending of the keys of relative errors of elementary formulas."""
 GOOD, STEADY, FAILED = "good", "good, no nutation", "failed"
 
 

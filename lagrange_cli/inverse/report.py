@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from ..arithmetic.numbers import angle_unit
 from ..output.report import Field, Report
 from .decay import decay_text
-from .outcome import Number, Outcome
+from .outcome import PERCENT, Number, Outcome
 
 _COLUMNS = ("r0", "b", "theta0_deg", "theta0_rad", "T_nutation", "mean_precession_rate")
 """Numbers in the rows of windows."""
@@ -47,7 +47,11 @@ def fit_report(
         return Report(conditions, fields, rows, [decay_text(outcomes)])
     fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
     numbers = outcomes[0].numbers
-    rows = [SimpleNamespace(key=key, value=str(x), meaning=x.meaning) for key, x in numbers.items()]
+    rows = [
+        SimpleNamespace(key=key, value=str(x), meaning=x.meaning)
+        for key, x in numbers.items()
+        if not key.endswith(PERCENT)
+    ]
     return Report(conditions, fields, rows, [*_conclusions(outcomes[0])])
 
 

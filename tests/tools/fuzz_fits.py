@@ -334,7 +334,7 @@ def pulls(outcome: Any, case: Drawn, *, mirrored: bool) -> dict[str, float]:
         off = value - y
         if key in {"r0", "mean_spin_rate"}:
             off -= whole * round(off / whole)
-        found[key] = off / (std or 1e-300)
+        found[key] = off / max(std, 1e-9 * abs(y))
     return found
 
 
@@ -409,9 +409,9 @@ def main() -> int:
             results.append(one)
             counts[one.look.split()[0], one.fate] += 1
             if given.show or not (one.is_right and one.word != "failed"):
-                sure = "" if one.determined else "(not determined) "
+                doubt = "" if one.determined else "(not determined) "
                 print(
-                    f"{one.seed:6} {one.names:14} {one.fate}: {sure}{one.seconds:.1f} s; "
+                    f"{one.seed:6} {one.names:14} {one.fate}: {doubt}{one.seconds:.1f} s; "
                     f"{one.look}; {one.shown}",
                     flush=True,
                 )
