@@ -307,13 +307,14 @@ def determined(case: Drawn) -> bool:
 def pulls(outcome: Any, case: Drawn, *, mirrored: bool) -> dict[str, float]:
     """Return how far each number is from the truth, in its own standard deviations.
 
-    The mirror image of a top has the other sign of b and of psi', and the same recorded phi.
+    The mirror image of a top has the other sign of b and of psi', and the same mean rate of phi.
     """
     top, unit, sign = case.top, case.unit, -1 if mirrored else 1
+    r0 = 2 * case.means["mean_spin_rate"] - top.r0 if mirrored else top.r0
     truth = {
         "a": top.a * unit**2,
         "b": sign * top.b * unit,
-        "r0": top.r0 * unit,
+        "r0": r0 * unit,
         "theta0_deg": math.degrees(top.theta0),
         "thetadot0": top.thetadot0 * unit,
         "psidot0": sign * top.psidot0 * unit,
