@@ -55,7 +55,7 @@ def draw(
     require_matplotlib()
     from matplotlib.axes import Axes
 
-    from .pictures import PICTURES, Options
+    from .pictures import PICTURES, Options, add_time_bar
     from .reports import new_figure
 
     picture, count, _ = PICTURES[kind]
@@ -67,4 +67,6 @@ def draw(
     look = DARK if dark else LIGHT
     options = Options(t_max, radians, look=look, key=key, x=x, y=y)
     axes[0].set_title(picture(motion, axes, options), pad=18)
+    if kind == "sphere":
+        add_time_bar(axes, options.time_label)
     return axes

@@ -391,13 +391,13 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     title = (draw_classes if key in WORDS else draw_numbers)(ax, (xs, ys), values, key, options)
     borders = {"border of stability (upright top)": (found["stability_factor"] - 1, look.ink, "--")}
     if key == "path":  # beta - b u, and with it the precession, is 0 at u1, at u = 1 or at u = -1
-        size, tilts = np.abs(found["b"]).max() or 1.0, inputs[tilt] / options.angle_unit[0]
+        size, tilts = np.nanmax(np.abs(found["b"]), initial=0.0) or 1.0, inputs[tilt] / options.angle_unit[0]
         b, around = found["b"] / size, inputs["psidot0"] / size * np.sin(tilts) ** 2
         beta = b * np.cos(tilts) + around * (b != 0)  # a top without spin has no cusps
         borders["cusped"] = beta - b * found["u1"], look.ink, "-"
         borders["through the vertical"] = beta**2 - b**2, look.lines[0], "-"
     for label, (height, colour, dashes) in borders.items():
-        if np.nanmin(height) < -1e-9 and np.nanmax(height) > 1e-9:
+        if np.any(height < -1e-9) and np.any(height > 1e-9):
             ax.contour(xs, ys, height, [0.0], colors=colour, linewidths=2.2, linestyles=dashes)
             ax.plot([], [], dashes, color=colour, label=label)
     for side, (name, points) in zip("xy", grid.items(), strict=True):
@@ -443,8 +443,7 @@ def draw_numbers(ax: Axes, grid: Sequence[Array], values: Array, key: str, optio
 
     The colours span the values without the lowest and the highest 1 %, which may be a peak.
     """
-    declared, look = NUMBERS.get(key), options.look
-    assert declared is not None
+    declared, look = NUMBERS[key], options.look
     unit = options.unit(declared.unit)
     if declared.unit == "angle":  # keys of angles are in degrees
         values, unit = np.radians(values) * options.angle_unit[0], options.angle_unit[1]
