@@ -391,7 +391,8 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     title = (draw_classes if key in WORDS else draw_numbers)(ax, (xs, ys), values, key, options)
     borders = {"border of stability (upright top)": (found["stability_factor"] - 1, look.ink, "--")}
     if key == "path":  # beta - b u, and with it the precession, is 0 at u1, at u = 1 or at u = -1
-        size, tilts = np.nanmax(np.abs(found["b"]), initial=0.0) or 1.0, inputs[tilt] / options.angle_unit[0]
+        size = np.nanmax(np.abs(found["b"]), initial=0.0) or 1.0
+        tilts = inputs[tilt] / options.angle_unit[0]
         b, around = found["b"] / size, inputs["psidot0"] / size * np.sin(tilts) ** 2
         beta = b * np.cos(tilts) + around * (b != 0)  # a top without spin has no cusps
         borders["cusped"] = beta - b * found["u1"], look.ink, "-"
