@@ -18,7 +18,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files.rotations import of_angles
@@ -61,8 +60,8 @@ class Method(NamedTuple):
 
 def problem_of(top: Top) -> tuple[Array, Slope]:
     """Return the initial state (p, q, w, x, y, z) and Euler's equations, in doubles."""
-    a, b, r0, tilt = *constants(top), float(top.r0), top.tilt(DOUBLES)
-    rates = float(top.thetadot0), float(top.psidot0) * tilt.sin
+    a, b, r0, tilt = *constants(top), float(top.r0), top.exact_tilt.doubles()
+    rates = float(top.thetadot0), float(top.psidot0) * tilt[0]
     twist = r0 - b
 
     def slope(_: float, state: Sequence[Any]) -> list[Any]:
@@ -76,7 +75,7 @@ def problem_of(top: Top) -> tuple[Array, Slope]:
             (w * r0 + x * q - y * p) / 2,
         ]
 
-    return np.array([*rates, tilt.cos_half, tilt.sin_half, 0.0, 0.0]), slope
+    return np.array([*rates, tilt[3], tilt[2], 0.0, 0.0]), slope
 
 
 def constants(top: Top) -> tuple[float, float]:

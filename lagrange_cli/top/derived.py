@@ -18,7 +18,6 @@ from ..arithmetic.enclosures import (
     at_precision,
     equal_digits,
     exact,
-    fraction,
     root,
     settled,
     sign_to,
@@ -60,6 +59,16 @@ class Tilt(NamedTuple):
             turns = self.number / 180
             found = arb.sin_cos_pi_fmpq(fmpq(turns.numerator, turns.denominator))
         return found
+
+    def doubles(self) -> tuple[float, ...]:
+        """Return sine and cosine of the tilt and of half the tilt, as doubles."""
+        half = Tilt(*(x and x / 2 for x in self))
+
+        def values() -> tuple[float, ...]:
+            exact_values = *self.sine_and_cosine(), *half.sine_and_cosine()
+            return tuple(float(x.mid()) for x in exact_values)
+
+        return at_precision(40, values)
 
     def sign(self, polynomial: fmpq_poly, equal: int) -> int:
         """Return the sign of a polynomial in the cosine; 0 if `equal` digits leave it open."""
@@ -184,8 +193,3 @@ def _why_not(top: Any, rates: SteadyRates) -> str:
     size = math.sqrt(2 * float(rates.a * rates.lead) * cosine)
     least, value = float(top.exact("A") / Fraction(top.C)) * size, float(getattr(top, given))
     return f"|{given}| must be at least {least:.6g} at this tilt, got {given} = {value}"
-
-
-def middle(x: arb) -> Fraction:
-    """Return the middle of a ball."""
-    return fraction(x.mid())

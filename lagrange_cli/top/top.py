@@ -7,10 +7,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from ..arithmetic.angle import Angle, Tilt
-from ..arithmetic.ball import Balls, balls, pi_to
-from ..arithmetic.numbers import DOUBLES, Number, unrounded
-from ..arithmetic.rounding import text_of
+from ..arithmetic.enclosures import pi_to, text_of
+from ..arithmetic.numbers import Number, unit_in_radians, unrounded
 from ..errors import LagtopError
 from .inputs import (
     DECLARED,
@@ -26,8 +24,7 @@ from .inputs import (
 )
 
 if TYPE_CHECKING:
-    from ..arithmetic.numbers import Arithmetic
-    from .derived import Tilt as ExactTilt
+    from .derived import Tilt
 
 _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
@@ -161,11 +158,11 @@ class Top:
         return Fraction(getattr(self, name))
 
     @property
-    def exact_tilt(self) -> ExactTilt:
+    def exact_tilt(self) -> Tilt:
         """The tilt, with its exact sine and cosine."""
-        from .derived import Tilt as ExactTilt
+        from .derived import Tilt
 
-        return ExactTilt.of(self.as_dict())
+        return Tilt.of(self.as_dict())
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
@@ -182,26 +179,15 @@ class Top:
         body = ("m", "A" if self.A_cm is None else "A_cm", "C", "s", "g")
         return Parts({name: given.pop(name) for name in body}, given)
 
-    def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
+    def inputs(self, *, radians: bool = False) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
         values: dict[str, Any] = {name: getattr(self, name) for name in self.fields}
         if values[tilt] is None:
             other: Any = self.theta0_deg if radians else self.theta0_rad
-            values[tilt] = ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
+            degree = unit_in_radians(radians=False)
+            values[tilt] = float(other) * (degree if radians else 1 / degree)
         return {key: values[key] for key in (tilt if name == TILT else name for name in NINE)}
-
-    def tilt(self, ar: Any) -> Tilt[Any]:
-        """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
-        if isinstance(ar, Balls):
-            return self.angle.tilt(ar)
-        with balls(40) as exact:
-            return Tilt(*(float(x.middle) for x in self.angle.tilt(exact)))
-
-    @property
-    def angle(self) -> Angle:
-        """The angle theta0, exactly."""
-        return Angle.of(self.theta0_deg, self.theta0_rad)
 
     @property
     def is_released(self) -> bool:

@@ -9,7 +9,7 @@ import re
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..arithmetic.ball import pi_to
+from ..arithmetic.enclosures import pi_to
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..names import suggestion

@@ -15,7 +15,7 @@ import pytest
 from lagtop import Motion, Top, solve
 from scenes import UNIT
 
-from lagrange_cli.arithmetic.rounding import equal_digits
+from lagrange_cli.arithmetic.enclosures import equal_digits
 
 TINY = Fraction(1, 10**100)
 UP = 1 + 2.0**-52

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from lagtop import LagtopError, Top, solve
 
-from lagrange_cli.arithmetic.rounding import text_of
+from lagrange_cli.arithmetic.enclosures import text_of
 from lagrange_cli.top.ranges import EvenPoints
 from lagrange_cli.top.values import parse_values
 

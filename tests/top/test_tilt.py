@@ -1,4 +1,4 @@
-"""Angles that are given exactly: sines and cosines against mpmath, and signs of polynomials."""
+"""Exact tilts: signs of polynomials in their cosine, and their digits."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from flint import fmpq_poly
 from lagtop import Top
 
-from lagrange_cli.arithmetic.angle import Angle, Tilt
-from lagrange_cli.arithmetic.ball import balls
-from lagrange_cli.arithmetic.numbers import DOUBLES
+from lagrange_cli.arithmetic.enclosures import at_precision, ends_of
+from lagrange_cli.top.derived import Tilt, rational
 
 MOST = 1_400
 MINIMAL: dict[float, tuple[int, ...]] = {
@@ -28,21 +28,25 @@ def sign_by_mpmath(degrees: Fraction, coefficients: tuple[Fraction | int, ...]) 
         return int(mpmath.sign(sum(c * u**i for i, c in enumerate(terms))))
 
 
+def sign(tilt: Tilt, *coefficients: Fraction | int) -> int:
+    return tilt.sign(fmpq_poly([rational(x) for x in coefficients]), MOST)
+
+
 @pytest.mark.parametrize("degrees", MINIMAL)
 def test_a_polynomial_vanishes_at_its_root_and_not_one_bit_beside(degrees: float) -> None:
     exact, coefficients = Fraction(degrees), MINIMAL[degrees]
     third = [Fraction(c, 3) for c in coefficients]
-    assert Angle(exact, None).sign(*coefficients, most=MOST) == 0
-    assert Angle(exact, None).sign(*third, most=MOST) == 0
+    assert sign(Tilt(exact, None), *coefficients) == 0
+    assert sign(Tilt(exact, None), *third) == 0
     tiny = Fraction(math.ulp(degrees)) if degrees else Fraction(1, 10**100)
     for beside in (exact - tiny, exact + tiny):
         if 0 <= beside <= 180:
-            found = Angle(beside, None).sign(*coefficients, most=MOST)
+            found = sign(Tilt(beside, None), *coefficients)
             assert found == sign_by_mpmath(beside, coefficients) != 0
     for small in (Fraction(1, 2**53), -Fraction(1, 10**300)):
         other = [Fraction(x) for x in coefficients]
         other[0] += small
-        assert Angle(exact, None).sign(*other, most=MOST) == (1 if small > 0 else -1)
+        assert sign(Tilt(exact, None), *other) == (1 if small > 0 else -1)
 
 
 @pytest.mark.parametrize("theta0", ["0.00001", "1.570796326794", "1.5707963267948966192", "3.1415"])
@@ -50,23 +54,26 @@ def test_a_polynomial_vanishes_at_its_root_and_not_one_bit_beside(degrees: float
 def test_tilts_next_to_the_quarters_have_all_digits_asked_for(theta0: str, degrees: bool) -> None:
     """In degrees no digits are lost; in radians those are lost that agree with pi."""
     given = Fraction(theta0)
-    angle = Angle(given * 57, None) if degrees else Angle(None, given)
-    with balls(60) as ar, mpmath.workdps(100):
+    tilt = Tilt(given * 57, None) if degrees else Tilt(None, given)
+    with mpmath.workdps(100):
         exact = mpmath.mpf(given.numerator) / given.denominator
         exact = exact * 57 * mpmath.pi / 180 if degrees else exact
-        truths = [f(x) for x in (exact, exact / 2) for f in (mpmath.sin, mpmath.cos)]
-        for found, truth in zip(angle.tilt(ar), truths, strict=True):
-            low, high = (mpmath.mpf(str(end)) for end in found.ends())
+        balls = at_precision(60, lambda: [tilt.angle(), *tilt.sine_and_cosine()])
+        truths = exact, mpmath.sin(exact), mpmath.cos(exact)
+        for found, truth in zip(balls, truths, strict=True):
+            low, high = (mpmath.mpf(str(end)) for end in ends_of(found))
             assert low <= truth <= high
-            assert found.is_known_to(58 if degrees else 38)
+            assert found.rel_accuracy_bits() > 3.33 * (57 if degrees else 38)
 
 
 def test_a_tilt_in_doubles() -> None:
-    tilt: Tilt[float] = Top(theta0_deg=60).tilt(DOUBLES)
-    assert tuple(tilt) == (math.sqrt(3) / 2, 0.5, 0.5, math.sqrt(3) / 2)
-    assert tilt.degrees(DOUBLES) == pytest.approx(60, rel=1e-15)
-    assert Angle(None, Fraction(0)).rational_cosine == 1
-    assert Angle(None, Fraction(1)).rational_cosine is None
+    assert Tilt(Fraction(60), None).doubles() == (3**0.5 / 2, 0.5, 0.5, 3**0.5 / 2)
+    tiny = Fraction(1, 10**30)
+    assert Tilt(180 - tiny, None).doubles()[::3] == pytest.approx(
+        (math.radians(1e-30), math.radians(1e-30) / 2), rel=1e-15
+    )
+    assert Tilt(None, Fraction(0)).doubles() == (0, 1, 0, 1)
+    assert Tilt.of(Top(theta0_rad=1).as_dict()) == Tilt(None, Fraction(1))
 
 
 def test_a_tilt_beyond_pi_is_refused() -> None:

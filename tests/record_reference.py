@@ -1,0 +1,304 @@
+"""The numbers of a motion in mpmath, by formulas that the solver does not use.
+
+Roots by Viete's cosines in 2,000 digits, where two that differ by less than 1e-600 are equal; so
+no sign of a polynomial is needed.  Carlson's integrals for K, E, F and Pi, the phase of the start
+counted from the lowest point (the solver uses the arithmetic-geometric mean, Bartky's
+transformation, and theta functions counted from the highest point).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+import mpmath as mp
+
+from lagrange_cli.bench.reference import viete_roots
+
+ROOT_DIGITS, DIGITS = 2_000, 120
+Many = Any
+"""A number of mpmath."""
+
+
+def exact(x: Any) -> Many:
+    """Return a double or a fraction as a number of mpmath."""
+    numerator, denominator = Fraction(x).as_integer_ratio()
+    return mp.mpf(numerator) / denominator
+
+
+def reference_record(
+    inputs: Mapping[str, Any], *, radians: bool = False, digits: int = DIGITS
+) -> dict[str, Many]:
+    """Return all numbers of a motion by key, None for those that do not exist.
+
+    `inputs` are those of `Top.as_dict`.
+    """
+    with mp.workdps(ROOT_DIGITS):
+        of = _Motion(inputs, digits)
+        found = of.record()
+
+    def shown(key: str, x: Many) -> Many:
+        return x if x is None or not key.endswith("_rad") or radians else x * of.degrees
+
+    with mp.workdps(digits):
+        unit = "_rad" if radians else "_deg"
+        return {key.replace("_rad", unit): shown(key, x) for key, x in found.items()}
+
+
+class _Motion:
+    """The constants of a motion, in ROOT_DIGITS digits."""
+
+    def __init__(self, inputs: Mapping[str, Any], digits: int) -> None:
+        self.digits, self.degrees, self.tiny = digits, 180 / mp.pi, mp.mpf(10) ** -600
+        given = {x: exact(y) for x, y in inputs.items() if y is not None and not isinstance(y, str)}
+        self.m, self.C, self.s, self.g = (given[x] for x in ("m", "C", "s", "g"))
+        self.A = given["A"] if "A" in given else given["A_cm"] + self.m * self.s**2
+        in_degrees = given.get("theta0_deg")
+        theta = given["theta0_rad"] if in_degrees is None else in_degrees * mp.pi / 180
+        self.u0, self.sin0 = self.near(mp.cos(theta), 1, 0, -1), mp.sin(theta)
+        self.sin0 *= abs(self.u0) != 1
+        self.fall = given["thetadot0"]
+        self.turn = given["psidot0"] if "psidot0" in given else self.steady(inputs, given)
+        self.r0 = given["r0"] if "r0" in given else given["phidot0"] + self.turn * self.u0
+        self.r0 *= abs(self.r0) > self.tiny
+        self.a, self.b = 2 * self.m * self.g * self.s / self.A, self.C * self.r0 / self.A
+        self.beta = self.turn * self.sin0**2 + self.b * self.u0
+        self.alpha = self.fall**2 + self.turn**2 * self.sin0**2 + self.a * self.u0
+        self.find_roots()
+
+    def near(self, x: Many, *values: Any) -> Many:
+        """Return a number, or the value that it agrees with."""
+        return next((mp.mpf(y) for y in values if abs(x - y) < self.tiny), x)
+
+    def steady(self, inputs: Mapping[str, Any], given: Mapping[str, Many]) -> Many:
+        """Return the rate of steady precession that a word names."""
+        m, A, C, s, g = self.m, self.A, self.C, self.s, self.g
+        spin, lead = (given["r0"], A) if "r0" in given else (given["phidot0"], A - C)
+        lead *= self.u0
+        if not lead:
+            return m * g * s / (C * spin)
+        gap = mp.sqrt(max((C * spin) ** 2 - 4 * lead * m * g * s, 0))
+        roots = sorted([(C * spin - gap) / (2 * lead), (C * spin + gap) / (2 * lead)], key=abs)
+        slow, fast = roots if spin else (max(roots), min(roots))
+        return slow if inputs["psidot0"] == "steady" else fast
+
+    def find_roots(self) -> None:
+        """Set u1, u2 and a (u3 - u), and the kind of motion."""
+        a, b, alpha, beta, u0 = self.a, self.b, self.alpha, self.beta, self.u0
+        size = alpha + b**2
+        self.vertical = abs(u0) == 1 and not self.fall
+        bend = 2 * self.turn**2 * u0 - 2 * self.turn * b + a
+        scale = 2 * self.turn**2 + abs(2 * self.turn * b) + a
+        still = not self.fall and abs(bend) <= self.tiny * scale
+        if self.vertical or still:
+            u1 = u2 = u0
+        elif a:
+            u2, u1, _ = viete_roots(-size / a, 2 * b * beta / a - 1, (alpha - beta**2) / a)
+        else:
+            half, rest = b * beta / size, (beta**2 - alpha) / size
+            gap = mp.sqrt(half**2 - rest)
+            u2, u1 = half - gap, half + gap
+        self.u1, self.u2 = self.near(u1, u0, 1), self.near(u2, u0, -1)
+        if not self.fall and abs(u0) != 1 and not still:  # the start is a root
+            self.u1, self.u2 = (u0, self.u2) if abs(u0 - u1) < abs(u0 - u2) else (self.u1, u0)
+        self.wide, self.narrow = (size - a * (self.u1 + self.u2 + x) for x in (self.u2, self.u1))
+        self.steady_tilt = self.u1 == self.u2
+        self.separatrix = bool(a) and not self.steady_tilt and self.u1 == 1
+        self.separatrix = self.separatrix and abs(self.narrow) < self.tiny * self.wide
+        self.narrow *= not self.separatrix
+        self.nutates = not (self.steady_tilt or self.separatrix)
+        self.over_top = self.nutates and self.u1 == 1
+        self.over_bottom = self.u2 == -1 and not self.steady_tilt
+        self.k2 = mp.mpf(0) if self.steady_tilt or not a else a * (self.u1 - self.u2) / self.wide
+        self.kc2 = mp.mpf(1) if not self.k2 else self.narrow / self.wide
+        self.gaps = {x: (1 + x * self.u1, 1 + x * self.u2) for x in (1, -1)}
+        self.momenta = {x: self.beta + x * b for x in (1, -1)}
+        ratios = [x / y for x, y in (*self.gaps.values(), (b**2, a)) if x and y]
+        self.digits += int(max([0, *(abs(mp.log10(x)) for x in ratios)]))  # rates may cancel
+        kc = mp.sqrt(self.kc2)
+        self.middle = self.u1 - (self.u1 - self.u2) * kc / (1 + kc)
+        self.tilts = [mp.acos(x) for x in (self.u1, self.middle, self.u2)]
+        self.at_u1 = u0 == (1 if self.steady_tilt else self.u1)
+
+    def first(self, sn2: Many, m: Many) -> Many:
+        """Return F with the parameter m, from sn^2."""
+        return mp.sqrt(sn2) * mp.elliprf(1 - sn2, 1 - m * sn2, 1)
+
+    def third(self, pole: int, sn2: Many, cn2: Many, dn2: Many) -> Many:
+        """Return the integral of dw (1 + u2 pole)/(1 + u pole), from w = 0 at u2."""
+        x1, x2 = self.gaps[pole]
+        n = 1 - x1 / x2
+        sn = mp.sqrt(sn2)
+        return sn * (
+            mp.elliprf(cn2, dn2, 1) + n / 3 * sn2 * mp.elliprj(cn2, dn2, 1, cn2 + sn2 * x1 / x2)
+        )
+
+    def passes(self, pole: int) -> bool:
+        """Return whether the axis passes over a pole."""
+        return self.over_bottom if pole > 0 else self.over_top
+
+    def half_sums(self, integrals: Mapping[int, Many], time: Many) -> tuple[Many, Many]:
+        """Return the growth of phi and psi in a time, from integrals of dw (1 + u2 p)/(1 + u p)."""
+        halves = []
+        for pole in (1, -1):
+            momentum, at_u2 = self.momenta[pole], self.gaps[pole][1]
+            grown = (
+                integrals[pole] * mp.pi  # a number of passages, half a turn of psi and phi each
+                if self.passes(pole)
+                else momentum / 2 * integrals[pole] / at_u2 * 2 / mp.sqrt(self.wide)
+            )
+            halves.append(pole * (self.r0 - self.b) / 2 * time + grown)
+        return halves[0] - halves[1], halves[0] + halves[1]
+
+    def record(self) -> dict[str, Many]:
+        """Return the numbers by key, angles in radians."""
+        a, b, u0, u1, u2, u3 = self.a, self.b, self.u0, self.u1, self.u2, None
+        if a:
+            u3 = u2 + self.wide / a
+        m, A, C, s, g, r0, turn = self.m, self.A, self.C, self.s, self.g, self.r0, self.turn
+        k, kc = mp.sqrt(self.k2), mp.sqrt(self.kc2)
+        released = not self.fall and not turn
+        found: dict[str, Many] = {
+            **{"a": a, "b": b, "u1": u1, "u2": u2, "u3": u3, "k": k, "k_prime": kc},
+            "modular_angle_rad": mp.atan2(k, kc),
+            **{"theta_min_rad": mp.acos(u1), "theta_max_rad": mp.acos(u2)},
+            "spin_rate_start": r0 - turn * u0,
+            "precession_rate_start": turn,
+            "energy_constant": self.alpha,
+            "energy_without_spin": A * self.alpha / 2,
+            "momentum_constant": self.beta,
+            "Lz": A * self.beta,
+            "discriminant": self.wide**2,
+            "f_upright": -((self.beta - b) ** 2),
+            "f_hanging": -((self.beta + b) ** 2),
+            "f_slope_u1": -(u1 - u2) * self.narrow,
+            "u2_criterion": u2 * (self.wide + a * u2),
+            "spin_share": 1 - C / (2 * A),
+            "stability_factor": b**2 / (2 * a) if a else None,
+            "r0_sleeping": 2 * mp.sqrt(A * m * g * s) / C,
+            "r0_steady_min": 2 * mp.sqrt(A * m * g * s * max(u0, 0)) / C,
+            "precession_rate_elementary": m * g * s / (C * r0) if r0 else None,
+            "T_nutation_elementary": 2 * mp.pi * A / (C * abs(r0)) if r0 else None,
+        }
+        gap2 = b**2 - 2 * a * u0
+        gap2 = mp.mpf(0) if abs(gap2) <= self.tiny * b**2 else gap2
+        slow = fast = None
+        if not u0:
+            slow = a / (2 * b) if b else None
+        elif gap2 >= 0:
+            roots = sorted([(b + x * mp.sqrt(gap2)) / (2 * u0) for x in (-1, 1)], key=abs)
+            slow, fast = roots if b else (max(roots), min(roots))
+        found |= {"steady_rate_slow": slow, "steady_rate_fast": fast}
+        turning = self.at_u1 or (u0 == u2 and not self.steady_tilt)
+        on_pole = turning and (self.over_bottom if self.at_u1 else self.over_top)
+        has_half = self.nutates and not on_pole
+        half = None
+        if has_half:
+            half = u2 + (u1 - u0) * self.wide / (self.wide + a * (u2 - u0))
+            rate = (self.beta - b * half) / (1 - half**2)
+            found |= {"precession_rate_half": rate, "spin_rate_half": r0 - half * rate}
+        if released and self.nutates:
+            found |= self.section_8(u3)
+        with mp.workdps(self.digits):
+            found |= self.integrals(k, kc, released, has_half)
+        if self.vertical:
+            absent = "u3 k k_prime modular_angle_rad precession_rate_start u2_criterion"
+            found |= dict.fromkeys(absent.split())
+        elif abs(u0) == 1:
+            found |= {"spin_rate_start": None, "precession_rate_start": None}
+        if not a:
+            found |= {"u2_criterion": None if self.vertical else u2 * (self.wide + a * u2)}
+        return found
+
+    def section_8(self, u3: Many) -> dict[str, Many]:
+        """Return the steps of section 8."""
+        u2 = self.u2
+        return {
+            **{"roots_sum": u3 + u2, "roots_product": u3 * u2, "roots_gap": u3 - u2},
+            **{"roots_sum_squared": (u3 + u2) ** 2, "roots_product_fourfold": -4 * u3 * u2},
+            **{"roots_gap_squared": (u3 - u2) ** 2, "u3_twice": 2 * u3, "u2_twice": 2 * u2},
+            "k_squared": self.k2,
+        }
+
+    def integrals(self, k: Many, kc: Many, released: bool, has_half: bool) -> dict[str, Many]:
+        """Return the numbers that need integrals."""
+        found: dict[str, Many] = {}
+        u0, wide = self.u0, self.wide
+        if self.vertical:
+            spin = self.r0
+            return {"mean_spin_rate": spin, "T_spin": 2 * mp.pi / abs(spin) if spin else None}
+        found["E"] = 2 * mp.elliprg(0, self.kc2, 1) if kc else mp.mpf(1)
+        found["K_prime"] = mp.elliprf(0, self.k2, 1) if k else None
+        found["nome"] = mp.mpf(0 if not k else 1)
+        if not kc:
+            return found
+        K = found["K"] = mp.elliprf(0, self.kc2, 1)
+        if k:
+            found["nome"] = mp.exp(-mp.pi * found["K_prime"] / K)
+        T: Many = 4 * K / mp.sqrt(wide) if wide else None
+        found["T_nutation"] = T
+        if self.steady_tilt:
+            rates = self.r0 - self.turn * u0, self.turn
+        else:
+            whole = {
+                x: 1 if self.passes(x) else 2 * self.third(x, mp.mpf(1), mp.mpf(0), self.kc2)
+                for x in (1, -1)
+            }
+            grown = self.half_sums(whole, T)
+            rates = grown[0] / T, grown[1] / T
+        names = ("mean_spin_rate", "T_spin"), ("mean_precession_rate", "T_precession")
+        for (name, period), rate in zip(names, rates, strict=True):
+            is_zero = abs(rate) < mp.mpf(10) ** (20 - self.digits) * (abs(self.r0) + abs(self.b))
+            found |= {name: rate * (not is_zero)}
+            found |= {period: None if is_zero or not rate else 2 * mp.pi / abs(rate)}
+        if not self.nutates:
+            return found
+        found["u_quarter"] = self.middle if self.at_u1 else None
+        with mp.workdps(ROOT_DIGITS):
+            upper, lower = self.tilts[1] - self.tilts[0], self.tilts[2] - self.tilts[1]
+        found |= {"nutation_rate_upper": 4 * upper / T, "nutation_rate_lower": 4 * lower / T}
+        found |= {"phi_period_rad": grown[0], "psi_period_rad": grown[1]}
+        if not (self.over_top or self.over_bottom):
+            near_u2 = 1 / (1 + kc), kc / (1 + kc), kc  # sn^2, cn^2 and dn^2 of K/2
+            quarter = {x: whole[x] / 2 - self.third(x, *near_u2) for x in (1, -1)}
+            phi, psi = self.half_sums(quarter, T / 4)
+            found |= {"spin_rate_upper": 4 * phi / T, "precession_rate_upper": 4 * psi / T}
+            found["spin_rate_lower"] = 2 * rates[0] - 4 * phi / T
+            found["precession_rate_lower"] = 2 * rates[1] - 4 * psi / T
+        if has_half:
+            found |= dict(zip(("phi_half_rad", "psi_half_rad"), self.half(whole, T), strict=True))
+        if released:
+            low = self.a * self.gaps[1][1]
+            sin2, cos2 = wide / (wide + low), low / (wide + low)
+            at, sine = (cos2, cos2 + self.k2 * sin2, 1), mp.sqrt(sin2)
+            found["amplitude_rad"] = mp.atan2(mp.sqrt(wide), mp.sqrt(low))
+            found["alpha"] = sine * mp.elliprf(*at)
+            found["E_amplitude"] = found["alpha"] - self.kc2 * sine**3 / 3 * mp.elliprd(*at)
+            found["comodular_angle_rad"] = mp.atan2(kc, k)
+        return found
+
+    def half(self, whole: Mapping[int, Many], T: Many) -> tuple[Many, Many]:
+        """Return the growth of phi and psi in the half period after the start.
+
+        The start has the argument w, positive while the tilt decreases; then it is w + K.
+        """
+        u0, u1, u2, narrow, wide = self.u0, self.u1, self.u2, self.narrow, self.wide
+        sn2, cn2 = (u0 - u2) / (u1 - u2), (u1 - u0) / (u1 - u2)
+        dn2 = self.kc2 + self.k2 * cn2
+        later = (
+            cn2 / dn2,
+            self.kc2 * sn2 / dn2,
+            self.kc2 / dn2,
+        )  # of w + K: cd^2, k'^2 sd^2, k'^2 nd^2
+        falls = self.fall > 0 or (not self.fall and self.at_u1)  # w < 0
+        integrals = {}
+        for pole in (1, -1):
+            if self.passes(pole):
+                integrals[pole] = mp.mpf(falls == (pole > 0))
+                continue
+            start, end = self.third(pole, sn2, cn2, dn2), self.third(pole, *later)
+            integrals[pole] = start + end if falls else whole[pole] - start - end
+        assert narrow >= 0
+        assert wide > 0
+        return self.half_sums(integrals, T / 2)
