@@ -37,7 +37,13 @@ _COMPLETION = "_LAGTOP_COMPLETE"
 
 
 def complain(line: str) -> None:
-    """Write one line to standard error, safe for any terminal; ignore failures."""
+    """Write one line to standard error, safe for any terminal; ignore failures.
+
+    Within a command, arguments of the library are written as options.
+    """
+    context = click.get_current_context(silent=True)
+    if context is not None:
+        line = with_options(line, context.command.params)
     with suppress(OSError):
         click.echo(one_line(line), err=True)
 
