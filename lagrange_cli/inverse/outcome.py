@@ -152,11 +152,9 @@ class Outcome(HasRecord):
 
     @property
     def title(self) -> str:
-        """The verdict, the first three numbers, and chi^2 if sigma is given, for a picture."""
-        shown = [f"{x} = {y}" for x, y in [*self.numbers.items()][:3]]
-        if self.chi2_dof is not None:
-            shown.append(f"chi2/dof = {self.chi2_dof:.3g}")
-        return f"lagtop fit: {', '.join([self.verdict, *shown])}"
+        """The verdict, and chi^2 if sigma is given, for a picture."""
+        chi2 = "" if self.chi2_dof is None else f", χ²/dof = {self.chi2_dof:.3g}"
+        return f"Fit: {self.verdict}{chi2}"
 
     @property
     def angle(self) -> str:

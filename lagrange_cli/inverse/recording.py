@@ -53,6 +53,8 @@ class Recording:
     """Other columns of the file."""
     is_mirrored: bool = False
     """Whether psi was counted in the other direction."""
+    time_unit: str = "units of the recording"
+    """The unit of time for labels."""
     spread: Array | None = None
     """Standard deviations of the times of the rows of which each row is the mean."""
     rows_per_bin: int = 1
@@ -162,7 +164,9 @@ def read_recording(
     reading["conventions"] = trajectory.conventions(conventions)
     found = recording_of(trajectory.name, given, **reading)
     used, unused = tuple(trajectory.used), tuple(trajectory.unused)
-    return replace(found, t_start=first + found.t_start, used=used, unused=unused)
+    found = replace(found, t_start=first + found.t_start, used=used, unused=unused)
+    has_unit = trajectory.quantities["t"].unit is not None  # such as ms, converted to s
+    return replace(found, time_unit="s") if has_unit else found
 
 
 def recording_from(

@@ -102,7 +102,7 @@ def draw_fit(outcome: Outcome, figure: Figure | None = None) -> Figure:
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
         below.set(ylabel=f"residual\n({unit})")
-    grid[-1, 0].set_xlabel("t (units of the recording)")
+    grid[-1, 0].set_xlabel(f"t ({outcome.recording.time_unit})")
     figure.suptitle(plain(outcome.title), x=0.012, ha="left")
     return figure
 
@@ -122,7 +122,9 @@ def draw_decay(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Fig
     if decay:
         curve = [decay.value(x) for x in t]
         axes.plot(t, curve, lw=1.2, color=LIGHT.lines[1], label="exponential")
-    axes.set(xlabel="t (units of the recording)", ylabel=f"{name} (rad per unit of time)")
+    axes.set(
+        xlabel=f"t ({outcomes[0].recording.time_unit})", ylabel=f"{name} (rad per unit of time)"
+    )
     axes.set_title(plain(decay_text(outcomes)), loc="left", size=9)
     axes.legend()
     return figure

@@ -308,12 +308,14 @@ def test_a_fit_is_drawn_with_its_residuals() -> None:
     curve = {"t": t, "data": t**2, "residual": t**3, "fine_t": t, "curve": 2 * t}
     curves = [SimpleNamespace(name=x, **curve) for x in ("theta", "psi")]
     outcome: Any = SimpleNamespace(curves=lambda: curves, angle="deg", title="good")
+    outcome.recording = SimpleNamespace(time_unit="s")
     with styled(LIGHT):
-        above, below, psi, _ = draw_fit(outcome).axes
+        above, below, psi, last = draw_fit(outcome).axes
     assert data(labelled(above)["data"])[1] == pytest.approx(t**2)
     assert data(labelled(above)["fit"])[1] == pytest.approx(2 * t)
     assert data(below.get_lines()[1])[1] == pytest.approx(t**3)
     assert [above.get_ylabel(), psi.get_ylabel()] == ["ϑ (deg)", "ψ (deg)"]
+    assert last.get_xlabel() == "t (s)"
     shown = [to_hex(labelled(x)["fit"].get_color()) for x in (above, psi)]
     assert shown == [LIGHT.lines[0], LIGHT.lines[2]]
 
