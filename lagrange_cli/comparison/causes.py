@@ -47,7 +47,10 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
     search = Search(exact, run)
     alone = search.tried(search.single())
     for more in search.groups():
-        if found := search.best([*alone, *search.tried(more, limit)], limit):
+        found = search.best([*alone, *search.tried(more, limit)], limit)
+        if len(found) == 1 and found[0].align and found[0].align.frame != run.align.frame:
+            found = search.best([*found, *search.tried(search.with_zeros(), limit)], limit)
+        if found:
             return found
     return search.best(alone)
 
@@ -127,12 +130,15 @@ class Search:
         """
         yield []
         yield self.shifts()
-        aligned = [(y, self.alignments(y)) for y in self.mistakes]
-        for group in (0, 1):
-            yield [x.with_other(y) for y, found in aligned for x in found[group]]
+        yield self.with_zeros()
+        yield [x.with_other(y) for y in self.mistakes for x in self.alignments(y)[1]]
         tops = [x for x in self.mistakes if x.inputs]
         yield [x.with_other(y) for x in self.mistakes if not x.inputs for y in tops]
         yield [BACKWARDS]
+
+    def with_zeros(self) -> list[Cause]:
+        """Return each mistake with other zeros of the angles and the clock."""
+        return [x.with_other(y) for y in self.mistakes for x in self.alignments(y)[0]]
 
     def alignments(self, mistake: Cause) -> tuple[list[Cause], list[Cause]]:
         """Return other alignments in the frame that is given, and in other frames.
