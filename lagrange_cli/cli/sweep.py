@@ -152,7 +152,11 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
     "find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43",
     "find --psidot0=-8:0 theta_max=80 path=looping --keys psidot0",
 )
-@opt.top("[SCENE] CONDITION...", kind=opt.values(parse_number_or_span))
+@opt.top(
+    "[SCENE] CONDITION...",
+    kind=opt.values(parse_number_or_span),
+    rate=opt.values(parse_number_or_span, steady=True),
+)
 @opt.option("--scan", type=opt.count(), help="Values of each unknown.  [default: 4000, 60 or 20]")
 @opt.keys
 @opt.output("csv", "ndjson", "json", "table", on_terminal="table")
@@ -175,18 +179,22 @@ def find_command(
     """
     from ..inverse.find import find_tops, search_of
     from ..names import check_names
-    from ..solver.keys import all_keys, record_keys
+    from ..solver.keys import all_keys, record_keys, unit_name
     from ..solver.record import record_in_range
 
     chosen = record_keys(radians=top.radians)
     if keys is not None:
-        chosen = check_names("keys", keys, all_keys(radians=top.radians))
+        known = [*all_keys(radians=top.radians)]
+        named = {x: unit_name(f"{x}_deg", radians=top.radians) for x in keys}
+        chosen = check_names("keys", [y if y in known else x for x, y in named.items()], known)
     search, given = search_of(top.inputs, words, scene=top.scene, radians=top.radians)
     motions, looked = find_tops(search, scan)
     opt.warn(given)
     complain(f"{len(motions)} found; {looked}")
     records = [record_in_range(motion, radians=top.radians, keys=chosen)[0] for motion in motions]
-    for record in records:
+    for motion, record in zip(motions, records, strict=True):
         if "remark" in record:
             record["remark"] = given.remark(record["remark"])
+        if "psidot0" in record:  # the number of a steady rate
+            record["psidot0"] = float(motion.top.psidot0)
     out.rows(records, chosen, _headings(chosen, given, out.fmt, radians=top.radians))

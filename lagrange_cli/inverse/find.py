@@ -1,14 +1,15 @@
 """`find`: inputs for which numbers of the record take target values.
 
 A scan by `sweep` supplies the starting points.  One unknown is found by Brent's method between
-neighbouring values of the scan, several unknowns by least squares from its best points.  Both
-refine with the numbers of `solve`, which are correctly rounded.
+neighbouring values of the scan, several unknowns by least squares from its best points.  The border
+of a class, such as a path with loops, is found by bisection.  All refine with `solve`.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import product
 from numbers import Integral
 from operator import eq, ge, gt, le, lt
 from types import NoneType
@@ -31,6 +32,7 @@ from ..top.given import Given, gather
 from ..top.inputs import overridden, warn_of
 from ..top.top import INPUTS, Top
 from ..top.values import (
+    STEADY_WORDS,
     Span,
     Value,
     exact_number,
@@ -67,20 +69,23 @@ class Condition(NamedTuple):
     has_unit: bool = False
     """Whether the value has a unit other than that of an angle, so that inputs need units too."""
 
-    def holds(self, motion: Motion, radians: bool) -> bool:
-        """Return whether a motion meets the condition; a missing number does not."""
-        found = motion.record(radians=radians, keys=[self.key])[self.key]
-        return found is not None and _RELATIONS[self.relation](found, self.value)
+    def holds(self, found: Any) -> bool:
+        """Return whether a number or word meets the condition; None does not."""
+        return found is not None and bool(_RELATIONS[self.relation](found, self.value))
 
     def __str__(self) -> str:
         value = self.value if isinstance(self.value, str) else double_text(self.value)
-        return f"{self.key}{self.relation}{value.removesuffix('.0')}"
+        return f"{self.key} {self.relation} {value.removesuffix('.0')}"
 
 
 class Search(NamedTuple):
-    """Known inputs, ranges of unknown inputs, target values by key, and other conditions."""
+    """Known inputs, ranges of unknown inputs, target values by key, and other conditions.
 
-    fixed: Mapping[str, float]
+    If there is no target value, the first of the other conditions has a word: its border is sought.
+    """
+
+    fixed: Mapping[str, Any]
+    """Numbers; psidot0 may be a word."""
     spans: Mapping[str, Span]
     targets: Mapping[str, float]
     others: Sequence[Condition]
@@ -89,12 +94,18 @@ class Search(NamedTuple):
     @property
     def target_text(self) -> str:
         """The conditions on numbers as text."""
-        return ", ".join(str(Condition(key, "=", x)) for key, x in self.targets.items())
+        shown = [Condition(key, "=", x) for key, x in self.targets.items()] or self.others[:1]
+        return ", ".join(map(str, shown))
+
+    @property
+    def bounds(self) -> Sequence[Condition]:
+        """The conditions that solutions must meet besides."""
+        return self.others[0 if self.targets else 1 :]
 
     def top(self, values: Sequence[float] | Array) -> Top:
         """Return the top with these values of the unknowns.  Raises LagtopError."""
         inputs = overridden(dict(self.fixed), dict(zip(self.spans, values, strict=True)))
-        return Top(**{key: float(value) for key, value in inputs.items()})
+        return Top(**{x: y if x == "psidot0" else float(y) for x, y in inputs.items()})
 
     def residuals(self, values: Sequence[float] | Array) -> Array:
         """Return numbers of `solve` minus their targets; NaN where a key has no number."""
@@ -106,10 +117,17 @@ class Search(NamedTuple):
 
     def swept(self, values: Array) -> Array:
         """Return the same by `sweep`: a row for each row of values, shape (tops, unknowns)."""
-        inputs = overridden(dict(self.fixed), dict(zip(self.spans, values.T, strict=True)))
-        found = sweep(keys=list(self.targets), radians=self.radians, **inputs)
+        found = self.sweep(values, list(self.targets))
         numbers = [np.asarray(found[key], float) - x for key, x in self.targets.items()]
         return np.stack(numbers, axis=1)
+
+    def sweep(self, values: Array, keys: Sequence[str]) -> Any:
+        """Return keys for each row of values; a steady rate is rounded first, which is fast."""
+        inputs = overridden(dict(self.fixed), dict(zip(self.spans, values.T, strict=True)))
+        if isinstance(word := inputs.get("psidot0"), str):
+            key = "steady_rate_slow" if word == STEADY_WORDS[0] else "steady_rate_fast"
+            inputs["psidot0"] = sweep(keys=[key], **inputs | {"psidot0": 0.0})[key]
+        return sweep(keys=keys, radians=self.radians, **inputs)
 
 
 def search_of(
@@ -135,13 +153,19 @@ def search_of(
         raise LagtopError("no input is unknown: give a range, such as r0=10:200")
     if len(spans) > max(COUNTS):
         raise LagtopError(f"find takes 1 to {max(COUNTS)} unknown inputs, got {len(spans)}")
-    if len(targets) != len(spans):
+    words = [x for x in others if isinstance(x.value, str)]
+    if "psidot0" in spans and (
+        targets.get("k") == 0 or any(x.value == Regime.STEADY for x in words)
+    ):
+        raise LagtopError("a steady precession is not found by a scan: use psidot0=steady")
+    if len(targets) != len(spans) and not (len(spans) == 1 and words and not targets):
         raise LagtopError(
             f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(targets)} for "
             f"{len(spans)}: {', '.join(spans)}"
         )
+    others.sort(key=lambda x: isinstance(x.value, float))
     known = {name: x for name, x in given.values.items() if name not in spans}
-    fixed = shared_inputs(given._replace(values=known), varying=spans)
+    fixed = shared_inputs(given._replace(values=known), varying=spans, steady=True)
     return Search(fixed, spans, targets, others, radians), given
 
 
@@ -155,6 +179,7 @@ def _read_condition(text: str, *, radians: bool) -> Condition:
     if key not in known:
         (key,) = check_names("a condition", [name], known)
     if key in _WORDS:
+        word = Regime.STEADY.value if (key, word) == ("regime", "steady") else word
         if relation != "=" or word not in _WORDS[key]:
             wanted, got = ", ".join(_WORDS[key]), f"{'' if relation == '=' else relation}{word}"
             raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
@@ -179,23 +204,45 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
         for x in search.spans.values()
     ]
     values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
-    off = search.swept(values)
-    points = (_roots if len(axes) == 1 else _minima)(search, values, off)
-    motions = [solve(search.top(point)) for point in points]
-    kept = [x for x in motions if all(c.holds(x, search.radians) for c in search.others)]
-    several = len(axes) > 1
-    caution = "solutions closer together may be missed"
-    if several:
-        caution = "only the best points were followed"
+    if search.targets:
+        off = search.swept(values)
+        points = (_roots if len(axes) == 1 else _minima)(search, values, off)
+    else:
+        points = _borders(search, values)
     ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
-    looked = f"scanned {ranges} at {each} values{' each' * several}: {caution}"
+    looked = f"scanned {ranges} at {each} values: solutions closer together may be missed"
+    if len(axes) > 1:
+        looked = f"scanned {ranges} at {each} values each: only the best points were followed"
+    motions = [solve(search.top(point)) for point in points]
+    misses = [_miss(search, *x) for x in zip(motions, points, strict=True)]
+    kept = [x for x, miss in zip(motions, misses, strict=True) if miss is None]
     if not kept:
-        others = ", ".join(map(str, search.others))
-        why = f"of {len(motions)} with {search.target_text} none has {others}"
-        if not motions:
-            why = _nearest(search, values, off)
+        why = _nearest(search, values)
+        if motions:
+            wanted = ", ".join(map(str, search.bounds))
+            why = f"of {len(motions)} with {search.target_text} none has {wanted}"
+            why += min((x for x in misses if x), default=(0, ""))[1]
         raise AbsentError(f"no top found: {why}; {looked}")
     return kept, looked
+
+
+def _miss(search: Search, motion: Motion, point: Sequence[float]) -> tuple[float, str] | None:
+    """Return how far a motion is from the other conditions, and a text, or None if it meets all."""
+    wrong = {x.key: (y, x.value) for x in search.bounds if not x.holds(y := _number(motion, x.key))}
+    known = [abs(y - x) for y, x in wrong.values() if y is not None and not isinstance(x, str)]
+    off, shown = sum(known), ", ".join(f"{key} = {y}" for key, (y, _) in wrong.items())
+    distance = f", {off:.2g} off," if known else ""
+    return (
+        (off, f": the nearest has {shown}{distance} at {_where(search, point)}") if wrong else None
+    )
+
+
+def _number(motion: Motion, key: str) -> Any:
+    return motion.record(radians=key.endswith("_rad"), keys=[key])[key]
+
+
+def _where(search: Search, point: Sequence[float] | Array) -> str:
+    return ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, point, strict=True))
 
 
 def _distances(search: Search, residuals: Array) -> tuple[Array, Array]:
@@ -210,21 +257,48 @@ def _distances(search: Search, residuals: Array) -> tuple[Array, Array]:
     return scale, np.where(known, np.linalg.norm(residuals / scale, axis=1), np.inf)
 
 
-def _nearest(search: Search, values: Array, residuals: Array) -> str:
+def _nearest(search: Search, values: Array) -> str:
     """Return where the scan comes nearest to the targets, or why it has no numbers."""
-    distance = _distances(search, residuals)[1]
+    if not search.targets:
+        return f"no border of {search.target_text}"
+    distance = _distances(search, search.swept(values))[1]
     at = values[int(np.argmin(distance))]
-    if np.isinf(distance.min()):
-        text = f"no top of the scan has {search.target_text}"
-        try:
-            solve(search.top(at))
-        except LagtopError as error:
-            text += f" ({error})"
-        return text
-    numbers = zip(search.targets.items(), search.residuals(at).tolist(), strict=True)
-    reached = ", ".join(f"{key} = {double_text(x + target)}" for (key, target), x in numbers)
-    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, at, strict=True))
-    return f"nearest to {search.target_text} is {reached} at {where}"
+    missed, why = search.residuals(at), ""
+    try:
+        solve(search.top(at))
+    except LagtopError as error:
+        why = f" ({error})"
+    if why or np.isnan(missed).any():
+        return f"no top of the scan has {search.target_text}{why}"
+    numbers = zip(search.targets.items(), missed.tolist(), strict=True)
+    reached = [f"{key} = {double_text(x + y)}, {abs(x):.2g} off," for (key, y), x in numbers]
+    return f"nearest to {search.target_text} is {' '.join(reached)} at {_where(search, at)}"
+
+
+def _borders(search: Search, values: Array) -> list[list[float]]:
+    """Return where the class of a word begins and ends, in ascending order.
+
+    A class without width, such as that of cusps, is the border of two others: then neighbouring
+    doubles may have these.  Raises LagtopError if the whole scan has the word.
+    """
+    (name, span), (wanted, *_) = next(iter(search.spans.items())), search.others
+    words = np.array(search.sweep(values, [wanted.key])[wanted.key], object)
+    if (words == wanted.value).all():
+        hint = "stability_factor=1 is the border of stability" if name == "r0" else "use another"
+        raise LagtopError(f"every {name} from {span} has {wanted}: {hint}")
+    borders = set()
+    for i in np.flatnonzero(words[:-1] != words[1:]).tolist():
+        ends = [words[i], words[i + 1]]
+        if None in ends or (wanted.value in words) != (wanted.value in ends):
+            continue
+        low, high = values[i : i + 2, 0].tolist()
+        while low < (middle := low + (high - low) / 2) < high:
+            found = _number(solve(search.top([middle])), wanted.key)
+            low, high = (middle, high) if found == ends[0] else (low, middle)
+            if found == wanted.value not in ends:
+                break
+        borders.add(low if ends[0] == wanted.value else high)
+    return [[x] for x in sorted(borders)]
 
 
 def _roots(search: Search, values: Array, residuals: Array) -> list[list[float]]:
@@ -285,17 +359,22 @@ def _minima(search: Search, values: Array, residuals: Array) -> list[list[float]
     low, high = values.min(axis=0), values.max(axis=0)
     scale, distance = _distances(search, residuals)
     cube = distance.reshape((round(len(distance) ** (1 / len(low))),) * len(low))
+    neighbours = [x for x in product((-1, 0, 1), repeat=cube.ndim) if any(x)]
+    for off in residuals.T.reshape(-1, *cube.shape):  # flat parts lead nowhere
+        moved = (np.roll(off, x, range(cube.ndim)) for x in neighbours)
+        same = sum((abs(x - off) <= _SWEPT * abs(off)).astype(int) for x in moved)
+        cube = np.where((3 * same > len(neighbours)) & (off != 0), np.inf, cube)
     least = cube == minimum_filter(cube, 3, mode="constant", cval=np.inf)
-    starts = np.flatnonzero(least.ravel() & np.isfinite(distance))
+    starts = np.flatnonzero(least.ravel() & np.isfinite(cube.ravel()))
 
-    def off(x: Array) -> Array:
+    def residual(x: Array) -> Array:
         return np.nan_to_num(search.residuals(low + x * (high - low)) / scale, nan=1e6)
 
     found: list[Array] = []
     for start in starts[np.argsort(distance[starts], kind="stable")][:_STARTS].tolist():
         inside = np.clip((values[start] - low) / (high - low), 1e-9, 1 - 1e-9)
         exact: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
-        ended = least_squares(off, inside, "3-point", (0, 1), **exact, max_nfev=40)
+        ended = least_squares(residual, inside, "3-point", (0, 1), **exact, max_nfev=40)
         is_new = all(np.max(np.abs(ended.x - x)) > _APART for x in found)
         if not is_new or np.max(np.abs(ended.fun)) > _CLOSE:
             continue
@@ -348,6 +427,8 @@ def _text(key: str, number: Any) -> str:
 
 def _input(name: str, given: Any) -> Value:
     """Return a number, or a pair as a range.  Raises LagtopError."""
+    if name == "psidot0" and isinstance(given, str) and given in STEADY_WORDS:
+        return Value(given)
     value = value_of(name, given, parse_number_or_span)
     if np.asarray(value.number, object).shape != (2,):
         return value

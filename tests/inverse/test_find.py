@@ -104,9 +104,12 @@ def test_a_pair_of_roots_between_two_points_is_found() -> None:
     ("line", "message"),
     [
         ("--theta0 30:60 spin_rate_start=50", "every theta0_deg from 30 to 60 has"),
-        ("--m 1:1e4 theta_min_deg=30", "every m from 1 to 10000 has theta_min_deg=30, which"),
-        ("--psidot0 1:2 a=319.0914121746259", "every psidot0 from 1 to 2 has a=319.0914121746259"),
-        ("--psidot0 -5:5 path=wavy r0=50", "every psidot0 from -5 to 5 has r0=50, which does"),
+        ("--m 1:1e4 theta_min_deg=30", "every m from 1 to 10000 has theta_min_deg = 30, which"),
+        (
+            "--psidot0 1:2 a=319.0914121746259",
+            "every psidot0 from 1 to 2 has a = 319.0914121746259",
+        ),
+        ("--psidot0 -5:5 path=wavy r0=50", "every psidot0 from -5 to 5 has r0 = 50, which does"),
         (
             "--m 1000:2000 --g 900:1000 T_nutation=0.43 theta_min_deg=30",
             "the conditions do not determine m and g: many values give ",
@@ -120,10 +123,22 @@ def test_a_plateau_or_a_curve_is_refused(line: str, message: str, lagtop: Lagtop
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("--r0 10:60 T_nutation=0.46", "nearest to T_nutation=0.46 is T_nutation = 0.4525"),
-        ("--A 1:2 T_nutation=1", "no top of the scan has T_nutation=1 (C must be <= 2"),
-        ("--r0=-50:60 --theta0 60 mean_spin_rate=0", "nearest to mean_spin_rate=0 is"),  # a leap
-        ("--r0 10:60 T_nutation=0.45 path=looping", "of 2 with T_nutation=0.45 none has path=loo"),
+        (
+            "--r0 10:60 T_nutation=0.46",
+            "nearest to T_nutation = 0.46 is T_nutation = 0.45250944480905964, 0.0075 off,",
+        ),
+        ("--A 1:2 T_nutation=1", "no top of the scan has T_nutation = 1 (C must be <= 2"),
+        ("--r0=-50:60 --theta0 60 mean_spin_rate=0", "nearest to mean_spin_rate = 0 is"),  # a leap
+        (
+            "--r0 10:60 T_nutation=0.45 theta_max<20",
+            "theta_max_deg = 91.17499831115589, 71 off, at",
+        ),
+        ("--theta0 10:80 --psidot0 steady --thetadot0 1 T_nutation=1", "thetadot0 must be 0 for"),
+        ("--r0 10:60 path=looping", "no border of path = looping"),
+        (
+            "--r0 10:60 T_nutation=0.45 path=looping",
+            "none has path = looping: the nearest has path = cusped at r0 =",
+        ),
     ],
 )
 def test_nothing_found(line: str, message: str, lagtop: Lagtop) -> None:
@@ -132,6 +147,51 @@ def test_nothing_found(line: str, message: str, lagtop: Lagtop) -> None:
     assert result.stdout == ""
     assert result.stderr.splitlines()[-1].startswith("Error: no top found: ")
     assert message in result.stderr
+
+
+STEADY_BODY: dict[str, Any] = {"m": 1, "g": 9.81, "s": 0.2, "A": 2 / 3, "C": 1}
+
+
+@pytest.mark.parametrize("word", ["steady", "steady-fast"])
+def test_steady_tops(word: str) -> None:
+    """The rate x solves A cos(theta) x^2 - C r0 x + m g s = 0, and Lz = A x sin^2 + C r0 cos."""
+    known: Any = {"r0": 1, "theta0_deg": (91, 179), "psidot0": word}
+    found = find({"Lz": 0.5}, **STEADY_BODY, **known)
+    assert len(found) == (1 if word == "steady" else 0)
+    for motion in found:
+        assert motion.top.theta0_deg == pytest.approx(110.64767658947)
+        assert motion.top.psidot0 == pytest.approx(1.46053532332)
+        assert motion.regime == "steady precession"
+    fast = find({"Lz": -2}, **STEADY_BODY, **known)
+    for motion in fast:
+        u, x = math.cos(math.radians(motion.top.theta0_deg or 0)), float(motion.top.psidot0)
+        assert 2 / 3 * u * x * x - x + 9.81 * 0.2 == pytest.approx(0, abs=1e-12)
+        assert 2 / 3 * x * (1 - u * u) + u == pytest.approx(-2)
+    assert bool(fast) == (word == "steady-fast")
+
+
+def test_flat_parts_of_a_condition_are_no_starts() -> None:
+    """A top that rises has its start as greatest tilt, for half of all rates."""
+    ranges: Any = {"theta0_deg": 45, "r0": (1, 20), "psidot0": (-5, 5)}
+    found = find({"Lz": 2.2, "theta_max": 46}, **STEADY_BODY, **ranges)
+    assert [x.top.r0 for x in found] == pytest.approx([1.947670, 2.733050], rel=1e-3)
+
+
+@pytest.mark.parametrize("word", ["cusped", "looping", "wavy"])
+def test_borders_of_a_path(word: str) -> None:
+    """The path has cusps if the precession rate is 0 at the upper turning point, u = beta/b."""
+    known: Any = {"thetadot0": 1.0, "r0": 50}
+    found = find([f"path={word}"], psidot0=(-3, 1), **known)
+    assert len(found) == 1
+    at = float(found[0].top.psidot0)
+    sides = [solve(Top(psidot0=x, **known)).path for x in (at - 1e-9, at + 1e-9)]
+    assert sides == ["looping", "wavy"]
+    b = float(found[0].b)
+    u0 = math.cos(math.radians(30))
+    beta = at * (1 - u0**2) + b * u0
+    energy = 1 + at * at * (1 - u0**2) + float(found[0].a) * u0
+    assert energy - float(found[0].a) * beta / b == pytest.approx(0, abs=1e-11 * energy)
+    assert word == "cusped" or found[0].path == word
 
 
 def test_a_leap_is_no_root() -> None:
@@ -175,7 +235,10 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         (["T_nutation=1"], {"r0": "log:-1:1"}, "must have two ends of one sign"),
         (["T_nutation=1"], {"A": "1:2", "C": [3]}, "C must be a real number"),
         (["T_nutation=1"], {"r0": "1:2", "phidot0": 3}, "phidot0 and r0 are both given"),
-        (["T_nutation=1"], {"r0": "1:2", "psidot0": "steady"}, "psidot0 must be"),
+        (["T_nutation=1"], {"r0": "1:2", "psidot0": "stead"}, "psidot0 must be"),
+        (["Lz=1", "k=0"], {"r0": "1:2", "psidot0": "1:2"}, "a steady precession is not found by"),
+        (["regime=steady"], {"psidot0": "1:2"}, "a scan: use psidot0=steady"),
+        (["regime=sleeping"], {"r0": "1:9", "theta0_deg": 0}, "stability_factor=1 is the border"),
         ({"T_precession": None}, {"r0": (10, 200)}, "T_precession must be a finite number"),
         ({"T_precession": 2}, {"r0": (10, 20, 30)}, "no input is unknown"),
         ({"T_precession": 2}, {"r0": (200, 10)}, "r0 must have its smaller end first"),
@@ -245,6 +308,8 @@ def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:
     assert list(rows[0]) == [*solve(Top()).record()]
     assert [float(row["T_nutation"]) for row in rows] == pytest.approx([0.45, 0.45], rel=1e-15)
     assert "2 found; scanned r0 from 10 to 60 at 300 values" in result.stderr
+    twice = lagtop(*options, "--keys", "theta0,psidot0,theta0_deg")
+    assert "--keys must not repeat a name, got 'theta0_deg' twice" in twice.stderr
     scene = tmp_path / "lab.toml"
     scene.write_text("theta0_deg = 30\nr0 = 7\n")
     same = lagtop("find", scene, *options[1:])
