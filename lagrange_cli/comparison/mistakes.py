@@ -80,8 +80,10 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
     A, r0, steiner = Fraction(top.A), float(top.r0), Fraction(top.m) * Fraction(top.s) ** 2
     tilt, rate = float(top.inputs(radians=True)["theta0_rad"]), float(top.thetadot0)
     left = " (in a left-handed frame a positive turn is clockwise)" * run.align.left
+    mirrored = top.psidot0 and run.observed(slice(1)).quaternion is not None
+    mirror = " (or that of {}, if the frame is left-handed or has z down)" if mirrored else ""
     inputs: dict[str, dict[str, Any]] = {
-        f"r0 has the wrong sign{left}": {"r0": -top.r0},
+        f"r0 has the wrong sign{left}{mirror.format('psidot0')}": {"r0": -top.r0},
         "the gyroscopic term is left out of Euler's equations (as if C = A)": {"C": top.A},
         "A about the pivot was taken as A about the mass centre (A + m s^2)": {"A": A + steiner},
         "A about the mass centre was taken as A about the pivot (A - m s^2)": {"A": A - steiner},
@@ -90,7 +92,7 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         "r0 in radians was taken as rpm": {"r0": r0 * math.pi / 30},
         "r0 in rpm was taken as radians": {"r0": r0 * 30 / math.pi},
         "r0 was taken as the gimbal's rate phi'": {"r0": r0 + float(top.psidot0) * math.cos(tilt)},
-        "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
+        f"psidot0 has the wrong sign{mirror.format('r0')}": {"psidot0": -top.psidot0},
         "thetadot0 has the wrong sign": {"thetadot0": -rate},
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
         **{f"g is {g} (or m or s is wrong by as much)": {"g": Fraction(g)} for g in _GRAVITY},
