@@ -15,9 +15,8 @@ import time
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager, suppress
-from functools import partial
 from secrets import token_hex
 from tempfile import TemporaryDirectory
 from threading import Thread
@@ -196,119 +195,101 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-class _Cluster:
-    """A client of a Dask cluster that waits for no answer longer than `_PATIENCE`.
-
-    dask itself waits without end for a stopped process, and for work whose workers are gone.
-    """
-
-    def __init__(self, address: str, warn: Callable[[str], None]) -> None:
-        """Connect to a scheduler.
-
-        Raises UnavailableError if nothing answers, if there is no worker, or one that does not
-        answer or has another version of lagtop, and LagtopError for an invalid address.
-        """
-        self.address, self.client = address, self._connected(address, warn)
-        self._wait(lambda: self.client.wait_for_workers(1, timeout=_PATIENCE))
-        # A function of the standard library, which every worker can unpickle.
-        name = "lagrange_cli:__version__"
-        ask = pkgutil.resolve_name
-        versions = self._wait(lambda: self.client.run(ask, name, on_error="return"))
-        for worker, version in versions.items():
-            if version != __version__:
-                found = f"no lagtop: {version}" if isinstance(version, Exception) else version
-                why = f"the worker {worker} needs lagtop {__version__}, has {found}"
-                raise UnavailableError(why)
-        self.threads: int = sum(self._wait(self.client.nthreads).values())
-
-    def _connected(self, address: str, warn: Callable[[str], None]) -> Any:
-        import dask
-        from distributed import Client
-
-        dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE / 3})
-        try:
-            with warnings.catch_warnings(record=True, action="always") as found:
-                client = _within(_PATIENCE, lambda: Client(address, timeout=_PATIENCE / 3))
-        except (TypeError, ValueError) as error:
-            why = f"dask must be the address of a scheduler, got {address!r}: {error}"
-            raise LagtopError(why, "dask") from None
-        except Exception as error:  # of any kind: it may be no scheduler
-            raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
-        if found:
-            warn("the cluster has other versions of Python packages: results may differ in bits")
-        return client
-
-    def submit(self, work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
-        """Hand out work and an item; return a function that waits for the result."""
-        future = self.client.submit(work, item, pure=False)
-        return lambda: self._result(future)
-
-    def _result(self, future: Any) -> Any:
-        """Return a result.  Raises UnavailableError if the workers no longer answer."""
-        heard = time.monotonic()
-        while not future.done():
-            with suppress(TimeoutError):
-                future.result(_PATIENCE / 10)
-                continue
-            if self._wait(lambda: self.client.run(int)):
-                heard = time.monotonic()
-            elif time.monotonic() - heard > _PATIENCE:
-                raise UnavailableError(f"all workers of the cluster at {self.address} were lost")
-        return future.result()
-
-    def _wait(self, ask: Callable[[], Any]) -> Any:
-        """Return an answer of the cluster.  Raises UnavailableError if it takes too long."""
-        try:
-            return _within(_PATIENCE, ask)
-        except (TimeoutError, CancelledError, OSError, RuntimeError) as error:
-            why = f"the cluster at {self.address} has no worker that answers: {error}"
-            raise UnavailableError(why) from None
-
-    def close(self) -> None:
-        """Leave the cluster."""
-        with suppress(Exception):  # report the error that ended the sweep, not one of closing
-            _within(2.0, lambda: self.client.close(timeout=1))
-
-
-def _within(seconds: float, call: Callable[[], _T]) -> _T:
-    """Return the result of a call in a thread.  Raises TimeoutError after some seconds."""
-    found: list[Callable[[], _T]] = []
-
-    def run() -> None:
-        try:
-            value = call()
-            found.append(lambda: value)
-        except BaseException as error:
-            found.append(partial(_raise, error))
-
-    thread = Thread(target=run, daemon=True)
-    thread.start()
-    thread.join(seconds)
-    if not found:
-        raise TimeoutError(f"no answer in {seconds:g} s")
-    return found[0]()
-
-
-def _raise(error: BaseException) -> Any:
-    raise error
-
-
 @contextmanager
 def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit, int]]:
     """Yield a function that hands work to a Dask cluster, and the number of its threads.
 
+    dask itself waits without end for a stopped process, and for work whose workers are gone.
     Raises UnavailableError, and LagtopError for an invalid address.
     """
     try:
-        import distributed  # noqa: F401
+        import distributed
     except ImportError:
         why = "dask needs distributed: pip install 'lagtop[cluster]'"
         raise UnavailableError(why, "dask") from None
     for name in ("distributed", "distributed.client", "asyncio", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # lagtop reports errors in one line
     with waiting(f"waiting for the cluster at {address}"):
-        cluster = _Cluster(address, warn)
+        client = _connected(distributed, address, warn)
+        threads = _threads(client, address)
+
+    def submit(work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
+        future = client.submit(work, item, pure=False)
+        return lambda: _result(future, client, address)
+
     try:
-        yield cluster.submit, cluster.threads
+        yield submit, threads
     finally:
-        cluster.close()
+        with suppress(Exception):  # report the error that ended the sweep, not one of closing
+            _within(2.0, lambda: client.close(timeout=1))
+
+
+def _connected(distributed: Any, address: str, warn: Callable[[str], None]) -> Any:
+    """Return a client of a scheduler.  Raises UnavailableError, LagtopError for a bad address."""
+    import dask
+
+    dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE / 3})
+    try:
+        with warnings.catch_warnings(record=True, action="always") as found:
+            client = _within(_PATIENCE, lambda: distributed.Client(address, timeout=_PATIENCE / 3))
+    except (TypeError, ValueError) as error:
+        why = f"dask must be the address of a scheduler, got {address!r}: {error}"
+        raise LagtopError(why, "dask") from None
+    except Exception as error:  # of any kind: it may be no scheduler
+        raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
+    if any(x.category.__name__ == "VersionMismatchWarning" for x in found):
+        warn("the cluster has other versions of Python packages: last digits may differ")
+    return client
+
+
+def _threads(client: Any, address: str) -> int:
+    """Return the number of threads of a cluster.
+
+    Raises UnavailableError if it has no worker, or one that does not answer, that lacks lagtop or
+    that has another version.
+    """
+    _answer(address, lambda: client.wait_for_workers(1, timeout=_PATIENCE))
+    ask, name = pkgutil.resolve_name, "lagrange_cli:__version__"  # which every worker can unpickle
+    versions = _answer(address, lambda: client.run(ask, name, on_error="return"))
+    for worker, version in versions.items():
+        if version != __version__:
+            found = f"no lagtop: {version}" if isinstance(version, Exception) else version
+            raise UnavailableError(f"the worker {worker} needs lagtop {__version__}, has {found}")
+    return sum(_answer(address, client.nthreads).values())
+
+
+def _result(future: Any, client: Any, address: str) -> Any:
+    """Return the result of some work.  Raises UnavailableError if workers no longer answer."""
+    heard = time.monotonic()
+    while True:
+        with suppress(TimeoutError):
+            return future.result(_PATIENCE / 10)
+        if _answer(address, lambda: client.run(int)):
+            heard = time.monotonic()
+        elif time.monotonic() - heard > _PATIENCE:
+            raise UnavailableError(f"all workers of the cluster at {address} were lost")
+
+
+def _answer(address: str, ask: Callable[[], _T]) -> _T:
+    """Return an answer of a cluster.  Raises UnavailableError if there is none in time."""
+    try:
+        return _within(_PATIENCE, ask)
+    except (TimeoutError, CancelledError, OSError, RuntimeError) as error:
+        why = f"a worker of the cluster at {address} was lost or stopped: {error}"
+        raise UnavailableError(why) from None
+
+
+def _within(seconds: float, call: Callable[[], _T]) -> _T:
+    """Return the result of a call in a thread.  Raises TimeoutError after some seconds."""
+    future = Future[_T]()
+
+    def run() -> None:
+        try:
+            future.set_result(call())
+        except BaseException as error:
+            future.set_exception(error)
+
+    Thread(target=run, daemon=True).start()
+    if not wait([future], seconds).done:
+        raise TimeoutError(f"no answer in {seconds:g} s")
+    return future.result()
