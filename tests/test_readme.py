@@ -24,7 +24,7 @@ from lagrange_cli.comparison.compare import COMPARISON_KEYS, VERDICTS
 from lagrange_cli.comparison.differences import WORDS
 from lagrange_cli.files.columns import QUANTITIES
 from lagrange_cli.solver.explanation import listed
-from lagrange_cli.solver.keys import NUMBERS
+from lagrange_cli.solver.keys import FURTHER_KEYS, NUMBERS
 from lagrange_cli.top.inputs import DECLARED, TILT
 
 ROOT = Path(__file__).parent.parent
@@ -140,6 +140,15 @@ def keys_table(kind: str, heading: str) -> list[str]:
     return lines
 
 
+def further_keys_table() -> list[str]:
+    """Return the further keys by group as a table in Markdown."""
+    groups: dict[str, list[str]] = {}
+    for name in FURTHER_KEYS:
+        groups.setdefault(NUMBERS[name].group, []).append(f"`{name}`")
+    lines = [f"| {group} | {', '.join(names)} |" for group, names in groups.items()]
+    return ["| group | further keys |", "|---|---|", *lines]
+
+
 def inputs_table() -> list[str]:
     """Return the inputs of a scene file as a table in Markdown."""
     lines = ["| key | option | meaning | default |", "|---|---|---|---|"]
@@ -165,7 +174,7 @@ COMPARE_TABLES: dict[tuple[str, str], dict[str, str]] = {
     ("verdict", "if"): VERDICTS,
     ("word", "meaning"): WORDS,
 }
-KINDS_OF_KEYS = {"record": "key", "on request": "further key", "column": "column"}
+KINDS_OF_KEYS = {"record": "key", "column": "column"}
 """The headings of the tables of keys and columns."""
 TABLES: list[tuple[Callable[[], list[str]], str]] = [
     (inputs_table, "sample_inputs"),
@@ -175,6 +184,7 @@ TABLES: list[tuple[Callable[[], list[str]], str]] = [
         (partial(keys_table, kind, heading), "lagrange_cli/solver")
         for kind, heading in KINDS_OF_KEYS.items()
     ),
+    (further_keys_table, "lagrange_cli/solver"),
     (published_table, "tests"),
     *(
         (partial(two_columns, *heads, rows), "lagrange_cli/comparison")
