@@ -180,7 +180,10 @@ class Table:
             return None
         if values.shape != (len(lines), self.width):
             return None
-        return Numbers(values[:, columns], np.zeros((len(lines), len(columns)), np.bool_), lines)
+        chosen = values if [*columns] == [*range(self.width)] else values[:, columns]
+        empty = np.broadcast_to(np.bool_(0), chosen.shape)
+        is_whole = lines[-1] - lines[0] == len(lines) - 1
+        return Numbers(chosen, empty, range(lines[0], lines[-1] + 1) if is_whole else lines)
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
@@ -188,7 +191,7 @@ class Table:
             return float("nan")
         if type(cell) in {int, float}:
             return float(cell)
-        plain = self._plain(cell) if isinstance(cell, str) else ""
+        plain = self.plain(cell) if isinstance(cell, str) else ""
         if "," not in plain and _NUMBER.fullmatch(plain):
             return float(plain)
         try:
@@ -206,16 +209,17 @@ class Table:
         other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
         is_other = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
         try:
-            return parse_number(self._plain(cell))
+            return parse_number(self.plain(cell))
         except LagtopError:
             if not is_other and self.decimal != ",":
                 raise
         hint = f" (use decimal={other})" if is_other else ""
         raise LagtopError(f"must be a finite decimal number, got {quoted(cell)}{hint}")
 
-    def _plain(self, cell: str) -> str:
-        """Return a cell with a decimal point; a number with the other mark then fails to parse."""
-        return cell.translate(_SWAPPED) if self.decimal == "," else cell
+    def plain(self, cell: Any) -> str:
+        """Return a cell as text with a decimal point; the other mark then fails to parse."""
+        text = "" if cell is None else str(cell)
+        return text.translate(_SWAPPED) if self.decimal == "," else text
 
 
 class Numbers(NamedTuple):

@@ -6,7 +6,11 @@ The first bytes of a file determine its format, not its name: Parquet, or else t
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
 from io import BytesIO
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import shortened
@@ -147,10 +151,12 @@ class Trajectory:
         (place,), (column,) = self._places["t"], self.quantities["t"].columns
         t: Array = self._numbers.values[:, place]
         steps = np.abs(np.diff(t))
+        steps = steps[steps > 0]
         if steps.size and np.abs(t).max() * 2.0**-53 > _FINE * np.median(steps):
-            cells = (x for _, x in self._table.column(column) if x not in (None, ""))
-            exact = [self._table.number(x) for x in cells]
-            t = np.array([float(x - exact[0]) for x in exact])
+            cells = (self._table.plain(x) for _, x in self._table.column(column))
+            exact = (Decimal(x) for x in cells if x)
+            first = next(exact)
+            t = np.fromiter((x - first for x in chain([first], exact)), np.float64)
         found = self.quantities["t"]
         return converted("t", found, t - t[:1], radians=True)
 
@@ -243,13 +249,24 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
         factor = in_known_unit("t", found, names).factor or 1
     except LagtopError as error:
         raise DataError(f"{table.name}: {error}") from None
-    times = []
-    for number, cell in table.column(found.columns[0]):
-        try:
-            times.append(factor * table.number(cell))
-        except LagtopError as error:
-            place = f"{table.name}, {table.place} {number}"
-            raise DataError(f"{place}: the time {error}") from None
-    if not times:
+    times = ListedPoints(_Times(table, found.columns[0], Fraction(factor)))
+    if not times.count:
         raise DataError(f"{table.name} must hold at least one time, got none")
-    return ListedPoints(times)
+    return times
+
+
+@dataclass
+class _Times:
+    """The exact numbers in a column of a file, which are read again and again."""
+
+    table: Table
+    column: int
+    factor: Fraction
+
+    def __iter__(self) -> Iterator[Fraction]:
+        for number, cell in self.table.column(self.column):
+            try:
+                yield self.factor * self.table.number(cell)
+            except LagtopError as error:
+                place = f"{self.table.name}, {self.table.place} {number}"
+                raise DataError(f"{place}: the time {error}") from None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from array import array
+from collections.abc import Iterable, Iterator
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -142,9 +143,10 @@ class LogPoints(Points):
 class ListedPoints(Points):
     """Points that are listed one by one."""
 
-    def __init__(self, exact: list[Fraction]) -> None:
-        self.exact, self.count = exact, len(exact)
-        self.values = [float(point) for point in exact]
+    def __init__(self, exact: Iterable[Fraction]) -> None:
+        """Take points that can be read again, such as a list."""
+        self.exact, self.values = exact, array("d", map(float, exact))
+        self.count = len(self.values)
 
     def __str__(self) -> str:
         return ",".join(map(str, self.exact))
@@ -157,7 +159,7 @@ class ListedPoints(Points):
         """Return the doubles nearest to the points with these indices."""
         import numpy as np
 
-        return np.array(self.values)[index]
+        return np.frombuffer(self.values)[index]
 
     def decimals(self) -> Iterator[Fraction]:
         """Yield every point exactly."""

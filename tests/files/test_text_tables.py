@@ -57,6 +57,10 @@ TABLES = {
     '{"FIRST":0.5,"SECOND":30}\n\n{"FIRST":1.5,"SECOND":40}\n': [0.5, 1.5],
     '[\n {"FIRST":0.5,\n"SECOND":30},{"FIRST":1.5,"SECOND":40}\n]\n': [0.5, 1.5],
     "FIRST   SECOND\n\u2500\u2500\u2500\u2500\n0.5   30\n1.5   40\n": [0.5, 1.5],
+    'FIRST,SECOND\n"0,50","30,0"\n"1,5", "40"\n': [0.5, 1.5],
+    "FIRST is a time: see below\nFIRST,SECOND,note\n0.5,30,a b\n1.5,40,\n": [0.5, 1.5],
+    "// FIRST = 3\n% mass, A\nFIRST;SECOND\n0.5;30\n1.5;40\n": [0.5, 1.5],
+    "#FIRST,SECOND\n0.5,30\n1.5,40\n": [0.5, 1.5],
 }
 
 
@@ -155,7 +159,7 @@ def test_times_are_exact(tmp_path: Path) -> None:
         "t ms\n100\n1\n",
     ):
         path.write_text(text)
-        assert read_times(str(path)).exact == [Fraction(1, 10), Fraction(1, 1000)]
+        assert [*read_times(str(path)).exact] == [Fraction(1, 10), Fraction(1, 1000)]
 
 
 def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> None:
@@ -175,6 +179,52 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> N
         DataError, match="line 103, column 2: theta must be a finite decimal number, got 'x'"
     ):
         read_trajectory(str(path)).values(radians=True)
+
+
+NAMED = {
+    "Start time: unknown\nClock,Tilt,Azimuth\n0.5,30,1\n1.5,40,2\n": ["t", "theta", "psi"],
+    "run 1 of 2, tilt\nt1;tilt1;t2;tilt2\n0,5;30;0,5;7\n1,5;40;1,5;8\n2,5;50;;\n": [
+        "_",
+        "_",
+        "t",
+        "theta",
+    ],
+    "a,b\n0.5,30\n1.5,40\n": ["t", "theta"],
+}
+
+
+@pytest.mark.parametrize("text", NAMED)
+def test_columns_that_are_named(text: str, tmp_path: Path) -> None:
+    """Titles in words do not count; a run that ends before the other one has no more rows."""
+    (tmp_path / "file").write_text(text)
+    file = read_trajectory(str(tmp_path / "file"), NAMED[text])
+    assert file.values(radians=True)["t"][:, 0].tolist() == [0.5, 1.5]
+    assert file.elapsed.tolist() == [0, 1]
+
+
+def test_what_was_read(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text(
+        '{"t":1,"rotation":{"x":0,"y":0,"z":0,"w":1},"angularVelocity":[1,2,null],"n":3}\n'
+    )
+    file = read_trajectory(str(path))
+    assert list(file.quantities) == ["t", "quaternion", "rates"]
+    assert file.unused == ["n"]
+    assert file.used[1:5] == [f"rotation.{x}" for x in "xyzw"]
+    missing = {key: x.tolist() for key, x in file.missing().items()}
+    assert missing == {"t": [False], "quaternion": [False], "rates": [True]}
+    path.write_text('{"t":1,"q":[1,0,0,0]}\n')
+    assert list(read_trajectory(str(path)).quantities) == ["t", "quaternion"]
+
+
+def test_unix_times_keep_their_digits(tmp_path: Path) -> None:
+    """Neighbouring doubles are 2e-7 apart at 1.7e9, and 256 at 1.7e18."""
+    for heading, start, zeros in (("t", "1700000000.", 0), ("t [ns]", "1700000000", 9)):
+        digits = [f"{i:09}" for i in (5, 1_000_006, 2_000_007)]
+        rows = "".join(f"{start}{x},30\n" for x in digits)
+        (tmp_path / "file").write_text(f"{heading},theta\n{rows}")
+        found = read_trajectory(str(tmp_path / "file")).elapsed
+        assert found.tolist() == pytest.approx([0, 0.001000001, 0.002000002], rel=1e-14), zeros
 
 
 @pytest.mark.parametrize(

@@ -195,6 +195,8 @@ def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
             {"rotvec": [PI, 0, PI / 2]},
         ),
         ("t,elevation\n0,60", {"theta": [PI / 6]}),
+        ("# t [0.1 ms],theta_deg (deg)\n5000,90", {"t": [0.5], "theta": [PI / 2]}),
+        ("t [ns],theta_rad [rad]\n5e8,1", {"t": [0.5], "theta": [1]}),
         ("t,elevation [rad]\n0,1", {"theta": [PI / 2 - 1]}),
     ],
 )
@@ -204,7 +206,7 @@ def test_units_in_headings(text: str, found: dict[str, list[float]], tmp_path: P
     values = read_trajectory(str(path)).values(radians=False)
     for key, exact in found.items():
         assert values[key][0] == pytest.approx(exact, rel=1e-15)
-    assert float(read_times(str(path)).exact[0]) == values["t"][0, 0]
+    assert float(next(iter(read_times(str(path)).exact))) == values["t"][0, 0]
 
 
 def test_bad_names_of_columns(tmp_path: Path) -> None:
