@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
 
 import numpy as np
@@ -172,18 +173,23 @@ class AngleStds:
         return found
 
     def _compare(self, t: Array, changes: Array, found: Array) -> None:
-        """Compare linear changes with those of motions one standard deviation away."""
-        here = _all_angles(self.motion, t)
+        """Compare linear changes with those of motions one standard deviation away.
+
+        An error is measured by the largest uncertainty up to its time: where one passes through 0,
+        linear propagation need not fail.
+        """
+        here, off = _all_angles(self.motion, t), np.zeros_like(changes)
         for i, beside in self._away:
-            try:
-                off = np.abs(np.abs(_all_angles(beside, t) - here) - np.abs(changes[i]))
-            except LagtopError:  # t is beyond 2^50 of its periods
-                continue
-            limits = MISLEADING * found.max(axis=1, initial=0.0) + _LEAST
-            for name, row, limit in zip(STD_COLUMNS, off, limits, strict=True):
-                if (late := np.flatnonzero(row > limit)).size:
-                    first = float(t[late[0]])
-                    self.misleading[name] = min(first, self.misleading.get(name, first), key=abs)
+            with suppress(LagtopError):  # t is beyond 2^50 of its periods
+                change = np.abs(_all_angles(beside, t) - here)
+                off[i] = np.maximum(off[i], np.abs(change - np.abs(changes[i])))
+        order = np.argsort(np.abs(t), kind="stable")
+        limits = MISLEADING * np.maximum.accumulate(found[:, order], axis=1) + _LEAST
+        errors = np.sqrt((off**2).sum(axis=0))[:, order]
+        for name, late in zip(STD_COLUMNS, errors > limits, strict=True):
+            if late.any():
+                first = float(t[order[np.argmax(late)]])
+                self.misleading[name] = min(first, self.misleading.get(name, first), key=abs)
 
 
 def _all_angles(motion: Motion, t: Array) -> Array:

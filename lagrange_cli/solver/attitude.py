@@ -16,6 +16,7 @@ and raise TooFewDigitsError if the precision does not decide them.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from flint import acb, arb
@@ -65,7 +66,8 @@ class Side(NamedTuple):
     """|X| at u1, or |Y| at u2, where |X|^2 + |Y|^2 is 1 at u1 and k' at u2."""
 
 
-class Nutation(NamedTuple):
+@dataclass(frozen=True)
+class Nutation:
     """The constants of a motion that nutates."""
 
     period: arb
@@ -85,6 +87,12 @@ class Nutation(NamedTuple):
     """The constants of X and of Y."""
     falls: int
     """1 if the tilt grows after t = 0, else -1."""
+
+    unit = property(lambda self: self.period)
+    """The unit of time of the motion."""
+
+    start = property(lambda self: self.waves(self.since))
+    """arg X and arg Y at t = 0, without their mean growth."""
 
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
@@ -140,7 +148,8 @@ class Nutation(NamedTuple):
         return theta1, theta2
 
 
-class ConstantTilt(NamedTuple):
+@dataclass(frozen=True)
+class ConstantTilt:
     """The constants of a motion at constant tilt."""
 
     spin: arb
@@ -150,12 +159,18 @@ class ConstantTilt(NamedTuple):
     y: arb
     """sin(theta/2)."""
 
+    start = arb(0), arb(0)
+    """arg X and arg Y at t = 0, without their mean growth."""
+    unit = property(lambda self: _time_of_a_radian(self.spin, self.precession))
+    """The unit of time of the motion."""
+
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
         return Attitude(self.x, self.y, self.spin * t, self.precession * t, arb(0))
 
 
-class SingleSwing(NamedTuple):
+@dataclass(frozen=True)
+class SingleSwing:
     """The constants of a motion on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = h0 + rate t."""
 
     spin: arb
@@ -172,6 +187,11 @@ class SingleSwing(NamedTuple):
     falls: int
     """1 if the tilt grows after t = 0, else -1."""
 
+    start = property(lambda self: (self.turn(self.h0), arb(0)))
+    """arg X and arg Y at t = 0, without their mean growth."""
+    unit = property(lambda self: _time_of_a_radian(self.spin, self.precession, self.rate))
+    """The unit of time of the motion."""
+
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
         h = self.h0 + self.rate * t
@@ -184,6 +204,12 @@ class SingleSwing(NamedTuple):
         """Return arg X without its mean growth; on the lower pole, the limit at t = 0."""
         side = arb(-self.falls) if h.is_zero() and self.x.is_zero() else h.tanh()
         return arb.atan2(self.y * side, self.x)
+
+
+def _time_of_a_radian(*rates: arb) -> arb:
+    """Return the inverse of about the largest rate, or 1 if all rates are 0."""
+    fastest = max(rates, key=lambda rate: abs(float(rate.mid())))
+    return arb(1) if fastest.contains(0) else abs(1 / fastest.mid())
 
 
 Course = Nutation | ConstantTilt | SingleSwing

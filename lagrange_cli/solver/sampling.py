@@ -208,14 +208,15 @@ class Attitude:
 class Sampler:
     """The angles of one motion over time; subclasses yield the attitude at arrays of times."""
 
-    def __init__(self, of: Course, starts: Sequence[arb], unit: arb, tilt: float) -> None:
-        """Take the start: arg X and arg Y without mean growth, the tilt; and a unit of time."""
-        (x, y), spin, precession = starts, of.spin, of.precession
+    def __init__(self, of: Course, tilt: float) -> None:
+        """Take the constants of a motion and its tilt at t = 0."""
+        unit, (x, y), spin, precession = of.unit, of.start, of.spin, of.precession
         self.phi = growth_of(spin, x - y, unit)
         self.psi = growth_of(precession, x + y, unit)
         plus, minus = (precession + spin) / 2, (precession - spin) / 2
         self.halves = growth_of(plus, x, unit, 0.5), growth_of(minus, y, unit, 0.5)
-        self.tilt, self.max_time = tilt, MAX_TIME
+        self.tilt = tilt
+        self.max_time = min(float((int(MAX_PERIODS) * unit).mid()), MAX_TIME)
         fastest = max(abs(self.phi.rate.high), abs(self.psi.rate.high))
         self.max_wrapped = MOST_TURNS * 2 * math.pi / fastest if fastest else math.inf
 
@@ -266,17 +267,15 @@ class Sampler:
 
     def waves(self, t: Array) -> Array:
         """Return the tilt and the periodic parts of spin and precession, of shape (3, times)."""
-        wave = Growth.wave
-        farthest = self.check(t)
-        return self.evaluate(t, farthest, 3, lambda at: (at.tilt, at.phi(wave), at.psi(wave)))
+        farthest, how = self.check(t), Growth.wave
+        return self.evaluate(t, farthest, 3, lambda at: (at.tilt, at.phi(how), at.psi(how)))
 
 
 class ThetaSampler(Sampler):
     """The angles of a top that nutates, by its theta series."""
 
     def __init__(self, of: Nutation, tilt: float) -> None:
-        super().__init__(of, of.waves(of.since), of.period, tilt)
-        self.max_time = min(float((int(MAX_PERIODS) * of.period).mid()), MAX_TIME)
+        super().__init__(of, tilt)
         series = theta_series(of)
         step = nearest(2 * of.since)
         offset = 2 * of.since - step
@@ -378,20 +377,18 @@ class SwingSampler(Sampler):
     """The single swing on the separatrix, from the upright position down and up again."""
 
     def __init__(self, of: SingleSwing, tilt: float) -> None:
-        super().__init__(of, (of.turn(of.h0), arb(0)), 1 / of.rate, tilt)
-        self.x, self.y, self.speed, self.offset = map(near, (of.x, of.y, of.rate, of.h0))
-        self.max_time = _reach(of.spin, of.precession, of.rate)
+        super().__init__(of, tilt)
+        self.constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
 
     def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
         """Yield the attitude at all times: 1 - u = (1 - u2)/cosh^2 h, lowest at h = 0."""
-        h = t * self.speed + self.offset
+        x, y, rate, h0 = self.constants
+        h = t * rate + h0
         shrink = np.exp(-np.abs(h))
-        sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
-        real, imag = np.full_like(h, self.x), self.y * tanh
-        at, zero = Attitude(self, t), np.zeros_like(h)
-        at.parts = real, imag, self.y * sech, zero
-        at.args = np.arctan2(imag, real), zero
-        at.rate = -4.0 * self.speed * (self.y * sech) ** 2 * tanh
+        Y, tanh = y * (2.0 * shrink / (1.0 + shrink * shrink)), np.tanh(h)
+        at, real, imag, zero = Attitude(self, t), np.full_like(h, x), y * tanh, np.zeros_like(h)
+        at.parts, at.args = (real, imag, Y, zero), (np.arctan2(imag, real), zero)
+        at.rate = -4.0 * rate * Y * Y * tanh
         yield slice(None), at
 
 
@@ -399,24 +396,15 @@ class ConstantSampler(Sampler):
     """A constant tilt, with constant rates of spin and precession."""
 
     def __init__(self, of: ConstantTilt, tilt: float) -> None:
-        fastest = max(of.spin, of.precession, key=lambda x: abs(float(x.mid())))
-        unit = arb(1) if fastest.contains(0) else 1 / fastest.mid()
-        super().__init__(of, (arb(0), arb(0)), unit, tilt)
-        self.x, self.y = near(of.x), near(of.y)
-        self.max_time = _reach(of.spin, of.precession)
+        super().__init__(of, tilt)
+        self.constants = near(of.x), near(of.y)
 
     def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
         """Yield the attitude at all times."""
-        at, zero = Attitude(self, t), np.zeros_like(t)
-        at.tilt, at.parts = np.full_like(t, self.tilt), (zero + self.x, zero, zero + self.y, zero)
+        at, zero, (x, y) = Attitude(self, t), np.zeros_like(t), self.constants
+        at.tilt, at.parts = zero + self.tilt, (zero + x, zero, zero + y, zero)
         at.args, at.rate = (zero, zero), zero
         yield slice(None), at
-
-
-def _reach(*rates: arb) -> float:
-    """Return the time of 2^50 radians at the largest rate."""
-    rate = max(abs(float(rate.mid())) for rate in rates)
-    return min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME
 
 
 def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampler:
@@ -427,10 +415,8 @@ def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampl
 
     def sampler(digits: int) -> Sampler:
         course, tilt = balls(digits)["course"], near(facts.tilt.angle())
-        if isinstance(course, Nutation):
-            return ThetaSampler(course, tilt)
-        if isinstance(course, SingleSwing):
-            return SwingSampler(course, tilt)
-        return ConstantSampler(course, tilt)
+        kind = {Nutation: ThetaSampler, SingleSwing: SwingSampler, ConstantTilt: ConstantSampler}
+        found: Sampler = kind[type(course)](course, tilt)
+        return found
 
     return decided(sampler, facts.equal, digits=_DIGITS)

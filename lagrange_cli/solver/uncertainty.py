@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -16,7 +17,7 @@ from .keys import INPUTS, TEXT_KEYS, degree_name
 from .solve import Motion
 
 _CONTEXT = Context(prec=40)
-MISLEADING = 0.25
+MISLEADING = 0.15
 """Least error of linear propagation that is reported, over the uncertainty."""
 _LEAST = 1e-9
 """Least error that is reported, over the number."""
@@ -109,14 +110,14 @@ class FirstOrder:
         """
         if degree_name(key) not in DIFFERENTIABLE:
             return False
-        here = _value(self.motion, key) or 0.0
-        limit = MISLEADING * std + _LEAST * abs(here)
+        here, off = _value(self.motion, key) or 0.0, dict.fromkeys(self.stds, 0.0)
         for name, motion in self._away:
             there, slope = _value(motion, key), self.slope(key, name) or 0
-            linear = abs(float(slope * Fraction(self.stds[name])))
-            if there is None or abs(abs(there - here) - linear) > limit:
+            if there is None:
                 return True
-        return False
+            linear = abs(float(slope * Fraction(self.stds[name])))
+            off[name] = max(off[name], abs(abs(there - here) - linear))
+        return math.hypot(*off.values()) > MISLEADING * std + _LEAST * abs(here)
 
     def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
         """Return the contributions of the uncertain inputs to a key, the greatest first.

@@ -261,3 +261,58 @@ def test_an_uncertainty_beyond_the_doubles_is_null_or_refused(lagtop: Lagtop) ->
     assert f"Warning: {line}" in record.stderr
     budget = lagtop(*top, "1e-160+/-1", "--budget", "u3")
     assert (budget.exit_code, budget.stderr.splitlines()[-1]) == (2, f"Error: {line}")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "keys", "misled"),
+    [
+        (["--thetadot0", "0+/-0.5"], "K,T_nutation,theta_min_deg", True),  # of second order
+        (["--theta0", 30, "--r0", "37.286+/-3"], "T_nutation", True),  # the longest period
+        (["--theta0", "0.15+/-0.47"], "mean_precession_rate", True),  # a jump at the vertical
+        (["--r0", "50(2)", "--theta0", "30(1)"], "T_nutation,theta_max_deg", False),
+    ],
+)
+def test_misleading_linear_propagation_is_reported(
+    lagtop: Lagtop, arguments: list[object], keys: str, misled: bool
+) -> None:
+    with_stds = ",".join(f"{key},{key}_std" for key in keys.split(","))
+    result = lagtop("solve", *arguments, "--get", with_stds)
+    assert result.exit_code == 0
+    assert (f"uncertainties of {keys.split(',', maxsplit=1)[0]}" in result.stderr) == misled, (
+        result.stderr
+    )
+
+
+def test_tables_report_misleading_uncertainties_and_those_of_waves(lagtop: Lagtop) -> None:
+    table = ["--t-max", 3, "--n", 4, "--columns", "t,theta,dphi,dpsi"]
+    fine = lagtop("table", "--r0", "50.00(1)", "--theta0", "30.00(1)", *table)
+    assert fine.stderr == ""
+    assert list(dicts(fine.stdout)[0])[4:] == ["theta_deg_std", "dphi_deg_std", "dpsi_deg_std"]
+    released = lagtop("table", "--thetadot0", "0+/-1", *table)
+    assert "uncertainties of theta, dphi" in released.stderr
+    # a wave keeps its size, and its band follows the phase: the spread of the mean rate is left out
+    low, high = (
+        dicts(lagtop("table", "--r0", r0, "--theta0", 30, *table).stdout) for r0 in (49.99, 50.01)
+    )
+    only = dicts(lagtop("table", "--r0", "50.00(1)", "--theta0", 30, *table).stdout)
+    for row, one, other in zip(only, low, high, strict=True):
+        for name in ("dphi_deg", "dpsi_deg"):
+            half = abs(float(other[name]) - float(one[name])) / 2
+            assert float(row[f"{name}_std"]) == pytest.approx(half, rel=1e-3, abs=1e-6)
+
+
+def test_late_times_of_tables_name_the_remedy(lagtop: Lagtop) -> None:
+    bound = "--t-max must be finite and within 2^50 periods = 4.83e+14, got 1000000000000000.0"
+    assert_one_line(lagtop("table", "--t-max", "1e15"), 2, f"{bound}: use --digits")
+    late = ["table", "--t-min", "3.9e14", "--n", 1]
+    for columns in (["--wrap"], ["--columns", "quaternion"]):
+        words = "--t-min must be within 2^51 turns = 3.07e+14 to have angles within a turn, got "
+        assert_one_line(lagtop(*late, *columns), 2, words)
+    proved = [lagtop(*late, *how, "--digits", 5).stdout for how in (["--wrap"], [])]
+    wrapped, whole = (float(dicts(text)[0]["psi_deg"]) for text in proved)
+    assert abs(wrapped) <= 180 < whole
+
+
+def test_tables_have_no_negative_zero(lagtop: Lagtop) -> None:
+    shown = lagtop("table", "--theta0", 0, "--columns", "axis_y,q", "--t-max", 1, "--n", 3)
+    assert shown.stdout.splitlines()[1:] == ["0.0,0.0"] * 3
