@@ -49,7 +49,7 @@ class Trajectory:
         Rows that are empty in these columns are left out.  Raises DataError without a time or a
         quantity besides, and for a cell that is not a number; LagtopError for wrong `columns`.
         """
-        self.name, self._table = table.name, table
+        self.name, self._place = table.name, table.place
         if columns is not None and len(columns) != table.width:
             wanted = f"all {table.width} columns of {table.name} (_ leaves one out)"
             wrong = f"columns must name {wanted}, got {len(columns)} names"
@@ -68,7 +68,7 @@ class Trajectory:
         self._numbers = table.numbers(used, self.names)
         self._places = {key: [*map(used.index, x.columns)] for key, x in self.quantities.items()}
         self._check()
-        self.elapsed = self._elapsed()
+        self.elapsed = self._elapsed(table)
         """Times since the first row, each rounded once."""
 
     def _found(self, are_given: bool) -> dict[str, FoundQuantity]:
@@ -109,7 +109,7 @@ class Trajectory:
 
     def where(self, row: int) -> str:
         """Return the name of the file and the place of a row."""
-        return f"{self.name}, {self._table.place} {self._numbers.lines[row]}"
+        return f"{self.name}, {self._place} {self._numbers.lines[row]}"
 
     def values(self, *, radians: bool) -> dict[str, Array]:
         """Return every quantity as an array of shape (rows, parts), with NaN for missing numbers.
@@ -136,12 +136,7 @@ class Trajectory:
         implied: dict[str, Any] = {key: says for key, says in found.items() if says}
         return given._replace(**implied)
 
-    def words(self, column: str) -> list[str]:
-        """Return the cells of a column as texts; numbers have their shortest form."""
-        cells = (cell for _, cell in self._table.column(self.names.index(column)))
-        return [f"{x:.17g}" if isinstance(x, float) else str(x) for x in cells]
-
-    def _elapsed(self) -> Array:
+    def _elapsed(self, table: Table) -> Array:
         """Return the times since the first row, from exact numbers if doubles are too coarse.
 
         Unix times are such numbers: neighbouring doubles are 2e-7 s apart.
@@ -153,7 +148,7 @@ class Trajectory:
         steps = np.abs(np.diff(t))
         steps = steps[steps > 0]
         if steps.size and np.abs(t).max() * 2.0**-53 > _FINE * np.median(steps):
-            cells = (self._table.plain(x) for _, x in self._table.column(column))
+            cells = (table.plain(x) for _, x in table.column(column))
             exact = (Decimal(x) for x in cells if x)
             first = next(exact)
             t = np.fromiter((x - first for x in chain([first], exact)), np.float64)
