@@ -217,11 +217,9 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
     misses = [_miss(search, *x) for x in zip(motions, points, strict=True)]
     kept = [x for x, miss in zip(motions, misses, strict=True) if miss is None]
     if not kept:
-        why = _nearest(search, values)
-        if motions:
-            wanted = ", ".join(map(str, search.bounds))
-            why = f"of {len(motions)} with {search.target_text} none has {wanted}"
-            why += min((x for x in misses if x), default=(0, ""))[1]
+        wanted = ", ".join(map(str, search.bounds))
+        why = f"of {len(motions)} with {search.target_text} none has {wanted}: "
+        why = why + min(x for x in misses if x)[1] if motions else _nearest(search, values)
         raise AbsentError(f"no top found: {why}; {looked}")
     return kept, looked
 
@@ -232,9 +230,8 @@ def _miss(search: Search, motion: Motion, point: Sequence[float]) -> tuple[float
     known = [abs(y - x) for y, x in wrong.values() if y is not None and not isinstance(x, str)]
     off, shown = sum(known), ", ".join(f"{key} = {y}" for key, (y, _) in wrong.items())
     distance = f", {off:.2g} off," if known else ""
-    return (
-        (off, f": the nearest has {shown}{distance} at {_where(search, point)}") if wrong else None
-    )
+    text = f"the nearest has {shown}{distance} at {_where(search, point)}"
+    return (off, text) if wrong else None
 
 
 def _number(motion: Motion, key: str) -> Any:
@@ -284,8 +281,9 @@ def _borders(search: Search, values: Array) -> list[list[float]]:
     (name, span), (wanted, *_) = next(iter(search.spans.items())), search.others
     words = np.array(search.sweep(values, [wanted.key])[wanted.key], object)
     if (words == wanted.value).all():
-        hint = "stability_factor=1 is the border of stability" if name == "r0" else "use another"
-        raise LagtopError(f"every {name} from {span} has {wanted}: {hint}")
+        sleeps = wanted.value == Regime.SLEEPING
+        hint = "stability_factor=1" if sleeps else "another condition, or another unknown"
+        raise LagtopError(f"every {name} from {span} has {wanted}: use {hint}")
     borders = set()
     for i in np.flatnonzero(words[:-1] != words[1:]).tolist():
         ends = [words[i], words[i + 1]]

@@ -238,7 +238,11 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         (["T_nutation=1"], {"r0": "1:2", "psidot0": "stead"}, "psidot0 must be"),
         (["Lz=1", "k=0"], {"r0": "1:2", "psidot0": "1:2"}, "a steady precession is not found by"),
         (["regime=steady"], {"psidot0": "1:2"}, "a scan: use psidot0=steady"),
-        (["regime=sleeping"], {"r0": "1:9", "theta0_deg": 0}, "stability_factor=1 is the border"),
+        (
+            ["regime=sleeping"],
+            {"r0": "1:9", "theta0_deg": 0},
+            "has regime = sleeping: use stability_factor=1",
+        ),
         ({"T_precession": None}, {"r0": (10, 200)}, "T_precession must be a finite number"),
         ({"T_precession": 2}, {"r0": (10, 20, 30)}, "no input is unknown"),
         ({"T_precession": 2}, {"r0": (200, 10)}, "r0 must have its smaller end first"),
