@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from flint import acb, arb
@@ -91,54 +92,65 @@ class Nutation:
     unit = property(lambda self: self.period)
     """The unit of time of the motion."""
 
-    start = property(lambda self: self.waves(self.since))
-    """arg X and arg Y at t = 0, without their mean growth."""
+    @cached_property
+    def start(self) -> tuple[arb, arb]:
+        """arg X and arg Y at t = 0, without their mean growth."""
+        return self.waves(self.since)
 
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
         z = self.since + t / self.period
-        n = nearest(2 * z)
-        rest = z - arb(n) / 2
-        x, y = (abs(value) for value in self.values(n, rest))
-        return Attitude(x, y, *self.growth(self.since, z), rest * (-1) ** n)
+        n, rest, values = self._values(z)
+        phi, psi = self._grown(t, self.start, self._waves(n, rest, values))
+        return Attitude(abs(values[0]), abs(values[1]), phi, psi, rest * (-1) ** n)
 
     def growth(self, first: arb, last: arb) -> tuple[arb, arb]:
         """Return the growth of spin and precession between two phases z."""
-        (x0, y0), (x, y) = self.waves(first), self.waves(last)
-        t, dx, dy = (last - first) * self.period, x - x0, y - y0
-        return self.spin * t + dx - dy, self.precession * t + dx + dy
+        return self._grown((last - first) * self.period, self.waves(first), self.waves(last))
 
     def waves(self, z: arb) -> tuple[arb, arb]:
-        """Return arg X and arg Y at a phase z, without their mean growth.
+        """Return arg X and arg Y at a phase z, without their mean growth."""
+        return self._waves(*self._values(z))
 
-        Each is the argument of a theta function.  Of the two limits at a passage over a pole it is
-        the one on the side of t = 0.
+    def _grown(self, t: arb, first: tuple[arb, arb], last: tuple[arb, arb]) -> tuple[arb, arb]:
+        """Return the growth of spin and precession in a time, from the waves at both ends."""
+        dx, dy = last[0] - first[0], last[1] - first[1]
+        return self.spin * t + dx - dy, self.precession * t + dx + dy
+
+    def _waves(self, n: int, rest: arb, values: list[acb]) -> tuple[arb, arb]:
+        """Return arg X and arg Y without their mean growth.
+
+        Of the two limits at a passage over a pole it is the one on the side of t = 0.
         """
-        n = nearest(2 * z)
-        rest, found = z - arb(n) / 2, []
-        for pole, side, value in zip((1, -1), self.sides, self.values(n, rest), strict=True):
-            own = (n % 2 == 0) == (pole > 0)
+        found = []
+        for pole, side, value in zip((1, -1), self.sides, values, strict=True):
             if side.place.is_zero():  # it only turns at the passages
+                own = (n % 2 == 0) == (pole > 0)
                 turns = arb(0 if own else side.sign * (sign(rest) or -pole * self.falls)) / 2
             else:
                 turns = arb.atan2(value.imag, value.real) / arb.pi()
             found.append((turns - side.sign * rest) * arb.pi())
         return found[0], found[1]
 
-    def values(self, n: int, rest: arb) -> list[acb]:
-        """Return X and Y at `rest` periods from the n-th turning point, without uniform rotations.
+    def _values(self, z: arb) -> tuple[int, arb, list[acb]]:
+        """Return the number of the nearest turning point, the periods since it, X and Y.
 
-        Both have the same positive factor, and arguments counted from this turning point.
+        X and Y have the same positive factor, and arguments counted from this turning point.
         """
-        found = []
-        for own, side in zip((n % 2 == 0, n % 2 == 1), self.sides, strict=True):
-            y, s = side.place, side.sign
-            if self.hyperbolic and self.ratio is not None:
-                y = y * self.ratio
-            unit = side.size / self._thetas(acb(0, y))[1].real
-            theta1, theta2 = self._thetas(acb(rest, -s * y))
-            found.append(unit * (theta2 if own else acb(0, s) * theta1))
-        return found
+        n = nearest(2 * z)
+        rest, found = z - arb(n) / 2, []
+        for odd, side, (y, unit) in zip((0, 1), self.sides, self._units, strict=True):
+            theta1, theta2 = self._thetas(acb(rest, -side.sign * y))
+            found.append(unit * (theta2 if n % 2 == odd else acb(0, side.sign) * theta1))
+        return n, rest, found
+
+    @cached_property
+    def _units(self) -> list[tuple[arb, arb]]:
+        """The places of X and Y over 2K, and their factors."""
+        scale = self.ratio if self.hyperbolic and self.ratio is not None else arb(1)
+        places = [side.place * scale for side in self.sides]
+        own = [self._thetas(acb(0, y))[1].real for y in places]
+        return [(y, x.size / theta) for y, x, theta in zip(places, self.sides, own, strict=True)]
 
     def _thetas(self, z: acb) -> tuple[acb, acb]:
         """Return theta1 and theta2 of pi z, divided by 2 q^(1/4) if k is 0."""

@@ -325,23 +325,24 @@ class ProvedTable:
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
         sample = cache(partial(self._sample, time))
-        return [self._number(name, time, sample) for name in self.chosen]
+        turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
+        most = max(self.motion.facts.equal, equal_digits([time], self.digits or 0))
+
+        def number(name: str) -> Rounded:
+            found = settled(
+                f"{name} at t = {float(time)}",
+                lambda digits: self._ball(name, sample(digits)),
+                self.digits,
+                most,
+                lost=turns // _EXTRA * _EXTRA,
+            )
+            assert found is not None
+            return found
+
+        return [number(name) for name in self.chosen]
 
     def _sample(self, time: Fraction, digits: int) -> BallSample:
         return BallSample(self.motion, digits, time, self._constants(digits))
-
-    def _number(self, name: str, time: Fraction, sample: Callable[[int], BallSample]) -> Rounded:
-        """Return a column at a time; `sample` returns the motion there in a number of digits."""
-        turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
-        number = settled(
-            f"{name} at t = {float(time)}",
-            lambda digits: self._ball(name, sample(digits)),
-            self.digits,
-            max(self.motion.facts.equal, equal_digits([time], self.digits or 0)),
-            lost=turns // _EXTRA * _EXTRA,
-        )
-        assert number is not None
-        return number
 
     def _ball(self, name: str, sample: BallSample) -> arb:
         """Return a ball that contains a column, with angles in the unit in use."""
