@@ -28,7 +28,7 @@ from ..top.inputs import DECLARED
 from ..top.scenes import scene_names
 from ..top.values import Value, parse_range, parse_value
 from . import shared as opt
-from .table import angle_stds
+from .table import angle_stds, warn_if_misleading
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
 FILMS = "gif", "mp4"
@@ -139,6 +139,7 @@ def plot_command(
                 figure = figure_of(named, kinds, options, title)
                 picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)
+    warn_if_misleading(stds, ["theta", "dphi", "psi"])
 
 
 def _kinds(names: Sequence[str]) -> list[str]:
