@@ -10,6 +10,7 @@ from ..arithmetic.numbers import unit_in_radians
 from ..errors import DataError, LagtopError, SomeFailedError
 from ..names import split_names
 from ..output.destination import Output, opened
+from ..output.terminal import one_line
 from ..output.text import json_text
 from ..top.inputs import DECLARED
 from . import shared as opt
@@ -126,7 +127,7 @@ def fit_command(
         words[0], columns, decimal, conventions=conventions, sigma=spread, **(align or {})
     )
     given = top.given()
-    known, source = known_inputs(given.inputs, given.stds), shown_path(words[0])
+    known, source = known_inputs(given.inputs, given.stds), one_line(shown_path(words[0]))
     try:
         if window is not None:
             found = fit_windows(recording, window, known, radians=radians)

@@ -242,3 +242,32 @@ def test_data_do_not_control_a_terminal(
     text = stdout.buffer.getvalue().decode()
     assert (hostile in text) is (fmt == "csv" and not is_screen)
     assert "evil" in text
+
+
+def test_a_descriptor_is_written_to_and_its_file_is_kept(tmp_path: Path) -> None:
+    """A name such as /dev/stdout leads to a file that other commands write to as well."""
+    if not os.path.isdir("/dev/fd"):
+        pytest.skip("no /dev/fd")
+    path, link = tmp_path / "log", tmp_path / "link"
+    with open(path, "a") as file:
+        file.write("old\n")
+        file.flush()
+        link.symlink_to(f"/dev/fd/{file.fileno()}")
+        for name in (f"/dev/fd/{file.fileno()}", f"/proc/self/fd/{file.fileno()}", str(link)):
+            with opened(name) as stream:
+                stream.write(b"new\n")
+    assert path.read_text() == "old\nnew\nnew\nnew\n"
+    assert sorted(tmp_path.iterdir()) == [link, path]
+
+
+def test_texts_in_a_table_are_one_printable_line_each() -> None:
+    texts = ["a\fb", "c\u2028d", "e\nf\x85", "x" * 200_000, '"\udcff']
+    blocks = [block_text([texts, np.arange(5.0)], ["text", "number"], "table")]
+    write(stream := io.BytesIO(), ["text", "number"], blocks, "table")
+    lines = stream.getvalue().decode().splitlines()
+    assert len(lines) == 2 + len(texts)
+    assert [line.split()[0] for line in lines[2:5]] == ["a\\x0cb", "c\\u2028d", "e\\nf\\x85"]
+    assert "..." in lines[5]
+    many = [block_text([np.zeros(4000)], ["a"], "table")] * 3
+    with pytest.raises(LagtopError, match="format table shows at most 10000 rows, got more"):
+        write(io.BytesIO(), ["a"], many, "table")
