@@ -177,11 +177,15 @@ def started(*options: str, folder: Path, before: str = "") -> subprocess.Popen[b
     return running
 
 
-@pytest.mark.parametrize(("name", "code"), [("INT", -2), ("TERM", 143), ("HUP", 129)])
-def test_signals_end_a_command_that_cleans_up(name: str, code: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("names", "code"),
+    [("INT", -2), ("TERM", 143), ("HUP", 129), ("QUIT", 131), ("INT INT INT INT", -2)],
+)
+def test_signals_end_a_command_that_cleans_up(names: str, code: int, tmp_path: Path) -> None:
     (tmp_path / "out.csv").write_text("old")
     running = started("--n", "1e9", folder=tmp_path)
-    running.send_signal(getattr(signal, f"SIG{name}"))
+    for name in names.split():
+        running.send_signal(getattr(signal, f"SIG{name}"))
     assert running.communicate(timeout=30)[1] == b""
     assert running.returncode == code
     assert ((tmp_path / "out.csv").read_text(), os.listdir(tmp_path)) == ("old", ["out.csv"])
