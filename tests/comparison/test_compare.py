@@ -70,6 +70,7 @@ def test_an_error_of_known_size_is_measured(size: float) -> None:
     assert compare(TOP, T, theta=THETA - size, max_error=3.1).verdict == "fine"
 
 
+@pytest.mark.slow
 def test_wrong_rates_of_a_right_attitude_are_not_fine() -> None:
     found = compare(TOP, T, quaternion=Q, rates=RATES * np.linspace(1, 1.01, 201)[:, np.newaxis])
     assert (found.verdict, found.cause) == ("drifts", None)
