@@ -257,7 +257,7 @@ def settled(
         if not last or last[0].rel_one_accuracy_bits() <= most:
             raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
         value = simplest_between(fraction(last[0].lower()), fraction(last[0].upper()))
-        return Rounded(rounded(what, value, digits), value)
+        return Rounded(rounded(what, value, digits, _MORE_DIGITS), value)
 
     return decided(attempt, most, digits=digits, lost=lost, otherwise=tie)
 
@@ -275,7 +275,7 @@ def _alike(what: str, ball: arb, digits: int | None) -> Any:
             return low
     if ball.rel_accuracy_bits() < 2:
         raise TooFewDigitsError
-    low, high = (rounded(what, end, digits) for end in ends_of(ball))
+    low, high = (rounded(what, end, digits, _MORE_DIGITS) for end in ends_of(ball))
     if low != high:
         raise TooFewDigitsError
     return low
@@ -288,6 +288,7 @@ _EXACT = own_context(1_000_000, [])
 """More digits than any ball has."""
 _OUTWARDS, _SHORT = own_context(20, [], ROUND_UP), own_context(2, [], ROUND_UP)
 _A_HAIR_MORE = Decimal("1.000000000001")
+_MORE_DIGITS = "use digits=N"
 
 
 def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
@@ -301,16 +302,17 @@ def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
     if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
         raise OutOfRangeError(
             "the size of a value is not within 1e-990000000000000000 and 1e+990000000000000000, "
-            "the limits of digits: take a smaller argument"
+            "the limits of digits=N: take a smaller argument"
         )
     low, high = Decimal(middle - radius), Decimal(middle + radius)
     return _EXACT.scaleb(low, exponent), _EXACT.scaleb(high, exponent)
 
 
-def rounded(what: str, value: Exact, digits: int | None) -> Any:
+def rounded(what: str, value: Exact, digits: int | None, remedy: str = "change the units") -> Any:
     """Return a number as the nearest double, or as a text with `digits` significant digits.
 
-    Raises OutOfRangeError for a number beyond the doubles, or smaller than all doubles but 0.
+    Raises OutOfRangeError, with the remedy, for a number beyond the doubles, or smaller than all
+    doubles but 0.
     """
     if digits is not None:
         return text_of(value, digits)
@@ -320,7 +322,6 @@ def rounded(what: str, value: Exact, digits: int | None) -> Any:
         found = math.inf
     if math.isinf(found) or (value and not found):
         bound = "0 or at least 5e-324" if not found else "within 1.8e308"
-        remedy = "use digits=N" if not found else "change the units"
         raise OutOfRangeError(f"{what} must be {bound} in size, got {_brief(value)}: {remedy}")
     return found
 

@@ -55,7 +55,7 @@ JACOBI = [
     ("--k 1 --u K", "--u must not contain K for k >= 1, where K is infinite or complex"),
     (
         "--k 1 --u 1e19 --digits 20",
-        "1e+990000000000000000, the limits of --digits: take a smaller argument",
+        "1e+990000000000000000, the limits of --digits N: take a smaller argument",
     ),
     # some of these never ended, others gave inf or warnings (which are errors in these tests)
     (
