@@ -37,10 +37,14 @@ def _numbers() -> list[int]:
 
 def _unwind(number: int, _: object) -> None:
     for each in _numbers():
-        signal.signal(each, signal.SIG_IGN)
+        signal.signal(each, _pass)
     if number == signal.SIGINT:
         raise KeyboardInterrupt
     sys.exit(128 + number)
+
+
+def _pass(number: int, _: object) -> None:
+    """Do nothing; Python prints a traceback if a signal that is on its way meets SIG_IGN."""
 
 
 if __name__ == "__main__":
