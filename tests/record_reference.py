@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath as mp
 
@@ -44,6 +44,24 @@ def reference_record(
     with mp.workdps(digits):
         unit = "_rad" if radians else "_deg"
         return {key.replace("_rad", unit): shown(key, x) for key, x in found.items()}
+
+
+class State(NamedTuple):
+    """A motion at a time: unwrapped angles in radians, and the nutation rate."""
+
+    theta: Many
+    phi: Many
+    psi: Many
+    thetadot: Many
+
+
+def reference_state(inputs: Mapping[str, Any], t: Any, digits: int = DIGITS) -> State:
+    """Return the state of a motion at a time."""
+    with mp.workdps(ROOT_DIGITS):
+        of = _Motion(inputs, digits)
+        if t:
+            return of.state(exact(t))
+        return State(mp.acos(of.u0), mp.mpf(0), mp.mpf(0), of.fall)
 
 
 class _Motion:
@@ -302,3 +320,61 @@ class _Motion:
         assert narrow >= 0
         assert wide > 0
         return self.half_sums(integrals, T / 2)
+
+    def state(self, t: Many) -> State:
+        """Return the state at a time."""
+        still = mp.acos(self.u0), self.r0 * t, mp.mpf(0), mp.mpf(0)
+        if self.vertical:
+            return State(*still)
+        if self.steady_tilt:
+            return State(still[0], (self.r0 - self.turn * self.u0) * t, self.turn * t, still[3])
+        turns = abs(t) * (mp.sqrt(self.wide) + abs(self.r0) + abs(self.b))
+        with mp.workdps(self.digits + int(mp.log10(turns + 1))):
+            return self._rising(t) if self.separatrix else self._nutating(t)
+
+    def _rising(self, t: Many) -> State:
+        """Return the state on the separatrix: 1 - u = (1 - u2) sech^2 h."""
+        u0, u2, b, rate = self.u0, self.u2, self.b, mp.sqrt(self.wide) / 2
+        h0 = mp.acosh(mp.sqrt((1 - u2) / (1 - u0))) * (-1 if self.fall >= 0 else 1)
+        h, ratio = h0 + rate * t, mp.sqrt((1 - u2) / (1 + u2)) if 1 + u2 else mp.inf
+        if b:
+            psi = b * t / 2 + (b / rate) * ratio / 2 * (
+                mp.atan(ratio * mp.tanh(h)) - mp.atan(ratio * mp.tanh(h0))
+            )
+        else:  # over the lower pole
+            psi = mp.pi * (mp.sign(h) - mp.sign(h0)) / 2 if h0 else mp.mpf(0)
+        above = (1 - u2) * mp.sech(h) ** 2
+        theta = 2 * mp.asin(mp.sqrt(above / 2))
+        slope = -2 * above * mp.tanh(h) * rate / mp.sin(theta)
+        return State(theta, (self.r0 - b) * t + psi, psi, slope)
+
+    def _nutating(self, t: Many) -> State:
+        """Return the state of a top that nutates: u = u2 + (u1 - u2) sn^2 w."""
+        u0, u1, u2, wide = self.u0, self.u1, self.u2, self.wide
+        K, speed = mp.elliprf(0, self.kc2, 1), mp.sqrt(wide) / 2
+        sn2, cn2 = (u0 - u2) / (u1 - u2), (u1 - u0) / (u1 - u2)
+        dn2 = self.kc2 + self.k2 * cn2
+        side = 1 if self.fall < 0 or (not self.fall and not self.at_u1) else -1
+        w0 = side * mp.sqrt(sn2) * mp.elliprf(cn2, dn2, 1)
+        w = w0 + speed * t
+        n = mp.nint(w / (2 * K))
+        sn, cn, dn = (mp.ellipfun(f, w - 2 * n * K, m=self.k2) for f in ("sn", "cn", "dn"))
+        integrals = {}
+        for pole in (1, -1):
+            if self.passes(pole):  # the passages strictly between the start and t
+                shift = 0 if pole > 0 else mp.mpf(1) / 2
+                first, last = (x / (2 * K) - shift for x in ((w0, w) if t > 0 else (w, w0)))
+                snap = mp.nint(first) if abs(first - mp.nint(first)) < 1e-50 else first
+                integrals[pole] = mp.sign(t) * (mp.ceil(last) - 1 - mp.floor(snap))
+                if u0 == -pole:  # a start on the pole is before or after the passage
+                    before = self.fall * pole > 0
+                    integrals[pole] += mp.sign(t) * (before == (t > 0))
+                continue
+            whole = self.third(pole, mp.mpf(1), mp.mpf(0), self.kc2)
+            grown = 2 * n * whole + mp.sign(sn) * self.third(pole, sn**2, cn**2, dn**2)
+            integrals[pole] = grown - side * self.third(pole, sn2, cn2, dn2)
+        phi, psi = self.half_sums(integrals, t)
+        below, above = (self.gaps[pole][0] * sn**2 + self.gaps[pole][1] * cn**2 for pole in (1, -1))
+        theta = 2 * mp.atan2(mp.sqrt(above), mp.sqrt(below))
+        slope = -2 * (u1 - u2) * sn * cn * dn * speed / mp.sqrt(above * below)
+        return State(theta, phi, psi, slope)

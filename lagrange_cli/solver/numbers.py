@@ -9,6 +9,7 @@ mean of 1/(1 - u), and the limits.  Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
+import ast
 from functools import cache, partial
 from itertools import pairwise
 from types import CodeType
@@ -30,9 +31,14 @@ class Tilt(NamedTuple):
     cosine: arb
 
 
+def square(x: arb) -> arb:
+    """Return the square of a number; `x**2` is NaN for a ball that contains 0."""
+    return x * x
+
+
 def acos(x: arb) -> arb:
     """Return the angle from 0 to pi with a cosine."""
-    return arb.atan2(root(1 - x * x), x)
+    return arb.atan2(root(1 - square(x)), x)
 
 
 def nome_of(k: arb, k_prime: arb) -> arb:
@@ -47,19 +53,19 @@ def complete_E(k_prime: arb) -> arb:
     """Return the complete integral of the second kind, 2 R_G(0, k'^2, 1)."""
     if k_prime.is_zero():
         return arb(1)
-    found: arb = 2 * acb.elliptic_rg(acb(0), acb(k_prime**2), acb(1)).real
+    found: arb = 2 * acb.elliptic_rg(acb(0), acb(square(k_prime)), acb(1)).real
     return found
 
 
 def ellint_F(phi: arb, k: arb) -> arb:
     """Return Legendre's integral of the first kind."""
-    found: arb = acb.elliptic_f(acb(phi), acb(k**2)).real
+    found: arb = acb.elliptic_f(acb(phi), acb(square(k))).real
     return found
 
 
 def ellint_E(phi: arb, k: arb) -> arb:
     """Return Legendre's integral of the second kind."""
-    found: arb = acb.elliptic_e_inc(acb(phi), acb(k**2)).real
+    found: arb = acb.elliptic_e_inc(acb(phi), acb(square(k))).real
     return found
 
 
@@ -76,13 +82,26 @@ FUNCTIONS: dict[str, Any] = {
     "nome_of": nome_of,
     "sin": lambda tilt: tilt.sine,
     "sqrt": root,
+    "square": square,
 }
 """The functions of formulas."""
 
 
+class _Squares(ast.NodeTransformer):
+    """Write `x**2` as `square(x)`: Arb has no power of a ball that contains 0."""
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        """Replace a power."""
+        self.generic_visit(node)
+        if not isinstance(node.op, ast.Pow):
+            return node
+        return ast.Call(ast.Name("square", ast.Load()), [node.left], [])
+
+
 @cache
 def _code(formula: str) -> CodeType:
-    return compile(formula, "<formula>", "eval")
+    tree = _Squares().visit(ast.parse(formula, mode="eval"))
+    return compile(ast.fix_missing_locations(tree), "<formula>", "eval")
 
 
 class Numbers(dict[str, Any]):
@@ -135,7 +154,7 @@ class Numbers(dict[str, Any]):
         a, b, u0 = self["a"], self["b"], self["theta0"].cosine
         if not (self.facts.a or self.facts.spin):
             return arb(0), arb(0)
-        q = b + (-1 if self.facts.spin < 0 else 1) * root(b**2 - 2 * a * u0)
+        q = b + (-1 if self.facts.spin < 0 else 1) * root(square(b) - 2 * a * u0)
         return a / q, q / (2 * u0)
 
     # the cubic f(u) = (alpha - a u)(1 - u^2) - (beta - b u)^2 (4,9)
@@ -160,7 +179,7 @@ class Numbers(dict[str, Any]):
             return self["roots_sum_a"] / self["a"] - 2, arb(1)
         a, b = self["a"], self["b"]
         alpha, beta = self["energy_constant"], self["momentum_constant"]
-        cubic = [a, -self["roots_sum_a"], 2 * b * beta - a, alpha - beta**2]
+        cubic = [a, -self["roots_sum_a"], 2 * b * beta - a, alpha - square(beta)]
         known = [arb(1)] * (not facts.minus) + [arb(-1)] * (not facts.plus)
         known += [u0] * bool(facts.turning and not facts.pole)
         rest = cubic if facts.a else cubic[1:]
@@ -174,7 +193,7 @@ class Numbers(dict[str, Any]):
     @property
     def roots_sum_a(self) -> arb:
         """a (u1 + u2 + u3), by the coefficients of the cubic."""
-        return self["energy_constant"] + self["b"] ** 2
+        return self["energy_constant"] + square(self["b"])
 
     @property
     def swing(self) -> arb:
@@ -254,12 +273,12 @@ def _real_roots(polynomial: list[arb]) -> list[arb]:
         return [-x for x in others]
     if len(others) == 2:
         half = -others[0] / 2
-        apart = (half**2 - others[1]).sqrt()
+        apart = (square(half) - others[1]).sqrt()
         return [half - apart, half + apart]
     c2, c1, c0 = others  # Viete's cosines, in u = 2 size cos(angle) + centre
     centre = -c2 / 3
-    size = (centre**2 - c1 / 3).sqrt()
-    cosine = (centre**3 - (c1 * centre + c0) / 2) / size**3
+    size = (square(centre) - c1 / 3).sqrt()
+    cosine = (square(centre) * centre - (c1 * centre + c0) / 2) / (square(size) * size)
     angle = cosine.acos() / 3
     return [2 * size * (angle + 2 * i * arb.pi() / 3).cos() + centre for i in range(3)]
 

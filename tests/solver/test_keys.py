@@ -1,0 +1,112 @@
+"""The table of keys: printed formulas and evaluated ones, and numbers against other formulas."""
+
+from __future__ import annotations
+
+import ast
+import random
+import re
+from collections import ChainMap
+from functools import partial
+from typing import Any
+
+import mpmath
+import pytest
+from conftest import ROOT
+from flint import acb, arb
+from hard_scenes import KINDS
+from lagtop import Top, solve
+from record_reference import reference_record
+from scenes import EVERY_KIND, NAMED
+
+from lagrange_cli.arithmetic.enclosures import at_precision
+from lagrange_cli.solver.keys import LINES, NUMBERS, bare_name
+from lagrange_cli.solver.numbers import FUNCTIONS, Numbers
+
+DIGITS = 120
+PRINTED: dict[str, Any] = {
+    "asin": lambda x: x.asin(),
+    "atan": lambda x: x.atan(),
+    "exp": lambda x: x.exp(),
+    "ellint_Pi": lambda n, k: acb.elliptic_pi(acb(n), acb(k * k)).real,
+}
+"""The functions that only printed formulas use."""
+
+
+def sides(formula: str, of: Numbers) -> list[arb]:
+    """Return the sides of a printed equation, or the value of a printed formula."""
+    names = ChainMap(PRINTED, of)
+    return [eval(side, {}, names) for side in formula.partition(" where ")[0].split(" = ")]
+
+
+TWO_FORMS = [
+    name
+    for name, line in LINES.items()
+    if line.evaluated not in line.key.formula and "integral" not in line.key.formula
+]
+
+
+@pytest.mark.parametrize("kind", ["generic", "from rest", "slow", "thresholds"])
+def test_the_printed_formula_has_the_value_of_the_evaluated_one(kind: str) -> None:
+    """Fifty random tops of a kind, to thirty digits."""
+    assert len(TWO_FORMS) >= 15
+    checked = 0
+    for i in range(50):
+        motion = solve(Top(**KINDS[kind](random.Random(f"{kind} {i}"))))
+        if not motion.facts.a or not motion.facts.nutates:
+            continue
+        of = motion.balls(DIGITS)
+        for name in TWO_FORMS:
+            if name in {"P", "Q", "U", "V"} or motion.has(name):
+                formula = LINES[name].key.formula
+                *left, right = at_precision(DIGITS, partial(sides, formula, of))
+                value = left[0] if left else of[name]
+                apart, size = abs(value - right), abs(value) + abs(right) + arb(10) ** -60
+                assert apart.abs_upper() <= arb(10) ** -30 * size.abs_upper(), (name, motion.top)
+                checked += 1
+    assert checked > 15 * 30
+
+
+@pytest.mark.parametrize("name", EVERY_KIND | NAMED)
+def test_numbers_are_those_of_other_formulas(name: str) -> None:
+    """Thirty digits of every number; a number exists in both or in neither."""
+    top = Top(**(EVERY_KIND | NAMED)[name])
+    motion, exact = solve(top), reference_record(top.as_dict())
+    found = motion.record(digits=30, keys=list(NUMBERS))
+    with mpmath.workdps(60):
+        for key, text in found.items():
+            true: Any = exact.get(key)
+            assert (text is None) == (true is None), (key, text, true)
+            if text is not None:
+                apart = abs(mpmath.mpf(text) - true)
+                assert apart <= abs(true) * mpmath.mpf("1.0001e-29") or apart < 1e-100, key
+
+
+BALLS = {"facts.py", "numbers.py", "attitude.py"}
+WHOLE = re.compile(
+    r"(self\.)?sign\(.*\)|len\(.*\)|float\(.*\)|facts\.inputs\[.*\]|word|n % 2"
+    r"|(.*\.)?(turning|spin|over|minus|plus|pole|fall|falls)"
+)
+"""Signs, counts, words and exact inputs, which may be compared."""
+
+
+def test_no_code_acts_on_an_undecided_comparison_of_balls() -> None:
+    """In these files comparisons are with whole numbers (signs and counts) only."""
+    for name in BALLS:
+        tree = ast.parse((ROOT / "lagrange_cli" / "solver" / name).read_text())
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Compare):
+                inner = [node.left, *node.comparators]
+                ordered = any(
+                    isinstance(x, ast.Lt | ast.LtE | ast.Gt | ast.GtE | ast.Eq | ast.NotEq)
+                    for x in node.ops
+                )
+                is_whole = any(WHOLE.fullmatch(ast.unparse(x)) for x in inner)
+                assert is_whole or not ordered, f"{name}:{node.lineno}: ask sign()"
+
+
+def test_formulas_use_names_that_exist() -> None:
+    trees = [ast.parse(line.evaluated) for line in LINES.values()]
+    names = {x.id for tree in trees for x in ast.walk(tree) if isinstance(x, ast.Name)}
+    inputs = "m A C s g r0 theta0 thetadot0 psidot0".split()
+    assert names <= {*LINES, *inputs, *vars(Numbers), *FUNCTIONS}
+    assert {bare_name(key) for key in NUMBERS} <= LINES.keys()
