@@ -18,8 +18,6 @@ up to a common positive factor.  With N = |X|^2 + |Y|^2, both 1 + u = 2 |X|^2/N 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
-from types import CodeType
 from typing import Any
 
 from flint import arb
@@ -27,7 +25,7 @@ from flint import arb
 from ..arithmetic.enclosures import exact
 from ..arithmetic.key import Key
 from ..names import ANGLES, check_names
-from .numbers import Numbers
+from .numbers import Numbers, code_of
 
 GROUPS = {
     "axis": "figure axis in space: axis_x, axis_y, axis_z",
@@ -160,16 +158,11 @@ def column_constants(of: Numbers) -> dict[str, arb]:
     return found | {"drift": drift, "plus": plus, "minus": minus}
 
 
-@cache
-def _code(formula: str) -> CodeType:
-    return compile(formula, "<formula>", "eval")
-
-
 class Columns(dict[str, Any]):
     """Columns of a motion at one or several times by name; each is computed on first use.
 
-    The first items are the constants, `t`, and the functions cos, sin, sqrt and ratio (a quotient
-    that is 0 for 0/0: on a pole the momentum about it is 0).  Subclasses have as attributes
+    The first items are the constants, `t`, and the functions cos, sin, sqrt, square and ratio (a
+    quotient that is 0 for 0/0: on a pole the momentum about it is 0).  Subclasses have as attributes
 
     - X, Y, XX, YY: |X|, |Y| and their squares,
     - tilt, spin, precession, spin_wave, precession_wave, nutation_rate,
@@ -180,6 +173,6 @@ class Columns(dict[str, Any]):
 
     def __missing__(self, name: str) -> Any:
         formula = FORMULAS.get(name)
-        found = getattr(self, name) if formula is None else eval(_code(formula), {}, self)
+        found = getattr(self, name) if formula is None else eval(code_of(formula), {}, self)
         self[name] = found
         return found

@@ -95,11 +95,13 @@ class _Squares(ast.NodeTransformer):
         self.generic_visit(node)
         if not isinstance(node.op, ast.Pow):
             return node
+        assert ast.unparse(node.right) == "2", ast.unparse(node)
         return ast.Call(ast.Name("square", ast.Load()), [node.left], [])
 
 
 @cache
-def _code(formula: str) -> CodeType:
+def code_of(formula: str) -> CodeType:
+    """Return a formula compiled for `eval`."""
     tree = _Squares().visit(ast.parse(formula, mode="eval"))
     return compile(ast.fix_missing_locations(tree), "<formula>", "eval")
 
@@ -121,7 +123,7 @@ class Numbers(dict[str, Any]):
 
     def _value(self, name: str) -> Any:
         if name in LINES:
-            return eval(_code(LINES[name].evaluated), {}, self)
+            return eval(code_of(LINES[name].evaluated), {}, self)
         if name in self.facts.inputs:
             return exact(self.facts.inputs[name])
         return getattr(self, name)

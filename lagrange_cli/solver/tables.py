@@ -38,6 +38,7 @@ from ..names import ANGLES
 from ..top.ranges import EvenPoints, Points
 from .attitude import ConstantTilt, SingleSwing, start_of
 from .columns import DEFAULT_COLUMNS, Columns, chosen_columns, column_constants, headings
+from .numbers import square
 from .record import Solution
 from .sampling import Attitude, Growth
 from .series import near
@@ -61,11 +62,12 @@ def _ratio(x: Array, y: Array) -> Array:
     return quotient
 
 
-_ARRAYS = {"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "ratio": _ratio}
+_ARRAYS = {"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "square": np.square, "ratio": _ratio}
 _BALLS = {
     "cos": arb.cos,
     "sin": arb.sin,
     "sqrt": root,
+    "square": square,
     "ratio": lambda x, y: x if x.is_zero() else x / y,
 }
 
@@ -251,8 +253,8 @@ class BallSample(Columns):
         self.spin_turn, self.precession_turn = self.spin, self.precession
         self.signed_X, self.signed_Y = self.X, self.Y
 
-    XX = property(lambda self: self.X**2)
-    YY = property(lambda self: self.Y**2)
+    XX = property(lambda self: square(self.X))
+    YY = property(lambda self: square(self.Y))
     tilt = property(lambda self: 2 * arb.atan2(self.Y, self.X))
     arg_X = property(lambda self: (self.precession + self.spin) / 2)
     arg_Y = property(lambda self: (self.precession - self.spin) / 2)
@@ -280,8 +282,8 @@ class BallSample(Columns):
             return 2 * course.rate * self.Y * tilting.tanh() / self.X
         if tilting.is_zero():
             return arb(0)
-        square = self["energy_constant"] - self["a"] * self["u"] - self["across"] ** 2
-        return sign(tilting) * root(square)
+        squared = self["energy_constant"] - self["a"] * self["u"] - square(self["across"])
+        return sign(tilting) * root(squared)
 
 
 def within_a_turn(angle: arb, *, plane: bool) -> arb:
