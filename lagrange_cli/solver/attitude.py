@@ -208,9 +208,7 @@ class SingleSwing:
         """Return the attitude at a time."""
         h = self.h0 + self.rate * t
         turned = self.turn(h) - self.turn(self.h0)
-        height = (
-            self.y * h.tanh()
-        )  # its square is a product: Arb has none of a ball that contains 0
+        height = self.y * h.tanh()
         x = root(self.x * self.x + height * height)
         phi, psi = self.spin * t + turned, self.precession * t + turned
         return Attitude(x, abs(self.y) * h.sech(), phi, psi, -h)

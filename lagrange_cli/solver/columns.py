@@ -162,7 +162,7 @@ class Columns(dict[str, Any]):
     """Columns of a motion at one or several times by name; each is computed on first use.
 
     The first items are the constants, `t`, and the functions cos, sin, sqrt, square and ratio (a
-    quotient that is 0 for 0/0: on a pole the momentum about it is 0).  Subclasses have as attributes
+    quotient that is 0 for 0/0: on a pole the momentum about it is 0).  Subclasses have
 
     - X, Y, XX, YY: |X|, |Y| and their squares,
     - tilt, spin, precession, spin_wave, precession_wave, nutation_rate,
