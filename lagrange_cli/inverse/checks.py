@@ -24,8 +24,9 @@ CHANCE = 0.0027
 _MOST, _ABOVE, _ROUNDING = 0.3, 6.0, 1e-10
 """Largest rms residual of a channel in radians, or over the noise of its neighbours, and rms of
 rounding errors in radians."""
-_ROWS_PER_LAG, _LAGS = 6.0, 12
-"""Least number of rows per period over the reach of a correlation, and the longest reach tried."""
+_ROWS_PER_LAG, _LAGS, _WEAK = 4.0, 12, 0.1
+"""Least number of rows per period over the reach of a correlation, the longest reach of noise, and
+a correlation that is none."""
 _COARSE, _WITHIN = 0.6, 0.75
 """An encoder's residuals: largest rms, and largest 95 % quantile, over its step."""
 
@@ -52,23 +53,26 @@ class Residuals:
         within = float(np.quantile(np.abs(self.y), 0.95)) <= _WITHIN * self.step
         return within and self.rms <= _COARSE * self.step
 
-    def correlation(self, lag: int) -> float:
-        """Return the correlation of residuals with those `lag` rows later."""
-        if self.rms < _ROUNDING or self.y.size <= lag:
-            return 0.0
-        return float(self.y[lag:] @ self.y[:-lag] / (self.y @ self.y))
+    @cached_property
+    def correlations(self) -> Array:
+        """The correlations of residuals with those some rows later, by the number of rows."""
+        if self.rms < _ROUNDING:
+            return np.eye(1, self.y.size)[0]
+        power = np.abs(np.fft.rfft(self.y, 1 << (2 * self.y.size).bit_length())) ** 2
+        found = np.fft.irfft(power)[: self.y.size]
+        return np.asarray(found / found[0])
 
     @property
     def autocorrelation(self) -> float:
         """The correlation of residuals with the next ones."""
-        return self.correlation(1)
+        return float(self.correlations[1])
 
     @cached_property
     def reach(self) -> int:
         """The number of rows after which residuals do not correlate, 1 for white noise."""
-        bound = 2 / math.sqrt(self.y.size)
-        lags = [lag for lag in range(1, self.y.size // 4) if abs(self.correlation(lag)) < bound]
-        return lags[0] if lags else self.y.size
+        rest = np.abs(self.correlations[1 : max(self.y.size // 4, 2)])
+        near = np.flatnonzero(rest < max(2 / math.sqrt(self.y.size), _WEAK))
+        return int(near[0]) + 1 if near.size else self.y.size
 
     def widening(self, chance: float = CHANCE) -> float:
         """Return the factor of standard deviations for correlated noise, at least 1.
@@ -77,7 +81,7 @@ class Residuals:
         """
         if not self.is_coarse and abs(self.autocorrelation) <= _bound(self.y.size, chance):
             return 1.0
-        sums = sum(self.correlation(lag) for lag in range(1, min(self.reach, self.y.size // 4)))
+        sums = float(np.sum(self.correlations[1 : min(self.reach, self.y.size // 4)]))
         return math.sqrt(max(1 + 2 * sums, 1.0))
 
     def structure(self, frequency: float, widening: float = 1.0) -> float:

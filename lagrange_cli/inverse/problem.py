@@ -13,7 +13,7 @@ from ..arithmetic.types import Array
 from .known import WEIGHT, Known
 from .motions import STATE, angles
 from .recording import Recording
-from .signals import Signal
+from .signals import Signal, mean_rate
 
 _DEPENDENT = 1e-7
 """Ratio of singular values of the slopes below which parameters are not determined."""
@@ -23,6 +23,8 @@ _LEAST, _FASTEST = 2.0, 1e6
 """Standard deviations by which a > 0, and the largest b^2/a at which a is determined."""
 _STEP, _SHORT_STEP, _LEAST_SIZE = 1e-6, 1e-7, 1e-3
 """Steps of central and of forward differences, over the size of a parameter, and its least size."""
+_IN_PHASE = 0.7
+"""Largest rms residual of the spin, in radians, of a motion that may be out of phase."""
 _STEPS = 60
 """Evaluations of the least squares."""
 _POLE, _FAR = 1e-9, 1e3
@@ -188,6 +190,21 @@ class Problem:
                     break
                 damping, factor = damping * factor, 2 * factor
         return x, cost / 2
+
+    def rephased(self, x: Array) -> Array:
+        """Return parameters whose r0 is right to a turn over the recording, if it is free."""
+        names, channels = self.names, self.recording.channels
+        if not {"r0", "phi_zero"} <= {*names}:
+            return x
+        channel = channels.index("phi" if "phi" in channels else "along")
+        rest = self.residuals(x[np.newaxis])[0, channel]
+        t, rest = self.recording.t[np.isfinite(rest)], rest[np.isfinite(rest)]
+        if float(np.mean(rest**2)) < _IN_PHASE**2:
+            return x
+        rate, x = mean_rate(t, rest, self.recording.frame), x.copy()
+        x[names.index("r0")] += rate
+        x[names.index("phi_zero")] += float(np.angle(np.sum(np.exp(1j * (rest - rate * t)))))
+        return x
 
     def parameters_of(self, states: Array, spin: Signal | None, frequency: float) -> Array:
         """Return the parameters of states, with the best zeros and spin rate of each."""

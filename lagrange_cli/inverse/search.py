@@ -265,7 +265,10 @@ def _minima(ways: Sequence[Data], known: Known, *, frequency_free: bool) -> list
     """Return the best minima that differ."""
     begun: dict[Any, tuple[float, Data, Problem, Array]] = {}
     for data, problem, x in _best_starts(ways, known, free=frequency_free):
-        end, cost = problem.thinned(_MANY_ROWS).solve(x, _FIRST_STEPS)
+        few = problem.thinned(_MANY_ROWS)
+        end, cost = few.solve(x, _FIRST_STEPS)
+        if (phased := few.rephased(end)) is not end:
+            end, cost = min((end, cost), few.solve(phased, _FIRST_STEPS), key=itemgetter(1))
         key = problem.recording.is_mirrored, f"{cost:.6g}"
         begun[key] = cost, data, problem, end  # each minimum once
     ends = sorted(begun.values(), key=itemgetter(0))[:_FINISHED]

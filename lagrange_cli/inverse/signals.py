@@ -86,12 +86,12 @@ def signals_in(recording: Recording) -> dict[str, Signal]:
         if name == "theta":
             found[name] = Signal(t, np.cos(y), grows=False)
         else:
-            rate = _mean_rate(t, y, recording.frame)
+            rate = mean_rate(t, y, recording.frame)
             found[name] = Signal(t, np.unwrap(y - rate * t), grows=True, rate=rate)
     return found
 
 
-def _mean_rate(t: Array, y: Array, frame: float) -> float:
+def mean_rate(t: Array, y: Array, frame: float) -> float:
     """Return the rate, below half a turn per frame, at the peak of the spectrum of exp(i y)."""
     cell = max(frame / _CELLS, float(t[-1]) / _MOST_CELLS)
     at = np.round(t / cell).astype(int)

@@ -373,7 +373,9 @@ def checked(seed: int, *, easy: bool = False) -> Result:
         word, shown = "refused", str(error)
     seconds = time.process_time() - begun
     if word != "refused":
-        ways = [False, *[True] * (case.turns > QUARTER or case.top.r0 == 0)]
+        is_open = case.turns > QUARTER or case.top.r0 == 0
+        is_open |= case.flipped and word == "good, no nutation"  # psi' as recorded
+        ways = [False, *[True] * is_open]
         off = min(
             (pulls(outcome, case, mirrored=x) for x in ways),
             key=lambda x: max(map(abs, x.values()), default=0.0),
