@@ -318,7 +318,7 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
             lambda rng, t: {
                 "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, ::-1]
             },
-            "use --align up=x",
+            "use align up=x",
         ),
     ],
 )
@@ -542,3 +542,44 @@ def test_windows(lagtop: Lagtop, tmp_path: Path) -> None:
     assert windows[0]["chi2_dof_high"] == pytest.approx(bound)
     unwritten = lagtop("fit", path, "--sigma", 0.1, "-o", tmp_path / "no.toml")
     assert (unwritten.exit_code, (tmp_path / "no.toml").exists()) == (1, False)
+
+
+# Hard kinds
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "look", ["encoder", "smooth", "small", "units", "known", "attitude", "axis"]
+)
+def test_hard_recordings_are_fitted(look: str) -> None:
+    import fuzz_fits
+
+    results = [fuzz_fits.checked(seed, look=look) for seed in (1, 2)]
+    assert all(x.is_right or not x.word.startswith("good") for x in results), results
+    assert any(x.word == "good" for x in results), results
+
+
+def test_a_known_input_that_contradicts_the_recording_is_named() -> None:
+    t, seen = recorded("theta", "psi", seed=8)
+    agreeing = fitted(t, seen, known=LAB | {"C": 2.5e-3, "r0": "52.4(1)"})
+    assert agreeing.verdict == "good", agreeing.failures()
+    assert agreeing.distances["C"] < 3
+    assert any("known C = 0.0025 agrees with the recording" in x for x in agreeing.notes)
+    wrong = fitted(t, seen, known=LAB | {"C": "0.0027(1)", "r0": 52.36, "psidot0": "steady"})
+    assert [x.split(",")[0] for x in wrong.failures()] == [
+        "known psidot0 = steady contradicts the recording",
+    ]
+    for c, r0 in (("0.0026", "52.36"), ("0.00270(10)", "60(1)")):
+        failure = fitted(t, seen, known=LAB | {"C": c, "r0": r0}).failure()
+        assert failure.startswith(f"known C = {c} contradicts the recording"), failure
+        assert failure.endswith("omit C, or check m, g, s, r0")
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e3, 1e7])
+def test_any_unit_of_time(scale: float) -> None:
+    t, seen = recorded("theta", "psi", seed=8)
+    one, other = fitted(t, seen), fitted(t / scale, seen)
+    assert other.verdict == "good"
+    for key, power in (("a", 2), ("b", 1), ("theta0_deg", 0), ("T_nutation", -1)):
+        found, std = other.numbers[key][:2]
+        assert found == pytest.approx(one.numbers[key].value * scale**power, abs=0.02 * std)

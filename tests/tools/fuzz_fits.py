@@ -148,10 +148,10 @@ def period_of(top: Top) -> tuple[float, float]:
     return float(turns[1] - turns[0]), float(np.ptp(theta)) / 2
 
 
-def drawn(seed: int, *, easy: bool = False) -> Drawn:
-    """Return the recording of a seed."""
+def drawn(seed: int, *, easy: bool = False, look: str = "") -> Drawn:
+    """Return the recording of a seed, of any look or of a certain one."""
     rng = np.random.default_rng(seed)
-    look = "white" if easy else LOOKS[int(rng.integers(len(LOOKS)))]
+    look = look or ("white" if easy else LOOKS[int(rng.integers(len(LOOKS)))])
     sizes = dict(
         zip(
             ("theta", "phi", "psi"),
@@ -360,9 +360,9 @@ class Result:
         return f"{'right' if self.is_right else 'wrong'}, {self.word}"
 
 
-def checked(seed: int, *, easy: bool = False) -> Result:
+def checked(seed: int, *, easy: bool = False, look: str = "") -> Result:
     """Return what `fit` makes of the recording of a seed."""
-    case = drawn(seed, easy=easy)
+    case = drawn(seed, easy=easy, look=look)
     begun = time.process_time()
     plain = {x for x, y in case.known.items() if "+/-" not in str(y)}
     shown, off, right = "", dict[str, float](), False
