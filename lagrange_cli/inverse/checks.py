@@ -57,10 +57,11 @@ class Residuals:
     def correlations(self) -> Array:
         """The correlations of residuals with those some rows later, by the number of rows."""
         if self.rms < _ROUNDING:
-            return np.eye(1, self.y.size)[0]
+            return np.asarray(np.arange(self.y.size) == 0, float)
         power = np.abs(np.fft.rfft(self.y, 1 << (2 * self.y.size).bit_length())) ** 2
         found = np.fft.irfft(power)[: self.y.size]
-        return np.asarray(found / found[0])
+        found /= found[0]
+        return np.asarray(found, float)
 
     @property
     def autocorrelation(self) -> float:
@@ -84,10 +85,11 @@ class Residuals:
         sums = float(np.sum(self.correlations[1 : min(self.reach, self.y.size // 4)]))
         return math.sqrt(max(1 + 2 * sums, 1.0))
 
-    def structure(self, frequency: float, widening: float = 1.0) -> float:
+    def structure(self, frequency: float, chance: float = CHANCE) -> float:
         """Return the probability that noise resembles a drifting oscillation as much.
 
-        An F test of three harmonics of a frequency, times 1, t and t^2, against the rest.
+        An F test of three harmonics of a frequency, times 1, t and t^2, against the rest, which
+        may be correlated from row to row.
         """
         if self.rms < max(_ROUNDING, self.step / 100):
             return 1.0
@@ -100,9 +102,11 @@ class Residuals:
         basis = (waves[:, :, np.newaxis] * drifts).reshape(x.size, -1)[:, : max(x.size // 3, 1)]
         space, sizes, _ = np.linalg.svd(basis, full_matrices=False)
         count = int(np.sum(sizes > 1e-6 * sizes[0]))
-        explained = float(np.sum((space[:, :count].T @ y) ** 2))
-        rest = max(float(y @ y) - explained, 1e-12 * explained) / (x.size - count) * widening**2
-        return float(fdtrc(count, x.size - count, explained / count / rest))
+        shown = space[:, :count] @ (space[:, :count].T @ y)
+        explained, rest = float(shown @ shown), Residuals(t, y - shown, self.step)
+        noise = max((rest.rms * rest.widening(chance)) ** 2 * y.size, 1e-12 * explained)
+        dof = x.size - count
+        return float(fdtrc(count, dof, explained / count / (noise / dof)))
 
     def faults(self, name: str, frequency: float, chance: float) -> Iterator[str]:
         """Yield why the residuals are not noise.
@@ -123,7 +127,7 @@ class Residuals:
                 f"{shown}: neighbours correlate by {self.autocorrelation:.2f}, noise by at most "
                 f"{bound:.2f}"
             )
-        elif self.structure(frequency, self.widening(chance)) < chance:
+        elif self.structure(frequency, chance) < chance:
             yield f"{shown}: they drift or oscillate"
 
     def is_slow(self, frequency: float) -> bool:

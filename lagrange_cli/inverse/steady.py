@@ -261,7 +261,7 @@ def _faults(
     """Return why the motion is no steady precession, besides the residuals."""
     found = []
     for rest in result.residuals.values():
-        if not rest.is_coarse and rest.structure(frequency, rest.widening()) < CHANCE / 10:
+        if not rest.is_coarse and rest.structure(frequency) < CHANCE / 10:
             found.append("the motion is no steady precession: the angles oscillate")
             break
     if "psi" not in recording.angles:
