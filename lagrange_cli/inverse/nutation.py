@@ -111,6 +111,11 @@ def _faults(found: Minimum, *, is_even: bool) -> list[str]:
     if found.unknown:
         known = [x for x in found.unknown if not x.endswith("_zero")] or found.unknown
         faults.append(f"the recording does not determine {' and '.join(known)}")
+    elif found.is_curved:
+        faults.append(
+            "the recording hardly determines the top: within two standard deviations, chi^2 is no "
+            "parabola"
+        )
     if problem.spins and not found.unknown:
         ratio = values["b"] / (values["r0"] or math.inf)
         std = found.std("b") / abs(values["r0"] or math.inf)

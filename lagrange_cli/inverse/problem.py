@@ -33,8 +33,9 @@ _DAMPING, _STUCK, _GAIN = 1e-3, 1e12, 1e-10
 """First damping of the least squares, the largest one, and the relative gain of their end."""
 _APART = 4.0
 """Standard deviations between different tops."""
-_CURVED = 2.0
-"""Standard deviations at which chi^2 is compared with a parabola."""
+_CURVED, _BENT = 2.0, 4.0
+"""Standard deviations at which chi^2 is compared with a parabola, and the factor above it that
+shows a bent valley."""
 
 
 class Problem:
@@ -256,6 +257,8 @@ class Minimum:
     chi2: float
     unknown: list[str]
     """Parameters that the recording does not determine."""
+    is_curved: bool = False
+    """Whether chi^2 is no parabola within two standard deviations."""
 
     @classmethod
     def of(
@@ -285,13 +288,14 @@ class Minimum:
         sure = values > _DEPENDENT * values[0]
         loose = np.abs(rows[~sure]).max(axis=0, initial=0.0) > _SHARE
         spread = rows[sure].T / values[sure] / size[:, np.newaxis]
-        spread = spread * _curvature(problem, x, spread)
+        stretch, is_curved = _curvature(problem, x, spread)
+        spread = spread * stretch
         if "a" in problem.names:  # a <= 0 is no top
             i, b = problem.names.index("a"), problem.values(x[np.newaxis])["b"][0]
             least = max(_LEAST * np.linalg.norm(spread[i]), b * b / _FASTEST)
             loose[i] |= x[i] <= least
         unknown = [name for name, x in zip(problem.names, loose, strict=True) if x]
-        return cls(problem, x, spread, 2 * cost, unknown)
+        return cls(problem, x, spread, 2 * cost, unknown, is_curved)
 
     @property
     def badness(self) -> float:
@@ -343,12 +347,15 @@ class Minimum:
         return bool(np.any((np.abs(self.x - other.x) > near)[rows]))
 
 
-def _curvature(problem: Problem, x: Array, spread: Array) -> Array:
+def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
     """Return factors by which the axes of a covariance are too short, at least 1.
 
-    Two standard deviations away on either side, chi^2 should have grown by 4.
+    Two standard deviations away on either side, chi^2 should have grown by 4.  If it has grown by
+    much more, the valley of chi^2 is bent, and the covariance is wrong, as the second number says.
     """
     ends = x + _CURVED * np.concatenate([spread.T, -spread.T])
     rows = problem.weighted(np.concatenate([x[np.newaxis], ends]))
-    grown = np.sum(rows[1:] ** 2 - rows[0] ** 2, axis=1).reshape(2, -1).min(axis=0)
-    return np.asarray(np.sqrt(np.clip(_CURVED**2 / np.maximum(grown, 0.04), 1.0, 100.0)))
+    grown = np.sum(rows[1:] ** 2 - rows[0] ** 2, axis=1).reshape(2, -1)
+    least = np.maximum(grown.min(axis=0, initial=math.inf), 0.04)
+    factors = np.sqrt(np.clip(_CURVED**2 / least, 1.0, 100.0))
+    return np.asarray(factors), bool(np.any(grown > _BENT * _CURVED**2))
