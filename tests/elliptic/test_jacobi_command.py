@@ -12,7 +12,7 @@ import pytest
 from conftest import Lagtop
 from lagtop import LagtopError
 
-from lagrange_cli.elliptic.arguments import ExactComplex, parse_arguments, parse_complex
+from lagrange_cli.elliptic.arguments import ExactComplex, parse_arguments
 
 DIGITS = pytest.mark.parametrize("digits", ["", " --digits 20"])
 
@@ -53,26 +53,32 @@ def test_zeros_and_poles_at_whole_quarters(
 
 
 @pytest.mark.parametrize(
-    ("args", "column", "text"),
+    ("args", "known"),
     [
+        ("--k 1e-30 --u 0.5 --functions omega --param 0.25", {"omega01": "-5.04278350139169e-62"}),
+        ("--k 0.9 --u 1e12 --functions pi --param 0", {"pi00": "0.0"}),
+        ("--k 0.5 --u 0.3 --functions pi --param 0i", {"pi11_imag": "", "pi01_imag": "0.0"}),
+        ("--k 0.5 --u 0.3 --functions omega,pi --param 0.3", {"omega11": "", "pi11": ""}),
+        ("--k 0.5 --u 0.3 --functions omega,pi --param=-0.3", {"omega11": "", "pi11": ""}),
+        ("--k 0 --u 1 --functions zeta", {"zeta01": "0.0"}),
+        ("--k 0.5 --u 0 --functions zeta", {"zeta00": "0.0", "zeta11": ""}),
+        ("--k 0 --u 1 --functions omega --param 1e15i", {"omega11_imag": "-0.570796326794897"}),
         (
-            "--k 1e-30 --u 0.5 --functions omega --param 0.25",
-            "omega01",
-            "-5.0427835013916863e-62",
+            "--nome 1e-2141 --u 2479+1020i --functions theta",
+            {"theta10_re": "-5.16051595388114e-93", "theta10_im": "1.50292330378978e-93"},
         ),
-        ("--k 0.9 --u 1e12 --functions pi --param 0", "pi00", "0.0"),
-        ("--k 0.5 --u 0.3 --functions pi --param 0i", "pi11_imag", ""),
-        ("--k 0.5 --u 0.3 --functions pi --param 0i", "pi01_imag", "0.0"),
-        ("--k 0.5 --u 0.3 --functions omega,pi --param 0.3", "omega11", ""),
-        ("--k 0.5 --u 0.3 --functions omega,pi --param=-0.3", "pi11", ""),
-        ("--k 0 --u 1 --functions zeta", "zeta01", "0.0"),
-        ("--k 0.5 --u 0 --functions zeta", "zeta00", "0.0"),
-        ("--k 0.5 --u 0 --functions zeta", "zeta11", ""),
-        ("--k 0 --u 1 --functions omega --param 1e15i", "omega11_imag", "-0.57079632679489662"),
+        ("--nome 0.9999999999 --functions pi --param 0.3 --u 1", {"pi00": "0.0"}),
     ],
 )
-def test_zeros_and_empty_cells(args: str, column: str, text: str, lagtop: Lagtop) -> None:
-    assert cells(lagtop, f"{args} --digits 17")[column] == [text]
+def test_cells(args: str, known: dict[str, str], lagtop: Lagtop) -> None:
+    """A pole is empty; a number equal to 0 in 1,200 digits is 0; a nome may be tiny."""
+    found = cells(lagtop, f"{args} --digits 15")
+    assert {name: found[name] for name in known} == {name: [x] for name, x in known.items()}
+
+
+def test_a_range_of_equal_ratios_has_decimals(lagtop: Lagtop) -> None:
+    found = cells(lagtop, "--k 0.5 --u log:2:3:5 --digits 30")
+    assert found["u"][1] == "2.21336383940064318481758054688"
 
 
 @pytest.mark.parametrize("k", ["5.874862083807e18i", "2", "0.5"])
@@ -86,9 +92,9 @@ def test_the_quotient_of_two_zeros_is_no_number(k: str, digits: str, lagtop: Lag
 @DIGITS
 def test_poles_and_zeros_of_complex_numbers(digits: str, lagtop: Lagtop) -> None:
     found = cells(lagtop, f"--k 0.5 --u 0,1+i,-1-i,9i --functions am,zeta,pi --param 1+i{digits}")
-    assert [not x for x in found["pi11_re"]] == [False, True, True, False]
-    assert [not x for x in found["zeta11_im"]] == [True, False, False, False]
-    assert [not x for x in found["am_deg_re"]] == [False, False, False, True]
+    empty = {"pi11_re": [1, 2], "zeta11_im": [0], "am_deg_re": [3]}
+    for name, where in empty.items():
+        assert [i for i, x in enumerate(found[name]) if not x] == where, name
     assert (found["sn_re"][0], found["pi01_im"][0], found["sn_re"][3]) == ("0.0", "0.0", "0.0")
 
 
@@ -149,14 +155,9 @@ def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
 @pytest.mark.parametrize(
     ("modulus", "square"),
     [
-        *(
-            ("--k-prime 0.5", "0.75"),
-            ("--k 0.8i", "-0.64"),
-            ("--k 1.5", "2.25"),
-            ("--k 0.6", "0.36"),
-        ),
-        *(("--m -3", "-3"), ("--m 0.3", "0.3"), ("--m 1.75", "1.75"), ("--k-prime 3", "-8")),
-        *(("--k-prime 0.5i", "1.25"), ("--nome=-0.2", "q = -0.2")),
+        *(("--k-prime 0.5", "0.75"), ("--k 0.8i", "-0.64"), ("--k 1.5", "2.25")),
+        *(("--k 0.6", "0.36"), ("--m -3", "-3"), ("--m 0.3", "0.3"), ("--m 1.75", "1.75")),
+        *(("--k-prime 3", "-8"), ("--k-prime 0.5i", "1.25"), ("--nome=-0.2", "q = -0.2")),
     ],
 )
 def test_constants(modulus: str, square: str, lagtop: Lagtop) -> None:
@@ -196,24 +197,6 @@ def test_quotients(k: str, lagtop: Lagtop) -> None:
             assert value == pytest.approx(complex(mpmath.ellipfun(name, u, m=m)), rel=1e-13)
 
 
-@pytest.mark.parametrize(
-    ("args", "known"),
-    [
-        ("--k 0.5 --u log:2:3:5", {"u": "2.21336383940064318481758054688"}),
-        (
-            "--nome 1e-2141 --u 0,2479+1020i --functions theta",
-            {"theta10_re": "-5.16051595388114e-93", "theta10_im": "1.50292330378978e-93"},
-        ),
-        ("--nome 0.9999999999 --functions pi --param 0.3 --u 0,1", {"pi00": "0.0"}),
-    ],
-)
-def test_numbers_with_digits(args: str, known: dict[str, str], lagtop: Lagtop) -> None:
-    """A log: range has decimals; a nome may be tiny; a number equal to 0 in 1,200 digits is 0."""
-    digits = 30 if "log" in args else 15
-    found = cells(lagtop, f"{args} --digits {digits}")
-    assert {name: found[name][1] for name in known} == known
-
-
 @pytest.mark.parametrize("v", ["3i", "-3i", "7.7i"])
 def test_imaginary_parameters_beyond_the_first_line_of_zeros(v: str, lagtop: Lagtop) -> None:
     """Real functions have the branch of the complex ones."""
@@ -237,32 +220,38 @@ def test_a_nome_next_to_1(lagtop: Lagtop) -> None:
         assert abs(size / mpmath.exp(-2 * K) - 1) < 1e-29
 
 
-def test_complex_numbers_are_read() -> None:
-    texts = "0.3 i -i -0.5+i -1e+3i 1e-3-2e-4i".split()
-    numbers = [0.3, 1j, -1j, -0.5 + 1j, -1e3j, 0.001 - 0.0002j]
-    assert [complex(*map(float, parse_complex(text))) for text in texts] == numbers
-
-
-@pytest.mark.parametrize("text", ["0.3+-0.7i", "xi", "0.3+0.7j", "1i2i", "0.3+0.7ii", "1e400i", ""])
-def test_other_texts_are_refused(text: str) -> None:
-    with pytest.raises(LagtopError, match="must be"):
-        parse_complex(text)
-
-
 @pytest.mark.parametrize(
-    ("text", "factor", "of_K"),
+    ("text", "real", "imag", "of_K"),
     [
-        *(("K", "1", True), ("+K/2", "1/2", True), (" 2K ", "2", True), ("-2.5K", "-5/2", True)),
-        *(("3K/4", "3/4", True), ("1e3K/7", "1000/7", True), ("0.5", "1/2", False)),
+        *(("0.3", "0.3", "0", False), ("i", "0", "1", False), ("-i", "0", "-1", False)),
+        *(("-0.5+i", "-0.5", "1", False), ("-1e+3i", "0", "-1000", False)),
+        ("1e-3-2e-4i", "0.001", "-0.0002", False),
+        *(("K", "1", "0", True), ("+K/2", "1/2", "0", True), (" 2K ", "2", "0", True)),
+        *(
+            ("-2.5K", "-5/2", "0", True),
+            ("3K/4", "3/4", "0", True),
+            ("1e3K/7", "1000/7", "0", True),
+        ),
     ],
 )
-def test_multiples_are_read(text: str, factor: str, of_K: bool) -> None:
+def test_arguments_are_read(text: str, real: str, imag: str, of_K: bool) -> None:
     arguments = parse_arguments(text)
-    assert list(arguments.numbers(20)) == [ExactComplex(Fraction(factor))]
+    assert list(arguments.numbers(20)) == [ExactComplex(Fraction(real), Fraction(imag))]
     assert arguments.in_quarters is of_K
 
 
-@pytest.mark.parametrize("text", ["2K/0", "K/-2", "K/", "2KK", "K2", "aK", "1/2K", "2*K", "k", ""])
-def test_invalid_multiples_are_refused(text: str) -> None:
-    with pytest.raises(LagtopError, match=r"must be a (real multiple of K such as|finite decimal)"):
+NOT_COMPLEX = ["0.3+-0.7i", "xi", "0.3+0.7j", "1i2i", "0.3+0.7ii", "1e400i"]
+NOT_MULTIPLES = ["2K/0", "K/-2", "K/", "2KK", "K2", "aK", "1/2K", "2*K"]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        *((text, "must be") for text in NOT_COMPLEX),
+        *((text, "must be a real multiple of K such as") for text in NOT_MULTIPLES),
+        *((text, "must be a finite decimal") for text in ("k", "")),
+    ],
+)
+def test_other_texts_are_refused(text: str, message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
         parse_arguments(text)
