@@ -11,10 +11,9 @@ from mpmath.ctx_mp import MPContext
 
 from lagrange_cli.arithmetic.enclosures import at_precision
 from lagrange_cli.elliptic.arguments import ExactComplex
-from lagrange_cli.elliptic.constants import constants_of
 from lagrange_cli.elliptic.function_table import point
 from lagrange_cli.elliptic.functions import Functions
-from lagrange_cli.elliptic.legendre import Legendre
+from lagrange_cli.elliptic.legendre import Legendre, constants_of
 from lagrange_cli.elliptic.modulus import GivenModulus
 
 

@@ -6,7 +6,7 @@ import re
 from fractions import Fraction
 
 from ..arithmetic.key import Key
-from ..elliptic import constants, eta
+from ..elliptic import eta, legendre
 from ..elliptic.arguments import (
     Arguments,
     ExactComplex,
@@ -14,10 +14,7 @@ from ..elliptic.arguments import (
     parse_complex,
     parse_small,
 )
-from ..elliptic.constants import constants_record
-from ..elliptic.eta import ETA_COLUMNS, Quadrature, eta_record, eta_rows
 from ..elliptic.function_table import FAMILIES, FunctionRequest, function_rows
-from ..elliptic.legendre import amplitude_rows
 from ..elliptic.modulus import GivenModulus
 from ..elliptic.tables import Rows
 from ..errors import LagtopError
@@ -132,7 +129,7 @@ def jacobi_command(
     asked = tuple(name for name in FAMILIES if name in named)
     parameter, imaginary = _parameter(param, asked)
     if phi is not None:
-        rows = amplitude_rows(phi, given, n, radians=rad, digits=digits)
+        rows = legendre.amplitude_rows(phi, given, n, radians=rad, digits=digits)
         write_functions(rows, phi.real.count, out)
     elif u is not None:
         v = parameter.nearest() if digits is None else parameter
@@ -141,8 +138,8 @@ def jacobi_command(
     elif functions is not None:
         raise LagtopError("--functions needs --u")
     else:
-        keys = constant_keys("Moduli", constants.CONSTANTS)
-        out.record(constants_record(given, digits, n=n, radians=rad), lambda: keys)
+        keys = constant_keys("Moduli", legendre.CONSTANTS)
+        out.record(legendre.constants_record(given, digits, n=n, radians=rad), lambda: keys)
 
 
 def _parameter(
@@ -218,14 +215,14 @@ def eta_command(
     opt.exclude(p=p, gap_below=gap_below)
     quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
     if tau is not None:
-        names = check_names("columns", columns or ["eta"], ETA_COLUMNS)
-        rows = eta_rows(tau, quadrature, names, radians=rad, digits=digits)
+        names = check_names("columns", columns or ["eta"], eta.ETA_COLUMNS)
+        rows = eta.eta_rows(tau, quadrature, names, radians=rad, digits=digits)
         write_functions(rows, tau.count, out)
         return
     if columns is not None:
         raise LagtopError("--columns needs --tau")
     keys = constant_keys("Roots", eta.CONSTANTS)
-    out.record(eta_record(quadrature, digits), lambda: keys)
+    out.record(eta.eta_record(quadrature, digits), lambda: keys)
 
 
 def _quadrature(
@@ -234,15 +231,15 @@ def _quadrature(
     middle: tuple[Fraction | None, ExactComplex | None],
     gaps: tuple[Fraction | None, Fraction | None],
     g: Fraction,
-) -> Quadrature:
+) -> eta.Quadrature:
     """Return the quadrature with its outer roots, by their middle or by the gaps to them."""
     (p, q), (above, below) = middle, gaps
     if p is not None and q is not None:
-        return Quadrature(delta_star, delta, (p - q.real, p + q.real), g, q.imag)
+        return eta.Quadrature(delta_star, delta, (p - q.real, p + q.real), g, q.imag)
     if p is not None or q is not None:
         raise LagtopError("--p and --q belong together: give both, or neither")
     for name, gap in {"--gap-above": above, "--gap-below": below}.items():
         if gap is not None and gap <= 0:
             raise LagtopError(f"{name} must be > 0 (the period is infinite at 0), got {float(gap)}")
     outer = (delta_star - below if below else None, delta + above if above else None)
-    return Quadrature(delta_star, delta, tuple(root for root in outer if root is not None), g)
+    return eta.Quadrature(delta_star, delta, tuple(root for root in outer if root is not None), g)

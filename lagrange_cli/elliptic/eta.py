@@ -23,7 +23,7 @@ from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, MAX_TIME, Points, check_reach
 from .arguments import Arguments, ExactComplex
 from .functions import Functions, Point
-from .modulus import Kind, Modulus, degrees
+from .modulus import Kind, Modulus, angle
 from .tables import Row, Rows, Value, numbers, rows_of
 
 ETA_COLUMNS = ("tau", "eta", "etadot", "h1", "theta", "xi_prime")
@@ -84,15 +84,11 @@ class Quadrature(NamedTuple):
             raise LagtopError(f"g must be > 0, got {float(self.g)}", "g")
         for root in () if self.height else self.outer:
             if root in {self.lower, self.upper}:
-                raise LagtopError(
-                    "an outer root at an end of the band makes the period infinite (k1 = 1), "
-                    f"got {float(root)}"
-                )
+                wrong = "an outer root at an end of the band makes the period infinite (k1 = 1)"
+                raise LagtopError(f"{wrong}, got {float(root)}")
             if self.lower <= root <= self.upper:
-                raise LagtopError(
-                    "the outer roots must lie outside the band from delta* to delta, "
-                    f"[{low}, {high}], got {float(root)}"
-                )
+                wrong = "the outer roots must lie outside the band from delta* to delta"
+                raise LagtopError(f"{wrong}, [{low}, {high}], got {float(root)}")
 
     @property
     def inputs(self) -> list[Fraction]:
@@ -107,9 +103,11 @@ class Quadrature(NamedTuple):
     @property
     def squares(self) -> tuple[Fraction, Fraction]:
         """Squares of m' and m'' (3.2.3), exactly."""
-        to_upper = prod((abs(root - self.upper) for root in self.outer), start=Fraction(1))
-        to_lower = prod((abs(root - self.lower) for root in self.outer), start=Fraction(1))
-        return to_upper + self.height**2, to_lower + self.height**2
+        upper, lower = (
+            prod((abs(root - end) for root in self.outer), start=Fraction(1)) + self.height**2
+            for end in (self.upper, self.lower)
+        )
+        return upper, lower
 
     @property
     def layout(self) -> str:
@@ -212,15 +210,13 @@ def eta_rows(
         return found, Functions(found.modulus(quadrature))
 
     def columns(x: ExactComplex, known: tuple[EtaConstants, Functions]) -> Row:
-        found = eta_columns(x.real, quadrature, *known)
-        theta = "theta_rad" if radians else "theta_deg"
-        if not radians:
-            found["theta"] = degrees(found["theta"])
-        kept = ((name, y) for name, y in found.items() if name in {"tau", *names})
-        return {theta if name == "theta" else name: y for name, y in kept}
+        found: dict[str, Any] = {}
+        for name, y in eta_columns(x.real, quadrature, *known).items():
+            if name in {"tau", *names}:
+                found |= angle(name, y, in_radians=radians) if name == "theta" else {name: y}
+        return found
 
-    times = Arguments(tau).numbers(digits)
-    return rows_of(times, columns, known, quadrature.inputs, digits)
+    return rows_of(Arguments(tau).numbers(digits), columns, known, quadrature.inputs, digits)
 
 
 def eta_columns(
@@ -249,23 +245,22 @@ def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, A
     """
     quadrature.check()
     lower, upper, outer, g, height = quadrature
-    real: dict[str, Value] = dict.fromkeys(("p", "q", "q_imag", "outer_root"))
+    part = "_imag" if height else ""
+    roots: dict[str, Value] = dict.fromkeys(("p", "q", "q_imag", "outer_root"))
     if len(outer) > 1:
-        real |= {"p": (outer[0] + outer[1]) / 2, "q": abs(outer[0] - outer[1]) / 2}
+        first, second = outer
+        roots |= {"p": (first + second) / 2, f"q{part}": height or abs(first - second) / 2}
     elif outer:
-        real["outer_root"] = outer[0]
-    if height:
-        real |= {"q": None, "q_imag": height}
-    words: dict[str, Value] = {"g": g, "layout": quadrature.layout, "kind": quadrature.kind}
+        roots["outer_root"] = outer[0]
 
     def compute(_: int) -> Row:
         c = eta_constants(quadrature)
-        moduli = {"k": c.k, "k_imag": None, "k1": c.k1, "k1_imag": None}
-        if height:
-            moduli = {"k": None, "k_imag": c.k, "k1": None, "k1_imag": c.k1}
+        moduli = dict.fromkeys(("k", "k_imag", "k1", "k1_imag"))
         return {
-            **{"delta": upper, "delta_star": lower, **real, **words},
-            **{"m_prime": c.m1, "m_double_prime": c.m2, **moduli, "k1_prime": c.k1_prime},
+            **{"delta": upper, "delta_star": lower, **roots},
+            **{"g": g, "layout": quadrature.layout, "kind": quadrature.kind},
+            **{"m_prime": c.m1, "m_double_prime": c.m2},
+            **{**moduli, f"k{part}": c.k, f"k1{part}": c.k1, "k1_prime": c.k1_prime},
             **{"K1": c.period * c.sigma1 / 4, "sigma1": c.sigma1, "s": c.s, "d": c.d},
             **{"gamma": c.gamma, "period": c.period, "tau3": -c.period / 4},
         }

@@ -10,10 +10,10 @@ from flint import acb, fmpq
 
 from ..arithmetic.enclosures import at_precision
 from ..errors import LagtopError
-from ..top.ranges import MAX_PERIODS, MAX_TIME, check_reach
+from ..top.ranges import MAX_PERIODS, MAX_TIME, ListedPoints, check_reach
 from .arguments import Arguments, ExactComplex
 from .functions import THIRD, Functions, Point
-from .modulus import GivenModulus, Kind, degrees, real_parts, split
+from .modulus import GivenModulus, Kind, angle, real_parts, split
 from .tables import Row, Rows, rows_of
 
 QUOTIENTS = ("sn", "cn", "dn", "ns", "nc", "nd", "sc", "cs", "sd", "ds", "cd", "dc")
@@ -47,30 +47,28 @@ class FunctionRequest(NamedTuple):
         is_mixed = self.parameter.real and self.parameter.imag
         return self.modulus.kind is Kind.UNIT and self.u.imag is None and not is_mixed
 
-    def check(self, functions: Functions, *, doubles: bool) -> None:
+    def check(self, *, doubles: bool) -> None:
         """Raise LagtopError for invalid inputs; see `function_rows`."""
-        real, imag, in_quarters = self.u
-        if in_quarters and (functions.is_1 or functions.kind is Kind.LARGE):
+        self.modulus.check()
+        functions = Functions(self.modulus.reduced())
+        if self.u.in_quarters and (functions.is_1 or functions.kind is Kind.LARGE):
             raise LagtopError(
                 "u must not contain K for k >= 1, where K is infinite or complex", "u"
             )
         if functions.is_1 and {"theta", "zeta", "omega", "pi"} & set(self.families):
             raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
+        if not doubles:
+            return
         rates = [float(rate.mid()) for rate in (functions.scale, functions.across)]
-        limits = [min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME for rate in rates]
-        if doubles and in_quarters:
-            check_reach("u in units of K", real, 2 * MAX_PERIODS)
-        elif doubles:
-            check_reach("u", real, limits[0])
-        if doubles and imag is not None:
-            check_reach("the imaginary part of u", imag, limits[1])
-        for part, limit in zip(self.parameter, limits, strict=True):
-            if doubles and abs(part) > limit:
-                raise LagtopError(
-                    f"param must be within 2^50 periods = {limit:.3g} of 0, "
-                    f"got {self.parameter} (or use digits=N)",
-                    "param",
-                )
+        along, across = (min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME for rate in rates)
+        if self.u.in_quarters:
+            check_reach("u in units of K", self.u.real, 2 * MAX_PERIODS)
+        else:
+            check_reach("u", self.u.real, along)
+        if self.u.imag is not None:
+            check_reach("the imaginary part of u", self.u.imag, across)
+        check_reach("param", ListedPoints([self.parameter.real]), along)
+        check_reach("the imaginary part of param", ListedPoints([self.parameter.imag]), across)
 
 
 def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
@@ -81,9 +79,7 @@ def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
     that do not exist for k = 1 and, in doubles, for arguments and parameters beyond 2^50 periods.
     """
     modulus, v = request.modulus, point(request.parameter)
-    modulus.check()
-    first = at_precision(_FIRST_DIGITS, lambda: Functions(modulus.reduced()))
-    at_precision(_FIRST_DIGITS, lambda: request.check(first, doubles=digits is None))
+    at_precision(_FIRST_DIGITS, lambda: request.check(doubles=digits is None))
     has_parameter = bool({"omega", "pi"} & set(request.families))
 
     def constants() -> tuple[Functions, Numbers]:
@@ -117,10 +113,8 @@ def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Numbers
         return found
     am, *values = functions.jacobi(u)
     of = dict(zip("scdn", (*values, acb(1)), strict=True))
-    if has_am and request.radians:
-        found["am_rad"] = _on_axes(am, axes, odd=True)
-    elif has_am:
-        found["am_deg"] = _on_axes(None if am is None else degrees(am), axes, odd=True)
+    if has_am:
+        found |= angle("am", _on_axes(am, axes, odd=True), in_radians=request.radians)
     for name in names:
         p, q = (of[letter] for letter in name)
         quotient = None if name[1] == "s" and u.is_0 else p if name[1] == "n" else p / q

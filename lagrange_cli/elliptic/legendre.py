@@ -1,4 +1,4 @@
-"""Legendre's integrals F, E and Pi of an amplitude, for every modulus; their table.
+"""Legendre's integrals F, E and Pi of an amplitude, for every modulus; constants of a modulus.
 
 With Delta^2 = 1 - k^2 sin^2 t they are integrals from 0 to phi:
 
@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from flint import acb, arb
 
@@ -22,9 +22,25 @@ from ..arithmetic.enclosures import exact, nearest, sign
 from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, check_reach
 from .arguments import Arguments, ExactComplex
-from .modulus import GivenModulus, Kind, Modulus, real_parts, split
-from .tables import Row, Rows, rows_of
+from .modulus import GivenModulus, Kind, Modulus, angle, real_parts, split
+from .tables import Row, Rows, numbers, rows_of
 
+CONSTANTS = """
+m | m | parameter k² | |
+k | k | modulus | |
+k_prime | k' | complementary modulus | |
+modular_angle_deg | arcsin k | modular angle | deg |
+modular_angle_rad | arcsin k | modular angle | rad |
+nome | q | nome | | (3.1.6)
+nome_prime | q' | nome of k' | | (3.1.6)
+Complete integrals
+K | K | first kind, k | | (3.1.2)
+K_prime | K' | first kind, k' | | (3.1.2)
+E | E | second kind, k | |
+E_prime | E' | second kind, k' | |
+Pi | Π(n) | third kind, k | |
+"""
+"""Key, symbol, meaning, unit and equation of each constant; a line without `|` begins a group."""
 _SQUARED_SINES: dict[Fraction, Fraction | arb] = {
     Fraction(x): Fraction(y, 4) for x, y in ((0, 0), (30, 1), (45, 2), (60, 3), (90, 4))
 }
@@ -61,9 +77,8 @@ class Legendre:
         """Return the integrals of an amplitude, by f(phi + pi) = f(phi) + 2 f(pi/2)."""
         square: Fraction | arb
         if radians and phi.real:
-            angle = exact(phi.real)
-            half_turns = nearest(angle / arb.pi())
-            rest = angle - half_turns * arb.pi()
+            half_turns = nearest(exact(phi.real) / arb.pi())
+            rest = exact(phi.real) - half_turns * arb.pi()
             side = sign(rest)
             sine, cosine = abs(rest).sin_cos()
             sign(cosine)  # otherwise the ball goes beyond the quarter turn
@@ -177,3 +192,46 @@ def amplitude_rows(
 
     inputs = [*given.value, n or Fraction(0)]
     return rows_of(phi.numbers(digits), columns, constants, inputs, digits)
+
+
+def constants_record(
+    given: GivenModulus, digits: int | None, *, n: Fraction | None = None, radians: bool = False
+) -> dict[str, Any]:
+    """Return the constants of a modulus, correctly rounded to doubles or to `digits` digits.
+
+    With n, Pi(n | k) is one of them.  Unless k is in [0, 1], numbers are split into `_re` and
+    `_im`.  Infinite constants are None.  Raises LagtopError for a modulus out of range.
+    """
+    given.check()
+
+    def compute(_: int) -> Row:
+        found = constants_of(given.reduced(), radians=radians)
+        if n is not None:
+            found["Pi"] = Legendre(given.reduced(), given.m, n).complete.Pi
+        row = real_parts(found) if given.kind is Kind.UNIT else split(found)
+        if given.name == "m":
+            return {"m": given.value.real} | row
+        return row | ({given.name: given.value.real} if given.name in row else {})
+
+    return numbers(compute, [*given.value, n or Fraction(0)], digits)
+
+
+def constants_of(modulus: Modulus, *, radians: bool = False) -> dict[str, acb | None]:
+    """Return the moduli, the nomes q = exp(-pi K'/K) (3.1.6), and the integrals of k and k'."""
+    complement = modulus.complement
+    K, E, _ = Legendre(modulus).complete
+    K_prime, E_prime, _ = Legendre(complement).complete
+    found = {"k": modulus.ball, "k_prime": complement.ball}
+    nomes = {"nome": _nome(K, K_prime)}
+    if modulus.kind is Kind.UNIT:
+        modular = acb(arb.atan2(modulus.k, modulus.k_prime))
+        found |= angle("modular_angle", modular, in_radians=radians)
+        nomes["nome_prime"] = _nome(K_prime, K)
+    return {**found, **nomes, "K": K, "K_prime": K_prime, "E": E, "E_prime": E_prime}
+
+
+def _nome(K: acb | None, K_prime: acb | None) -> acb:
+    """Return exp(-pi K'/K) in its limits, too; None stands for infinity."""
+    if K is None or K_prime is None:
+        return acb(int(K is None))
+    return (-arb.pi() * K_prime / K).exp()

@@ -124,6 +124,8 @@ def real_parts(numbers: Mapping[str, acb | None]) -> dict[str, Value]:
     return {name: None if z is None else z.real for name, z in numbers.items()}
 
 
-def degrees(angle: acb | arb) -> Any:
-    """Return an angle in degrees."""
-    return angle * 180 / arb.pi()
+def angle(name: str, radians: Any, *, in_radians: bool) -> dict[str, Any]:
+    """Return the column of an angle, `name_deg` or `name_rad`; None stays None."""
+    if in_radians or radians is None:
+        return {f"{name}_{'rad' if in_radians else 'deg'}": radians}
+    return {f"{name}_deg": radians * 180 / arb.pi()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from itertools import chain, islice
 from typing import Any, TypeVar
 
@@ -43,9 +43,8 @@ def rows_of(
         return constants()
 
     def row(x: ExactComplex) -> dict[str, Any]:
-        return numbers(
-            lambda digits: columns(x, known(digits)), [*x, *inputs], digits, strict=False
-        )
+        of_x = [*x, *inputs]
+        return numbers(lambda digits: columns(x, known(digits)), of_x, digits, strict=False)
 
     rows = map(row, arguments)
     first = next(rows)
@@ -71,30 +70,23 @@ def numbers(
     OutOfRangeError or, unless `strict`, is None.
     """
     row, most = cache(compute), equal_digits(inputs, digits or 0)
-    found: dict[str, Any] = {}
-    for name, value in decided(row, most, digits=digits).items():
-        ball = partial(_ball, row, name, most)
+
+    def number(name: str) -> Any:
+        def ball(working: int) -> Any:  # None if `most` digits do not show that it is finite
+            value: Any = row(working)[name]
+            found = exact(value) if isinstance(value, Fraction) else value
+            return found if found.is_finite() or working < most else None
+
         try:
-            number = (
-                settled(name, ball, digits, most) if isinstance(value, arb | Fraction) else None
-            )
-            found[name] = number.value if number else value if isinstance(value, str) else None
+            found = settled(name, ball, digits, most)
         except OutOfRangeError:
             if digits is not None:
                 raise
-            is_small = decided(partial(_is_below_1, ball), most)
+            is_small = decided(lambda working: sign(1 - abs(ball(working))) > 0, most)
             if strict and not is_small:
                 raise
-            found[name] = 0.0 if is_small else None
-    return found
+            return 0.0 if is_small else None
+        return found and found.value
 
-
-def _is_below_1(ball: Callable[[int], Any], digits: int) -> bool:
-    return sign(1 - abs(ball(digits))) > 0
-
-
-def _ball(row: Callable[[int], Row], name: str, most: int, digits: int) -> Any:
-    """Return the ball of a number of a row; None if `most` digits do not show that it is finite."""
-    value: Any = row(digits)[name]
-    ball = exact(value) if isinstance(value, Fraction) else value
-    return ball if ball.is_finite() or digits < most else None
+    first = decided(row, most, digits=digits)
+    return {name: number(name) if isinstance(x, arb | Fraction) else x for name, x in first.items()}

@@ -30,7 +30,7 @@ JACOBI = [
     ("--k 0.5 --u i,2K", "--u must not contain K if numbers are complex"),
     ("--k 1.5 --u K", "--u must not contain K for k >= 1, where K is infinite or complex"),
     ("--k 0.8 --u 1e20+i", "--u must be within 2^50 periods = 4.49e+15 of 0, got 1e+20"),
-    ("--k 0.8 --u 1 --functions pi --param 1+1e20i", "--param must be within 2^50 periods"),
+    ("--k 0.8 --u 1 --functions pi --param 1+1e20i", "the imaginary part of param must be within"),
     ("--k 1.5 --functions pi --param 1", "--functions needs --u"),
     # F and E
     ("--k 0.8 --phi 1 --u 3", "use --phi or --u, not both"),
