@@ -119,7 +119,8 @@ def warn_if_misleading(stds: AngleStds | None, names: Sequence[str]) -> None:
         first = min((stds.misleading[x] for x in misled), key=abs)
         complain(
             f"Warning: uncertainties of {', '.join(misled)} are not reliable from t = {first:g}: "
-            "inputs one standard deviation away give other changes than linear propagation"
+            "linear propagation gives another spread than motions one and two standard deviations "
+            "away"
         )
 
 

@@ -18,11 +18,11 @@ from ..arithmetic.enclosures import decided
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from .derivatives import Derivatives, moved, neighbours, sines, size_of
+from .derivatives import Derivatives, neighbours, sines, size_of
 from .sampling import Period, period_of, whole_periods
 from .solve import Motion
 from .tables import STD_COLUMNS, ProvedTable
-from .uncertainty import MISLEADING
+from .uncertainty import MISLEADING, away
 
 _STENCILS = (
     {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
@@ -36,6 +36,8 @@ _MOST_NOISE = 0.01
 """Largest error of an uncertainty, over itself."""
 _LEAST = 1e-9
 """Least error that is reported, in radians."""
+_ROUNDING = 2.0**-50
+"""Errors of angles over their size."""
 
 
 class AngleDerivatives:
@@ -146,14 +148,9 @@ class AngleStds:
         self.motion, self.stds = motion, {name: std for name, std in stds.items() if std}
         self.derivatives = AngleDerivatives(motion, list(self.stds))
         self.misleading: dict[str, float] = {}
-        """The angles for which linear propagation misleads, each with the first such time."""
-        self._away = [
-            (i, beside)
-            for i, (name, std) in enumerate(self.stds.items())
-            for change in (Fraction(-std), Fraction(std))
-            if (beside := moved(motion, name, change))
-        ]
-        """Motions with one input, by its place, one standard deviation away."""
+        """The angles for which linear propagation misleads, each with the time from which on."""
+        self._away = away(motion, self.stds)
+        self._excess = np.zeros(len(STD_COLUMNS))
 
     def at(self, t: Array) -> Array:
         """Return the uncertainties of `STD_COLUMNS` in radians, of shape (5, times).
@@ -169,27 +166,31 @@ class AngleStds:
         if doubtful.any():
             changes[:, :, doubtful] = slopes.in_digits(t[doubtful]) * stds
             found = np.sqrt((changes**2).sum(axis=0))
-        self._compare(t, changes, found)
+        self._compare(t, found)
         return found
 
-    def _compare(self, t: Array, changes: Array, found: Array) -> None:
-        """Compare linear changes with those of motions one standard deviation away.
+    def _compare(self, t: Array, found: Array) -> None:
+        """Compare uncertainties with the spread of motions one and two standard deviations away.
 
-        An error is measured by the largest uncertainty up to its time: where one passes through 0,
-        linear propagation need not fail.
+        A root mean square over all rows up to a time is judged: an uncertainty that passes through
+        0 has large relative errors there, which do not matter.
         """
-        here, off = _all_angles(self.motion, t), np.zeros_like(changes)
-        for i, beside in self._away:
-            with suppress(LagtopError):  # t is beyond 2^50 of its periods
-                change = np.abs(_all_angles(beside, t) - here)
-                off[i] = np.maximum(off[i], np.abs(change - np.abs(changes[i])))
-        order = np.argsort(np.abs(t), kind="stable")
-        limits = MISLEADING * np.maximum.accumulate(found[:, order], axis=1) + _LEAST
-        errors = np.sqrt((off**2).sum(axis=0))[:, order]
-        for name, late in zip(STD_COLUMNS, errors > limits, strict=True):
-            if late.any():
-                first = float(t[order[np.argmax(late)]])
-                self.misleading[name] = min(first, self.misleading.get(name, first), key=abs)
+        here, squares = _all_angles(self.motion, t), np.zeros_like(found)
+        with suppress(LagtopError):  # t is beyond 2^50 periods of a motion
+            for weight, beside in self._away:
+                squares += weight * (_all_angles(beside, t) - here) ** 2
+            least = _LEAST + _ROUNDING * np.abs(here)
+            off = (np.sqrt(squares) - found) ** 2 - (MISLEADING * found) ** 2 - least**2
+            order = np.argsort(np.abs(t), kind="stable")
+            sums = self._excess[:, None] + np.cumsum(off[:, order], axis=1)
+            for name, excess in zip(STD_COLUMNS, sums, strict=True):
+                fine = np.flatnonzero(~(excess > 0))
+                first = fine[-1] + 1 if fine.size else 0
+                if first == t.size:
+                    self.misleading.pop(name, None)
+                elif first or name not in self.misleading:
+                    self.misleading[name] = float(t[order[first]])
+            self._excess = sums[:, -1]
 
 
 def _all_angles(motion: Motion, t: Array) -> Array:

@@ -19,6 +19,11 @@ from .solve import Motion
 _CONTEXT = Context(prec=40)
 MISLEADING = 0.15
 """Least error of linear propagation that is reported, over the uncertainty."""
+_WEIGHTS = {1: 1 / 6, 2: 1 / 12}
+"""Weights of inputs so many standard deviations away, on either side.
+
+Those of squares and of fourth powers are the moments of a normal distribution.
+"""
 _LEAST = 1e-9
 """Least error that is reported, over the number."""
 
@@ -96,28 +101,24 @@ class FirstOrder:
         return sum((part * part for part in parts), Fraction(0))
 
     @cached_property
-    def _away(self) -> list[tuple[str, Motion]]:
-        """Motions with one input, by name, one standard deviation away."""
-        changes = [(x, sign * Fraction(std)) for x, std in self.stds.items() for sign in (-1, 1)]
-        beside = [(name, moved(self.motion, name, change)) for name, change in changes]
-        return [(name, motion) for name, motion in beside if motion]
+    def _away(self) -> list[tuple[float, Motion]]:
+        return away(self.motion, self.stds)
 
     def misleads(self, key: str, std: float) -> bool:
         """Return whether linear propagation misleads for a number with an uncertainty.
 
-        It does if the number of a motion one standard deviation away differs by another amount, or
-        does not exist.
+        It does if motions one and two standard deviations away have another spread about the
+        number, or lack it.
         """
         if degree_name(key) not in DIFFERENTIABLE:
             return False
-        here, off = _value(self.motion, key) or 0.0, dict.fromkeys(self.stds, 0.0)
-        for name, motion in self._away:
-            there, slope = _value(motion, key), self.slope(key, name) or 0
+        here, parts = _value(self.motion, key) or 0.0, []
+        for weight, motion in self._away:
+            there = _value(motion, key)
             if there is None:
                 return True
-            linear = abs(float(slope * Fraction(self.stds[name])))
-            off[name] = max(off[name], abs(abs(there - here) - linear))
-        return math.hypot(*off.values()) > MISLEADING * std + _LEAST * abs(here)
+            parts.append(math.sqrt(weight) * (there - here))
+        return abs(math.hypot(*parts) - std) > MISLEADING * std + _LEAST * abs(here)
 
     def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
         """Return the contributions of the uncertain inputs to a key, the greatest first.
@@ -142,6 +143,21 @@ class FirstOrder:
             }
             lines.append(Contribution(name, given[name], std, **numbers))
         return sorted(lines, key=lambda line: -abs(line.contribution or 0))
+
+
+def away(motion: Motion, stds: Mapping[str, float]) -> list[tuple[float, Motion]]:
+    """Return motions with one input one or two standard deviations away, each after its weight.
+
+    The weighted squares of the changes of a number add up to its variance.  If there is a top on
+    one side only, it counts twice.
+    """
+    found = []
+    for name, std in stds.items():
+        for number, weight in _WEIGHTS.items():
+            changes = (side * number * Fraction(std) for side in (-1, 1))
+            beside = [x for change in changes if (x := moved(motion, name, change))]
+            found += [(2 * weight / len(beside), x) for x in beside]
+    return found
 
 
 def _value(motion: Motion, key: str) -> float | None:

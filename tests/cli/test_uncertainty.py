@@ -268,6 +268,8 @@ def test_an_uncertainty_beyond_the_doubles_is_null_or_refused(lagtop: Lagtop) ->
     [
         (["--thetadot0", "0+/-0.5"], "K,T_nutation,theta_min_deg", True),  # of second order
         (["--theta0", 30, "--r0", "37.286+/-3"], "T_nutation", True),  # the longest period
+        # within 15 % one standard deviation away; draws of r0 have 0.79 of the uncertainty
+        (["--theta0", 30, "--r0", "25+/-8"], "T_nutation", True),
         (["--theta0", "0.15+/-0.47"], "mean_precession_rate", True),  # a jump at the vertical
         (["--r0", "50(2)", "--theta0", "30(1)"], "T_nutation,theta_max_deg", False),
     ],
@@ -299,6 +301,23 @@ def test_tables_report_misleading_uncertainties_and_those_of_waves(lagtop: Lagto
         for name in ("dphi_deg", "dpsi_deg"):
             half = abs(float(other[name]) - float(one[name])) / 2
             assert float(row[f"{name}_std"]) == pytest.approx(half, rel=1e-3, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("top", "times", "misled"),
+    [
+        # draws have the same root mean square to 6 %, though single uncertainties pass through 0
+        (("50.0(5)", "30(1)"), ["--t-max", 1, "--n", 100], False),
+        (("50.0(5)", "30(1)"), ["--t-max", 3, "--n", 100], True),  # 24 % off
+        # one standard deviation away both tilts change as linear propagation says, to 12 %
+        (("25+/-8", 30), ["--t-min", 0.826, "--n", 1], True),
+    ],
+)
+def test_tables_warn_if_the_spread_of_motions_is_another(
+    lagtop: Lagtop, top: tuple[object, object], times: list[object], misled: bool
+) -> None:
+    found = lagtop("table", "--r0", top[0], "--theta0", top[1], *times)
+    assert ("uncertainties of theta" in found.stderr) == misled
 
 
 def test_late_times_of_tables_name_the_remedy(lagtop: Lagtop) -> None:
