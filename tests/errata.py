@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import mpmath
-from ball_reference import BallReference
-from balls.scene import many_digits
 from lagtop import Top
+from record_reference import reference_record
 
 
 class Erratum(NamedTuple):
@@ -75,9 +74,8 @@ with (Path(__file__).parent / "figures.tsv").open(encoding="utf-8", newline="") 
 
 def true_values() -> dict[str, Any]:
     """Return the figures by key, by the reference."""
-    balls = BallReference(Top().as_dict())
-    found = ((x.key, balls.exact(x.key)) for x in FIGURES)
-    return {key: many_digits(ball) for key, ball in found if ball is not None}
+    exact = reference_record(Top().as_dict())
+    return {x.key: exact[x.key] for x in FIGURES if exact[x.key] is not None}
 
 
 def figures_table() -> list[str]:

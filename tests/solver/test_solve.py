@@ -7,8 +7,8 @@ from typing import Any
 
 import mpmath
 import pytest
-from ball_reference import BallReference
 from lagtop import LagtopError, Top, solve
+from record_reference import reference_record
 from scenes import UNIT
 
 from lagrange_cli.solver.facts import Regime
@@ -96,7 +96,7 @@ def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
     unit = UNIT | {"theta0_deg": tilt}
     assert solve(Top(**unit, r0=sign * math.nextafter(10.0, 0.0))).remark is None
     for r0 in (10.0, 400.0):
-        numbers = BallReference(Top(**unit, r0=sign * r0).as_dict()).numbers()
+        numbers = reference_record(Top(**unit, r0=sign * r0).as_dict())
         u2, mean, period = (numbers[key] for key in ("u2", "mean_precession_rate", "T_nutation"))
         with mpmath.workdps(40):
             nods = mpmath.degrees(mpmath.acos(u2)) - tilt
