@@ -164,20 +164,14 @@ def eta_constants(quadrature: Quadrature) -> EtaConstants:
     lower, upper, outer, g, height = quadrature
     m1, m2 = (exact(square).sqrt() for square in quadrature.squares)
     width, total, product = exact(upper - lower), m1 + m2, exact(g) * m1 * m2
+    crossed, apart = total, Fraction(len(outer))
     if height:
-        # k^2 is negative in (3.2.5) and above -1
-        square = (width**2 - (m1 - m2) ** 2).nonnegative_part() / (4 * m1 * m2)
-        k = arb(0) if quadrature.is_still else square.sqrt()
-        sigma1 = (exact(g) * (total - width) * (total + width)).sqrt() / 2
-        k1_prime = product.sqrt() / sigma1
-        k1 = k * k1_prime
-    else:
-        crossed, apart = total, Fraction(len(outer))
-        if len(outer) > 1:
-            ways = (exact(abs((outer[i] - lower) * (outer[1 - i] - upper))) for i in (0, 1))
-            crossed, apart = sum((way.sqrt() for way in ways), arb(0)), abs(outer[0] - outer[1])
-        k1, k1_prime = width * exact(apart) / crossed**2, 2 * (m1 * m2).sqrt() / crossed
-        k, sigma1 = k1 / k1_prime, exact(g).sqrt() * crossed / 2
+        crossed, apart = ((total - width) * (total + width)).sqrt(), 2 * height
+    elif len(outer) > 1:
+        ways = (exact(abs((outer[i] - lower) * (outer[1 - i] - upper))) for i in (0, 1))
+        crossed, apart = sum((way.sqrt() for way in ways), arb(0)), abs(outer[0] - outer[1])
+    k1, k1_prime = width * exact(apart) / crossed**2, 2 * (m1 * m2).sqrt() / crossed
+    k, sigma1 = k1 / k1_prime, exact(g).sqrt() * crossed / 2
     return EtaConstants(
         *(m1, m2, k, k1, k1_prime, sigma1),
         s=(m2 * exact(upper) - m1 * exact(lower)) / total,

@@ -106,19 +106,19 @@ def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
 
 def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Numbers:
     """Return am in the unit of the request, and the quotients of sn, cn, dn and 1."""
-    has_am, axes, found = "am" in request.families, u.axes, Numbers()
+    has_am, found = "am" in request.families, Numbers()
     wanted = {*request.families, *(("sn", "cn", "dn") if has_am else ())}
-    names = [name for name in QUOTIENTS if name in wanted]
-    if not names:
+    if wanted.isdisjoint(QUOTIENTS):
         return found
     am, *values = functions.jacobi(u)
     of = dict(zip("scdn", (*values, acb(1)), strict=True))
     if has_am:
-        found |= angle("am", _on_axes(am, axes, odd=True), in_radians=request.radians)
-    for name in names:
-        p, q = (of[letter] for letter in name)
-        quotient = None if name[1] == "s" and u.is_0 else p if name[1] == "n" else p / q
-        found[name] = _on_axes(quotient, axes, odd="s" in name)
+        found |= angle("am", _on_axes(am, u.axes, odd=True), in_radians=request.radians)
+    for name in QUOTIENTS:
+        if name in wanted:
+            p, q = (of[letter] for letter in name)
+            quotient = None if name[1] == "s" and u.is_0 else p / q
+            found[name] = _on_axes(quotient, u.axes, odd="s" in name)
     return found
 
 
@@ -139,14 +139,11 @@ def _third(
     request: FunctionRequest, values: Mapping[str, tuple[acb | None, acb | None]]
 ) -> Numbers:
     """Return Omega and Pi, or their imaginary parts."""
-    found = Numbers()
+    found, part = Numbers(), "_imag" if request.imaginary and request.is_real else ""
     for i, family in enumerate(("omega", "pi")):
         for ij in THIRD if family in request.families else ():
             z = values[ij][i]
-            if request.imaginary and request.is_real:
-                found[f"{family}{ij}_imag"] = None if z is None else acb(z.imag)
-            else:
-                found[f"{family}{ij}"] = z
+            found[f"{family}{ij}{part}"] = acb(z.imag) if part and z is not None else z
     return found
 
 

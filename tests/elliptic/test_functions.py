@@ -61,11 +61,6 @@ def columns(reference: Reference, u: Any, v: Any, families: tuple[str, ...]) -> 
     return found
 
 
-def text_of(x: float, y: float) -> str:
-    """Return a complex number by its real and imaginary part."""
-    return f"{x!r}+{y!r}i".replace("+-", "-")
-
-
 ANYWHERE = [("-4.1-1.3i", "0.2+0.7i"), ("1e-9+2.5i", "100.25-0.5i")]
 ON_THE_AXES = [("0.9i", "1.3"), ("1.1i", "0.6i"), ("-0.3+0.7i", "-0.3-0.7i")]
 """Arguments, or their sum and difference, are real or imaginary; a printed 0 is a 0."""
@@ -107,8 +102,8 @@ def test_parameters_next_to_half_periods(k: str, place: tuple[float, float]) -> 
     """Take the doubles next to iK', K + iK' and 0.3 K + iK' in the period lattice of k."""
     reference = Reference(k, 60)
     ar, (x, y) = reference.ar, place
-    v = text_of(*(float(z / reference.stretch) for z in (x * reference.K, y * reference.K_prime)))
-    first, second = (parse_complex(z).nearest() for z in ("0.3+0.2i", v))
+    v = (float(z / reference.stretch) for z in (x * reference.K, y * reference.K_prime))
+    first, second = parse_complex("0.3+0.2i").nearest(), ExactComplex(*map(Fraction, v))
     cells = row(k, first, second, ("omega", "pi"))
     at = [ar.mpc(*(ar.mpf(float(part)) for part in z)) for z in (first, second)]
     for name, exact in columns(reference, at[0], at[1], ("omega", "pi")).items():
