@@ -8,7 +8,6 @@ is kept as one text, whose lines are split when they are read.
 from __future__ import annotations
 
 import csv
-import json
 import re
 from array import array
 from collections import deque
@@ -18,9 +17,11 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.text import parse_number, quoted, shortened
+import numpy as np
+
+from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
-from ..names import repeated
+from .json_rows import MOST_CELLS, entries_of, json_value, shown
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array, Mask
@@ -31,12 +32,8 @@ _TITLES = 50
 """Most rows above the headings, such as the title `mass A` of Tracker or the header of LabVIEW."""
 _NO_ROW = re.compile(r"\n[^\S\n]*(?:\n|\Z|[#%─]|//)")
 """A line end and an empty line, a comment, or a line that is drawn."""
-MOST_CELLS = 1 << 17
-"""Most cells of a row: names and cells take more memory than the text of a file."""
 LARGEST_ARRAY = 1 << 26
 """Most characters of a JSON array, because it is held in memory as objects."""
-_MOST_DEPTH = 20
-"""Most levels of JSON objects in a row."""
 _AT_ONCE = 1 << 20
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
@@ -107,7 +104,7 @@ class Table:
         """Return the cells of a row.  Raises LagtopError for a wrong quote and for wrong JSON."""
         if self.delimiter:
             return split_row(row, self.delimiter)
-        found = _flat(_loaded(row) if isinstance(row, str) else row, self.sizes)
+        found = entries_of(row, self.sizes)
         return [found.get(name) for name in self.headings or ()]
 
     def check(self, cells: Sequence[Any]) -> None:
@@ -135,7 +132,11 @@ class Table:
             self.check(cells)
             return cells
         except LagtopError as error:
-            raise DataError(f"{self.name}, {self.place} {number}: {error}") from None
+            raise self.wrong(number, error) from None
+
+    def wrong(self, number: int, what: object, column: str = "") -> DataError:
+        """Return an error with the name of the file and the number of a row."""
+        return DataError(f"{self.name}, {self.place} {number}{column}: {what}")
 
     def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Numbers:
         """Return columns of numbers, without the rows that have none in these columns.
@@ -143,8 +144,6 @@ class Table:
         `names` are the names of all columns in messages.  Raises DataError with the place of a cell
         that is no number.
         """
-        import numpy as np
-
         found = self._at_once(columns)
         if found is not None:
             return found
@@ -162,8 +161,6 @@ class Table:
 
     def _at_once(self, columns: Sequence[int]) -> Numbers | None:
         """Return columns of numbers, or None if NumPy cannot read the rows as numbers."""
-        import numpy as np
-
         lines, rows = array("q"), self.rows
         if not isinstance(rows, Lines) or not self.delimiter or next(iter(rows), None) is None:
             return None
@@ -197,15 +194,14 @@ class Table:
         try:
             return float(self.number(cell))
         except LagtopError as error:
-            place = f"{self.name}, {self.place} {row}, column {column + 1}"
-            raise DataError(f"{place}: {name} {error}") from None
+            raise self.wrong(row, f"{name} {error}", f", column {column + 1}") from None
 
     def number(self, cell: Any) -> Fraction:
         """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
         if type(cell) in {int, float}:
             return parse_number(repr(cell))
         if not isinstance(cell, str):
-            raise LagtopError(f"must be a finite number, got {_shown(cell)}")
+            raise LagtopError(f"must be a finite number, got {shown(cell)}")
         other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
         is_other = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
         try:
@@ -299,8 +295,7 @@ def _decimal_mark(table: Table, rows: Sequence[tuple[int, str]]) -> str:
     if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
         cell, number = next(iter(places.items()))
         wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
-        place = f"{table.name}, {table.place} {number}"
-        raise DataError(f"{place}: {wrong}: use decimal=point or decimal=comma")
+        raise table.wrong(number, f"{wrong}: use decimal=point or decimal=comma")
     return "," if places else "."
 
 
@@ -404,101 +399,26 @@ def split_row(text: str, delimiter: str) -> list[str]:
 
 
 def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
-    """Return JSON objects, one per line or in one array.
-
-    The entries of objects and lists in them are columns of their own: `rotation.x`, `axis_0`.
-    """
+    """Return JSON objects, one per line or in one array."""
     number, line = first
-    rows: Iterable[tuple[int, Any]] = Lines(text, number)
-    table = Table(name, [], 0, rows, "")
+    table = Table(name, [], 0, Lines(text, number), "")
     if line.lstrip().startswith("["):
         whole = text.split("\n", number - 1)[-1]
         if len(whole) > LARGEST_ARRAY:
             wanted = f"a JSON array must have at most {LARGEST_ARRAY} characters"
             raise DataError(f"{name}: {wanted}: write one object per line")
         try:
-            rows = [*enumerate(_loaded(whole, number), 1)]
+            rows = [*enumerate(json_value(whole, number), 1)]
         except LagtopError as error:
             raise DataError(f"{name}, {error}") from None
         table = replace(table, rows=rows, place="row")
     headings: dict[str, None] = {}
     wrong = None
-    for number, row in rows:
+    for number, row in table.rows:
         try:
-            headings |= dict.fromkeys(
-                _flat(_loaded(row) if isinstance(row, str) else row, table.sizes)
-            )
+            headings |= dict.fromkeys(entries_of(row, table.sizes))
         except LagtopError as error:  # which is raised again when the row is read
-            wrong = wrong or DataError(f"{name}, {table.place} {number}: {error}")
+            wrong = wrong or table.wrong(number, error)
     if not headings and wrong:
         raise wrong
     return replace(table, headings=[*headings], width=len(headings))
-
-
-def _loaded(text: str, line: int | None = None) -> Any:
-    """Return a JSON value; an error names the line of an array.  Raises LagtopError."""
-    import orjson
-
-    try:
-        value = orjson.loads(text)
-    except orjson.JSONDecodeError as error:
-        place = "" if line is None else f"line {line + error.lineno - 1}: "
-        raise LagtopError(f"{place}not JSON: {error.msg} at character {error.colno}") from None
-    if text.count(":") != _keys_in(value):  # a key is named twice, or a text has a colon
-        json.loads(text, object_pairs_hook=_once)
-    return value
-
-
-def _flat(row: Any, sizes: dict[str, int]) -> dict[str, Any]:
-    """Return the entries of a JSON object by their names, those of objects and lists in it, too.
-
-    A list is as long as the first one of its name, whose length is in `sizes`.  Raises LagtopError.
-    """
-    if not isinstance(row, dict):
-        raise LagtopError("a row must be a JSON object")
-    found: dict[str, Any] = {}
-
-    def add(name: str, value: Any, depth: int) -> None:
-        if isinstance(value, dict):
-            parts = [(f"{name}.{key}", x) for key, x in value.items()]
-        elif isinstance(value, list) and value:
-            parts = [(f"{name}_{i}", x) for i, x in enumerate(value)]
-        else:
-            parts = []
-        size = len(parts) if isinstance(value, list) else 0
-        if value not in (None, []) and sizes.setdefault(name, size) != size:
-            must = f"{sizes[name]} numbers" if sizes[name] else "a number"
-            raise LagtopError(f"{name} must be {must}, got {_shown(value)}")
-        if len(found) > MOST_CELLS or depth > _MOST_DEPTH:
-            most = f"{MOST_CELLS} entries in {_MOST_DEPTH} levels"
-            raise LagtopError(f"a row must have at most {most}, {quoted(name)} has more")
-        for part, x in parts:
-            add(part, x, depth + 1)
-        if not isinstance(value, dict | list):
-            found[name] = value
-
-    for name, value in row.items():
-        if isinstance(value, dict | list) or name in sizes:
-            add(name, value, 1)
-        else:
-            found[name] = value
-    return found
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Return an object of JSON.  Raises LagtopError if it names a key twice."""
-    if (twice := repeated(key for key, _ in pairs)) is not None:
-        raise LagtopError(f"an object must name each key once, got {quoted(twice)} twice")
-    return dict(pairs)
-
-
-def _keys_in(value: Any) -> int:
-    """Return the number of keys in a JSON value."""
-    if isinstance(value, dict):
-        return len(value) + sum(_keys_in(x) for x in value.values() if isinstance(x, dict | list))
-    return sum(map(_keys_in, value)) if isinstance(value, list) else 0
-
-
-def _shown(value: Any) -> str:
-    """Return a cell as text for a message, a value of JSON as it writes it."""
-    return quoted(value) if isinstance(value, str) else shortened(json.dumps(value))

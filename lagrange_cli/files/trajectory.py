@@ -13,6 +13,8 @@ from io import BytesIO
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError, UnavailableError
 from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
@@ -78,9 +80,8 @@ class Trajectory:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
             shown = shortened(", ".join(map(repr, self.names)), 120)
             lacks_z = {"x", "y"} <= {*self.names} and "z" not in self.names
-            remedy = (
-                "z is missing" if lacks_z else "name them with columns=t,quaternion or the like"
-            )
+            named = "name them with columns=t,quaternion or the like"
+            remedy = "z is missing" if lacks_z else named
             wrong = f"must have columns among {wanted}, got {shown}: {remedy}"
             raise DataError(f"{self.name} {wrong}")
         if twice := named_twice(self.names, found):
@@ -96,8 +97,6 @@ class Trajectory:
 
     def _check(self) -> None:
         """Raise DataError for a quantity without numbers, and for a time that is not finite."""
-        import numpy as np
-
         for key, places in self._places.items():
             if self._numbers.lines and self._numbers.empty[:, places].all():
                 shown = ", ".join(self.names[i] for i in self.quantities[key].columns)
@@ -123,8 +122,6 @@ class Trajectory:
 
     def missing(self) -> dict[str, Mask]:
         """Return for every quantity whether a part of it is an empty cell, by row."""
-        import numpy as np
-
         empty = self._numbers.empty
         return {key: np.any(empty[:, x], axis=1) for key, x in self._places.items()}
 
@@ -141,8 +138,6 @@ class Trajectory:
 
         Unix times are such numbers: neighbouring doubles are 2e-7 s apart.
         """
-        import numpy as np
-
         (place,), (column,) = self._places["t"], self.quantities["t"].columns
         t: Array = self._numbers.values[:, place]
         steps = np.abs(np.diff(t))
@@ -157,8 +152,6 @@ class Trajectory:
 
     def check_times(self, t: Array) -> None:
         """Raise DataError for a time that turns back; it may repeat."""
-        import numpy as np
-
         ways = np.sign(np.diff(t))
         forth = ways[ways != 0][:1]
         for i in np.flatnonzero(np.r_[False, ways == -forth])[:1] if forth.size else ():
@@ -263,5 +256,4 @@ class _Times:
             try:
                 yield self.factor * self.table.number(cell)
             except LagtopError as error:
-                place = f"{self.table.name}, {self.table.place} {number}"
-                raise DataError(f"{place}: the time {error}") from None
+                raise self.table.wrong(number, f"the time {error}") from None
