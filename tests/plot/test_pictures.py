@@ -87,6 +87,10 @@ def test_the_globe_shows_axes_limits_and_the_start() -> None:
     motion = solve(Top())
     axes = drawn("sphere", motion, camera=(0.3, 0.5)).axes[0]
     camera, shown = camera_of(motion.axis([0.0]), Options(camera=(0.3, 0.5))), labelled(axes)
+    assert np.linalg.det(camera) == pytest.approx(1)
+    toward = math.cos(0.5) * math.cos(0.3), math.cos(0.5) * math.sin(0.3), math.sin(0.5)
+    assert camera[2] == pytest.approx(toward)
+    assert camera[0] == pytest.approx([-math.sin(0.3), math.cos(0.3), 0])  # x, y, z turn right
     assert data(shown["start"])[1] == pytest.approx(camera[1] @ motion.axis([0.0])[0])
     for name, tilt in (("ϑ min 30°", motion.theta_min_deg), ("ϑ max 73.92°", motion.theta_max_deg)):
         x, _ = data(shown[name])
