@@ -230,14 +230,6 @@ def misprinted_2_5() -> tuple[Any, Any]:
     return both(omega, 1, W), J * total
 
 
-def continued(w: Any) -> Any:
-    """Return Omega_11 by (2,5) without the jumps of the arctangent."""
-    z, x, y = ar.exp(-ar.pi * ALPHA / K), ar.pi * w / (2 * K), ar.pi * ALPHA / (2 * K)
-    wave = ar.atan(z * ar.sin(2 * x) / (1 - z * ar.cos(2 * x)))
-    jump = ar.atan(ar.cot(x) * ar.tanh(y)) - (ar.pi / 2 - x - wave)
-    return arctangents(w)[1] + J * jump
-
-
 def quotient_of(values: Any) -> Any:
     """Return the arctangent in (2,6) of sn, cn, dn."""
     sn, cn, dn = values
@@ -267,9 +259,6 @@ chrapan.each(
             for pair in zip(
                 (omega("00", w, JA, k), omega("11", w, JA, k)), arctangents(w), strict=True
             )
-        ],
-        "(2,5), continued over all w": lambda: [
-            (omega("11", w, JA, k), continued(w)) for w in (-3 * W, W, 5 * W)
         ],
         "(2,6)": lambda: (
             ratio(both(omega, -1, W)),
