@@ -33,7 +33,7 @@ _DAMPING, _STUCK, _GAIN = 1e-3, 1e12, 1e-10
 """First damping of the least squares, the largest one, and the relative gain of their end."""
 _APART = 4.0
 """Standard deviations between different tops."""
-_CURVED, _BENT = 2.0, 4.0
+_CURVED, _BENT = 2.0, 50.0
 """Standard deviations at which chi^2 is compared with a parabola, and the factor above it that
 shows a bent valley."""
 
