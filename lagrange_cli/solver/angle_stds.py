@@ -14,12 +14,11 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..arithmetic.enclosures import decided
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from .derivatives import Derivatives, neighbours, sines, size_of
-from .sampling import Period, period_of, whole_periods
+from .sampling import Period, whole_periods
 from .solve import Motion
 from .tables import STD_COLUMNS, ProvedTable
 from .uncertainty import MISLEADING, away
@@ -84,13 +83,17 @@ class AngleDerivatives:
             rates = self.motion.table(t, ["thetadot", "phidot", "psidot"]).values()
             means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
             leaving = [rate - mean for rate, mean in zip(rates, means, strict=True)]
-            phase = _since_whole_periods(self.motion, t) / self.period
+            half = self.motion.sampler().half
+            period = Period(half.rate / 2, *(2 * part for part in half[1:]))
+            _, rest, lost = whole_periods(t, period, float(np.abs(t).max(initial=0.0)))
+            phase = (rest - lost) / self.period
         for values, name in zip(found, self.inputs, strict=True):
             waves, growths = np.zeros((3, t.size)), np.zeros(2)
             for _, motion, weight in self.neighbours[name]:
                 if weight:
                     sampler, share = motion.sampler(), weight / self.steps[name]
-                    waves += share * sampler.waves(phase * (motion.T_nutation or 1.0))
+                    at = phase * (motion.T_nutation or 1.0)
+                    waves += share * np.array(sampler.angles(at, waves=True))
                     growths += share * np.array([sampler.phi.rate.high, sampler.psi.rate.high])
             if self.period:
                 by_period, *by_rates = self.slopes[name]
@@ -126,18 +129,6 @@ class AngleDerivatives:
             if name.startswith("theta0"):
                 values[0, t == 0] = unit_in_radians(radians=name == "theta0_rad")
         return found
-
-
-def _since_whole_periods(motion: Motion, t: Array) -> Array:
-    """Return times less whole periods of the nutation."""
-
-    def period(digits: int) -> Period:
-        return period_of(motion.balls(digits)["T_nutation"])
-
-    _, rest, lost = whole_periods(
-        t, decided(period, motion.facts.equal, digits=24), float(np.abs(t).max(initial=0.0))
-    )
-    return rest - lost
 
 
 class AngleStds:

@@ -171,6 +171,7 @@ class ConstantTilt:
     y: arb
     """sin(theta/2)."""
 
+    rate = h0 = arb(0)
     start = arb(0), arb(0)
     """arg X and arg Y at t = 0, without their mean growth."""
     unit = property(lambda self: _time_of_a_radian(self.spin, self.precession))

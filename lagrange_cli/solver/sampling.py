@@ -151,12 +151,13 @@ class Growth(NamedTuple):
 def growth_of(rate: arb, start: arb, unit: arb, turns: float = 1.0) -> Growth:
     """Return the growth of an angle from its mean rate and its periodic part at t = 0.
 
-    Raises TooFewDigitsError if the rate times a unit of time is not known to twice the precision of
-    doubles.
+    Raises TooFewDigitsError if one of them, the rate times a unit of time, is not known to twice
+    the precision of doubles.
     """
-    grown, cycle = rate * unit, 2 * turns * arb.pi()
-    if not (grown.is_finite() and float(grown.rad()) <= _SHARP * (1 + abs(float(grown.mid())))):
-        raise TooFewDigitsError
+    cycle = 2 * turns * arb.pi()
+    for x in (rate * unit, start, cycle):
+        if not (x.is_finite() and float(x.rad()) <= _SHARP * (1 + abs(float(x.mid())))):
+            raise TooFewDigitsError
     time = cycle / rate if not rate.contains(0) else arb("inf")
     return Growth(pair_of(start), pair_of(rate), pair_of(cycle), period_of(time))
 
@@ -208,6 +209,9 @@ class Attitude:
 class Sampler:
     """The angles of one motion over time; subclasses yield the attitude at arrays of times."""
 
+    half = Period(0.0, 0.0, 0.0, 0.0)
+    """Half the period of the nutation, infinite if there is none."""
+
     def __init__(self, of: Course, tilt: float) -> None:
         """Take the constants of a motion and its tilt at t = 0."""
         unit, (x, y), spin, precession = of.unit, of.start, of.spin, of.precession
@@ -257,18 +261,17 @@ class Sampler:
         kind = OutOfRangeError if math.isfinite(bad) else LagtopError
         raise kind(f"{name} must be {bound}, got {bad}", name)
 
-    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
-        """Return tilt, spin and precession at the times t; see `Motion.angles`."""
+    def angles(self, t: ArrayLike, *, wrap: bool = False, waves: bool = False) -> Angles:
+        """Return tilt, spin and precession at the times t; see `Motion.angles`.
+
+        As `waves`, spin and precession are less their mean rates times t.
+        """
         times, farthest = doubles_of("t", t), self.check(t, wrap=wrap)
-        flat, how = times.reshape(-1), Growth.within_a_turn if wrap else Growth.angle
+        how = Growth.within_a_turn if wrap else Growth.wave if waves else Growth.angle
+        flat = times.reshape(-1)
         angles = self.evaluate(flat, farthest, 3, lambda at: (at.tilt, at.phi(how), at.psi(how)))
         angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
         return Angles(*angles.reshape(3, *times.shape))
-
-    def waves(self, t: Array) -> Array:
-        """Return the tilt and the periodic parts of spin and precession, of shape (3, times)."""
-        farthest, how = self.check(t), Growth.wave
-        return self.evaluate(t, farthest, 3, lambda at: (at.tilt, at.phi(how), at.psi(how)))
 
 
 class ThetaSampler(Sampler):
@@ -282,7 +285,6 @@ class ThetaSampler(Sampler):
         self.frames = series.frames[:: -1 if step % 2 else 1]
         """The series about the turning points of the even and of the odd steps."""
         self.half = period_of(of.period / 2)
-        """Half the period of the nutation."""
         self.offset = near(offset)
         """Half periods from the turning point of step 0 to t = 0, from -1/2 to 1/2."""
         self.speed = near(2 * series.scale / of.period)
@@ -374,9 +376,9 @@ def polynomial(coefficients: Sequence[float], x: Array) -> Array:
 
 
 class SwingSampler(Sampler):
-    """The single swing on the separatrix, from the upright position down and up again."""
+    """The single swing on the separatrix; a constant tilt, which is one at the rate 0."""
 
-    def __init__(self, of: SingleSwing, tilt: float) -> None:
+    def __init__(self, of: SingleSwing | ConstantTilt, tilt: float) -> None:
         super().__init__(of, tilt)
         self.constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
 
@@ -389,21 +391,8 @@ class SwingSampler(Sampler):
         at, real, imag, zero = Attitude(self, t), np.full_like(h, x), y * tanh, np.zeros_like(h)
         at.parts, at.args = (real, imag, Y, zero), (np.arctan2(imag, real), zero)
         at.rate = -4.0 * rate * Y * Y * tanh
-        yield slice(None), at
-
-
-class ConstantSampler(Sampler):
-    """A constant tilt, with constant rates of spin and precession."""
-
-    def __init__(self, of: ConstantTilt, tilt: float) -> None:
-        super().__init__(of, tilt)
-        self.constants = near(of.x), near(of.y)
-
-    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
-        """Yield the attitude at all times."""
-        at, zero, (x, y) = Attitude(self, t), np.zeros_like(t), self.constants
-        at.tilt, at.parts = zero + self.tilt, (zero + x, zero, zero + y, zero)
-        at.args, at.rate = (zero, zero), zero
+        if not rate:
+            at.tilt = np.full_like(h, self.tilt)
         yield slice(None), at
 
 
@@ -415,8 +404,7 @@ def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampl
 
     def sampler(digits: int) -> Sampler:
         course, tilt = balls(digits)["course"], near(facts.tilt.angle())
-        kind = {Nutation: ThetaSampler, SingleSwing: SwingSampler, ConstantTilt: ConstantSampler}
-        found: Sampler = kind[type(course)](course, tilt)
-        return found
+        nutates = isinstance(course, Nutation)
+        return ThetaSampler(course, tilt) if nutates else SwingSampler(course, tilt)
 
     return decided(sampler, facts.equal, digits=_DIGITS)

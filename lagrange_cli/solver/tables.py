@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from itertools import islice
 from typing import Any
 
@@ -117,10 +117,8 @@ def columns_at(
 
     def doubles(digits: int) -> dict[str, float]:
         found = column_constants(motion.balls(digits))
-        alpha = found.pop("energy_constant")
-        return {name: near(x) for name, x in found.items()} | {
-            "energy_constant": float(alpha.mid())
-        }
+        alpha = float(found.pop("energy_constant").mid())  # 0 may be known to no digit
+        return {name: near(x) for name, x in found.items()} | {"energy_constant": alpha}
 
     constants = decided(doubles, motion.facts.equal)
     within = wrap or not _WITHIN_A_TURN.isdisjoint(chosen)
@@ -326,7 +324,9 @@ class ProvedTable:
 
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
-        sample = cache(partial(self._sample, time))
+        sample = cache(
+            lambda digits: BallSample(self.motion, digits, time, self._constants(digits))
+        )
         turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
         most = max(self.motion.facts.equal, equal_digits([time], self.digits or 0))
 
@@ -342,9 +342,6 @@ class ProvedTable:
             return found
 
         return [number(name) for name in self.chosen]
-
-    def _sample(self, time: Fraction, digits: int) -> BallSample:
-        return BallSample(self.motion, digits, time, self._constants(digits))
 
     def _ball(self, name: str, sample: BallSample) -> arb:
         """Return a ball that contains a column, with angles in the unit in use."""

@@ -1,30 +1,27 @@
-"""Symmetries, shapes and blocks of the angles over time; columns on request; threads.
+"""Symmetries, shapes and blocks of the angles over time; columns on request.
 
 `test_columns` compares the numbers with the reference.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import random
-from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
-from flint import ctx
 from lagtop import LagtopError, Regime, Top, solve
-from scenes import EVERY_KIND, UNIT, period
+from scenes import UNIT, period
 
 from lagrange_cli.arithmetic.enclosures import at_precision
 from lagrange_cli.arithmetic.enclosures import exact as ball_of
 from lagrange_cli.names import ANGLES
 from lagrange_cli.solver.columns import chosen_columns, column_constants
 from lagrange_cli.solver.sampling import Attitude, period_of, whole_periods
-from lagrange_cli.solver.tables import ProvedTable, Sample, columns_at
+from lagrange_cli.solver.tables import ProvedTable, Sample
 
 T = np.linspace(-3, 40, 40_000)
 SERIES = [50, 200]
@@ -127,15 +124,6 @@ def test_columns_that_are_not_requested_are_not_computed(
     assert seen == set(computed.split())
 
 
-def test_motions_may_be_sampled_in_turns() -> None:
-    """Several motions do not share arrays, nor leave NumPy's settings changed."""
-    one, other, before = solve(Top()), solve(Top(r0=200)), np.geterr()
-    both = [columns_at(x, ["phi"], radians=True, wrap=False)(T) for x in (one, other)]
-    for motion, (phi,) in zip((one, other), both, strict=True):
-        np.testing.assert_array_equal(phi, motion.angles(T).phi)
-    assert np.geterr() == before
-
-
 @pytest.mark.parametrize("count", [0, 1, 16383, 16384, 16385])
 @pytest.mark.parametrize("r0", SERIES)
 def test_blocks_fit_together(r0: float, count: int) -> None:
@@ -171,25 +159,3 @@ def test_whole_periods_are_taken_off_exactly(power: float, offset: float) -> Non
             true = Fraction(time) - int(n) * exact
             assert abs(Fraction(left) - true) <= abs(true) / 2**52 + abs(Fraction(time)) / 2**100
             assert abs(true / exact + Fraction(offset)) <= Fraction(1, 2) + Fraction(1, 2**19)
-
-
-def results(task: tuple[dict[str, Any], int | None]) -> str:
-    """Return a record with radii, a row of a table and angles, as text."""
-    scene, digits = task
-    motion = solve(Top(**scene))
-    row = [str(x.value) for x in ProvedTable(motion, ANGLES, digits).row(Fraction(7, 3))]
-    angles = [float(angle[-1]) for angle in motion.angles(T[:20_000])]
-    return json.dumps([motion.record(digits=digits, radii=True), row, angles], default=str)
-
-
-def test_results_of_eight_threads_are_those_of_one() -> None:
-    """The precision of Arb is global, and work arrays are shared by the blocks of one call."""
-    tasks = [(scene, digits) for scene in EVERY_KIND.values() for digits in (None, 60)][::3]
-    before, ctx.prec = ctx.prec, 77
-    try:
-        serial = [results(task) for task in tasks]
-        with ThreadPoolExecutor(8) as pool:
-            assert list(pool.map(results, tasks)) == serial
-        assert ctx.prec == 77
-    finally:
-        ctx.prec = before

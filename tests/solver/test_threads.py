@@ -4,33 +4,34 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from fractions import Fraction
 from typing import Any
 
 import flint
+import numpy as np
 import pytest
 from flint import arb
 from lagtop import Top, solve
-from scenes import UNIT
+from scenes import EVERY_KIND
 
-NEAR_SEPARATRIX: dict[str, Any] = UNIT | {"r0": 1.5, "psidot0": 1, "theta0_deg": 60}
-TOPS = [
-    Top(),
-    Top(**NEAR_SEPARATRIX, thetadot0=0.5 + 1e-13),
-    Top(**NEAR_SEPARATRIX, thetadot0=0.5),
-    Top(r0=60, psidot0="steady"),
-    Top(phidot0=1, psidot0=1, theta0_deg=45),
-]
-TIMES = [0.0, 0.3, 1e13]
+from lagrange_cli.names import ANGLES
+from lagrange_cli.solver.tables import ProvedTable
+
+TOPS = [*EVERY_KIND.values()][::3]
+TIMES = np.linspace(-3, 40, 20_000)  # more than a block
 
 
 def work(top: Top) -> list[Any]:
-    """Return numbers and radii of a record, a table, proved rows, and functions."""
+    """Return numbers and radii of a record, a proved row and angles."""
+    found: list[Any] = []
     motion = solve(top)
-    record = motion.record(radii=True)
-    return [record]
+    for digits in (None, 60):
+        found += [x.value for x in ProvedTable(motion, ANGLES, digits).row(Fraction(7, 3))]
+        found.append(motion.record(digits=digits, radii=True))
+    return [*found, *(angle.tolist() for angle in motion.angles(TIMES))]
 
 
 @contextmanager
@@ -56,10 +57,15 @@ def disturbed() -> Iterator[None]:
         flint.ctx.prec = precision
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("top", TOPS, ids=range(len(TOPS)))
-def test_numbers_and_radii_are_those_of_one_thread(top: Top) -> None:
-    alone = work(top)
-    with disturbed(), ThreadPoolExecutor(8) as pool:
-        for together in pool.map(work, [top] * 40):
-            assert together == alone
+@pytest.mark.parametrize(
+    ("count", "around"),
+    [(1, nullcontext), pytest.param(20, disturbed, marks=pytest.mark.slow)],
+    ids=["in peace", "disturbed"],
+)
+def test_results_of_eight_threads_are_those_of_one(
+    count: int, around: Callable[[], AbstractContextManager[None]]
+) -> None:
+    tops = [Top(**scene) for scene in TOPS]
+    alone = [*map(work, tops)]
+    with around(), ThreadPoolExecutor(8) as pool:
+        assert [*pool.map(work, tops * count)] == alone * count
