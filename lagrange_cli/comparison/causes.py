@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from functools import partial
 from itertools import product
+from typing import Any
 
 import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..files import rotations
-from ..solver.solve import solve
-from .differences import Alignment, Exact, Run, errors, sizes, start_of
+from .differences import Alignment, Exact, Run, angles_of, errors, sizes, start_of
 from .mistakes import BACKWARDS, Cause, mistakes
 
 EXPLAINS = 0.1
@@ -25,9 +25,9 @@ _FEW, _SOME, _LEAST = 12, 300, 3
 _MOST_SHIFTS = 500
 _FRAMES = [
     *(Alignment(x, x) for x in "zyx"),
-    *(Alignment(up=x, left=True) for x in "zyx"),
+    *(Alignment(x, x, left=True) for x in "zyx"),
     *(Alignment(x, x) for x in ("-z", "-y", "-x")),
-    *(Alignment(x, y) for x, y in product(["z", "y", "x", "-z", "-y", "-x"], repeat=2) if x != y),
+    *(Alignment(y, x) for x, y in product(["z", "y", "x", "-z", "-y", "-x"], repeat=2) if x != y),
 ]
 """All frames whose axes are those of lagtop in another order or direction, the likeliest first.
 
@@ -46,13 +46,13 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
         return []
     search = Search(exact, run)
     alone = search.tried(search.single())
-    for more in search.groups():
-        found = search.best([*alone, *search.tried(more, limit)], limit)
-        if len(found) == 1 and found[0].align and found[0].align.frame != run.align.frame:
-            found = search.best([*found, *search.tried(search.with_zeros(), limit)], limit)
-        if found:
-            return found
-    return search.best(alone)
+    found = search.best(alone, limit)
+    for more in () if found else search.groups():
+        if found := search.best(search.tried(more, limit), limit):
+            break
+    if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
+        found = search.best([*found, *search.tried(search.pairs(in_other=False), limit)], limit)
+    return found or search.best(alone)
 
 
 class Search:
@@ -61,38 +61,27 @@ class Search:
     def __init__(self, exact: Exact, run: Run) -> None:
         self.run, self.given = run, exact
         self.mistakes = mistakes(exact.top, run)
-        self._tops: dict[str, Exact | None] = {str({}): exact}
-        self._runs: dict[Callable[[Run], Run], Run] = {}
+        self._runs: dict[Callable[[Run], Run] | None, Run] = {}
+        self._frames: dict[Callable[[Run], Run] | None, dict[Alignment, float]] = {}
         self.enough = EXPLAINS * self.error(Cause(""), _SOME)
 
-    def exact(self, cause: Cause) -> Exact | None:
-        """Return the motion of the top with a cause, or None if there is no such top."""
-        if (key := str(dict(cause.inputs))) not in self._tops:
-            try:
-                self._tops[key] = Exact(solve(self.given.top.replace(**cause.inputs)))
-            except LagtopError:
-                self._tops[key] = None
-        return self._tops[key]
+    def _whole(self, cause: Cause) -> Run:
+        return self.run if cause.undo is None else cause.undo(self.run)
 
     def some(self, cause: Cause) -> Run:
         """Return some rows of the trajectory as it was meant."""
-        if cause.meant not in self._runs:
-            self._runs[cause.meant] = cause.meant(self.run).few(_SOME)
-        return self._runs[cause.meant]
+        if cause.undo not in self._runs:
+            self._runs[cause.undo] = self._whole(cause).few(_SOME)
+        return self._runs[cause.undo]
 
     def error(self, cause: Cause, most: int = 0) -> float:
         """Return the greatest error without a cause, on so many rows or on all.
 
-        It is infinite if there is no such motion.
+        It is infinite if no row is finite.
         """
-        if (exact := self.exact(cause)) is None:
-            return math.inf
-        run = self.some(cause).few(most) if most else cause.meant(self.run)
-        try:
-            worst = errors(exact, run._replace(align=cause.align or run.align))
-        except LagtopError:
-            return math.inf
-        return float(np.fmax.reduce(worst, initial=-1.0)) if np.isfinite(worst).any() else math.inf
+        run = self.some(cause).few(most) if most else self._whole(cause)
+        worst = errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
+        return float(np.fmax.reduce(worst)) if np.isfinite(worst).any() else math.inf
 
     def tried(self, causes: Iterable[Cause], limit: float = math.inf) -> list[Cause]:
         """Return the causes that explain the error of some rows, with the error that remains."""
@@ -108,8 +97,7 @@ class Search:
         while found:
             bound = min(enough, max(_AS_GOOD * min(x.error for x in found), _ROUNDING))
             good = [x for x in found if x.error <= bound]
-            mistake = good[0].meant, good[0].inputs
-            others = [x for x in good if (x.meant, x.inputs) != mistake]
+            others = [x for x in good if x[1:3] != good[0][1:3]]  # another mistake
             whole = [x._replace(error=self.error(x)) for x in [good[0], *others[:1]]]
             if whole[0].error <= enough:
                 return [x for x in whole if x.error <= enough]
@@ -118,8 +106,8 @@ class Search:
 
     def single(self) -> list[Cause]:
         """Return the single causes, the simplest first."""
-        same, other = self.alignments(Cause(""))
-        early = 1 + next(i for i, x in enumerate(self.mistakes) if x.inputs)
+        early = 1 + next(i for i, x in enumerate(self.mistakes) if x.exact)
+        same, other = (self.alignments(Cause(""), in_other) for in_other in (False, True))
         return [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
 
     def groups(self) -> Iterator[list[Cause]]:
@@ -128,69 +116,67 @@ class Search:
         They are a shift of the clock, a mistake with other zeros of the angles and the clock, a
         mistake in another frame, two mistakes, and the reverse of time.
         """
-        yield []
         yield self.shifts()
-        yield self.with_zeros()
-        yield [x.with_other(y) for y in self.mistakes for x in self.alignments(y)[1]]
-        tops = [x for x in self.mistakes if x.inputs]
-        yield [x.with_other(y) for x in self.mistakes if not x.inputs for y in tops]
+        yield self.pairs(in_other=False)
+        yield self.pairs(in_other=True)
+        tops = [x for x in self.mistakes if x.exact]
+        yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops]
         yield [BACKWARDS]
 
-    def with_zeros(self) -> list[Cause]:
-        """Return each mistake with other zeros of the angles and the clock."""
-        return [x.with_other(y) for y in self.mistakes for x in self.alignments(y)[0]]
+    def pairs(self, *, in_other: bool) -> list[Cause]:
+        """Return each mistake with other zeros of the angles and the clock, or in other frames."""
+        return [x.with_other(y) for y in self.mistakes for x in self.alignments(y, in_other)]
 
-    def alignments(self, mistake: Cause) -> tuple[list[Cause], list[Cause]]:
-        """Return other alignments in the frame that is given, and in other frames.
+    def alignments(self, mistake: Cause, in_other: bool) -> Iterator[Cause]:
+        """Yield other alignments in the given frame, or in other frames.
 
-        Under each, the first row has the tilt of the exact motion, or its supplement.
+        Under each, the first row has the tilt of the exact motion.
         """
-        exact, run = self.exact(mistake), self.some(mistake).few(_FEW)
-        found: tuple[list[Cause], list[Cause]] = [], []
-        given = run.align
-        if exact is None:
-            return found
-        row = run._replace(align=Alignment(), undo=None).observed(slice(1))
-        frames, cosines = [given], np.full((3, 3), np.nan)
-        if row.quaternion is not None:
-            frames += _FRAMES
-            cosines = abs(rotations.rotated(row.quaternion, np.eye(3)))
-        elif row.axis is not None:
-            frames += [x for x in _FRAMES if x.axis in {"", "z"}]
-            cosines[:] = abs(row.axis) / np.linalg.norm(row.axis)
-        tilts = np.arccos(np.minimum(cosines, 1.0))
-        for start, time in ((False, False), (True, False), (False, True), (True, True)):
-            if (start and given.start) or (time and (given.time or not run.t[0])):
-                continue
-            t = run.t - run.t[0] * (time or given.time)
-            tilt = np.arccos(abs(np.cos(exact.at(t)["theta"][0])))
-            for frame in frames:
-                align = frame._replace(start=start or given.start, time=time or given.time)
-                off = tilts["xyz".index(frame.figure[-1]), "xyz".index(frame.up[-1])] - tilt
-                twice = align.start and align.is_reversed  # the same as a left-handed frame
-                known = frame.frame == given.frame and frame is not given
-                if not (align == given or twice or known or abs(off) > self.enough):
-                    found[frame is not given].append(self._cause(align, exact, run))
-        return found
+        exact, run, given = (
+            mistake.exact or self.given,
+            self.some(mistake).few(_FEW),
+            self.run.align,
+        )
+        starts, times = {given.start, True}, {given.time, given.time or bool(run.t[0])}
+        for time, start in product(sorted(times), sorted(starts)):
+            tilt = exact.at(run.t[:1] - run.t[0] * time)["theta"][0]
+            for frame, seen in self.tilts(mistake).items():
+                align = frame._replace(start=start, time=time)
+                twice = in_other and start and align.is_reversed  # the same as a left-handed frame
+                if (frame[:3] != given[:3]) != in_other or align == given or twice:
+                    continue
+                if not abs(seen - tilt) > self.enough:
+                    yield self._cause(align, exact, run)
+
+    def tilts(self, cause: Cause) -> dict[Alignment, float]:
+        """Return the tilt of the first row in each frame, NaN if it is not known."""
+        if cause.undo not in self._frames:
+            run, found = self.some(cause).few(1), self._frames.setdefault(cause.undo, {})
+            for frame in [Alignment(*self.run.align[:3]), *_FRAMES]:
+                with suppress(LagtopError):  # a frame that needs more than is given
+                    seen = run._replace(align=frame).observed()
+                    found[frame] = float(angles_of(seen).get("theta", [math.nan])[0])
+        return self._frames[cause.undo]
 
     def _cause(self, align: Alignment, exact: Exact, run: Run) -> Cause:
         """Return an alignment as a cause."""
-        given, (up, figure, left) = run.align, align.frame
-        words, names = [align], []
-        if align.frame == given.frame and align.start and not given.start:
+        given, words, names = run.align, [align], []
+        if align[:3] == given[:3] and align.start and not given.start:
             seen = run._replace(align=align._replace(start=False)).observed()
             phi, psi = start_of(seen, exact.at(seen.t)) or (0.0, 0.0)
             angles = {"psi": math.degrees(psi), "phi": math.degrees(phi)}
             starts = [f"{x} starts at {y:.4g} degrees" for x, y in angles.items() if abs(y) > 1e-3]
             names.append(" and ".join(starts))
-        elif align.frame != given.frame and (left or align.is_reversed):
-            axis = up.lstrip("-")
-            down = Alignment(f"-{axis}", f"-{axis}", start=True, time=align.time)
-            words.append(down if left else down._replace(axis="", up=axis, left=True))
+        elif align[:3] != given[:3] and (align.left or align.is_reversed):
+            axis = align.up.lstrip("-")
+            down = f"-{axis}" if align.left else axis
+            words.append(Alignment(down, down, not align.left, start=True, time=align.time))
             names.append(f"the frame is left-handed with {axis} up, or has {axis} down")
-        elif align.frame != given.frame:
-            axes = [f"{up} is up"] * (up != given.up or given.left)
-            axes += [f"the figure axis is the body's {figure} axis"] * (figure != given.figure)
+        elif align[:3] != given[:3]:
+            axes = [f"{align.up} is up"] * (align.up != given.up or given.left)
+            axes += [f"the figure axis is the body's {align.axis} axis"] * (
+                align.axis != given.axis
+            )
             names.append(" and ".join(axes))
         if align.time and not given.time:
             names.append(f"the clock starts at {run.t[0]:.10g}")
@@ -205,21 +191,18 @@ class Search:
         if self.run.align.start:
             return []
 
-        def error(shifts: float | Array) -> Array:
+        def error(shifts: float | Array) -> Any:
             rows = {key: np.tile(x, (np.size(shifts), 1)) for key, x in few.given.items()}
             rows["t"] -= np.repeat(shifts, len(few.given["t"]))[:, np.newaxis]
             found = errors(exact, few._replace(given=rows, missing=None))
-            return np.asarray(np.fmax.reduce(found.reshape(np.size(shifts), -1), axis=1))
+            return np.fmax.reduce(found.reshape(*np.shape(shifts), -1), axis=-1)
 
         step = 0.3 / sizes(exact.top)[2]
         reach = max(exact.motion.T_nutation or 0.0, 10 * abs(t[-1] - t[0]) / len(t))
         count = math.ceil(min(reach / step, _MOST_SHIFTS))
-        near = step * np.arange(-count, count + 1.0)
-        shifts = np.unique([near, t[0] + near])
+        shifts = step * np.arange(-count, count + 1.0)
         best = float(shifts[np.argmin(np.nan_to_num(error(shifts), nan=np.inf))])
         ends, options = (best - step, best + step), {"xatol": 1e-9 * step}
-        found = minimize_scalar(
-            lambda x: float(error(x)[0]), bounds=ends, method="bounded", options=options
-        )
+        found = minimize_scalar(error, bounds=ends, method="bounded", options=options)
         shift = float(found.x)
         return [Cause(f"the clock is shifted by {shift:.5g}", partial(Run.timed, shift=shift))]

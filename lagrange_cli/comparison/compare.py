@@ -19,7 +19,7 @@ from ..output.notebook import HasRecord
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 from .causes import likely_causes
-from .differences import CONSERVED, Alignment, Exact, Run, blocks
+from .differences import CONSERVED, Alignment, Exact, Run, differences
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -202,7 +202,7 @@ def compared(
         is_wrong = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
         converges = found is not None and (found.falls or found.best <= limit)
         causes = likely_causes(exact, run, limit) if is_wrong and not converges else []
-        is_known = any(y.inputs and y.error <= limit for y in causes)
+        is_known = any(y.exact and y.error <= limit for y in causes)
         verdict = "drifts" if is_wrong or (x.pivot_slip or 0.0) > limit else "fine"
         if is_wrong and (is_known or (found and not converges)):
             verdict = "another top"
@@ -222,33 +222,21 @@ def compared(
 
 def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
-    whole: dict[str, list[Array]] = {"t": []}
-    extremes: dict[str, list[float]] = {}
-    starts: list[float] = []
     try:
-        for t, found in blocks(exact, run):
-            starts = starts or [float(max(found["error"][0], found.get("rates", [0.0])[0]))]
-            whole["t"].append(t)
-            for name, values in found.items():
-                if name in {"error", *ANGLES}:
-                    whole.setdefault(name, []).append(values)
-                if (finite := values[np.isfinite(values)]).size:
-                    ends = [float(finite[0]), float(finite.min()), float(finite.max())]
-                    extremes.setdefault(name, []).extend(ends)
+        found = differences(exact, run)
     except LagtopError as wrong:
         if run.file is None or wrong.key != "t":
             raise
         raise DataError(f"{shown_path(run.file)}: {wrong}") from None
-    columns = {name: np.concatenate(x) for name, x in whole.items()}
-    t, error = columns["t"], columns["error"]
+    t, error = found["t"], found["error"]
     known: dict[str, Any] = {}
-    for name, ends in extremes.items():
-        first = ends[0] if name in CONSERVED else 0.0
-        over = first if name == "distance" else 1.0
-        greatest = float(max(abs(x - first) for x in ends) / over)
-        known[_KEYS.get(name, f"{name}_error_max")] = greatest
-        if name in ANGLES:
-            known[f"{name}_drift"] = _slope(t, columns[name])
+    for name, values in found.items():
+        if name != "t" and (finite := values[np.isfinite(values)]).size:
+            first = finite[0] if name in CONSERVED else 0.0
+            greatest = abs(finite - first).max() / (first if name == "distance" else 1.0)
+            known[_KEYS.get(name, f"{name}_error_max")] = float(greatest)
+            if name in ANGLES:
+                known[f"{name}_drift"] = _slope(t, values)
     lost = np.isnan(error) & (True if run.missing is None else np.logical_not(run.missing))
     return Comparison(
         file=run.file and utf8_path(run.file),
@@ -257,10 +245,10 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
         step=step,
         rows=t.size,
         rows_missing=0 if run.missing is None else int(run.missing.sum()),
-        compared=next((word for name, word in _COMPARED.items() if name in extremes), "rates"),
+        compared=next((word for name, word in _COMPARED.items() if name in found), "rates"),
         error_final=None if np.isnan(error[-1]) else float(error[-1]),
         lost_at=float(t[np.argmax(lost)]) if lost.any() else None,
-        error_start=starts[0],
+        error_start=float(max(error[0], found.get("rates", error)[0])),
         t=t,
         error=error,
         **known,

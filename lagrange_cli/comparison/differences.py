@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -41,7 +41,7 @@ _BLOCK, _KEPT = 1 << 14, 300
 class Alignment(NamedTuple):
     """Changes of a trajectory before it is compared."""
 
-    axis: str = ""
+    axis: str = "z"
     up: str = "z"
     left: bool = False
     start: bool = False
@@ -60,44 +60,39 @@ class Alignment(NamedTuple):
                 raise LagtopError(f"{wanted}, got {quoted(word)}", "align")
             key, _, axis = str(word).strip().partition("=")
             found[key] = axis or True
+        if "left" in found:
+            found.setdefault("axis", found.get("up", "z"))
         return cls(**found)
 
     def __str__(self) -> str:
-        has_axis = self.figure != (self.up if self.left else "z")
-        words = [f"axis={self.figure}"] * has_axis
-        words += [f"up={self.up}"] * (self.up != "z")
+        words = [f"axis={self.axis}"] * self.has_axis + [f"up={self.up}"] * (self.up != "z")
         words += [x for x in ("left", "start", "time") if getattr(self, x)]
         return ",".join(words) or "up=z"
 
     @property
-    def frame(self) -> tuple[str, str, bool]:
-        """The axes and the handedness of the frames."""
-        return self.up, self.figure, self.left
+    def has_axis(self) -> bool:
+        """Whether the figure axis is another one than usual in such a frame."""
+        return self.axis != (self.up if self.left else "z")
 
     @property
     def is_reversed(self) -> bool:
         """Whether the frames are right-handed and have the same axis down, as NED has z."""
-        return not self.left and self.up.startswith("-") and self.figure == self.up
-
-    @property
-    def figure(self) -> str:
-        """The axis of the body that is the figure axis."""
-        return self.axis or (self.up if self.left else "z")
+        return not self.left and self.up.startswith("-") and self.axis == self.up
 
     def framed(self, run: Observed) -> Observed:
         """Return a motion in the frames of lagtop.
 
         Raises LagtopError if the attitude is not complete enough.
         """
-        has_axis = run.quaternion is not None or run.axis is not None
-        if run.quaternion is None and self.axis not in {"", "z"}:
+        if run.quaternion is None and self.has_axis:
             raise LagtopError("align axis needs the whole attitude: omit it", "align")
-        if self.left and not has_axis:
-            raise LagtopError("align left needs the axis or the whole attitude: omit it", "align")
-        if self.up != "z" and not has_axis and run.space_rates is None:
-            raise LagtopError("align up needs the axis or the whole attitude: omit it", "align")
-        if self.figure != "z" or self.up != "z":
-            run = run.turned(rotations.to_z(self.up), rotations.to_z(self.figure))
+        if run.quaternion is None and run.axis is None:
+            word = "up" * (self.up != "z" and run.space_rates is None)
+            if word := "left" if self.left else word:
+                needs = f"align {word} needs the axis or the whole attitude"
+                raise LagtopError(f"{needs}: omit it", "align")
+        if self.axis != "z" or self.up != "z":
+            run = run.turned(rotations.to_z(self.up), rotations.to_z(self.axis))
         if self.left:  # as is usual: Unreal turns y round, Unity exchanges y and z
             run = _mirrored(run, np.diag([1.0, -1, 1]) if self.up[-1] == "z" else _EXCHANGE_XY)
         return run
@@ -128,8 +123,6 @@ class Run(NamedTuple):
     """The time of the first row, if the times are counted from there."""
     columns: tuple[str, str] = ("", "")
     """The names of the columns that are read, and of those that are not."""
-    undo: Callable[[Observed], Observed] | None = None
-    """Undoes a mistake in the motion, after its frames and its clock are those of lagtop."""
 
     @property
     def t(self) -> Array:
@@ -151,27 +144,41 @@ class Run(NamedTuple):
         """Return the motion of some rows, in the frames of lagtop and with its clock."""
         seen = self.align.framed(observe(rows_of(self.given, rows), self.conventions))
         begins = -self.given["t"][0, 0] if self.align.time else self.begins
-        seen = replace(seen, t=seen.t + begins)
-        return self.undo(seen) if self.undo else seen
+        return replace(seen, t=seen.t + begins)
 
 
 class Exact:
-    """The exact motion of a top; its states at few times are kept."""
+    """The exact motion of a top, or one that follows from it by symmetry.
 
-    def __init__(self, motion: Motion) -> None:
+    Spin and precession may be half a turn more, the motion may be turned over, with gravity
+    upwards, or have more `spin`.  The states at few times are kept.
+    """
+
+    def __init__(
+        self, motion: Motion, *, half: bool = False, over: bool = False, spin: float = 0.0
+    ) -> None:
         self.motion, self.top = motion, motion.top
+        self._half, self._over, self._spin = half, over, spin
         self._kept: dict[bytes, dict[str, Array]] = {}
 
     def at(self, t: Array) -> dict[str, Array]:
         """Return the angles, and the `quaternion` and `rates` as arrays of shape (n, parts)."""
-        key = t.tobytes() if t.size <= _KEPT else b""
+        key = t.tobytes()
         if key in self._kept:
             return self._kept[key]
         found = self.motion.table(t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
         states = {x: found[x] for x in ANGLES}
         states["quaternion"] = np.stack([found[f"quaternion_{x}"] for x in "wxyz"], axis=1)
         states["rates"] = np.stack([found[x] for x in "pqr"], axis=1)
-        if key:
+        if self._half or self._over or self._spin:
+            space = rotations.about_z(np.pi * self._half)
+            body = rotations.about_z(np.pi * self._half + np.asarray(self._spin * t))
+            space = rotations.product(rotations.HALF_TURN_X, space) if self._over else space
+            q = rotations.product(rotations.product(space, states["quaternion"]), body)
+            rates = rotations.rotated(rotations.conjugate(body), states["rates"])
+            rates[:, 2] += self._spin
+            states = {**rotations.angles_of(q), "quaternion": q, "rates": rates}
+        if t.size <= _KEPT:
             self._kept[key] = states
         return states
 
@@ -202,15 +209,17 @@ def start_of(seen: Observed, exact: dict[str, Array]) -> tuple[float, float] | N
     return phi, psi
 
 
-def blocks(
-    exact: Exact, run: Run, *, whole: bool = True
-) -> Iterator[tuple[Array, dict[str, Array]]]:
-    """Yield the times of some rows and their differences from the exact motion, block by block.
+def differences(exact: Exact, run: Run) -> dict[str, Array]:
+    """Return the times `t` of all rows and the differences from the exact motion, by name.
 
-    The differences are all, or for attitudes as few as `error` and `rates`.  Raises LagtopError if
-    the attitude is not complete enough for the alignment.
+    `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
+    top; `energy` and `Lz` (4,2), (4,3) are over their sizes; `distance` is that of the mass centre
+    from the pivot, and `norm` the distance of a norm from 1.  Quantities that are not given are
+    missing.  `error` is the error of the attitude, or else of the axis, the angles, or the rates.
+    It is NaN in a row with a value that is not finite, unless only another quantity has empty
+    cells.  Raises LagtopError if the attitude is not complete enough for the alignment.
     """
-    start = None
+    start, found = None, []
     for first in range(0, len(run.given["t"]), _BLOCK):
         rows = slice(first, first + _BLOCK)
         seen = run.observed(rows)
@@ -221,46 +230,35 @@ def blocks(
             angles = {key: x - shifts[key] for key, x in seen.angles.items()}
             seen = seen.turned(rotations.about_z(-psi), rotations.about_z(phi))
             seen = replace(seen, angles=angles)
-        missing = None if run.missing is None else run.missing[rows]
-        yield seen.t, differences(exact.motion, seen, states, missing, whole=whole)
+        missing = False if run.missing is None else run.missing[rows]
+        found.append({"t": seen.t} | _differences(exact.motion, seen, states, missing))
+    return {key: np.concatenate([x.pop(key) for x in found]) for key in [*found[0]]}
 
 
 def errors(exact: Exact, run: Run) -> Array:
     """Return the error of each row, or that of its rates if it is greater."""
-    found = (x for _, x in blocks(exact, run, whole=False))
-    return np.concatenate([np.fmax(x["error"], x.get("rates", x["error"])) for x in found])
+    found = differences(exact, run)
+    return np.asarray(np.fmax(found["error"], found.get("rates", found["error"])))
 
 
-def differences(
-    motion: Motion,
-    run: Observed,
-    states: dict[str, Array],
-    missing: Array | None = None,
-    *,
-    whole: bool = True,
+def _differences(
+    motion: Motion, run: Observed, states: dict[str, Array], missing: Array | bool
 ) -> dict[str, Array]:
-    """Return the differences from the exact motion in each row, by name; missing if not given.
-
-    `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
-    top; `energy` and `Lz` (4,2), (4,3) are over their sizes; `distance` is that of the mass centre
-    from the pivot, and `norm` the distance of a norm from 1.  `error` is the error of the attitude,
-    or else of the axis, the angles, or the rates.  It is NaN in a row with a value that is not
-    finite, unless only another quantity has `missing` cells.
-    """
+    """Return the differences of some rows."""
     q, exact = states["quaternion"], {x: states[x] for x in ANGLES}
-    axis, found = run.axis, dict[str, Array]()
-    angles = angles_of(run) if whole or run.quaternion is None else {}
+    axis, angles, found = run.axis, angles_of(run), dict[str, Array]()
     if run.quaternion is not None:
         found["attitude"] = rotations.angle_between(q, run.quaternion)
-        axis = rotations.axis_of(run.quaternion) if whole else None
+        axis = rotations.axis_of(run.quaternion)
     if axis is not None:
         found["axis"] = rotations.angle_between_vectors(rotations.axis_of(q), axis)
     if axis is not None and motion.regime in {Regime.SLEEPING, Regime.HANGING}:
+        upright = exact["theta"][0] < 1
         for one in (angles, exact) if "phi" in angles else ():  # only phi + psi, phi - psi exist
-            one["phi"] = one["phi"] + (1 if motion.regime is Regime.SLEEPING else -1) * one["psi"]
+            one["phi"] = one["phi"] + (1 if upright else -1) * one["psi"]
         del angles["psi"]
     found |= {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
-    found |= _rates(motion.top, run, q, states["rates"], whole)
+    found |= _rates(motion.top, run, q, states["rates"])
     if run.norm is not None:
         found["norm"] = abs(run.norm)
     if run.distance is not None:
@@ -269,11 +267,11 @@ def differences(
     parts = [x for x in ("attitude", "axis") if x in found][:1] or parts
     error = np.max([abs(found[x]) for x in parts], axis=0)
     lost = ~np.all([np.isfinite(x) for x in found.values()], axis=0)
-    error[lost & (True if missing is None else np.logical_not(missing))] = np.nan
+    error[lost & np.logical_not(missing)] = np.nan
     return found | {"error": error}
 
 
-def _rates(top: Top, run: Observed, q: Array, exact: Array, whole: bool) -> dict[str, Array]:
+def _rates(top: Top, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
     """Return the differences of the angular velocity, and the energy and Lz of the motion."""
     swing, torque, size = sizes(top)
     own, fixed = run.body_rates, run.space_rates
@@ -282,7 +280,7 @@ def _rates(top: Top, run: Observed, q: Array, exact: Array, whole: bool) -> dict
         return {}
     off = given - (exact if fixed is None else rotations.rotated(q, exact))
     found = {"rates": np.linalg.norm(off, axis=1) / size}
-    if run.quaternion is None or not whole:
+    if run.quaternion is None:
         return found
     to_body = rotations.conjugate(run.quaternion)
     own = given if fixed is None else rotations.rotated(to_body, fixed)

@@ -4,39 +4,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..files import rotations
-from ..files.observed import ORDERS, Observed
+from ..errors import LagtopError
+from ..files.observed import ORDERS
 from ..names import ANGLES
+from ..solver.solve import solve
 from ..top.top import Top
-from .differences import Alignment, Run
+from .differences import Alignment, Exact, Run
 
 _GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
 _UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0}
 _FRAME_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 250, 480, 500, 960)
 
 
-def as_given(run: Run) -> Run:
-    """Return the trajectory itself."""
-    return run
-
-
 class Cause(NamedTuple):
     """A cause of errors: an alignment, a way of writing, other inputs, or two of them."""
 
     name: str
-    meant: Callable[[Run], Run] = as_given
+    undo: Callable[[Run], Run] | None = None
     """Returns the trajectory as it was meant."""
-    inputs: Mapping[str, Any] = MappingProxyType({})
-    """The inputs in which the top that moved differs."""
+    exact: Exact | None = None
+    """The motion of the other inputs."""
     align: Alignment | None = None
     remedy: str = ""
     """The arguments of `compare` that take the cause into account, as `name=value`."""
@@ -44,13 +38,14 @@ class Cause(NamedTuple):
     """The greatest error without the cause."""
 
     def with_other(self, other: Cause) -> Cause:
-        """Return this cause and another one at once."""
-        meant = other.meant
-        if self.meant is not as_given:
-            meant = lambda run: other.meant(self.meant(run))  # noqa: E731
-        remedy = " and ".join(filter(None, (self.remedy, other.remedy)))
-        name, inputs = f"{self.name}; {other.name}", {**self.inputs, **other.inputs}
-        return Cause(name, meant, inputs, self.align or other.align, remedy)
+        """Return this cause and another one of another kind at once."""
+        return Cause(
+            f"{self.name}; {other.name}",
+            self.undo or other.undo,
+            self.exact or other.exact,
+            self.align or other.align,
+            " and ".join(filter(None, (self.remedy, other.remedy))),
+        )
 
 
 BACKWARDS = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
@@ -82,6 +77,8 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
     left = " (in a left-handed frame a positive turn is clockwise)" * run.align.left
     mirrored = top.psidot0 and run.observed(slice(1)).quaternion is not None
     mirror = " (or that of {}, if the frame is left-handed or has z down)" if mirrored else ""
+    folded, ratio = math.remainder(math.degrees(tilt), math.tau), A / Fraction(top.C)
+    over = {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -rate}
     inputs: dict[str, dict[str, Any]] = {
         f"r0 has the wrong sign{left}{mirror.format('psidot0')}": {"r0": -top.r0},
         "the gyroscopic term is left out of Euler's equations (as if C = A)": {"C": top.A},
@@ -96,63 +93,41 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         "thetadot0 has the wrong sign": {"thetadot0": -rate},
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
         **{f"g is {g} (or m or s is wrong by as much)": {"g": Fraction(g)} for g in _GRAVITY},
-    }
-    yield from (Cause(name, inputs=changed) for name, changed in inputs.items())
-    yield Cause("theta0 has the wrong sign", _undone(half=True), {"thetadot0": -rate})
-    folded = math.remainder(math.degrees(tilt), math.tau)
-    changed: dict[str, Any] = {
-        "theta0_rad": abs(folded),
-        "thetadot0": math.copysign(rate, rate * folded),
-    }
-    yield Cause("theta0 in degrees was taken as radians", _undone(half=folded < 0), changed)
-    over = {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -rate}
-    yield Cause("g points upwards", _undone(half=True, over=True), over)
-    if {*run.given} - {"t", "rates"}:
+        "theta0 has the wrong sign": {"thetadot0": -rate, "half": True},
+        "theta0 in degrees was taken as radians": {
+            "theta0_rad": abs(folded),
+            "thetadot0": math.copysign(rate, rate * folded),
+            "half": folded < 0,
+        },
+        "g points upwards": over | {"half": True, "over": True},
         # A top with the same a and b, which need be no body: its spin differs by a constant rate.
-        ratio = A / Fraction(top.C)
-        changed = {"A": top.C, "C": top.C, "r0": Fraction(top.r0) * ratio}
-        lag = float(Fraction(top.r0) * (1 - ratio))
-        yield Cause("A and C are exchanged", _undone(spin=lag), changed)
-
-
-def _undone(half: bool = False, over: bool = False, spin: float = 0.0) -> Callable[[Run], Run]:
-    """Return what undoes half turns of spin and precession, a space turned over, or more spin.
-
-    With more spin, the angular velocity is left out.
-    """
-
-    def undo(seen: Observed) -> Observed:
-        turn, lag, angles = np.pi * half, np.asarray(spin * seen.t), dict(seen.angles)
-        space, body = rotations.about_z(turn), rotations.about_z(turn + lag)
-        if over:
-            space = rotations.product(space, rotations.HALF_TURN_X)
-            of = {
-                "theta": lambda x: np.pi - x,
-                "psi": lambda x: np.pi - x,
-                "phi": lambda x: x + np.pi,
-            }
-            angles = {key: of[key](x) for key, x in angles.items()}
-        shifts: dict[str, Any] = {"theta": 0.0, "phi": turn + lag, "psi": turn}
-        angles = {key: x - shifts[key] for key, x in angles.items()}
-        if spin:
-            seen = replace(seen, body_rates=None, space_rates=None)
-        return replace(seen.turned(space, body), angles=angles)
-
-    return lambda run: run._replace(undo=undo)
+        "A and C are exchanged": {
+            "A": top.C,
+            "C": top.C,
+            "r0": Fraction(top.r0) * ratio,
+            "spin": float(Fraction(top.r0) * (1 - ratio)),
+        },
+    }
+    for name, changed in inputs.items():
+        shape = {key: changed.pop(key) for key in ("half", "over", "spin") if key in changed}
+        try:
+            yield Cause(name, exact=Exact(solve(top.replace(**changed)), **shape))
+        except LagtopError:  # there is no such top
+            continue
 
 
 def _of_writing(run: Run) -> Iterator[Cause]:
     how, order = run.conventions, run.conventions.quaternion or ORDERS[0]
     if "quaternion" in run.given:
         other = ORDERS[order == ORDERS[0]]
-        meant = partial(Run._replace, conventions=how._replace(quaternion=other))
+        undo = partial(Run._replace, conventions=how._replace(quaternion=other))
         remedy = f"quaternion_order={other}"
-        yield Cause(f"the quaternion is {other} and was read as {order}", meant, remedy=remedy)
+        yield Cause(f"the quaternion is {other} and was read as {order}", undo, remedy=remedy)
     if "rates" in run.given:
         frame = "body" if how.rates == "space" else "space"
-        meant = partial(Run._replace, conventions=how._replace(rates=frame))
+        undo = partial(Run._replace, conventions=how._replace(rates=frame))
         remedy = f"rates_frame={frame}"
-        yield Cause(f"the rates are in the frame of {frame}", meant, remedy=remedy)
+        yield Cause(f"the rates are in the frame of {frame}", undo, remedy=remedy)
     flipped = np.array([1.0 if x == "w" else -1.0 for x in order])
     unit = np.radians if how.radians else np.degrees
     changes: dict[str, dict[str, Callable[[Array], Array]]] = {
