@@ -99,11 +99,10 @@ class AngleDerivatives:
                 by_period, *by_rates = self.slopes[name]
                 growths = np.array(by_rates)
                 waves -= np.array(leaving) * (t * (by_period / self.period))
-            values[[0, 3, 4]] = waves
-            if not self.motion.facts.plane:  # else they change by half turns only
+            values[0] = waves[0]
+            if not self.motion.facts.plane:  # else the others change by half turns only
                 values[1:3] = waves[1:] + np.multiply.outer(growths, t)
-            else:
-                values[1:] = 0.0
+                values[3:] = waves[1:]
         return self._completed(found, t)
 
     def in_digits(self, t: Array) -> Array:

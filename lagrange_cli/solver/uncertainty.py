@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 from ..arithmetic.enclosures import pi_to, rounded
@@ -57,6 +57,7 @@ class FirstOrder:
         """Take the uncertainties of the inputs as given."""
         self.motion, self.stds = motion, stds
         self.derivatives = Derivatives(motion)
+        self.away = cache(partial(away, motion, stds))
 
     def has(self, key: str) -> bool:
         """Return whether a key is an input, or a number of the motion with derivatives."""
@@ -68,17 +69,12 @@ class FirstOrder:
         same = degree_name(key)
         if same == "theta0_deg":
             same = tilt_of(self.motion.top)
-        if same in self.derivatives.inputs:
-            total = Fraction(same == name)
-        else:
-            found = self.derivatives.of(same, name)
-            if found is None:
-                return None
-            total = found
-        if same == key:
-            return total
+        given = same in self.derivatives.inputs
+        found = Fraction(same == name) if given else self.derivatives.of(same, name)
+        if found is None or same == key:
+            return found
         degree = pi_to(60) / 180
-        return total * degree if key.endswith("_rad") else total / degree
+        return found * degree if key.endswith("_rad") else found / degree
 
     def std(self, key: str) -> float | None:
         """Return the standard uncertainty of a key or an input, or None.
@@ -100,10 +96,6 @@ class FirstOrder:
         parts = [(slopes[name] or 0) * Fraction(std) for name, std in self.stds.items()]
         return sum((part * part for part in parts), Fraction(0))
 
-    @cached_property
-    def _away(self) -> list[tuple[float, Motion]]:
-        return away(self.motion, self.stds)
-
     def misleads(self, key: str, std: float) -> bool:
         """Return whether linear propagation misleads for a number with an uncertainty.
 
@@ -113,7 +105,7 @@ class FirstOrder:
         if degree_name(key) not in DIFFERENTIABLE:
             return False
         here, parts = _value(self.motion, key) or 0.0, []
-        for weight, motion in self._away:
+        for weight, motion in self.away():
             there = _value(motion, key)
             if there is None:
                 return True
