@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop
 from lagtop import LagtopError, Regime, Top, solve
 from scenes import UNIT
 
@@ -86,11 +86,3 @@ def test_commands_take_the_words_where_psidot0_is_known(lagtop: Lagtop) -> None:
     assert found.stdout == "steady\nsteady precession\n"
     rows = lagtop(*"table --r0 60 --psidot0 steady-fast --t-max 1 --n 2 --digits 20".split()).stdout
     assert {row.split(",")[1] for row in rows.splitlines()[1:]} == {"30.0"}
-    for words in (
-        "find --r0 1:2 T_nutation=1",
-        "fit recording.csv",
-    ):
-        refused = lagtop(*words.split(), "--psidot0", "steady")
-        keys = "steady_rate_slow and steady_rate_fast"
-        wanted = f"must be a number unless one top is solved, got steady: see the keys {keys}"
-        assert_one_line(refused, 2, f"--psidot0 {wanted}")
