@@ -90,7 +90,6 @@ class Nutation:
     """1 if the tilt grows after t = 0, else -1."""
 
     unit = property(lambda self: self.period)
-    """The unit of time of the motion."""
 
     @cached_property
     def start(self) -> tuple[arb, arb]:
@@ -173,9 +172,7 @@ class ConstantTilt:
 
     rate = h0 = arb(0)
     start = arb(0), arb(0)
-    """arg X and arg Y at t = 0, without their mean growth."""
     unit = property(lambda self: _time_of_a_radian(self.spin, self.precession))
-    """The unit of time of the motion."""
 
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
@@ -201,9 +198,7 @@ class SingleSwing:
     """1 if the tilt grows after t = 0, else -1."""
 
     start = property(lambda self: (self.turn(self.h0), arb(0)))
-    """arg X and arg Y at t = 0, without their mean growth."""
     unit = property(lambda self: _time_of_a_radian(self.spin, self.precession, self.rate))
-    """The unit of time of the motion."""
 
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
@@ -227,7 +222,10 @@ def _time_of_a_radian(*rates: arb) -> arb:
 
 
 Course = Nutation | ConstantTilt | SingleSwing
-"""The constants from which the attitude of any motion follows."""
+"""The constants from which the attitude of any motion follows.
+
+Each kind has its `unit` of time, and as `start` arg X and arg Y at t = 0 without their mean growth.
+"""
 
 
 def course_of(facts: Facts, of: Names) -> Course:

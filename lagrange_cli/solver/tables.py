@@ -173,10 +173,8 @@ def rows(
         for t in times.blocks():
             found = at(t)
             if stds is not None and angles:
-                spread = stds(t)[angles]
-                found = np.concatenate(
-                    [found, six_digits(spread if radians else np.degrees(spread))]
-                )
+                spread = stds(t)[angles] if radians else np.degrees(stds(t)[angles])
+                found = np.concatenate([found, six_digits(spread)])
             yield found.T
 
     return [*header, *(f"{heading}_std" for heading in named)], parts()
