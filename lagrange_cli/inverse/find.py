@@ -165,7 +165,7 @@ def search_of(
         )
     others.sort(key=lambda x: isinstance(x.value, float))
     known = {name: x for name, x in given.values.items() if name not in spans}
-    fixed = shared_inputs(given._replace(values=known), varying=spans, steady=True)
+    fixed = shared_inputs(given._replace(values=known), varying=spans)
     return Search(fixed, spans, targets, others, radians), given
 
 

@@ -8,14 +8,16 @@ wherever the printed one subtracts nearly equal numbers.  Equation numbers are C
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import elliprf
 
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
+from ..solver.keys import degree_name
 
 Numbers = Any
 """An array of doubles, or pairs of doubles."""
@@ -30,6 +32,11 @@ def where(condition: Mask, yes: Numbers, no: Numbers) -> Numbers:
     """Choose between two numbers, element by element."""
     choose: Any = DoubleDouble.choose if isinstance(yes, DoubleDouble) else np.where
     return choose(condition, yes, no)
+
+
+def texts(condition: Mask, yes: str | None, no: str | None) -> NDArray[np.object_]:
+    """Choose between two texts, element by element."""
+    return np.array([no, yes], dtype=object)[condition.astype(np.intp)]
 
 
 class Start(NamedTuple):
@@ -230,7 +237,7 @@ def period_mean(k_prime: Numbers, p: Numbers, x: Numbers, y: Numbers) -> Numbers
             return (x * m + y) / (m + p)
 
 
-def nome(m: Array, k_prime: Array) -> Array:
+def nome(m: Array, k_prime: Array) -> Numbers:
     """Return the nome q = exp(-pi K'/K) of m = k^2 < 1 (2,4).
 
     The exponential would lose log(1/q) digits.  Instead, each step of the AGM of 1 and k' squares
@@ -249,26 +256,23 @@ def nome(m: Array, k_prime: Array) -> Array:
     q = e * (1 + e4 * (2 + e4 * (15 + e4 * (150 + e4 * 1707))))
     for far in reversed(steps):
         q = np.where(far, np.sqrt(q), q)
-    found: Array = q
-    return found
+    return q
 
 
-def tilt_deg(above: Array, below: Array) -> Array:
+def tilt_deg(above: Array, below: Array) -> Numbers:
     """Return a tilt in degrees from 1 - u and 1 + u: near the poles acos(u) would lose digits."""
-    tilt: Array = np.degrees(2 * np.arctan2(np.sqrt(above), np.sqrt(below)))
-    return tilt
+    return np.degrees(2 * np.arctan2(np.sqrt(above), np.sqrt(below)))
 
 
-def turn_time(rate: Array) -> Array:
+def turn_time(rate: Array) -> Numbers:
     """Return the time of one turn at a rate (section 8), NaN if the rate is 0."""
-    time: Array = 2 * np.pi / np.where(rate == 0, np.nan, abs(rate))
-    return time
+    return 2 * np.pi / np.where(rate == 0, np.nan, abs(rate))
 
 
 class Motions(dict[str, Any]):
-    """The numbers of many tops in doubles, by key; None if the tops lack a number.
+    """The numbers and texts of many tops by key; None if the tops lack one.
 
-    Each is computed once, by a formula that takes the motions.
+    Each is computed once, by a formula that takes the motions.  Angles are in degrees or radians.
     """
 
     def __init__(self, formulas: Formulas, start: Start, gaps: Gaps | None = None) -> None:
@@ -276,34 +280,40 @@ class Motions(dict[str, Any]):
         self.formulas, self.start, self.gaps = formulas, start, gaps
 
     def __missing__(self, key: str) -> Any:
-        formula = self.formulas.get(key)
-        value = self[key] = None if formula is None else formula(self)
+        name = degree_name(key)
+        if name != key:
+            value = None if self[name] is None else np.radians(self[name])
+        else:
+            value = self.formulas[key](self) if key in self.formulas else None
+        self[key] = value
         return value
+
+    def trusted(self, _: Collection[str]) -> Any:
+        """Return which tops can be trusted for some keys."""
+        return True
 
 
 Formulas = dict[str, Callable[[Any], Any]]
 """A formula for each key; those that only other formulas use are not keys of the record."""
 
 
-def second_kind(of: Motions) -> Array:
+def second_kind(of: Motions) -> Numbers:
     """Return E by Legendre's relation, E = pi/2K' + K (K' - E')/K', a sum of positive terms.
 
     (K' - E')/K' is the mean of k'^2 sn^2(u, k').
     """
     mean = period_mean(of["k"], 1.0, 0.0, of["k_prime"] * of["k_prime"])
-    found: Array = np.pi / (2 * of["K_prime"]) + of["K"] * mean
-    return found
+    return np.pi / (2 * of["K_prime"]) + of["K"] * mean
 
 
-def alpha(of: Any) -> Array:
+def alpha(of: Any) -> Numbers:
     """Return alpha = F(amplitude, k') (1,6), by Carlson's integral (DLMF 19.25.5).
 
     Its sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)) and cn^2 are products.
     """
     gaps, scale = of.gaps, of.gaps.a_u3_u1 * of.gaps.above_u2
     sn2, cn2 = gaps.above_u1 * gaps.a_u3_u2 / scale, gaps.a_u3_above * gaps.u1_u2 / scale
-    found: Array = np.sqrt(sn2) * elliprf(cn2, cn2 + of["m"] * sn2, 1.0)
-    return found
+    return np.sqrt(sn2) * elliprf(cn2, cn2 + of["m"] * sn2, 1.0)
 
 
 def u_quarter(of: Any) -> Array:
@@ -312,11 +322,10 @@ def u_quarter(of: Any) -> Array:
     return np.where(of.gaps.u1_u0 <= 0, of.start.cos - fall, np.nan)
 
 
-def spin_at_rest(of: Any) -> Array:
+def spin_at_rest(of: Any) -> Numbers:
     """Return the mean spin rate (6,3), a drift and one turn per nutation, a sum of one sign."""
     turn = 2 * np.pi / of["T_nutation"]
-    rate: Array = of.start.spin_drift + np.where(of.start.r0 < 0, -turn, turn) / 2
-    return rate
+    return of.start.spin_drift + np.where(of.start.r0 < 0, -turn, turn) / 2
 
 
 _OF_ALL: Formulas = {
@@ -333,12 +342,12 @@ OF_VERTICAL: Formulas = _OF_ALL | {
 }
 """Formulas of tops released on the vertical."""
 OF_TORQUE_FREE: Formulas = OF_VERTICAL | {
-    "k": lambda of: 0 * of.start.a,
-    "modular_angle_deg": lambda of: 0 * of.start.a,
-    "nome": lambda of: 0 * of.start.a,
-    "k_prime": lambda of: 0 * of.start.a + 1,
-    "K": lambda of: 0 * of.start.a + np.pi / 2,
-    "E": lambda of: 0 * of.start.a + np.pi / 2,
+    "k": lambda _: 0.0,
+    "modular_angle_deg": lambda _: 0.0,
+    "nome": lambda _: 0.0,
+    "k_prime": lambda _: 1.0,
+    "K": lambda _: np.pi / 2,
+    "E": lambda _: np.pi / 2,
     "T_nutation": lambda of: turn_time(of.start.b),
     "mean_precession_rate": lambda of: of.start.psi_rate,
     "precession_rate_start": lambda of: of.start.psi_rate,

@@ -23,8 +23,8 @@ from ..output.formats import Columns, block_text
 from ..top.given import Given, gather
 from ..top.inputs import checked_double, overridden
 from ..top.ranges import Points
-from ..top.values import Value, steady_refused
-from .records import BLOCK_ROWS, check_keys, column_keys, records
+from ..top.values import Value
+from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records
 from .results import ResultColumn
 from .tops import top_arrays
 
@@ -62,7 +62,8 @@ class Sweep(NamedTuple):
         number, block = numbered
         given = block.arrays(self.shared)
         tops = top_arrays(given.inputs, given.size)
-        columns = records(tops, [*self.keys, "error"], radians=self.radians, errors=given.errors)
+        columns = empty_columns(self.keys, given.size)
+        columns = records(tops, columns, given.errors, radians=self.radians)
         errors = [(row, error) for row, error in enumerate(columns["error"]) if error]
         if given.lines is not None:
             errors = [(row, f"line {given.lines[row]}: {error}") for row, error in errors]
@@ -107,7 +108,7 @@ def plan(
         found = gather(axes, scene)
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid, ranges = Product(points), ranges_of(points)
-        shared = shared_inputs(found, varying=ranges, steady=True)
+        shared = shared_inputs(found, varying=ranges)
         sweep = Sweep(chosen, shared, chosen, radians, fmt, found.si)
         inputs = shared | {name: str(axis) for name, axis in ranges.items()}
         blocks = enumerate(grid.blocks(BLOCK_ROWS))
@@ -118,7 +119,7 @@ def plan(
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
     source = read_tops(path, computed, decimal)
     found = source.shared(axes, scene)
-    shared = shared_inputs(found, varying=source.columns, steady=True)
+    shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     sweep = Sweep([*source.carried, *with_error], shared, with_error, radians, fmt, found.si)
     of_file = enumerate(source.blocks(BLOCK_ROWS))
@@ -147,13 +148,11 @@ def ranges_of(axes: Mapping[str, Points]) -> dict[str, Points]:
     return {name: axis for name, axis in axes.items() if axis.count > 1}
 
 
-def shared_inputs(
-    found: Given, *, varying: Collection[str] = (), steady: bool = False
-) -> dict[str, Any]:
+def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, Any]:
     """Return inputs by key as doubles; the worked example gives the missing ones.
 
-    If `steady`, psidot0 may be a word, which stays one.  Raises LagtopError for an invalid input;
-    inputs in `varying`, and a steady rate, are not checked.
+    A word for psidot0 stays one.  Raises LagtopError for an invalid input; inputs in `varying`, and
+    a steady rate, are not checked.
     """
     loose = set(varying)
     if loose & {"A", "A_cm", "C"} or ("A_cm" in found.inputs and loose & {"m", "s"}):
@@ -162,8 +161,6 @@ def shared_inputs(
         name: x.bounds()[0] if isinstance(x, Points) else x for name, x in found.inputs.items()
     }
     words = {name: x for name, x in numbers.items() if isinstance(x, str)}
-    if words and not steady:
-        raise LagtopError(f"psidot0 {steady_refused(words['psidot0'])}", "psidot0")
     values = {name: found.values[name]._replace(number=x) for name, x in numbers.items()}
     top = found._replace(values=values).top(without={*loose, *words})
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}

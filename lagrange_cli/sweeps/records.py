@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arithmetic.types import Array, Mask
+from ..arithmetic.types import Mask
 from ..errors import LagtopError
 from ..names import check_names
 from ..solver import keys as motion_record
@@ -33,6 +33,7 @@ from .formulas import (
     Motions,
     Start,
     gaps_from_rest,
+    texts,
 )
 from .results import ResultColumn, Results, SweepInputs
 from .tops import TopArrays
@@ -42,6 +43,8 @@ TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
 OF_MODULI = ("k_squared", "comodular_angle_deg")
 """Further keys that are formulas of the moduli."""
+COMPUTED = frozenset({*motion_record.record_keys(), *OF_MODULI})
+"""Keys that are computed from a motion, in degrees, and inputs."""
 FORMULAS = {
     Regime.SLEEPING: OF_VERTICAL,
     Regime.HANGING: OF_VERTICAL,
@@ -86,16 +89,12 @@ def sweep(
         raise LagtopError("sweep takes inputs by name: pass columns by name: sweep(**df)")
     chosen = check_keys(keys, radians=radians)
     given = SweepInputs(inputs)
-    size, found = given.size, _empty_columns(chosen, given.size)
+    size, found = given.size, empty_columns(chosen, given.size)
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, first + step)
-        part = records(
-            given.part(rows),
-            list(found),
-            radians=radians,
-            columns={key: x[rows] for key, x in found.items()},
-        )
+        part = {key: x[rows] for key, x in found.items()}
+        part = records(given.part(rows), part, {}, radians=radians)
         if part["error"].any():
             found.setdefault("error", np.full(size, None))[rows] = part["error"]
     columns = {key: found[key] for key in chosen}
@@ -104,7 +103,7 @@ def sweep(
     return given.results(columns)
 
 
-def _empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
+def empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
     """Return empty columns for `count` tops."""
     return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 
@@ -121,26 +120,37 @@ def check_keys(keys: Sequence[str] | None, *, radians: bool = False) -> Sequence
 
 def records(
     tops: TopArrays,
-    keys: Sequence[str],
+    columns: Mapping[str, ResultColumn],
+    errors: Mapping[int, str],
     *,
     radians: bool = False,
-    errors: Mapping[int, str] | None = None,
-    columns: dict[str, ResultColumn] | None = None,
 ) -> dict[str, ResultColumn]:
-    """Return the columns of a block of tops; rows that already have an error stay empty.
+    """Fill the columns of a block of tops, and return them with `error`.
 
-    The columns are new, unless columns of `_empty_columns` are passed, and always have `error`.
-    The result does not depend on the `numpy.errstate` of the caller.
+    `errors` are those of rows that stay empty.  The result does not depend on the `numpy.errstate`
+    of the caller.
     """
     with np.errstate(all="ignore"):  # `trust` rejects what an overflow or a 0/0 has touched
-        columns = _empty_columns(keys, tops.m.size) if columns is None else columns
-        block = _Block(tops, columns, radians, errors or {})
-        for regime, rows in tops.released().items():
-            block.fill_released(rows & block.missing, regime)
-        block.fill_moving(tops.moving() & block.missing)
-        block.fill_elementary()
-        block.solve_the_rest()
+        block = _Block(tops, columns, errors, radians)
+        for regime, rows in tops.groups().items():
+            block.fill(rows & block.missing, regime)
+        block.solve_the_rest(block.fill_elementary())
         return block.columns
+
+
+def _motions(tops: TopArrays, regime: Regime | None, radians: bool) -> Motions:
+    """Return the motions of a group of tops: released from rest in a regime, or None."""
+    if regime is None:
+        return AnyStart(tops.start_in_pairs())
+    start, nutates = tops.start(), regime in {Regime.REGULAR, Regime.NO_SPIN}
+    remark = {"remark": lambda _: _remarks(regime, tops, start)}
+    gaps = gaps_from_rest(start) if nutates else None
+    motions = Motions(FORMULAS[regime] | remark, start, gaps)
+    motions["regime"] = regime.value
+    motions["path"] = "cusped" if regime == Regime.REGULAR else None
+    for key in ["theta_min_deg"] if nutates else ["theta_min_deg", "theta_max_deg"]:
+        motions[unit_name(key, radians=radians)] = tops.tilt_in(radians)
+    return motions
 
 
 class _Block:
@@ -150,109 +160,67 @@ class _Block:
         self,
         tops: TopArrays,
         columns: Mapping[str, ResultColumn],
-        radians: bool,
         errors: Mapping[int, str],
+        radians: bool,
     ) -> None:
         self.tops, self.radians = tops, radians
         self.columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
         inputs = tops._asdict() | {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
-        record = motion_record.record_keys(radians=radians)
-        self.inputs = [key for key in columns if key in inputs]
-        self.texts = [key for key in columns if key in motion_record.TEXT_KEYS]
-        self.elementary = [key for key in columns if key in ELEMENTARY]
-        others = {*self.inputs, *self.texts, *self.elementary, "error"}
-        known = {*record, *OF_MODULI, *(unit_name(key, radians=True) for key in OF_MODULI)} - others
-        self.numbers = [key for key in columns if key in known]
-        self.further = [key for key in columns if key not in known | others]
+        results = [key for key in columns if key not in inputs and key != "error"]
+        self.elementary = [key for key in results if key in ELEMENTARY]
+        self.computed = [key for key in results if degree_name(key) in COMPUTED]
+        """The numbers and texts that `Motions` have."""
+        self.further = [key for key in results if key not in {*self.elementary, *self.computed}]
         for key, column in self.columns.items():
             column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
-        self.missing = np.ones(tops.m.shape, dtype=np.bool_)
-        """Tops whose numbers and texts are not filled yet; those with an error stay empty."""
-        self.lost = np.zeros(tops.m.shape, dtype=np.bool_)
-        """Other tops with an elementary key that has lost digits."""
-        for row, error in errors.items():
-            self.missing[row], self.columns["error"][row] = False, error
+        self.columns["error"][[*errors]] = [*errors.values()]
+        self.valid = np.ones(tops.m.shape, dtype=np.bool_)
+        self.valid[[*errors]] = False
+        self.missing = self.valid.copy()
+        """Valid tops whose computed keys are not filled yet."""
 
-    def fill_released(self, rows: Mask, regime: Regime) -> None:
-        """Fill tops of one regime that are released from rest."""
+    def fill(self, rows: Mask, regime: Regime | None) -> None:
+        """Fill the computed keys of those tops of a group that can be trusted."""
         if not rows.any():
             return
         tops = self.tops if rows.all() else self.tops.part(rows)
-        start, formulas = tops.start(), FORMULAS[regime]
-        nutates = regime in {Regime.REGULAR, Regime.NO_SPIN}
-        motions = Motions(formulas, start, gaps_from_rest(start) if nutates else None)
-        texts: dict[str, Any] = {"regime": regime.value}
-        texts["path"] = "cusped" if regime == Regime.REGULAR else None
-        if "remark" in self.texts:
-            texts["remark"] = _remarks(regime, tops, start)
-        tilts = {"theta_min_deg"} if nutates else {"theta_min_deg", "theta_max_deg"}
-        self._write(rows, motions, texts, dict.fromkeys(tilts, tops.tilt_in(self.radians)))
-
-    def fill_moving(self, rows: Mask) -> None:
-        """Fill the tops with other initial rates that can be trusted."""
-        if not rows.any():
-            return
-        tops = self.tops if rows.all() else self.tops.part(rows)
-        motions = AnyStart(tops.start_in_pairs())
-        trusted = motions.trusted(self.numbers)
-        words = np.array([Regime.REGULAR.value, Regime.NO_SPIN.value], dtype=object)
-        texts = {"regime": words[(tops.r0 == 0).astype(np.intp)], "path": motions.paths}
-        filled = rows.copy()
-        filled[rows] = trusted
-        self._write(filled, motions, texts, {}, slice(None) if trusted.all() else trusted)
-
-    def _write(
-        self,
-        rows: Mask,
-        motions: Motions,
-        texts: Mapping[str, Any],
-        given: Mapping[str, Array],
-        some: Any = slice(None),
-    ) -> None:
-        """Write the texts and numbers of some motions into rows.
-
-        Numbers that are `given` are in the unit of the columns already.
-        """
-        chosen: Any = slice(None) if rows.all() else rows
-        for key in texts.keys() & {*self.texts}:
-            text = texts[key]
-            self.columns[key][chosen] = text[some] if isinstance(text, np.ndarray) else text
-        for key in self.numbers:
-            name = degree_name(key)
-            value = given[name] if name in given else motions[name]
-            if value is not None and name not in given and key != name:
-                value = np.radians(value)
-            if value is not None:
-                self.columns[key][chosen] = value[some]
+        motions = _motions(tops, regime, self.radians)
+        trusted = motions.trusted(self.computed)
+        rows[rows] = trusted
         self.missing &= ~rows
+        target: Any = slice(None) if rows.all() else rows
+        source: Any = slice(None) if np.all(trusted) else trusted
+        for key in self.computed:
+            value = motions[key]
+            if value is not None:
+                is_array = isinstance(value, np.ndarray)
+                self.columns[key][target] = value[source] if is_array else value
 
-    def fill_elementary(self) -> None:
-        """Fill the keys that are formulas of the inputs, of all tops that are not missing."""
-        if not self.elementary:
-            return
-        numbers, done = Elementary(self.tops), ~self.missing
-        for key in self.elementary:
-            values, lost = numbers.number(key)
-            self.columns[key][done] = values[done]
-            self.lost |= lost & done
+    def fill_elementary(self) -> Mask:
+        """Fill the keys that are formulas of the inputs; return the tops that lose digits."""
+        lost = np.zeros_like(self.valid)
+        if self.elementary:
+            numbers, done = Elementary(self.tops), self.valid & ~self.missing
+            for key in self.elementary:
+                values, unknown = numbers.number(key)
+                self.columns[key][done] = values[done]
+                lost |= unknown & done
+        return lost
 
-    def solve_the_rest(self) -> None:
-        """Fill by `solve` what is missing, and the further keys of all tops."""
-        rows = self.missing | self.lost | bool(self.further)
-        opened = self.tops.open
+    def solve_the_rest(self, lost: Mask) -> None:
+        """Fill by `solve` missing tops, `lost` elementary keys, and the further keys of all."""
+        rows = self.valid & (self.missing | lost | bool(self.further))
         for row in np.flatnonzero(rows).tolist():
             keys = list(self.further)
             if self.missing[row]:
-                keys += [*self.texts, *self.numbers]
-            if self.missing[row] or self.lost[row]:
+                keys += self.computed
+            if self.missing[row] or lost[row]:
                 keys += self.elementary
-            self._solve(row, keys, is_open=bool(opened[row]))
+            self._solve(row, keys)
 
-    def _solve(self, row: int, keys: Sequence[str], *, is_open: bool) -> None:
-        """Fill some keys of one top by `solve`, unless it has an error."""
+    def _solve(self, row: int, keys: Sequence[str]) -> None:
+        """Fill some keys of one top by `solve`."""
         columns = self.columns
-        if columns["error"][row] is not None:
-            return
         try:
             motion = solve(self.tops.one(row))
             record, beyond = record_in_range(motion, radians=self.radians, keys=keys)
@@ -261,8 +229,8 @@ class _Block:
             return
         if beyond:
             columns["error"][row] = "; ".join(map(str, beyond))
-        if is_open:
-            record |= {key: getattr(motion.top, key) for key in {"r0", "psidot0"} & {*self.inputs}}
+        for key in {"r0", "psidot0"} & columns.keys():  # some are known only to `solve`
+            record[key] = getattr(motion.top, key)
         if record.get("remark"):
             record["remark"] = _words(record["remark"])
         for key, value in record.items():
@@ -272,15 +240,13 @@ class _Block:
 
 def _remarks(regime: Regime, tops: TopArrays, start: Start) -> Any:
     """Return the remarks on tops released from rest: the words of `solve`, without its numbers."""
-    words: list[str | None]
     if regime == Regime.HANGING:
         return _remark_on(theta0_deg=180)
     if regime == Regime.SLEEPING:
-        words = [_remark_on(theta0_deg=0, r0=1.0), _remark_on(theta0_deg=0, r0=1e3)]
-        return np.array(words, dtype=object)[(start.sleep >= 0).astype(np.intp)]
+        fast, slow = _remark_on(theta0_deg=0, r0=1e3), _remark_on(theta0_deg=0, r0=1.0)
+        return texts(start.sleep >= 0, fast, slow)
     if regime == Regime.REGULAR:
-        words = [None, _remark_on(r0=1e3)]
-        return np.array(words, dtype=object)[tops.fast().astype(np.intp)]
+        return texts(tops.fast(), _remark_on(r0=1e3), None)
     return None
 
 

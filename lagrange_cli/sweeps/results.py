@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
@@ -21,6 +22,8 @@ from .tops import TopArrays, top_arrays
 
 ResultColumn = Array | NDArray[np.object_]
 """A column: numbers (NaN if a regime has none) or texts (None if there is none)."""
+_SHOWN = 2
+"""Number of first and of last tops that are printed."""
 
 
 class Results(dict[str, ResultColumn]):
@@ -46,6 +49,19 @@ class Results(dict[str, ResultColumn]):
         """
         super().__init__(columns)
         self.inputs, self.shape, self._index = dict(inputs), tuple(shape), index
+
+    def __repr__(self) -> str:
+        """Return the shape and, in a line for each column, the values of the first and last tops."""
+        size = math.prod(self.shape)
+        some = np.r_[:_SHOWN, size - _SHOWN : size] if size > 2 * _SHOWN else np.arange(size)
+        lines = [f"{size} tops, shape {self.shape}"]
+        for name, x in (self.inputs | self).items():
+            values = np.broadcast_to(x, self.shape).flat[some].tolist()
+            cells = [f"{x:.5g}" if isinstance(x, float) else str(x) for x in values]
+            if size > len(cells):
+                cells.insert(_SHOWN, "...")
+            lines.append(" ".join([f"{name:20}", *(f"{x:>11.11}" for x in cells)]))
+        return "\n".join(lines)
 
     def to_pandas(self) -> Any:
         """Return a pandas DataFrame with a row for each top; inputs that vary come first.

@@ -67,45 +67,30 @@ class TopArrays(NamedTuple):
         given = {x: y for x, y in inputs.items() if x != unused and not (x == tilt and np.isnan(y))}
         return Top(**given | ({"psidot0": STEADY_WORDS[word - 1]} if word else {}))
 
-    @property
-    def open(self) -> Mask:
-        """The tops of which an input is known only to `solve`: steady rates, and some r0."""
-        found: Mask = (self.steady > 0) | ~np.isnan(self.phidot0)
-        return found
-
     def tilt_in(self, radians: bool) -> Array:
         """Return theta0 in degrees or in radians."""
         if radians:
             return np.where(np.isnan(self.theta0_rad), np.radians(self.theta0_deg), self.theta0_rad)
         return np.where(np.isnan(self.theta0_deg), np.degrees(self.theta0_rad), self.theta0_deg)
 
-    def released(self) -> dict[Regime, Mask]:
-        """Return the tops of each regime that are released from rest and of ordinary size."""
-        upright, hanging = self._upright, self.theta0_deg == 180
-        inclined, torque = ~(upright | hanging), (self.s > 0) & (self.g > 0)
-        masks = {
-            Regime.SLEEPING: upright,
-            Regime.HANGING: hanging,
-            Regime.TORQUE_FREE: inclined & ~torque,
-            Regime.NO_SPIN: inclined & torque & (self.r0 == 0),
-            Regime.REGULAR: inclined & torque & (self.r0 != 0),
+    def groups(self) -> dict[Regime | None, Mask]:
+        """Return the tops of ordinary size that the formulas of sweeps compute.
+
+        Tops released from rest are keyed by their regime; None has those with other initial rates,
+        with a torque and off the vertical.
+        """
+        ordinary = self._are_ordinary()
+        upright, hanging = (self.theta0_deg == 0) | (self.theta0_rad == 0), self.theta0_deg == 180
+        inclined, torque = ordinary & ~(upright | hanging), (self.s > 0) & (self.g > 0)
+        at_rest = (self.thetadot0 == 0) & (self.psidot0 == 0)
+        return {
+            Regime.SLEEPING: ordinary & at_rest & upright,
+            Regime.HANGING: ordinary & at_rest & hanging,
+            Regime.TORQUE_FREE: inclined & at_rest & ~torque,
+            Regime.NO_SPIN: inclined & at_rest & torque & (self.r0 == 0),
+            Regime.REGULAR: inclined & at_rest & torque & (self.r0 != 0),
+            None: inclined & ~at_rest & torque,
         }
-        at_rest = self._are_ordinary() & (self.thetadot0 == 0) & (self.psidot0 == 0)
-        found = {regime: at_rest & mask for regime, mask in masks.items()}
-        return {regime: mask for regime, mask in found.items() if mask.any()}
-
-    def moving(self) -> Mask:
-        """Return the tops of ordinary size with other rates, with a torque and off the vertical."""
-        torque = (self.s > 0) & (self.g > 0)
-        inclined = ~self._upright & (self.theta0_deg != 180)
-        moving: Mask = (self.thetadot0 != 0) | (self.psidot0 != 0)
-        moving &= self._are_ordinary() & torque & inclined
-        return moving
-
-    @property
-    def _upright(self) -> Mask:
-        upright: Mask = (self.theta0_deg == 0) | (self.theta0_rad == 0)
-        return upright
 
     def _are_ordinary(self) -> Mask:
         """Return the valid tops whose sizes fit, and that are not next to the sleeping threshold.

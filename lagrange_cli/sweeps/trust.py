@@ -40,6 +40,7 @@ from .formulas import (
     gaps_from_start,
     mean_parts,
     rates_half,
+    texts,
     u2,
 )
 
@@ -76,14 +77,6 @@ class AnyStart(Motions):
         doubles = Gaps(*(x.high for x in self.pairs[1]))
         super().__init__(_FORMULAS, Start(*(x.high for x in start)), doubles)
         self._bound_gaps()
-
-    @property
-    def paths(self) -> NDArray[np.object_]:
-        """The paths of the axis: looping if the precession turns back at u1."""
-        sign = np.sign(self.start.b)
-        looping = (sign * self.gaps.momentum_u1 < 0) & (sign * self.gaps.momentum_u2 > 0)
-        paths: NDArray[np.object_] = np.where(looping, "looping", "wavy").astype(object)
-        return paths
 
     def trusted(self, keys: Collection[str]) -> Mask:
         """Return which tops can be trusted for some keys."""
@@ -147,6 +140,13 @@ class AnyStart(Motions):
         return known
 
 
+def paths(of: AnyStart) -> NDArray[np.object_]:
+    """Return the paths of the axis: looping if the precession turns back at u1."""
+    sign = np.sign(of.start.b)
+    looping = (sign * of.gaps.momentum_u1 < 0) & (sign * of.gaps.momentum_u2 > 0)
+    return texts(looping, "looping", "wavy")
+
+
 def mean_rates(of: AnyStart) -> tuple[Array, Array]:
     """Return the mean rates of spin (6,3) and precession (7,3).
 
@@ -171,6 +171,8 @@ def mean_rates(of: AnyStart) -> tuple[Array, Array]:
 
 
 _FORMULAS = OF_NUTATION | {
+    "regime": lambda of: texts(of.start.r0 == 0, "no spin", "regular"),
+    "path": paths,
     "u1": lambda of: (of.pairs[0].cos + of.pairs[1].u1_u0).high,
     "u2": lambda of: u2(of.pairs[1]).high,
     "spin_rate_start": lambda of: of.pairs[0].spin_rate.high,

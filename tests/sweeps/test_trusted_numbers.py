@@ -119,7 +119,7 @@ def test_tops_at_the_threshold_of_sleeping_go_one_by_one(body: tuple[float, ...]
     m, A, C, s, g = body
     r0 = 2 * math.sqrt(A * m * g * s) / C * np.array([0.9, 1 - 1e-15, 1.0, 1 + 1e-15, 1.1, -1.0])
     fixed = {"m": m, "A": A, "C": C, "s": s, "g": g, "theta0_deg": 10, "thetadot0": 0, "psidot0": 0}
-    regimes = top_arrays(fixed | {"r0": r0}, r0.size).released().values()
+    regimes = top_arrays(fixed | {"r0": r0}, r0.size).groups().values()
     assert np.any(list(regimes), axis=0).tolist() == [True, False, False, False, True, False]
 
 

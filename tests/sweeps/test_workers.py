@@ -27,11 +27,8 @@ LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1"]
 LOST = rb"Error: a process that shared the work was lost \(killed, or out of memory\).*\n"
 
 
-def test_jobs(lagtop: Lagtop) -> None:
-    assert parse_jobs("3") == 3
-    assert parse_jobs("auto") >= 1
-    refused = lagtop("sweep", "--jobs", 2, "--dask", "tcp://127.0.0.1:9")
-    assert_one_line(refused, 2, "use --jobs or --dask, not both")
+def test_numbers_of_jobs() -> None:
+    assert (parse_jobs("3"), parse_jobs("auto")) == (3, len(os.sched_getaffinity(0)))
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "1.5", "many", "1025", "²", "9" * 5000])
