@@ -51,7 +51,7 @@ class Results(dict[str, ResultColumn]):
         self.inputs, self.shape, self._index = dict(inputs), tuple(shape), index
 
     def __repr__(self) -> str:
-        """Return the shape and, in a line for each column, the values of the first and last tops."""
+        """Return the shape and, in a line for each column, its first and last values."""
         size = math.prod(self.shape)
         some = np.r_[:_SHOWN, size - _SHOWN : size] if size > 2 * _SHOWN else np.arange(size)
         lines = [f"{size} tops, shape {self.shape}"]
