@@ -38,6 +38,7 @@ MISTAKES = {
     "solve|--mass|5": "no such option --mass (did you mean '--m' or '--s'?)",
     "--r0|50": "put a command in front of it, as in lagtop solve --r0",
     "slove": "no such command: 'slove' (did you mean 'solve'?)",
+    "xyz": "Error: no such command: 'xyz': see lagtop --help",
     "help": "no such command: 'help' (did you mean '--help'?)",
     "version": "no such command: 'version' (did you mean '--version'?)",
     "solve|--get|T_nutation,|T_spin": "must be names with commas and no blanks between",
@@ -77,10 +78,3 @@ def test_a_mistake_gets_its_remedy(
     assert MISTAKES[words] in last
     is_file = words.rsplit("|", maxsplit=1)[-1] in FILES
     assert (found.stdout, found.exit_code) == ("", 65 if is_file or "looping" in words else 2)
-
-
-def test_python_users_read_of_arguments() -> None:
-    from lagtop import Top
-
-    with pytest.raises(TypeError, match="a top takes inputs by name"):
-        Top(30, 50)  # type: ignore[call-arg]

@@ -47,19 +47,6 @@ def test_an_uncertainty_on_request_is_in_every_format(lagtop: Lagtop) -> None:
     assert lagtop(*uncertain, "--format", "table").stdout == f"{shown}\n{std}\n"
 
 
-@pytest.mark.parametrize(
-    ("key", "inputs"),
-    [
-        ("regime", ["--r0", "50(1)"]),
-        ("remark", ["--r0", "50(1)"]),
-        ("psidot0", ["--r0", "60(1)", "--psidot0", "steady"]),
-    ],
-)
-def test_texts_have_no_uncertainty(lagtop: Lagtop, key: str, inputs: list[str]) -> None:
-    result = lagtop("solve", *inputs, "--get", f"{key}_std")
-    assert_one_line(result, 2, f"{key} has no uncertainty: leave {key}_std out of --get")
-
-
 def test_the_record_carries_uncertainties(lagtop: Lagtop, solved: Solved) -> None:
     text = lagtop("solve", *BODY, "--theta0", "30(1)", "--format", "json").stdout
     record = json.loads(text)
@@ -139,15 +126,6 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
     assert "units" not in plain
 
 
-def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Path) -> None:
-    scene = tmp_path / "top.toml"
-    scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
-    said = lagtop("view", scene, "-o", tmp_path / "top.html").stderr
-    assert (
-        said == "Warning: the uncertainty of m is not used: solve, table and plot angles use it\n"
-    )
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -157,8 +135,16 @@ def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Pat
         (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
         (["--get", "T_nutation_std"], "no input is uncertain"),
         (
-            ["--theta0", "30(1)", "--budget", "period"],
-            "--budget must be among 33 names, got 'period' (did you",
+            ["--r0", "50(1)", "--get", "regime_std"],
+            "regime has no uncertainty: leave regime_std out",
+        ),
+        (
+            ["--r0", "50(1)", "--get", "remark_std"],
+            "remark has no uncertainty: leave remark_std out",
+        ),
+        (
+            ["--r0", "50(1)", "--budget", "period"],
+            "--budget must be among 33 names, got 'period' (",
         ),
     ],
 )
@@ -191,6 +177,8 @@ def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
     scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
     assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
     assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
+    said = "Warning: the uncertainty of m is not used: solve, table and plot angles use it\n"
+    assert lagtop("view", scene, "-o", tmp_path / "top.html").stderr == said
 
 
 def test_a_table_carries_the_uncertainties_of_the_angles(lagtop: Lagtop) -> None:

@@ -53,6 +53,8 @@ def test_an_unknown_input_is_named(make: Any) -> None:
     message = r"no input 'theta0' \(did you mean 'theta0_deg' or 'theta0_rad'\?\)$"
     with pytest.raises(TypeError, match=message):
         make(theta0=30.0)
+    with pytest.raises(TypeError, match=r"by name, such as Top\(|positional"):
+        make(30, 50)
 
 
 @pytest.mark.parametrize("value", [3, 3.0, Fraction(3), Decimal(3), np.float32(3), np.int8(3)])
