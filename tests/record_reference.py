@@ -1,7 +1,7 @@
 """The numbers of a motion in mpmath, by formulas that the solver does not use.
 
-Roots by Viete's cosines in 2,000 digits, where two that differ by less than 1e-600 are equal; so
-no sign of a polynomial is needed.  Carlson's integrals for K, E, F and Pi, the phase of the start
+Roots by Viete's cosines in 2,000 digits or more.  Two that agree to 30 % of them are equal, so no
+sign of a polynomial is needed.  Carlson's integrals for K, E, F and Pi, the phase of the start
 counted from the lowest point (the solver uses the arithmetic-geometric mean, Bartky's
 transformation, and theta functions counted from the highest point).
 """
@@ -28,13 +28,17 @@ def exact(x: Any) -> Many:
 
 
 def reference_record(
-    inputs: Mapping[str, Any], *, radians: bool = False, digits: int = DIGITS
+    inputs: Mapping[str, Any],
+    *,
+    radians: bool = False,
+    digits: int = DIGITS,
+    root_digits: int = ROOT_DIGITS,
 ) -> dict[str, Many]:
     """Return all numbers of a motion by key, None for those that do not exist.
 
     `inputs` are those of `Top.as_dict`.
     """
-    with mp.workdps(ROOT_DIGITS):
+    with mp.workdps(root_digits):
         of = _Motion(inputs, digits)
         found = of.record()
 
@@ -68,7 +72,11 @@ class _Motion:
     """The constants of a motion, in ROOT_DIGITS digits."""
 
     def __init__(self, inputs: Mapping[str, Any], digits: int) -> None:
-        self.digits, self.degrees, self.tiny = digits, 180 / mp.pi, mp.mpf(10) ** -600
+        self.digits, self.degrees, self.tiny = (
+            digits,
+            180 / mp.pi,
+            mp.mpf(10) ** (-3 * mp.mp.dps // 10),
+        )
         given = {x: exact(y) for x, y in inputs.items() if y is not None and not isinstance(y, str)}
         self.m, self.C, self.s, self.g = (given[x] for x in ("m", "C", "s", "g"))
         self.A = given["A"] if "A" in given else given["A_cm"] + self.m * self.s**2
