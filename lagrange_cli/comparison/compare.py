@@ -19,7 +19,7 @@ from ..output.notebook import HasRecord
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 from .causes import likely_causes
-from .differences import CONSERVED, Alignment, Exact, Run, differences
+from .differences import CONSERVED, Alignment, Exact, Run, blocks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,6 +43,8 @@ _RISES, _SPREAD = 1.2, 1.0
 """Ratio of errors above which a finer step is worse; greatest spread of one method's orders."""
 _SURE = 2.0
 """Largest change of a difference from row to row, in radians, for whole turns to be counted."""
+_KEPT = {"t", "error", *ANGLES}
+"""Columns that are kept whole; only the extremes of the others are."""
 _COMPARED = {"attitude": "attitude", "axis": "axis", **dict.fromkeys(ANGLES, "angles")}
 _KEYS = {"error": "error_max", "norm": "norm_error", "distance": "pivot_slip"}
 _KEYS |= {"energy": "energy_drift", "Lz": "Lz_drift"}
@@ -200,7 +202,9 @@ def compared(
     found = convergence(results) if step_sizes else None
     for i, (x, run) in enumerate(zip(results, runs, strict=True)):
         is_wrong = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
-        converges = found is not None and (found.falls or found.best <= limit)
+        converges = found is not None and (
+            found.falls or (found.rise is None and min(found.errors) <= limit)
+        )
         causes = likely_causes(exact, run, limit) if is_wrong and not converges else []
         is_known = any(y.exact and y.error <= limit for y in causes)
         verdict = "drifts" if is_wrong or (x.pivot_slip or 0.0) > limit else "fine"
@@ -223,17 +227,21 @@ def compared(
 def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
     try:
-        found = differences(exact, run)
+        parts = [
+            {name: y if name in _KEPT else _extremes(y) for name, y in x.items()}
+            for x in blocks(exact, run)
+        ]
     except LagtopError as wrong:
         if run.file is None or wrong.key != "t":
             raise
         raise DataError(f"{shown_path(run.file)}: {wrong}") from None
+    found = {name: np.concatenate([x.pop(name) for x in parts]) for name in [*parts[0]]}
     t, error = found["t"], found["error"]
     known: dict[str, Any] = {}
     for name, values in found.items():
-        if name != "t" and (finite := values[np.isfinite(values)]).size:
-            first = finite[0] if name in CONSERVED else 0.0
-            greatest = abs(finite - first).max() / (first if name == "distance" else 1.0)
+        if name != "t" and (ends := _extremes(values)).size:
+            first = ends[0] if name in CONSERVED else 0.0
+            greatest = abs(ends - first).max() / (first if name == "distance" else 1.0)
             known[_KEYS.get(name, f"{name}_error_max")] = float(greatest)
             if name in ANGLES:
                 known[f"{name}_drift"] = _slope(t, values)
@@ -248,11 +256,17 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
         compared=next((word for name, word in _COMPARED.items() if name in found), "rates"),
         error_final=None if np.isnan(error[-1]) else float(error[-1]),
         lost_at=float(t[np.argmax(lost)]) if lost.any() else None,
-        error_start=float(max(error[0], found.get("rates", error)[0])),
+        error_start=float(max(error[0], *found.get("rates", error)[:1])),
         t=t,
         error=error,
         **known,
     )
+
+
+def _extremes(values: Array) -> Array:
+    """Return the first, the least and the greatest of the finite values, if there are any."""
+    finite = values[np.isfinite(values)]
+    return np.array([finite[0], finite.min(), finite.max()]) if finite.size else finite
 
 
 def _slope(t: Array, angle: Array) -> float | None:
@@ -262,9 +276,7 @@ def _slope(t: Array, angle: Array) -> float | None:
     span = abs(times - times[0]).max() if times.size > 2 else 0.0
     if not span or abs(np.diff(angle)).max() > _SURE:
         return None
-    times = (times - times[0]) / span
-    times -= times.mean()
-    slope = float(times @ angle / (times @ times) / span)
+    slope = float(np.polyfit((times - times[0]) / span, angle, 1)[0] / span)
     return slope if np.isfinite(slope) else None
 
 
@@ -277,13 +289,8 @@ class Convergence(NamedTuple):
     """Whether the error falls with the step, or is a rounding error."""
     errors: Sequence[float]
     """Greatest error of each trajectory, up to the time at which the first one loses the phase."""
-    rise: tuple[float, float] | None = None
-    """A step and a finer one at which the error is greater, if there are such steps."""
-
-    @property
-    def best(self) -> float:
-        """The least error, infinite if it rises with finer steps."""
-        return float("inf") if self.rise else min(self.errors)
+    rise: tuple[float, float, float, float] | None = None
+    """A step and its error, and a finer one with a greater error, if there are such steps."""
 
 
 def convergence(results: Sequence[Comparison]) -> Convergence | None:
@@ -305,7 +312,8 @@ def convergence(results: Sequence[Comparison]) -> Convergence | None:
     rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)
     if rises.any():
         i = int(np.argmax(rises))
-        return Convergence(None, False, errors, (float(step[i + 1]), float(step[i])))
+        (fine, coarse), (after, before) = step[i : i + 2].tolist(), error[i : i + 2].tolist()
+        return Convergence(None, False, errors, (coarse, before, fine, after))
     falls = error[0] < ROUNDING or error[1] >= error[0] * (step[1] / step[0]) ** LEAST_ORDER
     usable = (error >= ROUNDING) & (error < LOST_PHASE)
     if len({*step[usable]}) < 2:

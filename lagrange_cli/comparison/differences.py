@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -209,8 +209,8 @@ def start_of(seen: Observed, exact: dict[str, Array]) -> tuple[float, float] | N
     return phi, psi
 
 
-def differences(exact: Exact, run: Run) -> dict[str, Array]:
-    """Return the times `t` of all rows and the differences from the exact motion, by name.
+def blocks(exact: Exact, run: Run) -> Iterator[dict[str, Array]]:
+    """Yield the times `t` of some rows and their differences from the exact motion, by name.
 
     `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
     top; `energy` and `Lz` (4,2), (4,3) are over their sizes; `distance` is that of the mass centre
@@ -219,7 +219,7 @@ def differences(exact: Exact, run: Run) -> dict[str, Array]:
     It is NaN in a row with a value that is not finite, unless only another quantity has empty
     cells.  Raises LagtopError if the attitude is not complete enough for the alignment.
     """
-    start, found = None, []
+    start = None
     for first in range(0, len(run.given["t"]), _BLOCK):
         rows = slice(first, first + _BLOCK)
         seen = run.observed(rows)
@@ -231,14 +231,13 @@ def differences(exact: Exact, run: Run) -> dict[str, Array]:
             seen = seen.turned(rotations.about_z(-psi), rotations.about_z(phi))
             seen = replace(seen, angles=angles)
         missing = False if run.missing is None else run.missing[rows]
-        found.append({"t": seen.t} | _differences(exact.motion, seen, states, missing))
-    return {key: np.concatenate([x.pop(key) for x in found]) for key in [*found[0]]}
+        yield {"t": seen.t} | _differences(exact.motion, seen, states, missing)
 
 
 def errors(exact: Exact, run: Run) -> Array:
     """Return the error of each row, or that of its rates if it is greater."""
-    found = differences(exact, run)
-    return np.asarray(np.fmax(found["error"], found.get("rates", found["error"])))
+    found = (np.fmax(x["error"], x.get("rates", x["error"])) for x in blocks(exact, run))
+    return np.concatenate([*found])
 
 
 def _differences(

@@ -131,11 +131,8 @@ def sentence(x: Comparison) -> str:
 
 def _order(results: Sequence[Comparison], found: Convergence) -> str:
     if found.rise is not None:
-        (coarse, _), (fine, _) = pairs = [
-            next((x.step, y) for x, y in zip(results, found.errors, strict=True) if x.step == step)
-            for step in found.rise
-        ]
-        how = f"from {pairs[0][1]:.1e} to {pairs[1][1]:.1e} as the step falls from {coarse:g}"
+        coarse, before, fine, after = found.rise
+        how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g}"
         why = "the order of the step sizes is wrong, the method varies, or the top is another one"
         return f"The error rises {how} to {fine:g}: {why}."
     if not found.falls:

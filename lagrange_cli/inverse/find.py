@@ -118,8 +118,7 @@ class Search(NamedTuple):
     def swept(self, values: Array) -> Array:
         """Return the same by `sweep`: a row for each row of values, shape (tops, unknowns)."""
         found = self.sweep(values, list(self.targets))
-        numbers = [np.asarray(found[key], float) - x for key, x in self.targets.items()]
-        return np.stack(numbers, axis=1)
+        return np.array([found[key] - x for key, x in self.targets.items()], float).T
 
     def sweep(self, values: Array, keys: Sequence[str]) -> Any:
         """Return keys for each row of values; a steady rate is rounded first, which is fast."""
@@ -258,15 +257,13 @@ def _nearest(search: Search, values: Array) -> str:
     """Return where the scan comes nearest to the targets, or why it has no numbers."""
     if not search.targets:
         return f"no border of {search.target_text}"
-    distance = _distances(search, search.swept(values))[1]
-    at = values[int(np.argmin(distance))]
-    missed, why = search.residuals(at), ""
+    at = values[int(np.argmin(_distances(search, search.swept(values))[1]))]
     try:
         solve(search.top(at))
     except LagtopError as error:
-        why = f" ({error})"
-    if why or np.isnan(missed).any():
-        return f"no top of the scan has {search.target_text}{why}"
+        return f"no top of the scan has {search.target_text} ({error})"
+    if np.isnan(missed := search.residuals(at)).any():
+        return f"no top of the scan has {search.target_text}"
     numbers = zip(search.targets.items(), missed.tolist(), strict=True)
     reached = [f"{key} = {double_text(x + y)}, {abs(x):.2g} off," for (key, y), x in numbers]
     return f"nearest to {search.target_text} is {' '.join(reached)} at {_where(search, at)}"
@@ -338,15 +335,12 @@ def _roots(search: Search, values: Array, residuals: Array) -> list[list[float]]
 def _refined(search: Search, x: Array, y: Array) -> tuple[Array, Array]:
     """Return a scan with more points around its extrema, which may hide two solutions."""
     size = np.abs(y)
-    inner = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
-    inner = inner[(y[inner - 1] * y[inner] > 0) & (y[inner] * y[inner + 1] > 0)]
+    least = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
+    inner = np.flatnonzero(least & (y[:-2] * y[1:-1] > 0) & (y[1:-1] * y[2:] > 0)) + 1
     inner = inner[np.argsort(size[inner])][:_EXTREMA]
-    if not inner.size:
-        return x, y
-    finer = np.linspace(x[inner - 1], x[inner + 1], 2 * _FINER + 1)[1:-1].ravel()
-    more = np.setdiff1d(finer, x)
-    order = np.argsort(both := np.concatenate([x, more]))
-    return both[order], np.concatenate([y, search.swept(more[:, np.newaxis])[:, 0]])[order]
+    finer = np.linspace(x[inner - 1], x[inner + 1], 2 * _FINER + 1).ravel()
+    x, order = np.unique([*x, *finer], return_index=True)
+    return x, np.concatenate([y, search.swept(finer[:, np.newaxis])[:, 0]])[order]
 
 
 def _minima(search: Search, values: Array, residuals: Array) -> list[list[float]]:
@@ -398,8 +392,8 @@ def find(
     An input is a number, or a pair (from, to) or a text `[log:]from:to` if it is unknown.  Pass up
     to three unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER
     discard motions.  The search starts from `scan` values of each unknown.  Angles are in degrees
-    or `radians`.  Uncertainties are ignored.  The list
-    may be empty.  Raises LagtopError, also if the conditions do not determine the unknowns.
+    or `radians`.  Uncertainties are ignored.  The list may be empty.  Raises LagtopError, also if
+    the conditions do not determine the unknowns.
 
     >>> [x.top.r0 for x in find({"T_precession": 2.0}, r0=(10, 200), theta0_deg=30)]
     [119.38669907271795]

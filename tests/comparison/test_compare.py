@@ -226,7 +226,7 @@ def test_how_errors_depend_on_the_step(
     errors: list[float], order: float | None, falls: bool, rise: tuple[float, float] | None
 ) -> None:
     _, found = with_steps(off_by(errors), [4e-3, 2e-3, 1e-3], 1e-1)
-    assert (found.falls, found.rise) == (falls, rise)
+    assert (found.falls, found.rise and found.rise[::2]) == (falls, rise)
     assert found.order == (order and pytest.approx(order, abs=0.5))
 
 
