@@ -38,7 +38,7 @@ def with_stds(
 
     A warning names the numbers that have none.
     """
-    uncertain = _first_order(found, motion)
+    uncertain = FirstOrder(motion, found.stds)
     stds, beyond = stds_of(record, uncertain)
     lost = [x for x in record if record[x] is not None and stds.get(f"{x}_std", 0) is None]
     if beyond:
@@ -74,11 +74,6 @@ def _to_the_last_digit(motion: Motion, key: str, value: float, std: float) -> fl
     return found.value if found is not None else value
 
 
-def _first_order(found: Given, motion: Motion) -> FirstOrder:
-    """Return the first-order uncertainties of a motion."""
-    return FirstOrder(motion, found.stds)
-
-
 def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Output) -> None:
     """Write the budget of a key: the contribution of each uncertain input, and the key itself.
 
@@ -88,7 +83,7 @@ def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Out
     value = motion.record(radians=radians, keys=[key])[key]
     if value is None:
         raise AbsentError(f"{key} is {motion.absence(key)}")
-    uncertain = _first_order(found, motion)
+    uncertain = FirstOrder(motion, found.stds)
     whole = uncertain.std(key)
     if whole is None:
         raise AbsentError(f"{key} has no uncertainty of first order: {NO_DERIVATIVE}")
