@@ -24,21 +24,24 @@ _HELD, _RELEASED = 12, 6.0
 _WINDOWS = (8, 12, 20, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
+_BODY = ("m", "g", "s", "A", "A_cm", "C")
 _DECAYS = 4.0
 """Standard deviations from which the spin has decayed from the first to the last window."""
 
 
 def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
     """Return what to try after a failed fit, if another fit confirms it."""
-    if not outcome.misfits or outcome.contradictions:
+    if outcome.contradictions:
         return []
-    found = [*_tried(recording, known, outcome)][:1]
-    return found or ["check columns, units and axes"]
+    if outcome.misfits:
+        return [next(_tried(recording, known, outcome), "check columns, units and axes")]
+    body = {name: x for name, x in known.items() if name in _BODY}
+    return [*_frames(recording, body)] if recording.kind != "angles" else []
 
 
 def _tried(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
     """Yield what makes the fit good, the likeliest mistakes first."""
-    body = {name: x for name, x in known.items() if name in {"m", "g", "s", "A", "A_cm", "C"}}
+    body = {name: x for name, x in known.items() if name in _BODY}
     if recording.kind != "angles":
         yield from _frames(recording, body)
     if (row := _release(recording)) and _is_good(recording.part(slice(row, None)), body):

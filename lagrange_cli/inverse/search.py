@@ -222,7 +222,7 @@ def _nutation(
         )
         result.faults.insert(0, f"another top explains the recording as well: {shown}")
     result.is_spin_slow = not seen or turns < 1 / (1 + _FASTER)
-    result.notes += _assumed(found, other, turns if seen else 0.0, data.turn / scale, scale)
+    result.notes[:0] = _assumed(found, other, turns if seen else 0.0, data.turn / scale, scale)
     return result
 
 
