@@ -33,9 +33,9 @@ _DAMPING, _STUCK, _GAIN = 1e-3, 1e12, 1e-10
 """First damping of the least squares, the largest one, and the relative gain of their end."""
 _APART = 4.0
 """Standard deviations between different tops."""
-_CURVED, _BENT = 2.0, 50.0
-"""Standard deviations at which chi^2 is compared with a parabola, and the factor above it that
-shows a bent valley."""
+_CURVED, _BENT, _BROKEN, _STIFF = 2.0, 2.0, 6.0, 100.0
+"""Standard deviations at which chi^2 is compared with a parabola, the factors above it that show a
+bent valley and one without a floor, and the weight of the distance at which it is searched."""
 
 
 class Problem:
@@ -154,25 +154,29 @@ class Problem:
         found = function(np.concatenate([x + np.diag(steps), below]))
         return np.asarray((found[: x.size] - found[x.size :]).T / ((1 + central) * steps))
 
-    def solve(self, x: Array, steps: int) -> tuple[Array, float]:
+    def solve(
+        self, x: Array, steps: int, function: Callable[[Array], Array] | None = None
+    ) -> tuple[Array, float]:
         """Return the least squares from one start by Levenberg's and Marquardt's method.
 
-        They are the parameters and half the sum of squares after at most `steps` evaluations.
+        They are the parameters and half the sum of squares after at most `steps` evaluations.  The
+        `function` returns the weighted residuals of many tops.
         """
+        function = function or self.weighted
         low = np.array([{"a": 1e-30, "theta0": _POLE}.get(name, -np.inf) for name in self.names])
         high = np.array([math.pi - _POLE if name == "theta0" else np.inf for name in self.names])
         x = np.clip(x, low, high)
-        rest = self.weighted(x[np.newaxis])[0]
+        rest = function(x[np.newaxis])[0]
         cost, damping, factor = float(rest @ rest), _DAMPING, 2.0
         slopes, scale = None, np.full(x.size, 1e-300)
         for _ in range(steps):
             if slopes is None:
-                slopes = self.slopes(x, self.weighted, central=False)
+                slopes = self.slopes(x, function, central=False)
                 normal, gradient = slopes.T @ slopes, slopes.T @ rest
                 scale = np.maximum(scale, np.diag(normal))
             step = -np.linalg.lstsq(normal + np.diag(damping * scale), gradient, rcond=None)[0]
             moved = np.clip(x + step, low, high)
-            found = self.weighted(moved[np.newaxis])[0]
+            found = function(moved[np.newaxis])[0]
             gain, wanted = (
                 cost - float(found @ found),
                 -float(step @ (gradient + normal @ step / 2)),
@@ -350,12 +354,22 @@ class Minimum:
 def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
     """Return factors by which the axes of a covariance are too short, at least 1.
 
-    Two standard deviations away on either side, chi^2 should have grown by 4.  If it has grown by
-    much more, the valley of chi^2 is bent, and the covariance is wrong, as the second number says.
+    Two standard deviations away on either side, chi^2 should have grown by 4.  If it grows by much
+    more, the valley of chi^2 is bent, and its floor is followed.  If chi^2 is still wrong there,
+    the covariance is, as the second number says.
     """
+    base = float(np.sum(problem.weighted(x[np.newaxis]) ** 2))
     ends = x + _CURVED * np.concatenate([spread.T, -spread.T])
-    rows = problem.weighted(np.concatenate([x[np.newaxis], ends]))
-    grown = np.sum(rows[1:] ** 2 - rows[0] ** 2, axis=1).reshape(2, -1)
+    grown = (np.sum(problem.weighted(ends) ** 2, axis=1) - base).reshape(2, -1)
+    rows = np.linalg.pinv(spread)
+    for side, axis in zip(*np.nonzero(grown > _BENT * _CURVED**2), strict=True):
+        wanted, row = _CURVED * (1 - 2 * side), rows[axis]
+
+        def held(at: Array, row: Array = row, wanted: float = wanted) -> Array:
+            return np.column_stack([problem.weighted(at), _STIFF * ((at - x) @ row - wanted)])
+
+        end, _ = problem.solve(x + wanted * spread[:, axis], _STEPS // 3, held)
+        grown[side, axis] = float(np.sum(problem.weighted(end[np.newaxis]) ** 2)) - base
     least = np.maximum(grown.min(axis=0, initial=math.inf), 0.04)
     factors = np.sqrt(np.clip(_CURVED**2 / least, 1.0, 100.0))
-    return np.asarray(factors), bool(np.any(grown > _BENT * _CURVED**2))
+    return np.asarray(factors), bool(np.any((grown > _BROKEN * _CURVED**2) | (grown < -1)))
