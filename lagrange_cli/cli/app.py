@@ -50,7 +50,7 @@ def complain(line: str) -> None:
 
 def _die_by(name: str, code: int) -> NoReturn:
     """End the program by a signal: a shell loop stops only if its command dies by Ctrl-C itself."""
-    if hasattr(signal, name):
+    if os.name == "posix":  # Windows would end it with code 2
         number = getattr(signal, name)
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)

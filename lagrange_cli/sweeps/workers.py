@@ -47,7 +47,7 @@ def parse_jobs(text: str) -> int:
     """
     if text == "auto":
         may_use = getattr(os, "sched_getaffinity", None)
-        return len(may_use(0)) if may_use else os.cpu_count() or 1
+        return len(may_use(0)) if may_use else min(os.cpu_count() or 1, 61)  # Windows has no more
     if not (text.isdecimal() and text.isascii() and 1 <= int(text[:9]) <= MOST_JOBS):
         raise LagtopError(f"must be auto or in [1, {MOST_JOBS}], got {text[:60]!r}")
     return int(text)
