@@ -57,7 +57,7 @@ class Curve(NamedTuple):
     residual: Array
 
 
-@dataclass(eq=False, kw_only=True)
+@dataclass(eq=False, kw_only=True, repr=False)
 class Outcome(HasRecord):
     """The result of a fit of one recording, by a nutating top or by a steady precession."""
 
@@ -92,6 +92,10 @@ class Outcome(HasRecord):
     """Whether the spin is slow enough to show the direction of psi."""
     chance: float = CHANCE
     """Probability that noise fails a test."""
+
+    def __repr__(self) -> str:
+        rows = [f"{key:22}  {x}" for key, x in self.numbers.items() if not key.endswith(PERCENT)]
+        return "\n".join([f"fit of {self.recording.t.size} rows: {self.verdict}", *rows])
 
     @cached_property
     def residuals(self) -> dict[str, Residuals]:

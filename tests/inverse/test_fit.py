@@ -192,6 +192,7 @@ def test_the_sample_gives_the_body() -> None:
     t, (theta, psi, phi) = rows[::2, 0], np.radians(rows[::2, 1:].T)
     outcome = fit(t, theta=theta, psi=psi, phi=phi, known={"m": 1.587, "g": 9.81, "s": 0.04})
     assert_true(outcome, {"A": 3.9032e-3, "C": 1.7458e-3, "r0": 50, "theta0_deg": 41}, least=4)
+    assert repr(outcome).startswith(f"fit of {t.size} rows: good\na   ")
     exact = solve(recordings.TOP)
     keys = ["T_nutation", "mean_precession_rate", "mean_spin_rate", "theta_max_deg"]
     assert_true(outcome, {key: getattr(exact, key) for key in keys}, least=4)
