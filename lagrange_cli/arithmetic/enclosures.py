@@ -24,19 +24,23 @@ Rules for code that uses balls:
   or `x.is_zero()` for the exact zeros that formulas produce.  A test forbids the operators.
 - Read a ball (`lower`, `upper`, `float`) inside the precision it was computed at.
 
-Threads: one computation runs at a time.  If the host program changes the precision of Arb during a
-computation, the computation is repeated.  The precision of the host is restored afterwards, also
-after an exception, Ctrl-C or a fork.
+Threads: one computation runs at a time.  A host program may change the precision of Arb during it.
+A ball is true whatever the precision was, only wider, so no decision rests on a wide ball: more
+digits are taken.  If the precision is not the own one after a computation, it is computed again.
+The precision of the host is restored afterwards, also after an exception, Ctrl-C or a fork.
 """
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator
+import sys
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from decimal import ROUND_UP, Context, Decimal
 from fractions import Fraction
 from functools import partial
+from itertools import count, takewhile
 from threading import RLock
 from typing import Any, NamedTuple, TypeVar
 
@@ -54,10 +58,12 @@ LARGEST_EXPONENT = 990_000_000_000_000_000
 """The greatest size of an exponent of a number that is printed in decimal."""
 _EQUAL_DIGITS = 1_200
 """Least number of digits that equal numbers have in common."""
-_LEAST_DIGITS, _GUARD = 16, 16
+_LEAST_DIGITS, _GUARD = 16, 22
 """Digits of a double, and the extra digits of the first enclosure."""
-_REPEATS = 20
-"""How often a computation is repeated if the host changes the precision during it."""
+_MARGIN = 32
+"""Bits of a ball beyond the last place of the number that is rounded from it."""
+_INTERVALS = [0.005 * 2**i for i in range(8)]
+"""Switch intervals in seconds of the repetitions if the host changes the precision."""
 
 
 class TooFewDigitsError(Exception):
@@ -74,23 +80,26 @@ class _Precision:
     own = 0
     """0 if nothing is computed."""
     host = 0
+    interval = 0.0
+    """The switch interval of the host."""
 
 
 _lock = _Precision.lock
 
 
 def at_precision(digits: int, compute: Callable[[], T]) -> T:
-    """Return `compute()`, evaluated with balls of `digits` digits.
+    """Return `compute()`, evaluated with balls of `digits` digits.  Calls may be nested.
 
-    It is evaluated again if another thread changed the precision meanwhile.  Calls may be nested.
+    It is evaluated again, with fewer and fewer switches of threads, if another thread has changed
+    the precision.
     """
     with _lock:
         outer = _Precision.own
-        try:  # without a call before it and in its `finally`: Ctrl-C arrives at calls
+        try:  # without a call before it and first in its `finally`: Ctrl-C arrives at calls
             if not outer:
-                _Precision.host = ctx.prec
+                _Precision.host, _Precision.interval = ctx.prec, sys.getswitchinterval()
             _Precision.own = own = int(digits * BITS) + 2
-            for _ in range(_REPEATS):
+            for interval in _INTERVALS:
                 ctx.prec = own
                 try:
                     found = compute()
@@ -101,12 +110,15 @@ def at_precision(digits: int, compute: Callable[[], T]) -> T:
                     if ctx.prec == own:
                         return found
                 _Precision.host = ctx.prec
+                sys.setswitchinterval(max(interval, _Precision.interval))
             return compute()
         finally:
             if ctx.prec != _Precision.own:
                 _Precision.host = ctx.prec
             _Precision.own = outer
             ctx.prec = outer or _Precision.host
+            if not outer and sys.getswitchinterval() != _Precision.interval:
+                sys.setswitchinterval(_Precision.interval)
 
 
 if hasattr(os, "register_at_fork"):  # a child of another thread has the precision of the host
@@ -174,41 +186,32 @@ def decided(
     *,
     digits: int | None = 0,
     lost: int = 0,
-    otherwise: Callable[[], T] | None = None,
+    what: str = "a number",
 ) -> T:
     """Return the first `compute(working)` that does not raise TooFewDigitsError.
 
-    It runs with `working` digits: first some more than the output has, at last `most` + `lost`.
-    `lost` is a number of digits that are lost in any case, for example to whole turns.  If `most`
-    digits do not decide, the result is that of `otherwise`, in the last precision, or
-    TooFewDigitsError is raised.
+    It runs with `working` digits: first some more than the output has, at last `most` + `lost` and
+    a few more, because the host may have disturbed it.  `lost` is a number of digits that are lost
+    in any case, for example to whole turns.  Raises LagtopError, which names the question by
+    `what`, if no precision decides it.
     """
     least = max(digits or 0, _LEAST_DIGITS)
-    for working in _precisions(least, most):
-        try:
+    growing = takewhile(lambda x: x < most, (least + _GUARD * 4**i for i in count()))
+    for working in (*growing, most, most + 1, most + 2):
+        with suppress(TooFewDigitsError):
             return at_precision(working + lost, partial(compute, working + lost))
-        except TooFewDigitsError:
-            continue
-    if otherwise is None:
-        raise TooFewDigitsError
-    return at_precision(most + lost, otherwise)
-
-
-def _precisions(least: int, most: int) -> Iterator[int]:
-    """Yield the digits of enclosures to try, at most `most`.
-
-    The last one is tried again with a digit more, because the host may have disturbed it.
-    """
-    more = _GUARD
-    while least + more < most:
-        yield least + more
-        more *= 4
-    yield from (most, most + 1)
+    raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
 
 
 def sign_to(number: Callable[[int], arb], most: int) -> int:
     """Return the sign of a number from its balls; 0 if `most` digits leave it open."""
-    return decided(lambda digits: sign(number(digits)), most, otherwise=lambda: 0)
+
+    def attempt(working: int) -> int:
+        ball = number(working)
+        is_equal = ball.contains(0) and ball.rel_one_accuracy_bits() > most
+        return 0 if working >= most and is_equal else sign(ball)
+
+    return decided(attempt, most, what="a sign")
 
 
 class Rounded(NamedTuple):
@@ -217,15 +220,22 @@ class Rounded(NamedTuple):
     value: Any
     """A double, or a text with the digits that were requested."""
     exact: arb | Fraction
+    bits: int = 0
+    """Relative accuracy of the ball, at least."""
 
     @property
     def radius(self) -> NumberText:
         """Largest possible distance of the exact value from the number, rounded up to two digits.
 
-        It is rounded up so far that the double read from the text is not smaller.
+        It is rounded up so far that the double read from the text is not smaller, and it does not
+        depend on the digits in use.
         """
-        ends = ends_of(self.exact) if isinstance(self.exact, arb) else (self.exact,)
-        away = max(_distance(end, self.value) for end in ends)
+        exact = self.exact
+        if isinstance(exact, arb):
+            radius = 0 if exact.is_exact() else abs(exact) * arb(2) ** -self.bits
+            away = max(_distance(x, self.value) for x in ends_of(arb(exact.mid(), radius)))
+        else:
+            away = _distance(exact, self.value)
         return text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec)
 
 
@@ -243,38 +253,33 @@ def settled(
     rounded stands for the simplest fraction in it.  Raises LagtopError for a ball that is wide even
     then, and OutOfRangeError for a number that no double holds; both name the number by `what`.
     """
-    last: list[arb] = []
+    bits = _MARGIN + int((digits or _LEAST_DIGITS) * BITS)
 
     def attempt(working: int) -> Rounded | None:
-        last.clear()
         ball = number(working)
         if ball is None:
             return None
-        last.append(ball)
-        return Rounded(_alike(what, ball, digits), ball)
+        try:
+            if ball.rel_accuracy_bits() < bits:
+                raise TooFewDigitsError
+            value = _alike(what, ball, digits)
+        except TooFewDigitsError:
+            if working < most + lost or not ball.rel_one_accuracy_bits() > most:
+                raise
+            middle, radius = fraction(ball.mid()), fraction(ball.rad())
+            tie = simplest_between(middle - radius, middle + radius)
+            return Rounded(rounded(what, tie, digits, _MORE_DIGITS), tie)
+        return Rounded(value, ball, bits)
 
-    def tie() -> Rounded:
-        if not last or last[0].rel_one_accuracy_bits() <= most:
-            raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
-        value = simplest_between(fraction(last[0].lower()), fraction(last[0].upper()))
-        return Rounded(rounded(what, value, digits, _MORE_DIGITS), value)
-
-    return decided(attempt, most, digits=digits, lost=lost, otherwise=tie)
+    return decided(attempt, most, digits=digits, lost=lost, what=what)
 
 
 def _alike(what: str, ball: arb, digits: int | None) -> Any:
-    """Return the number to which both ends of a ball are rounded; it is 0 only for an exact 0.
-
-    Raises TooFewDigitsError if the ends differ, or do not determine the size of the number.
-    """
-    if not ball.is_finite() or (ball.contains(0) and not ball.is_zero()):
-        raise TooFewDigitsError
+    """Return the number to which both ends of a ball are rounded, or raise TooFewDigitsError."""
     if digits is None:
         low, high = float(ball.lower()), float(ball.upper())
         if low == high and low and math.isfinite(low):
             return low
-    if ball.rel_accuracy_bits() < 2:
-        raise TooFewDigitsError
     low, high = (rounded(what, end, digits, _MORE_DIGITS) for end in ends_of(ball))
     if low != high:
         raise TooFewDigitsError

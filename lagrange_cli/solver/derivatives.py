@@ -154,11 +154,9 @@ class Derivatives:
                 raise TooFewDigitsError
             return fraction(slope.mid())
 
-        def fail() -> Fraction | None:
-            raise LagtopError(f"a derivative of {key} cannot be distinguished from 0")
-
         most = max(x.motion.facts.equal for x in beside) + order
-        return decided(quotient, most, digits=order // 2, lost=order // 4, otherwise=fail)
+        what = f"a derivative of {key}"
+        return decided(quotient, most, digits=order // 2, lost=order // 4, what=what)
 
 
 def _value(motion: Motion, key: str, digits: int) -> Any:

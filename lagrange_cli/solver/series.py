@@ -45,7 +45,7 @@ SIN_EVEN: Family = [0], [2]
 
 TERMS = 4
 """Terms of the series that are enough for doubles."""
-_BITS = 60
+_BITS = 85
 """Bits to which a constant is known before it is rounded to a double."""
 _NEGLIGIBLE = 2.0**-60
 """Size of a term that is left out, over that of the first one."""
@@ -75,7 +75,7 @@ class Series(NamedTuple):
 
 
 def near(x: arb) -> float:
-    """Return the double next to a number; raise TooFewDigitsError unless 60 bits are known."""
+    """Return the double next to a number; raise TooFewDigitsError unless 85 bits are known."""
     if not (x.is_zero() or x.rel_accuracy_bits() >= _BITS):
         raise TooFewDigitsError
     return float(x.mid()) + 0.0  # no -0

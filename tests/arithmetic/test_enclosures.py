@@ -133,9 +133,9 @@ def test_precisions_with_too_few_digits_are_passed_over() -> None:
     assert value_of(settled("x", late, None, 1200)) == 0.5
     assert asked == sorted(asked)
     assert [digits >= 200 for digits in asked][-2:] == [False, True]
-    assert decided(lambda digits: digits, 1200, digits=90, lost=16) == 122
-    with pytest.raises(TooFewDigitsError):
-        decided(lambda _: sign(between(-1, 1)), 300)
+    assert decided(lambda digits: digits, 1200, digits=90, lost=16) == 128
+    with pytest.raises(LagtopError, match=r"^a sign cannot be .* with 300 digits"):
+        sign_to(lambda _: between(-1, 1), 300)
 
 
 def test_equal_digits_grow_with_inputs_and_output() -> None:
