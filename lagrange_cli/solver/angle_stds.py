@@ -23,16 +23,12 @@ from .solve import Motion
 from .tables import STD_COLUMNS, ProvedTable
 from .uncertainty import MISLEADING, away
 
-_STENCILS = (
-    {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
-    {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4},
-)
-"""Weights of neighbours in a derivative, by place in steps: central, and at an end of a range."""
-_STEP, _NOISE = 2.0**-11, 2.0**-40
-"""Step of a stencil, and rounding errors of a derivative, over the range of an input in which
-motions are alike."""
+_STEP, _NOISE = 2.0**-17, 2.0**-33
+"""Step of a stencil, and errors of a derivative, over the range of an input in which motions are
+alike."""
 _MOST_NOISE = 0.01
 """Largest error of an uncertainty, over itself."""
+_WAVES = ("theta", "dphi", "dpsi")
 _LEAST = 1e-9
 """Least error that is reported, in radians."""
 _ROUNDING = 2.0**-50
@@ -52,9 +48,7 @@ class AngleDerivatives:
         self.steps = {x: _STEP / steep[x] for x in self.inputs}
         self.noise = {x: _NOISE * steep[x] for x in self.inputs}
         """Sizes of the rounding errors of the derivatives, by input."""
-        self.neighbours = {
-            x: neighbours(motion, x, Fraction(self.steps[x]), _STENCILS) for x in self.inputs
-        }
+        self.neighbours = {x: neighbours(motion, x, Fraction(h)) for x, h in self.steps.items()}
         self.missing = {x for x, slopes in self.slopes.items() if any(map(math.isnan, slopes))}
         """The inputs by which the angles have no derivative."""
         if not self.period:  # a neighbour that nutates departs at once
@@ -82,7 +76,7 @@ class AngleDerivatives:
         if self.period:
             rates = self.motion.table(t, ["thetadot", "phidot", "psidot"]).values()
             means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
-            leaving = [rate - mean for rate, mean in zip(rates, means, strict=True)]
+            waving = np.array([rate - mean for rate, mean in zip(rates, means, strict=True)])
             half = self.motion.sampler().half
             period = Period(half.rate / 2, *(2 * part for part in half[1:]))
             _, rest, lost = whole_periods(t, period, float(np.abs(t).max(initial=0.0)))
@@ -93,12 +87,12 @@ class AngleDerivatives:
                 if weight:
                     sampler, share = motion.sampler(), weight / self.steps[name]
                     at = phase * (motion.T_nutation or 1.0)
-                    waves += share * np.array(sampler.angles(at, waves=True))
-                    growths += share * np.array([sampler.phi.rate.high, sampler.psi.rate.high])
+                    waves += share * sampler.evaluate(at, _WAVES)
+                    growths += share * np.array([sampler.spin.rate[0], sampler.precession.rate[0]])
             if self.period:
                 by_period, *by_rates = self.slopes[name]
                 growths = np.array(by_rates)
-                waves -= np.array(leaving) * (t * (by_period / self.period))
+                waves -= waving * (t * (by_period / self.period))
             values[0] = waves[0]
             if not self.motion.facts.plane:  # else the others change by half turns only
                 values[1:3] = waves[1:] + np.multiply.outer(growths, t)

@@ -17,7 +17,7 @@ up to a common positive factor.  With N = |X|^2 + |Y|^2, both 1 + u = 2 |X|^2/N 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from flint import arb
@@ -62,13 +62,13 @@ axis_x | | x part in space | | | sin(theta)*sin(psi) ~ sine*sin(precession_turn)
 axis_y | | y part in space | | | -sin(theta)*cos(psi) ~ -sine*cos(precession_turn)
 axis_z | | z part in space | | | u
 quaternion_w | | real part of X = w + i z | | | cos(theta/2)*cos((psi + phi)/2)
-   ~ signed_X*cos(arg_X)/sqrt(N)
+   ~ signed_X*cos(angle_X)/sqrt(N)
 quaternion_x | | real part of Y = x + i y | | | sin(theta/2)*cos((psi - phi)/2)
-   ~ signed_Y*cos(arg_Y)/sqrt(N)
+   ~ signed_Y*cos(angle_Y)/sqrt(N)
 quaternion_y | | imaginary part of Y = x + i y | | | sin(theta/2)*sin((psi - phi)/2)
-   ~ signed_Y*sin(arg_Y)/sqrt(N)
+   ~ signed_Y*sin(angle_Y)/sqrt(N)
 quaternion_z | | imaginary part of X = w + i z | | | cos(theta/2)*sin((psi + phi)/2)
-   ~ signed_X*sin(arg_X)/sqrt(N)
+   ~ signed_X*sin(angle_X)/sqrt(N)
 energy | E | energy; constant except for rounding | mass len²/time² | (4,2)
    | (A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u ~ A*(thetadot**2 + across**2)/2 + C*r0**2/2 + torque*u
 Lz | c2 | vertical angular momentum; constant except for rounding | mass len²/time | (4,3)
@@ -103,6 +103,14 @@ for _name, _column in SCALARS.items():
     COLUMNS.setdefault(_column.group or _name, {})[_name] = _column
 
 DEFAULT_COLUMNS = ("t", *ANGLES)
+REDUCED = {"phi": "spin_turn", "psi": "precession_turn"}
+"""The names of angles within a turn in formulas."""
+TIMELESS = frozenset({"t", "r"})
+"""Columns that do not need the attitude."""
+WITHIN_A_TURN = frozenset(
+    "p q axis_x axis_y quaternion_w quaternion_x quaternion_y quaternion_z".split()
+) | {*REDUCED.values()}
+"""Columns that need an angle within a turn."""
 
 
 def shown_columns(*, radians: bool = False, named: Callable[[str], str] = str) -> dict[str, Key]:
@@ -161,18 +169,24 @@ def column_constants(of: Numbers) -> dict[str, arb]:
 class Columns(dict[str, Any]):
     """Columns of a motion at one or several times by name; each is computed on first use.
 
-    The first items are the constants, `t`, and the functions cos, sin, sqrt, square and ratio (a
-    quotient that is 0 for 0/0: on a pole the momentum about it is 0).  Subclasses have
+    The first items are the constants, `t`, and functions: cos, sin, sqrt, square and ratio (a
+    quotient that is 0 for 0/0: on a pole the momentum about it is 0).  They and `formulas` have
 
     - X, Y, XX, YY: |X|, |Y| and their squares,
     - tilt, spin, precession, spin_wave, precession_wave, nutation_rate,
     - spin_turn, precession_turn: spin and precession, perhaps without whole turns,
-    - arg_X, arg_Y: arguments of X and Y, perhaps without whole half turns, and signed_X, signed_Y:
-      |X| and |Y|, negative if an odd number of them is left out.
+    - angle_X, angle_Y: arguments of X and Y, perhaps without whole half turns, and signed_X,
+      signed_Y: |X| and |Y|, negative if an odd number of them is left out.
     """
 
+    def __init__(
+        self, formulas: Mapping[str, str], *items: Mapping[str, Any], **others: Any
+    ) -> None:
+        for known in items:
+            self.update(known)
+        self.update(others)
+        self.formulas = formulas
+
     def __missing__(self, name: str) -> Any:
-        formula = FORMULAS.get(name)
-        found = getattr(self, name) if formula is None else eval(code_of(formula), {}, self)
-        self[name] = found
+        found = self[name] = eval(code_of(self.formulas[name]), {}, self)
         return found

@@ -8,7 +8,7 @@ degenerate motion may be too near, the step is 2^-1000.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
@@ -107,7 +107,7 @@ class Derivatives:
 
     def _neighbours(self, name: str, order: int = _STEPS[0]) -> tuple[Fraction, list[Neighbour]]:
         step = Fraction(size_of(self.motion, name)) / 2**order
-        return step, neighbours(self.motion, name, step, _STENCILS)
+        return step, neighbours(self.motion, name, step)
 
     def _of(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a number by an input to 30 digits; None if there is none."""
@@ -203,14 +203,12 @@ class Neighbour(NamedTuple):
     weight: float
 
 
-def neighbours(
-    motion: Motion, name: str, step: Fraction, stencils: Sequence[Mapping[int, float]]
-) -> list[Neighbour]:
+def neighbours(motion: Motion, name: str, step: Fraction) -> list[Neighbour]:
     """Return neighbours on both sides or, if the input is at the end of its range, on one.
 
     The list is empty if the input can have no other value.
     """
-    central, ahead = stencils
+    central, ahead = _STENCILS
     for weights, side in ((central, 1), (ahead, 1), (ahead, -1)):
         places = [side * i for i in weights]
         motions = [moved(motion, name, i * step) if i else motion for i in places]

@@ -5,10 +5,10 @@ The attitude is a pair of complex numbers, the Cayley-Klein parameters:
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
 1. A time is reduced, exactly, to whole half periods of the nutation and a phase (`whole_periods`).
-2. The times nearer to u1 and those nearer to u2 are evaluated apart (`ThetaSampler.attitudes`).
+2. The times nearer to u1 and those nearer to u2 are evaluated apart (`ThetaSampler.parts`).
 3. Real and imaginary part of X and of Y are polynomials (`series`); they vanish separately where
-   the axis passes over a pole, so that no digits cancel (`ThetaAttitude`).
-4. One arctangent each gives the tilt and the periodic parts of arg X and arg Y (`Attitude`).
+   the axis passes over a pole, so that no digits cancel (`ThetaSampler.about`).
+4. One arctangent each gives the tilt and the periodic parts of arg X and arg Y (`_FORMULAS`).
 5. A mean rate times t is added to each angle (`Growth`).
 
 All constants are computed in many digits and rounded once.
@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,8 +28,10 @@ from ..arithmetic.arrays import BLOCK, doubles_of
 from ..arithmetic.enclosures import TooFewDigitsError, decided, nearest
 from ..arithmetic.types import Array
 from ..errors import LagtopError, OutOfRangeError
+from ..names import ANGLES
 from ..top.ranges import MAX_PERIODS, MAX_TIME
 from .attitude import ConstantTilt, Course, Nutation, SingleSwing
+from .columns import FORMULAS, REDUCED, TIMELESS, WITHIN_A_TURN, Columns
 from .facts import Facts
 from .series import Frame, near, theta_series
 
@@ -44,6 +45,10 @@ _EXACT = 2.0**26
 """Whole numbers below it have exact products with the parts of a period."""
 _STEEPEST = 340.0
 """Greatest argument of sinh: its square does not overflow in later products."""
+_TINY = 5e-324
+"""The smallest argument that is not 0."""
+np.empty(2**19)  # glibc keeps freed memory from now on: pages are not faulted again in each call
+Index = slice | NDArray[np.intp]
 
 
 class Angles(NamedTuple):
@@ -52,13 +57,6 @@ class Angles(NamedTuple):
     theta: Array
     phi: Array
     psi: Array
-
-
-class Pair(NamedTuple):
-    """A number as the sum of two doubles."""
-
-    high: float
-    low: float
 
 
 class Period(NamedTuple):
@@ -86,10 +84,10 @@ def period_of(length: arb) -> Period:
     return Period(float((1 / length).mid()), high, long - high, low)
 
 
-def pair_of(x: arb) -> Pair:
+def pair_of(x: arb) -> tuple[float, float]:
     """Return the middle of a ball as the sum of two doubles."""
     high = float(x.mid())
-    return Pair(high, float((x.mid() - high).mid()) if math.isfinite(high) else 0.0)
+    return high, float((x.mid() - high).mid()) if math.isfinite(high) else 0.0
 
 
 def whole_periods(
@@ -114,100 +112,103 @@ def whole_periods(
     return n + missed, rest, lost + missed * period.low
 
 
-class Growth(NamedTuple):
+class Growth:
     """The growth of an angle from 0 at t = 0: a mean rate times t, and a periodic part."""
 
-    start: Pair
-    """The periodic part at t = 0."""
-    rate: Pair
-    cycle: Pair
-    """A turn or, for arg X and arg Y, half a turn."""
-    time: Period
-    """The time of a cycle at the mean rate."""
+    def __init__(self, rate: arb, start: arb, unit: arb, turns: float = 1.0) -> None:
+        """Take the mean rate, the periodic part at t = 0, a unit of time, and the turns of a cycle.
+
+        Raises TooFewDigitsError if one of them is not known to twice the precision of doubles.
+        """
+        for x in (rate * unit, start):
+            if not (x.is_finite() and float(x.rad()) <= _SHARP * (1 + abs(float(x.mid())))):
+                raise TooFewDigitsError
+        cycle = 2 * turns * arb.pi()
+        self.start, self.rate, self.cycle = map(pair_of, (start, rate, cycle))
+        self.time = period_of(cycle / rate if not rate.contains(0) else arb("inf"))
+        """The time of a cycle at the mean rate."""
 
     def wave(self, periodic: Array, t: Array) -> Array:
         """Return the periodic part of an angle less its value at t = 0."""
-        return (periodic - self.start.high) - self.start.low if self.start.high else periodic
+        return (periodic - self.start[0]) - self.start[1] if self.start[0] else periodic
 
     def angle(self, periodic: Array, t: Array) -> Array:
         """Return the angle from its periodic part."""
-        return (self.wave(periodic, t) + t * self.rate.low) + t * self.rate.high
+        return (self.wave(periodic, t) + t * self.rate[1]) + t * self.rate[0]
 
-    def within_a_cycle(self, periodic: Array, t: Array) -> tuple[Array, Array]:
-        """Return the angle less n cycles, at most half a cycle in size, and n."""
+    def reduced(self, periodic: Array, t: Array) -> tuple[Array, Array]:
+        """Return the angle less n cycles, in (-cycle/2, cycle/2], and n."""
         wave, farthest = self.wave(periodic, t), float(np.abs(t).max(initial=0.0))
-        n, rest, lost = whole_periods(t, self.time, farthest, wave / self.cycle.high)
-        angle = wave + rest * self.rate.high
-        angle += rest * self.rate.low - lost * self.rate.high
-        more = np.rint(angle / self.cycle.high)
-        return (angle - more * self.cycle.high) - more * self.cycle.low, n + more
-
-    def within_a_turn(self, periodic: Array, t: Array) -> Array:
-        """Return the angle in (-pi, pi]."""
-        angle, _ = self.within_a_cycle(periodic, t)
-        return np.where(angle > -np.pi, np.minimum(angle, np.pi), np.pi)
-
-
-def growth_of(rate: arb, start: arb, unit: arb, turns: float = 1.0) -> Growth:
-    """Return the growth of an angle from its mean rate and its periodic part at t = 0.
-
-    Raises TooFewDigitsError if one of them, the rate times a unit of time, is not known to twice
-    the precision of doubles.
-    """
-    cycle = 2 * turns * arb.pi()
-    for x in (rate * unit, start, cycle):
-        if not (x.is_finite() and float(x.rad()) <= _SHARP * (1 + abs(float(x.mid())))):
-            raise TooFewDigitsError
-    time = cycle / rate if not rate.contains(0) else arb("inf")
-    return Growth(pair_of(start), pair_of(rate), pair_of(cycle), period_of(time))
+        more = wave / self.cycle[0] if self.time.rate else 0.0
+        n, rest, lost = whole_periods(t, self.time, farthest, more)
+        angle = wave + rest * self.rate[0]
+        angle += rest * self.rate[1] - lost * self.rate[0]
+        more = np.rint(angle / self.cycle[0])
+        angle = (angle - more * self.cycle[0]) - more * self.cycle[1]
+        half = self.cycle[0] / 2
+        low = angle <= -half
+        return np.where(low, half, np.minimum(angle, half)), n + more - low
 
 
-Index = slice | NDArray[np.intp]
+def polynomial(coefficients: Sequence[float], x: Array) -> Array:
+    """Return the value of a polynomial with at least two coefficients, the lowest power first."""
+    value = coefficients[-1] * x
+    for coefficient in coefficients[-2:0:-1]:
+        value += coefficient
+        value *= x
+    value += coefficients[0]
+    return value
 
 
-class Attitude:
-    """X and Y at some times, up to a common positive factor; each part is computed on first use.
+def _divided(x: Array, y: Array, otherwise: Array) -> Array:
+    """Return x/y; where y is 0, return another number."""
+    found: Array = np.divide(x, y, out=otherwise, where=y != 0.0)
+    return found
 
-    Subclasses have `parts`: Re X, Im X, Re Y, Im Y, where neither real part is negative; `args`:
-    the periodic parts of arg X and arg Y; and `rate`: the nutation rate times 2 (|X|^2 + |Y|^2)
-    |X| |Y|.
-    """
 
-    parts: Any
-    args: Any
-    rate: Any
+def _argument(real: Array, imag: Array) -> Array:
+    """Return the argument of a number whose real part is not negative, or the constant 0."""
+    return np.arctan(imag / real) if real.any() else np.copysign(np.pi / 2, imag)
 
-    def __init__(self, sampler: Sampler, t: Array) -> None:
-        self.sampler, self.t = sampler, t
 
-    @cached_property
-    def moduli(self) -> tuple[Array, Array]:
-        """|X|^2 and |Y|^2."""
-        a, b, c, d = self.parts
-        return a * a + b * b, c * c + d * d
-
-    @cached_property
-    def tilt(self) -> Array:
-        """The tilt, 2 arctan(|Y|/|X|)."""
-        x, y = self.moduli
-        return 2.0 * np.arctan(np.sqrt(y / x))
-
-    def phi(self, of: Callable[[Growth, Array, Array], Array] = Growth.angle) -> Array:
-        """Return the spin, arg X - arg Y, by a method of `Growth`."""
-        return of(self.sampler.phi, self.args[0] - self.args[1], self.t)
-
-    def psi(self, of: Callable[[Growth, Array, Array], Array] = Growth.angle) -> Array:
-        """Return the precession, arg X + arg Y, by a method of `Growth`."""
-        return of(self.sampler.psi, self.args[0] + self.args[1], self.t)
-
-    def halves(self) -> list[tuple[Array, Array]]:
-        """Return arg X and arg Y, each less n half turns, with n."""
-        pairs = zip(self.sampler.halves, self.args, strict=True)
-        return [growth.within_a_cycle(arg, self.t) for growth, arg in pairs]
+_FUNCTIONS: dict[str, Any] = {
+    **{"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "square": np.square, "arctan": np.arctan},
+    "ratio": lambda x, y: _divided(x, y, np.zeros_like(y)),
+    **{"divided": _divided, "polynomial": polynomial, "argument": _argument},
+    "at_least_0": lambda x: np.maximum(x, 0.0),
+}
+_FORMULAS = FORMULAS | {
+    "XX": "square(re_X) + square(im_X)",
+    "YY": "square(re_Y) + square(im_Y)",
+    "X": "sqrt(XX)",
+    "Y": "sqrt(YY)",
+    "tilt": "2*arctan(sqrt(YY/XX))",
+    # the periodic parts of arg X and of arg Y
+    "arg_X": "argument(re_X, im_X) + x*slope_X",
+    "arg_Y": "argument(re_Y, im_Y) + x*slope_Y",
+    "spin": "of_spin.angle(arg_X - arg_Y, t)",
+    "spin_wave": "of_spin.wave(arg_X - arg_Y, t)",
+    "reduced_spin": "of_spin.reduced(arg_X - arg_Y, t)",
+    "spin_turn": "reduced_spin[0]",
+    "precession": "of_precession.angle(arg_X + arg_Y, t)",
+    "precession_wave": "of_precession.wave(arg_X + arg_Y, t)",
+    "reduced_precession": "of_precession.reduced(arg_X + arg_Y, t)",
+    "precession_turn": "reduced_precession[0]",
+    "reduced_X": "of_X.reduced(arg_X, t)",
+    "angle_X": "reduced_X[0]",
+    "signed_X": "X*(1 - 2*(reduced_X[1] % 2))",
+    "reduced_Y": "of_Y.reduced(arg_Y, t)",
+    "angle_Y": "reduced_Y[0]",
+    "signed_Y": "Y*(1 - 2*(reduced_Y[1] % 2))",
+    # the nutation rate times 2 N X Y
+    "scaled_rate": "polynomial(rate_series, s_x)*S_x*C_x",
+    # on a pole, where the sign of the nutation rate changes, its size by (4,2)
+    "nutation_rate": "divided(scaled_rate, 2*N*X*Y, sqrt(at_least_0(energy_constant - a*u)))",
+}
 
 
 class Sampler:
-    """The angles of one motion over time; subclasses yield the attitude at arrays of times."""
+    """The angles of one motion over time; subclasses have the parts of X and Y."""
 
     half = Period(0.0, 0.0, 0.0, 0.0)
     """Half the period of the nutation, infinite if there is none."""
@@ -215,34 +216,24 @@ class Sampler:
     def __init__(self, of: Course, tilt: float) -> None:
         """Take the constants of a motion and its tilt at t = 0."""
         unit, (x, y), spin, precession = of.unit, of.start, of.spin, of.precession
-        self.phi = growth_of(spin, x - y, unit)
-        self.psi = growth_of(precession, x + y, unit)
-        plus, minus = (precession + spin) / 2, (precession - spin) / 2
-        self.halves = growth_of(plus, x, unit, 0.5), growth_of(minus, y, unit, 0.5)
+        self.spin, self.precession = Growth(spin, x - y, unit), Growth(precession, x + y, unit)
+        of_X = Growth((precession + spin) / 2, x, unit, 0.5)
+        of_Y = Growth((precession - spin) / 2, y, unit, 0.5)
+        self.known = _FUNCTIONS | {"of_spin": self.spin, "of_precession": self.precession}
+        self.known |= {"of_X": of_X, "of_Y": of_Y}
+        """What formulas need at any time."""
         self.tilt = tilt
-        self.max_time = min(float((int(MAX_PERIODS) * unit).mid()), MAX_TIME)
-        fastest = max(abs(self.phi.rate.high), abs(self.psi.rate.high))
+        self.max_time = min(float((int(MAX_PERIODS) * of.unit).mid()), MAX_TIME)
+        fastest = max(abs(self.spin.rate[0]), abs(self.precession.rate[0]))
         self.max_wrapped = MOST_TURNS * 2 * math.pi / fastest if fastest else math.inf
 
-    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
-        """Yield the attitude at some of the times, with their index; `farthest` is max |t|."""
-        raise NotImplementedError
+    def parts(self, t: Array, farthest: float) -> Iterator[tuple[Index, dict[str, Any]]]:
+        """Yield some times by their index, each with the items of formulas; `farthest` is max |t|.
 
-    def evaluate(
-        self, t: Array, farthest: float, count: int, compute: Callable[[Attitude], Sequence[Any]]
-    ) -> Array:
-        """Return `count` numbers of the attitude at times, of shape (count, times).
-
-        Blocks of times are short, so that their arrays stay in the cache.
+        These are the parts of X and Y, up to a common positive factor.  Neither real part is
+        negative.
         """
-        found = np.empty((count, t.size))
-        with np.errstate(all="ignore"):
-            for first in range(0, t.size, BLOCK):
-                block, rows = t[first : first + BLOCK], found[:, first : first + BLOCK]
-                for index, at in self.attitudes(block, farthest):
-                    for row, values in zip(rows, compute(at), strict=True):
-                        row[index] = values
-        return found
+        raise NotImplementedError
 
     def check(self, t: ArrayLike, name: str = "t", *, wrap: bool = False) -> float:
         """Return the greatest |t|.
@@ -261,15 +252,31 @@ class Sampler:
         kind = OutOfRangeError if math.isfinite(bad) else LagtopError
         raise kind(f"{name} must be {bound}, got {bad}", name)
 
-    def angles(self, t: ArrayLike, *, wrap: bool = False, waves: bool = False) -> Angles:
-        """Return tilt, spin and precession at the times t; see `Motion.angles`.
+    def evaluate(
+        self, t: Array, names: Sequence[str], *, wrap: bool = False, **known: Any
+    ) -> Array:
+        """Return columns at times, of shape (names, times), from the constants that they need.
 
-        As `waves`, spin and precession are less their mean rates times t.
+        Raises LagtopError for a time out of range.
         """
-        times, farthest = doubles_of("t", t), self.check(t, wrap=wrap)
-        how = Growth.within_a_turn if wrap else Growth.wave if waves else Growth.angle
+        names = [REDUCED.get(name, name) for name in names] if wrap else names
+        farthest = self.check(t, wrap=not WITHIN_A_TURN.isdisjoint(names))
+        moves, found = not TIMELESS.issuperset(names), np.empty((len(names), t.size))
+        known |= self.known
+        with np.errstate(all="ignore"):
+            for first in range(0, t.size, BLOCK):  # short arrays stay in the cache
+                block, rows = t[first : first + BLOCK], found[:, first : first + BLOCK]
+                for index, items in self.parts(block, farthest) if moves else [(slice(None), {})]:
+                    columns = Columns(_FORMULAS, known, items, t=block[index])
+                    for row, name in zip(rows, names, strict=True):
+                        row[index] = columns[name]
+        return found
+
+    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
+        """Return tilt, spin and precession at the times t; see `Motion.angles`."""
+        times = doubles_of("t", t)
         flat = times.reshape(-1)
-        angles = self.evaluate(flat, farthest, 3, lambda at: (at.tilt, at.phi(how), at.psi(how)))
+        angles = self.evaluate(flat, ANGLES, wrap=wrap)
         angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
         return Angles(*angles.reshape(3, *times.shape))
 
@@ -279,100 +286,58 @@ class ThetaSampler(Sampler):
 
     def __init__(self, of: Nutation, tilt: float) -> None:
         super().__init__(of, tilt)
-        series = theta_series(of)
-        step = nearest(2 * of.since)
-        offset = 2 * of.since - step
+        series, step = theta_series(of), nearest(2 * of.since)
+        offset, scale = 2 * of.since - step, series.scale
         self.frames = series.frames[:: -1 if step % 2 else 1]
         """The series about the turning points of the even and of the odd steps."""
         self.half = period_of(of.period / 2)
         self.offset = near(offset)
         """Half periods from the turning point of step 0 to t = 0, from -1/2 to 1/2."""
-        self.speed = near(2 * series.scale / of.period)
+        self.speed = near(2 * scale / of.period)
         """Argument of the series per unit of time."""
-        self.first = near(series.scale * offset)
+        self.first = near(scale * offset)
         """Argument at t = 0."""
-        self.slopes = [near(slope / series.scale) for slope in series.slopes]
+        slopes = [near(slope / scale) for slope in series.slopes]
+        self.slopes = dict(zip(("slope_X", "slope_Y"), slopes, strict=True))
         """What is added to arg X and arg Y per unit of the argument to make them periodic."""
-        self.hyperbolic, self.steep = of.hyperbolic, near(series.scale) > 2 * _STEEPEST
+        self.over_pole = not all(part[0] for frame in self.frames for part in frame.parts[::2])
+        self.hyperbolic, self.steep = of.hyperbolic, near(scale) > 2 * _STEEPEST
 
-    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
-        """Yield the attitude about even and about odd turning points."""
+    def parts(self, t: Array, farthest: float) -> Iterator[tuple[Index, dict[str, Any]]]:
+        """Yield the parts about even and about odd turning points."""
         step, rest, lost = whole_periods(t, self.half, farthest, self.offset)
         x = (rest - lost) * self.speed + self.first
+        if self.over_pole:  # just before or after a passage, or a start
+            x = np.where(x == 0.0, np.copysign(_TINY, t), x)
         half = 0.5 * step
         even = half == np.rint(half)
         for frame, chosen in zip(self.frames, (even, ~even), strict=True):
             index = np.flatnonzero(chosen)
             if index.size == t.size:
-                yield slice(None), ThetaAttitude(self, t, x, frame)
+                yield slice(None), self.about(frame, x)
             elif index.size:
-                yield index, ThetaAttitude(self, t[index], x[index], frame)
+                yield index, self.about(frame, x[index])
 
-
-class ThetaAttitude(Attitude):
-    """X and Y at arguments x of the series about one turning point."""
-
-    sampler: ThetaSampler
-
-    def __init__(self, sampler: ThetaSampler, t: Array, x: Array, frame: Frame) -> None:
-        super().__init__(sampler, t)
-        self.x, self.frame = x, frame
-
-    @cached_property
-    def functions(self) -> tuple[Array, Array, Array]:
-        """S, C and s; of circular series C is 1/cos^2."""
-        if self.sampler.hyperbolic:
-            x = np.clip(self.x, -_STEEPEST, _STEEPEST) if self.sampler.steep else self.x
-            S = np.sinh(x)
+    def about(self, frame: Frame, x: Array) -> dict[str, Any]:
+        """Return the parts at arguments x of the series about one turning point."""
+        if self.hyperbolic:
+            S = np.sinh(np.clip(x, -_STEEPEST, _STEEPEST) if self.steep else x)
             s = S * S
-            return S, np.sqrt(s + 1.0), s
-        S = np.tan(self.x)
-        s = S * S
-        C = s + 1.0
-        return S, C, s / C
-
-    @cached_property
-    def parts(self) -> tuple[Array, Array, Array, Array]:
-        """Re X, Im X, Re Y, Im Y."""
-        S, C, s = self.functions
-        a, b, c, d = (polynomial(part, s) for part in self.frame.parts)
+            C = np.sqrt(s + 1.0)
+        else:
+            S = np.tan(x)
+            s = S * S
+            C = s + 1.0  # 1/cos^2
+            s /= C
+        a, b, c, d = (polynomial(part, s) for part in frame.parts)
         b *= S
         d *= S
-        if self.sampler.hyperbolic:
-            one, other = (b, c) if self.frame.at_u1 else (a, d)
+        if self.hyperbolic:
+            one, other = (b, c) if frame.at_u1 else (a, d)
             one *= C
             other *= C
-        return a, b, c, d
-
-    @cached_property
-    def args(self) -> list[Array]:
-        """The periodic parts of arg X and arg Y."""
-        found = []
-        for side, slope in enumerate(self.sampler.slopes):
-            real, imag = self.parts[2 * side : 2 * side + 2]
-            if self.frame.parts[2 * side][0]:
-                arg = np.arctan(imag / real)
-            else:  # a passage over the pole, or a start on it
-                after = np.where(self.x == 0.0, self.t, self.x)
-                arg = np.copysign(np.pi / 2, after * self.frame.parts[2 * side + 1][0])
-            found.append(arg + self.x * slope)
-        return found
-
-    @property
-    def rate(self) -> Array:
-        """2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
-        S, C, s = self.functions
-        return polynomial(self.frame.rate, s) * S * C
-
-
-def polynomial(coefficients: Sequence[float], x: Array) -> Array:
-    """Return the value of a polynomial with at least two coefficients, the lowest power first."""
-    value = coefficients[-1] * x
-    for coefficient in coefficients[-2:0:-1]:
-        value += coefficient
-        value *= x
-    value += coefficients[0]
-    return value
+        named = {"re_X": a, "im_X": b, "re_Y": c, "im_Y": d, "rate_series": frame.rate}
+        return named | {"x": x, "S_x": S, "C_x": C, "s_x": s} | self.slopes
 
 
 class SwingSampler(Sampler):
@@ -382,18 +347,17 @@ class SwingSampler(Sampler):
         super().__init__(of, tilt)
         self.constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
 
-    def attitudes(self, t: Array, farthest: float) -> Iterator[tuple[Index, Attitude]]:
-        """Yield the attitude at all times: 1 - u = (1 - u2)/cosh^2 h, lowest at h = 0."""
+    def parts(self, t: Array, farthest: float) -> Iterator[tuple[Index, dict[str, Any]]]:
+        """Yield the parts at all times: 1 - u = (1 - u2)/cosh^2 h, lowest at h = 0."""
         x, y, rate, h0 = self.constants
         h = t * rate + h0
         shrink = np.exp(-np.abs(h))
         Y, tanh = y * (2.0 * shrink / (1.0 + shrink * shrink)), np.tanh(h)
-        at, real, imag, zero = Attitude(self, t), np.full_like(h, x), y * tanh, np.zeros_like(h)
-        at.parts, at.args = (real, imag, Y, zero), (np.arctan2(imag, real), zero)
-        at.rate = -4.0 * rate * Y * Y * tanh
-        if not rate:
-            at.tilt = np.full_like(h, self.tilt)
-        yield slice(None), at
+        real, imag, zero = np.full_like(h, x), y * tanh, np.zeros_like(h)
+        found = {"re_X": real, "im_X": imag, "re_Y": Y, "im_Y": zero}
+        found |= {"arg_X": np.arctan2(imag, real), "arg_Y": zero}
+        found["scaled_rate"] = -4.0 * rate * Y * Y * tanh
+        yield slice(None), found if rate else found | {"tilt": np.full_like(h, self.tilt)}
 
 
 def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampler:

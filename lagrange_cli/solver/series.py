@@ -32,17 +32,11 @@ from flint import arb, arb_poly
 from ..arithmetic.enclosures import TooFewDigitsError, root
 from .attitude import Nutation, Side
 
-Family = tuple[list[int], list[int]]
-"""The first two polynomials in s, over C, S or S C; P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
-COS_ODD: Family = [1], [1, -4]
-"""cos (2n+1)x"""
-SIN_ODD: Family = [1], [3, -4]
-"""sin (2n+1)x"""
-COS_EVEN: Family = [1], [1, -2]
-"""cos 2nx"""
-SIN_EVEN: Family = [0], [2]
-"""sin 2nx"""
+COS_ODD, SIN_ODD, COS_EVEN, SIN_EVEN = ([1], [1, -4]), ([1], [3, -4]), ([1], [1, -2]), ([0], [2])
+"""The first two polynomials of cos (2n+1)x, sin (2n+1)x, cos 2nx and sin 2nx, over C, S or S C.
 
+The next ones are P(n+1) = (2 - 4 s) P(n) - P(n-1).
+"""
 TERMS = 4
 """Terms of the series that are enough for doubles."""
 _BITS = 85
@@ -57,7 +51,7 @@ class Frame(NamedTuple):
     """The series about one turning point: coefficients of polynomials, the lowest power first."""
 
     at_u1: bool
-    parts: tuple[list[float], ...]
+    parts: list[list[float]]
     """Re X, Im X, Re Y, Im Y, with any common factor."""
     rate: list[float]
     """S C times this is 2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
@@ -66,11 +60,11 @@ class Frame(NamedTuple):
 class Series(NamedTuple):
     """The series of a motion."""
 
-    frames: tuple[Frame, Frame]
+    frames: list[Frame]
     """The series about u1 and about u2."""
     scale: arb
     """Argument of the functions per half period."""
-    slopes: tuple[arb, arb]
+    slopes: list[arb]
     """Slopes per half period that are added to arg X and arg Y to make them periodic."""
 
 
@@ -86,56 +80,50 @@ def theta_series(of: Nutation) -> Series:
 
     Raises TooFewDigitsError if a coefficient is not known well enough to be rounded to a double.
     """
-    pi, stretch = arb.pi(), 1 / of.ratio if of.hyperbolic and of.ratio is not None else arb(1)
-    nome = arb(0) if of.ratio is None else (-pi * (stretch if of.hyperbolic else of.ratio)).exp()
-    x, y = (_polynomials(side, nome, of.hyperbolic) for side in of.sides)
+    pi, hyperbolic = arb.pi(), of.hyperbolic
+    stretch = 1 / of.ratio if hyperbolic and of.ratio is not None else arb(1)
+    nome = arb(0) if of.ratio is None else (-pi * (stretch if hyperbolic else of.ratio)).exp()
+    x, y = (_polynomials(side, nome, hyperbolic) for side in of.sides)
     # theta1(2x), with the slope of sin(theta) theta' at u1, where |X|^2 + |Y|^2 is 1
     weights = [arb(0), arb(1), arb(0), -(nome**2), arb(0), nome**6, arb(0), -(nome**12)]
     unit = of.period * of.bend / (pi * stretch) / sum(2 * n * w for n, w in enumerate(weights))
-    rate = unit * _summed(SIN_EVEN, weights, of.hyperbolic)
+    rate = unit * _summed(SIN_EVEN, weights, hyperbolic)
     scale = pi / 2 * stretch
-    most = scale.exp() / 4 if of.hyperbolic else arb(0.5)
-    frames = (
-        _frame(True, (*x[:2], *y[2:]), rate, most),
-        _frame(False, (*x[2:], *y[:2]), -rate, most),
-    )
-    turns = [arb(0.5) - (side.place if of.hyperbolic else 0) for side in of.sides]
-    x_slope, y_slope = (-s.sign * pi * turn for s, turn in zip(of.sides, turns, strict=True))
-    return Series(frames, scale, (x_slope, y_slope))
+    most = scale.exp() / 4 if hyperbolic else arb(0.5)
+    frames = [
+        _frame(True, x[:2] + y[2:], rate, most),
+        _frame(False, x[2:] + y[:2], -rate, most),
+    ]
+    turns = [arb(0.5) - (side.place if hyperbolic else 0) for side in of.sides]
+    slopes = [-side.sign * pi * turn for side, turn in zip(of.sides, turns, strict=True)]
+    return Series(frames, scale, slopes)
 
 
 def _polynomials(side: Side, nome: arb, hyperbolic: bool) -> list[arb_poly]:
     """Return real and imaginary part of X or Y about its own turning point, and the other one."""
-
-    def multiples(first: int) -> tuple[list[arb], list[arb]]:
-        """Return sines and cosines, or hyperbolic ones, of every second multiple of y."""
-        places = [side.place * (2 * n + first) for n in range(TERMS)]
-        both = [arb.sin_cos_pi(x) if hyperbolic else (arb.pi() * x).sinh_cosh() for x in places]
-        return [sine for sine, _ in both], [cosine for _, cosine in both]
-
-    signs, odd = [(-1) ** n for n in range(TERMS)], [nome ** (n * (n + 1)) for n in range(TERMS)]
-    sine, cosine = multiples(1)
-    own = (COS_ODD, odd, cosine), (SIN_ODD, odd, sine)
+    angles = [side.place * k for k in range(2 * TERMS)]  # multiples of y
+    both = [arb.sin_cos_pi(x) if hyperbolic else (arb.pi() * x).sinh_cosh() for x in angles]
+    sines, cosines = zip(*both, strict=True)
+    signs, w = [1, -1, 1, -1], [nome ** (n * (n + 1)) for n in range(TERMS)]
+    own = (COS_ODD, w, cosines[1::2]), (SIN_ODD, w, sines[1::2])
     if hyperbolic:
-        odd = [2 * root(root(nome)) * x for x in odd]
-        even = [2 * sign * nome ** (n * n) for n, sign in enumerate(signs)]
-        even[0] = arb(1)
-        sine_even, cosine_even = multiples(0)
-        own = (COS_EVEN, even, cosine_even), (SIN_EVEN, [-x for x in even], sine_even)
-    odd = [sign * x for sign, x in zip(signs, odd, strict=True)]
-    rows = [
-        (family, [w * x for w, x in zip(ws, xs, strict=True)])
-        for family, ws, xs in (*own, (COS_ODD, odd, sine), (SIN_ODD, odd, cosine))
+        w = [2 * root(root(nome)) * x for x in w]
+        even = [arb(1), *(2 * signs[n] * nome ** (n * n) for n in range(1, TERMS))]
+        own = (COS_EVEN, even, cosines[::2]), (SIN_EVEN, [-x for x in even], sines[::2])
+    w = [sign * x for sign, x in zip(signs, w, strict=True)]
+    rows = *own, (COS_ODD, w, sines[1::2]), (SIN_ODD, w, cosines[1::2])
+    products = [[x * y for x, y in zip(*row, strict=True)] for _, *row in rows]
+    unit = side.size / sum(products[0])
+    sums = [
+        _summed(row[0], weights, hyperbolic) for row, weights in zip(rows, products, strict=True)
     ]
-    unit = side.size / sum(rows[0][1])
-    factors = (unit, side.sign * unit) * 2
-    return [x * _summed(*row, hyperbolic) for x, row in zip(factors, rows, strict=True)]
+    return [x * unit * (side.sign if i % 2 else 1) for i, x in enumerate(sums)]
 
 
-def _summed(family: Family, weights: Sequence[arb], hyperbolic: bool) -> arb_poly:
-    """Return a weighted sum of the polynomials of a family; hyperbolic ones have -s for s."""
+def _summed(first: Sequence[list[int]], weights: Sequence[arb], hyperbolic: bool) -> arb_poly:
+    """Return a weighted sum of polynomials; hyperbolic ones have -s for s."""
     s = arb_poly([0, -1 if hyperbolic else 1])
-    before, now = (arb_poly(first)(s) for first in family)
+    before, now = (arb_poly(x)(s) for x in first)
     total = weights[0] * before
     for weight in weights[1:]:
         total += weight * now
@@ -153,7 +141,7 @@ def _frame(at_u1: bool, parts: Sequence[arb_poly], rate: arb_poly, most: arb) ->
     def kept(series: arb_poly, factor: arb) -> list[float]:
         terms = [series[n] * factor for n in range(2 * TERMS)]
         sizes = [abs(float((x * most**n).mid())) for n, x in enumerate(terms)]
-        last = max((n for n, size in enumerate(sizes) if size > sizes[0] * _NEGLIGIBLE), default=0)
-        return [near(x) for x in terms[: max(last, 1) + 1]]
+        large = [n for n, size in enumerate(sizes) if size > sizes[0] * _NEGLIGIBLE]
+        return [near(x) for x in terms[: max([1, *large]) + 1]]
 
-    return Frame(at_u1, tuple(kept(part, factor) for part in parts), kept(rate, factor**4))
+    return Frame(at_u1, [kept(part, factor) for part in parts], kept(rate, factor**4))

@@ -1,7 +1,7 @@
 """Tables over time: columns at arrays of times in doubles, and proved rows with any digits.
 
-Both evaluate the formulas of `columns`: `Sample` in doubles, from the series of `sampling`, and
-`BallSample` in balls, from theta functions (`attitude`).  A proved row is rounded if both ends of
+Both evaluate the formulas of `columns`: arrays in doubles, from the series of `sampling`, and
+proved rows in balls, from theta functions (`attitude`).  A proved row is rounded if both ends of
 its balls agree.
 """
 
@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import islice
-from typing import Any
 
 import numpy as np
 from flint import arb
@@ -36,11 +35,18 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import ANGLES
 from ..top.ranges import EvenPoints, Points
-from .attitude import ConstantTilt, SingleSwing, start_of
-from .columns import DEFAULT_COLUMNS, Columns, chosen_columns, column_constants, headings
+from .attitude import ConstantTilt, Course, Nutation, SingleSwing, start_of
+from .columns import (
+    DEFAULT_COLUMNS,
+    FORMULAS,
+    WITHIN_A_TURN,
+    Columns,
+    chosen_columns,
+    column_constants,
+    headings,
+)
 from .numbers import square
 from .record import Solution
-from .sampling import Attitude, Growth
 from .series import near
 
 DEFAULT_ROWS = 101
@@ -50,60 +56,30 @@ _EXTRA = 16
 """Step in digits by which the precision grows with time, so that one precision serves many rows."""
 STD_COLUMNS = (*ANGLES, "dphi", "dpsi")
 """The columns that have uncertainties."""
-_WITHIN_A_TURN = frozenset(
-    "p q axis_x axis_y quaternion_w quaternion_x quaternion_y quaternion_z".split()
-)
-"""Columns that need an angle within a turn."""
-
-
-def _ratio(x: Array, y: Array) -> Array:
-    """Return x/y, and 0 for 0/0."""
-    quotient: Array = np.divide(x, y, out=np.zeros_like(y), where=y != 0.0)
-    return quotient
-
-
-_ARRAYS = {"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "square": np.square, "ratio": _ratio}
 _BALLS = {
-    "cos": arb.cos,
-    "sin": arb.sin,
-    "sqrt": root,
-    "square": square,
-    "ratio": lambda x, y: x if x.is_zero() else x / y,
+    **{"cos": arb.cos, "sin": arb.sin, "tanh": arb.tanh, "atan2": arb.atan2, "sqrt": root},
+    **{"square": square, "sign": sign, "ratio": lambda x, y: x if x.is_zero() else x / y},
 }
-
-
-class Sample(Columns):
-    """Columns at an array of times."""
-
-    def __init__(self, at: Attitude, constants: dict[str, float], wrap: bool) -> None:
-        super().__init__(_ARRAYS, t=at.t, **constants)
-        self.at = at
-        self.angle = Growth.within_a_turn if wrap else Growth.angle
-
-    XX = property(lambda self: self.at.moduli[0])
-    YY = property(lambda self: self.at.moduli[1])
-    X = property(lambda self: np.sqrt(self["XX"]))
-    Y = property(lambda self: np.sqrt(self["YY"]))
-    tilt = property(lambda self: self.at.tilt)
-    spin = property(lambda self: self.at.phi(self.angle))
-    precession = property(lambda self: self.at.psi(self.angle))
-    spin_turn = property(lambda self: self.at.phi(Growth.within_a_turn))
-    precession_turn = property(lambda self: self.at.psi(Growth.within_a_turn))
-    spin_wave = property(lambda self: self.at.phi(Growth.wave))
-    precession_wave = property(lambda self: self.at.psi(Growth.wave))
-    halves = property(lambda self: self.at.halves())
-    arg_X = property(lambda self: self["halves"][0][0])
-    arg_Y = property(lambda self: self["halves"][1][0])
-    signed_X = property(lambda self: self["X"] * (1.0 - 2.0 * (self["halves"][0][1] % 2.0)))
-    signed_Y = property(lambda self: self["Y"] * (1.0 - 2.0 * (self["halves"][1][1] % 2.0)))
-
-    @property
-    def nutation_rate(self) -> Array:
-        """The nutation rate (5,3); on a pole, where its sign changes, its size by (4,2)."""
-        product = 2.0 * self["N"] * self["X"] * self["Y"]
-        size = np.sqrt(np.maximum(self["energy_constant"] - self["a"] * self["u"], 0.0))
-        rate: Array = np.divide(self.at.rate, product, out=size, where=product != 0.0)
-        return rate
+_BALL_FORMULAS = FORMULAS | {
+    "XX": "square(X)",
+    "YY": "square(Y)",
+    "tilt": "2*atan2(Y, X)",
+    "spin_wave": "wave('spin', spin)",
+    "precession_wave": "wave('precession', precession)",
+    "spin_turn": "spin",
+    "precession_turn": "precession",
+    "angle_X": "(precession + spin)/2",
+    "angle_Y": "(precession - spin)/2",
+    "signed_X": "X",
+    "signed_Y": "Y",
+    # by the energy (4,2)
+    "nutation_rate": (
+        "tilting if tilting.is_zero()"
+        " else sign(tilting)*sqrt(energy_constant - a*u - square(across))"
+    ),
+}
+_SWING = {"nutation_rate": "2*swing_rate*Y*tanh(tilting)/X"}
+"""On the separatrix a product, which keeps its digits at late times."""
 
 
 def columns_at(
@@ -120,20 +96,15 @@ def columns_at(
         alpha = float(found.pop("energy_constant").mid())  # 0 may be known to no digit
         return {name: near(x) for name, x in found.items()} | {"energy_constant": alpha}
 
-    constants = decided(doubles, motion.facts.equal)
-    within = wrap or not _WITHIN_A_TURN.isdisjoint(chosen)
-
     @cache
     def start() -> list[float]:
         table = ProvedTable(motion, columns, radians=radians, wrap=wrap)
         return [number.value for number in table.row(Fraction(0))]
 
-    def compute(at: Attitude) -> list[Any]:
-        sample = Sample(at, constants, wrap)
-        return [sample[name] for name in chosen]
+    constants = decided(doubles, motion.facts.equal)
 
     def found_at(t: Array) -> Array:
-        found = sampler.evaluate(t, sampler.check(t, wrap=within), len(chosen), compute)
+        found = sampler.evaluate(t, [*chosen], wrap=wrap, **constants)
         for row, column in zip(found, chosen.values(), strict=True):
             if column.unit == "angle" and not radians:
                 np.degrees(row, out=row)
@@ -161,7 +132,7 @@ def rows(
     column and, before the first block, for a time out of range.
     """
     header, chosen = headings(columns, radians=radians), chosen_columns(columns)
-    within = wrap or not _WITHIN_A_TURN.isdisjoint(chosen)
+    within = wrap or not WITHIN_A_TURN.isdisjoint(chosen)
     ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
     for name, end in zip(ends, times.bounds(), strict=False):  # empty if times are read later
         motion.sampler().check(end, name, wrap=within)
@@ -230,56 +201,34 @@ def grid(
         raise LagtopError(f"the grid of times {error}") from None
 
 
-class BallSample(Columns):
-    """Columns at one time, in balls of the precision in use."""
+def ball_columns(
+    motion: Solution, digits: int, time: Fraction, constants: dict[str, arb]
+) -> Columns:
+    """Return columns at one time, in balls of the precision in use.
 
-    def __init__(
-        self, motion: Solution, digits: int, time: Fraction, constants: dict[str, arb]
-    ) -> None:
-        """Raise TooFewDigitsError if the digits do not separate the roots or the half periods."""
-        t, of = exact(time), motion.balls(digits)
-        super().__init__(_BALLS, t=t, **constants)
-        self.motion, self.course = motion, of["course"]
-        at = self.at = self.course.at(t) if time else start_of(motion.facts, of)
-        self.X, self.Y, self.spin, self.precession = at.x, at.y, at.phi, at.psi
-        if motion.facts.plane:  # these angles change only at the poles, by half turns
-            self.spin, self.precession = (
-                arb.pi() * nearest(x / arb.pi()) for x in (at.phi, at.psi)
-            )
-        self.spin_turn, self.precession_turn = self.spin, self.precession
-        self.signed_X, self.signed_Y = self.X, self.Y
+    Raises TooFewDigitsError if the digits do not separate the roots or the half periods.
+    """
+    t, of = exact(time), motion.balls(digits)
+    course: Course = of["course"]
+    at = course.at(t) if time else start_of(motion.facts, of)
+    spin, precession = at.phi, at.psi
+    if motion.facts.plane:  # these angles change only at the poles, by half turns
+        spin, precession = (arb.pi() * nearest(x / arb.pi()) for x in (spin, precession))
 
-    XX = property(lambda self: square(self.X))
-    YY = property(lambda self: square(self.Y))
-    tilt = property(lambda self: 2 * arb.atan2(self.Y, self.X))
-    arg_X = property(lambda self: (self.precession + self.spin) / 2)
-    arg_Y = property(lambda self: (self.precession - self.spin) / 2)
-    spin_wave = property(lambda self: self.wave(self.spin, "spin"))
-    precession_wave = property(lambda self: self.wave(self.precession, "precession"))
-
-    def wave(self, angle: arb, name: str) -> arb:
+    def wave(name: str, angle: arb) -> arb:
         """Return an angle less its mean rate times t; on the separatrix the rate is its limit."""
-        if isinstance(self.course, ConstantTilt):
+        if isinstance(course, ConstantTilt):
             return arb(0)
-        swings = isinstance(self.course, SingleSwing)
-        if not swings and self.motion.is_zero(f"mean_{name}_rate"):
+        if isinstance(course, Nutation) and motion.is_zero(f"mean_{name}_rate"):
             return angle
-        waveless: arb = getattr(self.course, name) * self["t"]
+        waveless: arb = getattr(course, name) * t
         return angle - waveless
 
-    @property
-    def nutation_rate(self) -> arb:
-        """The nutation rate by the energy (4,2), with the sign of `tilting`.
-
-        On the separatrix it is a product, which keeps its digits at late times.
-        """
-        course, tilting = self.course, self.at.tilting
-        if isinstance(course, SingleSwing) and not self["t"].is_zero():
-            return 2 * course.rate * self.Y * tilting.tanh() / self.X
-        if tilting.is_zero():
-            return arb(0)
-        squared = self["energy_constant"] - self["a"] * self["u"] - square(self["across"])
-        return sign(tilting) * root(squared)
+    formulas, more = _BALL_FORMULAS, {"wave": wave, "tilting": at.tilting}
+    if isinstance(course, SingleSwing) and time:
+        formulas, more = formulas | _SWING, more | {"swing_rate": course.rate}
+    items = {"t": t, "X": at.x, "Y": at.y, "spin": spin, "precession": precession}
+    return Columns(formulas, _BALLS, constants, items, more)
 
 
 def within_a_turn(angle: arb, *, plane: bool) -> arb:
@@ -323,7 +272,7 @@ class ProvedTable:
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
         sample = cache(
-            lambda digits: BallSample(self.motion, digits, time, self._constants(digits))
+            lambda digits: ball_columns(self.motion, digits, time, self._constants(digits))
         )
         turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
         most = max(self.motion.facts.equal, equal_digits([time], self.digits or 0))
@@ -341,7 +290,7 @@ class ProvedTable:
 
         return [number(name) for name in self.chosen]
 
-    def _ball(self, name: str, sample: BallSample) -> arb:
+    def _ball(self, name: str, sample: Columns) -> arb:
         """Return a ball that contains a column, with angles in the unit in use."""
         value: arb = sample[name]
         if self.wrap and name in {"phi", "psi"}:

@@ -19,9 +19,10 @@ from scenes import UNIT, period
 from lagrange_cli.arithmetic.enclosures import at_precision
 from lagrange_cli.arithmetic.enclosures import exact as ball_of
 from lagrange_cli.names import ANGLES
-from lagrange_cli.solver.columns import chosen_columns, column_constants
-from lagrange_cli.solver.sampling import Attitude, period_of, whole_periods
-from lagrange_cli.solver.tables import ProvedTable, Sample
+from lagrange_cli.solver import sampling
+from lagrange_cli.solver.columns import Columns
+from lagrange_cli.solver.sampling import period_of, whole_periods
+from lagrange_cli.solver.tables import ProvedTable
 
 T = np.linspace(-3, 40, 40_000)
 SERIES = [50, 200]
@@ -73,9 +74,11 @@ def test_next_to_a_pole_at_times_that_are_nearly_0(thetadot0: float) -> None:
 def test_the_separatrix_from_the_bottom(kick: float) -> None:
     motion = solve(Top(**UNIT, r0=0, theta0_deg=180, thetadot0=kick))
     assert motion.regime is Regime.SEPARATRIX
-    found = motion.table(np.linspace(-1, 1, 5), ["p", "axis"])
+    t = np.linspace(-1, 1, 5)
+    found = motion.table(t, ["p", "axis_x", "quaternion_w"])
     assert np.sign(found["p"]).tolist() == [math.copysign(1, kick)] * 5
     np.testing.assert_allclose(found["axis_x"], 0, atol=1e-15)
+    np.testing.assert_array_equal(np.sign(found["quaternion_w"]), np.sign(-kick * t))
 
 
 def test_wrapped_angles_stay_in_their_interval() -> None:
@@ -99,28 +102,26 @@ def test_the_angles_of_a_start_with_many_digits() -> None:
     ("columns", "computed"),
     [
         ("t r", ""),
-        ("theta", "functions parts moduli tilt"),
-        ("u theta psidot phidot axis_z moment Lz", "functions parts moduli tilt"),
-        ("thetadot energy", "functions parts moduli"),
-        ("phi psi dphi dpsi", "functions parts args"),
-        ("p", "functions parts args moduli"),
+        ("theta", "re_X XX tilt"),
+        ("u theta psidot phidot axis_z moment Lz", "re_X XX tilt"),
+        ("thetadot energy", "re_X XX scaled_rate"),
+        ("phi psi dphi dpsi", "re_X arg_X"),
+        ("p", "re_X XX scaled_rate arg_X"),
     ],
 )
 @pytest.mark.parametrize("r0", SERIES)
 def test_columns_that_are_not_requested_are_not_computed(
-    r0: float, columns: str, computed: str
+    monkeypatch: pytest.MonkeyPatch, r0: float, columns: str, computed: str
 ) -> None:
-    seen: set[str] = set()
-    motion = solve(Top(r0=r0))
+    made: list[Columns] = []
 
-    def compute(at: Attitude) -> list[float]:
-        sample = Sample(at, dict.fromkeys(column_constants(motion.balls(40)), 1.0), False)
-        for column in chosen_columns(columns.split()):
-            assert sample[column] is not None
-        seen.update(vars(at).keys() & set("functions parts moduli tilt args".split()))
-        return []
+    def recorded(*items: Any, **others: Any) -> Columns:
+        made.append(Columns(*items, **others))
+        return made[-1]
 
-    motion.sampler().evaluate(T, 40.0, 0, compute)
+    monkeypatch.setattr(sampling, "Columns", recorded)
+    solve(Top(r0=r0)).table(T, columns.split())
+    seen = set().union(*made) & set("re_X XX tilt scaled_rate arg_X".split())
     assert seen == set(computed.split())
 
 
