@@ -95,7 +95,7 @@ def sweep_command(
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.
     """
-    from ..sweeps.parts import Parts
+    from ..sweeps.parts import Parts, digest_of
     from ..sweeps.plan import ErrorCount, plan
     from ..sweeps.workers import in_order
 
@@ -108,8 +108,9 @@ def sweep_command(
     if len(words) > 1:
         raise LagtopError(f"a sweep has one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
+    digest = digest_of(path) if path is not None and parts is not None else ""
     how: dict[str, Any] = {"radians": top.radians, "fmt": out.fmt, "decimal": decimal, "keys": keys}
-    todo = plan(path, top.inputs, top.scene, described=parts is not None, **how)
+    todo = plan(path, top.inputs, top.scene, **how)
     opt.warn(todo.given)
     sweep = todo.sweep
     if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
@@ -117,7 +118,7 @@ def sweep_command(
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
     count, (first, every) = ErrorCount(hidden), shard or (1, 1)
     blocks: Iterable[NumberedBlock] = islice(todo.blocks, first - 1, None, every)
-    folder = None if parts is None else Parts(parts, sweep, todo.description)
+    folder = None if parts is None else Parts(parts, sweep, digest)
     if folder:
         blocks = folder.missing(blocks, count)
     with closing(in_order(sweep.part, blocks, jobs or 1, dask, _warn)) as computed:

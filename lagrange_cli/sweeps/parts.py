@@ -9,23 +9,33 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
 from secrets import token_hex
-from typing import Any
 
+from .. import __version__
 from ..errors import CannotWriteError, LagtopError
+from ..file_bytes import read_bytes
 from ..output.destination import opened
 from ..output.formats import part_file
 from .plan import ErrorCount, NumberedBlock, Part, Sweep
 
 
+def digest_of(path: str) -> str:
+    """Return the SHA-256 digest of a file of tops.  Raises LagtopError for a pipe."""
+    if path == "-" or (os.path.exists(path) and not os.path.isfile(path)):
+        wanted = "a file of tops that can be read again"
+        raise LagtopError(f"parts needs {wanted}, got {path}", "parts")
+    return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
+
+
 class Parts:
     """The folder of one sweep and of no other."""
 
-    def __init__(self, path: str, sweep: Sweep, description: Mapping[str, Any]) -> None:
-        """Take a folder for a sweep.
+    def __init__(self, path: str, sweep: Sweep, digest: str = "") -> None:
+        """Take a folder for a sweep, or for that of a file of tops with a `digest`.
 
         Raises CannotWriteError if the folder cannot be made or holds parts of another sweep, and
         LagtopError for an empty name.
@@ -33,6 +43,7 @@ class Parts:
         if not path:
             raise LagtopError("parts must name a folder, got ''", "parts")
         self.path, self.sweep, self.found = Path(path), sweep, 0
+        description = {"lagtop": __version__, **sweep._asdict(), "file": digest}
         file, text = self.path / "sweep.json", f"{json.dumps(description, indent=1)}\n".encode()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
@@ -52,7 +63,9 @@ class Parts:
         part = self.path / f"part-{number:06}.{self.sweep.fmt}"
         return part, self.path / f"errors-{number:06}.json"
 
-    def missing(self, blocks: Iterable[NumberedBlock], count: ErrorCount) -> Iterator[Any]:
+    def missing(
+        self, blocks: Iterable[NumberedBlock], count: ErrorCount
+    ) -> Iterator[NumberedBlock]:
         """Yield the blocks whose parts are missing; `count` the errors of the others."""
         for number, block in blocks:
             part, errors = self._files(number)
@@ -70,11 +83,10 @@ class Parts:
             if failed:  # before the part, because a part that exists is done
                 with opened(str(errors)) as stream:
                     stream.write(json.dumps([failed, first]).encode())
-            elif errors.is_file():  # that of a damaged part
-                errors.unlink(missing_ok=True)
-            content = part_file(self.sweep.fmt, self.sweep.header, number, text)
+            else:
+                errors.unlink(missing_ok=True)  # that of a damaged part
             with opened(str(part)) as stream:
-                stream.write(content)
+                stream.write(part_file(self.sweep.fmt, self.sweep.header, number, text))
 
 
 def _create(file: Path, content: bytes) -> None:

@@ -111,13 +111,13 @@ class SweepInputs:
     def __init__(self, inputs: Mapping[str, Any]) -> None:
         """Raise LagtopError for an unknown input, and for inputs that do not fit together."""
         check_names("inputs", list(inputs) or ["m"], INPUTS)
-        words = {x: y for x, y in inputs.items() if x == "psidot0" and _is_steady(y)}
+        rate = inputs.get("psidot0")
+        self._words = {"psidot0": rate} if isinstance(rate, str) and rate in STEADY_WORDS else {}
         for name, x in inputs.items():
             if getattr(x, "dims", ()):
                 raise LagtopError(f"{name} has named dimensions: pass {name}.to_numpy()", name)
-        read = gather(values_of({x: y for x, y in inputs.items() if x not in words}))
-        if read.stds:
-            name = min(read.stds)
+        read = gather(values_of({x: y for x, y in inputs.items() if x not in self._words}))
+        for name in read.stds:
             why = "is uncertain: a sweep does not propagate uncertainties; loop over solve"
             raise LagtopError(f"{name} {why}", name)
         if read.missing:
@@ -131,10 +131,9 @@ class SweepInputs:
             raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
         self.shape, self.size = arrays[0].shape, arrays[0].size
         self._varying = {name: x for name, x in own.items() if x.size > 1}
-        self._words, self._index = words, _index_of(inputs, self.shape)
-        self._flat: dict[str, Any] = {
-            name: x if x.ndim == 1 else x.flat for name, x in zip(given, arrays, strict=True)
-        }
+        self._index = _index_of(inputs, self.shape)
+        flat = (x if x.ndim == 1 else x.flat for x in arrays)
+        self._flat: dict[str, Any] = dict(zip(given, flat, strict=True))
 
     def part(self, rows: slice) -> TopArrays:
         """Return some of the tops; only these rows are copied."""
@@ -145,10 +144,6 @@ class SweepInputs:
         """Return flat columns in the shape of the inputs."""
         shaped = {key: x.reshape(self.shape) for key, x in columns.items()}
         return Results(shaped, self._varying, self.shape, self._index)
-
-
-def _is_steady(value: object) -> bool:
-    return isinstance(value, str) and value in STEADY_WORDS
 
 
 def _index_of(inputs: Mapping[str, Any], shape: tuple[int, ...]) -> Any:

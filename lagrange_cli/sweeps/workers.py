@@ -1,29 +1,24 @@
-"""Work shared by processes of this machine or by a Dask cluster, with results in order.
-
-Both are executors of `concurrent.futures`, so that one loop hands out the work.
-"""
+"""Work shared by processes of this machine or by a Dask cluster, with results in order."""
 
 from __future__ import annotations
 
 import logging
-import multiprocessing
 import os
 import pickle
 import pkgutil
-import signal
+import subprocess
+import sys
 import time
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Future, ProcessPoolExecutor, wait
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from secrets import token_hex
-from tempfile import TemporaryDirectory
-from threading import Thread
+from threading import Thread, local
 from typing import Any, TypeVar
 
 from .. import __version__
-from ..errors import CannotWriteError, LagtopError, UnavailableError
+from ..errors import LagtopError, UnavailableError
 from ..output.terminal import waiting
 
 MOST_JOBS = 1024
@@ -87,7 +82,7 @@ def _unless_lost(call: Callable[..., P], *arguments: Any) -> P:
     try:
         return call(*arguments)
     except Exception as error:
-        is_lost = isinstance(error, BrokenExecutor | CancelledError | OSError)
+        is_lost = isinstance(error, EOFError | CancelledError | OSError)
         if not (is_lost or type(error).__module__.startswith("distributed")):
             raise
         time.sleep(_SIGNALS_TAKE)  # a signal to all processes is raised here, as the cause
@@ -97,102 +92,72 @@ def _unless_lost(call: Callable[..., P], *arguments: Any) -> P:
 
 
 @contextmanager
-def _temporary_files() -> Iterator[None]:
-    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
-    try:
-        yield
-    except OSError as error:
-        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
+def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
+    """Yield a function that hands work to other Python processes, which are killed at the end.
 
-
-def _through_file(path: str) -> None:
-    """Do the work in a file, and write its result to the same file.
-
-    A process that is killed while it writes a long result to a pipe would block the reader.
+    Each belongs to a thread, which starts it, sends it work through a pipe and waits for the
+    result.  It imports nothing from the current folder, and gets no signal of the terminal, as it
+    has a process group of its own.  It ends if its pipe is closed, that is, also with this process.
     """
-    work, item = _loaded(path)
-    _dump(work(item), path)
+    own, processes = local(), list[subprocess.Popen[bytes]]()
 
+    def ask(work: Callable[[Any], Any], item: Any) -> Any:
+        if not hasattr(own, "process"):
+            own.process = _started()
+            processes.append(own.process)
+        try:
+            _send((work, item), own.process.stdin)
+            result, error = pickle.load(own.process.stdout)
+        except (EOFError, OSError, pickle.UnpicklingError):
+            raise EOFError(f"it ended with code {own.process.wait()}") from None
+        if error is not None:
+            raise error
+        return result
 
-def _dump(value: object, path: str) -> None:
-    """Write a value to a new file.  Raises CannotWriteError."""
-    with _temporary_files(), open(path, "xb") as file:
-        pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
-
-
-def _loaded(path: str) -> Any:
-    """Return the value in a file, which is removed."""
-    with open(path, "rb") as file:
-        os.unlink(path)
-        return pickle.load(file)
-
-
-@contextmanager
-def _starting() -> Iterator[None]:
-    """Start Python processes that import nothing from the current folder, and ignore Ctrl-C.
-
-    They inherit the blocked signals.  Raises UnavailableError.
-    """
-    from multiprocessing.resource_tracker import ensure_running
-
-    safe = os.environ.get("PYTHONSAFEPATH", "")
-    os.environ["PYTHONSAFEPATH"] = "1"
+    threads = ThreadPoolExecutor(jobs)
     try:
-        if hasattr(signal, "pthread_sigmask"):  # not on Windows
-            # signals of a terminal, which go to the whole process group
-            blocked = signal.SIGINT, signal.SIGHUP, signal.SIGQUIT
-            usual = signal.pthread_sigmask(signal.SIG_BLOCK, blocked)
-            ensure_running()  # which unblocks Ctrl-C
-            signal.pthread_sigmask(signal.SIG_BLOCK, blocked)
-        yield
+        yield lambda work, item: threads.submit(ask, work, item).result, jobs
+    finally:
+        threads.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.kill()
+        threads.shutdown()
+        for process in processes:
+            with suppress(OSError), process:  # closes its pipes
+                process.kill()  # it may have been started late
+
+
+def _started() -> subprocess.Popen[bytes]:
+    """Start a Python process that serves this one.  Raises UnavailableError."""
+    paths = [path for path in sys.path if path]
+    code = f"import sys; sys.path[:] = {paths!r}; from {__name__} import serve; serve()"
+    command, pipe = [sys.executable, "-P", "-c", code], subprocess.PIPE
+    try:
+        return subprocess.Popen(
+            command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, process_group=0
+        )
     except OSError as error:
         raise UnavailableError(f"cannot start a process: {error.strerror or error}") from None
-    finally:
-        os.environ["PYTHONSAFEPATH"] = safe
-        if hasattr(signal, "pthread_sigmask"):
-            signal.pthread_sigmask(signal.SIG_SETMASK, usual)
 
 
-@contextmanager
-def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
-    """Yield a function that hands work to spawned processes, which are killed if the block fails.
-
-    Items and results pass through files of a temporary folder.
-    """
-    with _temporary_files():
-        temporary = TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
-    with _starting():
-        executor = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _begin)
-
-    def submit(work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
-        path = os.path.join(temporary.name, token_hex(8))
-        _dump((work, item), path)
-        with _starting():
-            future = executor.submit(_through_file, path)
-        return lambda: future.result() or _loaded(path)
-
-    with temporary:
-        try:
-            yield submit, jobs
-        except BaseException:
-            for process in [*(executor._processes or {}).values()]:
-                process.kill()
-            raise
-        finally:
-            executor.shutdown(cancel_futures=True)
+def _send(value: object, stream: Any) -> None:
+    pickle.dump(value, stream, pickle.HIGHEST_PROTOCOL)
+    stream.flush()
 
 
-def _begin() -> None:
-    """Leave Ctrl-C to the parent process, and end with it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
+def serve() -> None:
+    """Do the work that comes from standard input, until it ends."""
+    source, target = sys.stdin.buffer, sys.stdout.buffer
+    sys.stdout = sys.stderr
+    with suppress(EOFError, OSError):
+        while True:
+            work, item = pickle.load(source)
+            result = raised = None
+            try:
+                result = work(item)
+            except Exception as error:
+                raised = error
+            _send((result, raised), target)
 
 
 @contextmanager
@@ -203,15 +168,26 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
     Raises UnavailableError, and LagtopError for an invalid address.
     """
     try:
+        import dask
         import distributed
     except ImportError:
         why = "dask needs distributed: pip install 'lagtop[cluster]'"
         raise UnavailableError(why, "dask") from None
     for name in ("distributed", "distributed.client", "asyncio", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # lagtop reports errors in one line
+    dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE / 3})
     with waiting(f"waiting for the cluster at {address}"):
-        client = _connected(distributed, address, warn)
+        try:
+            with warnings.catch_warnings(record=True, action="always") as found:
+                client = _answer(
+                    address, lambda: distributed.Client(address, timeout=_PATIENCE / 3)
+                )
+        except (TypeError, ValueError) as error:
+            why = f"dask must be the address of a scheduler, got {address!r}: {error}"
+            raise LagtopError(why, "dask") from None
         threads = _threads(client, address)
+    if any(x.category.__name__ == "VersionMismatchWarning" for x in found):
+        warn("the cluster has other versions of Python packages: last digits may differ")
 
     def submit(work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
         future = client.submit(work, item, pure=False)
@@ -221,25 +197,7 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
         yield submit, threads
     finally:
         with suppress(Exception):  # report the error that ended the sweep, not one of closing
-            _within(2.0, lambda: client.close(timeout=1))
-
-
-def _connected(distributed: Any, address: str, warn: Callable[[str], None]) -> Any:
-    """Return a client of a scheduler.  Raises UnavailableError, LagtopError for a bad address."""
-    import dask
-
-    dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE / 3})
-    try:
-        with warnings.catch_warnings(record=True, action="always") as found:
-            client = _within(_PATIENCE, lambda: distributed.Client(address, timeout=_PATIENCE / 3))
-    except (TypeError, ValueError) as error:
-        why = f"dask must be the address of a scheduler, got {address!r}: {error}"
-        raise LagtopError(why, "dask") from None
-    except Exception as error:  # of any kind: it may be no scheduler
-        raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
-    if any(x.category.__name__ == "VersionMismatchWarning" for x in found):
-        warn("the cluster has other versions of Python packages: last digits may differ")
-    return client
+            _answer(address, lambda: client.close(timeout=1), 2.0)
 
 
 def _threads(client: Any, address: str) -> int:
@@ -253,8 +211,8 @@ def _threads(client: Any, address: str) -> int:
     versions = _answer(address, lambda: client.run(ask, name, on_error="return"))
     for worker, version in versions.items():
         if version != __version__:
-            found = f"no lagtop: {version}" if isinstance(version, Exception) else version
-            raise UnavailableError(f"the worker {worker} needs lagtop {__version__}, has {found}")
+            has = f"no lagtop: {version}" if isinstance(version, Exception) else version
+            raise UnavailableError(f"the worker {worker} needs lagtop {__version__}, has {has}")
     return sum(_answer(address, client.nthreads).values())
 
 
@@ -270,26 +228,24 @@ def _result(future: Any, client: Any, address: str) -> Any:
             raise UnavailableError(f"all workers of the cluster at {address} were lost")
 
 
-def _answer(address: str, ask: Callable[[], _T]) -> _T:
-    """Return an answer of a cluster.  Raises UnavailableError if there is none in time."""
-    try:
-        return _within(_PATIENCE, ask)
-    except (TimeoutError, CancelledError, OSError, RuntimeError) as error:
-        why = f"a worker of the cluster at {address} was lost or stopped: {error}"
-        raise UnavailableError(why) from None
+def _answer(address: str, ask: Callable[[], _T], seconds: float | None = None) -> _T:
+    """Return an answer of a cluster.
 
-
-def _within(seconds: float, call: Callable[[], _T]) -> _T:
-    """Return the result of a call in a thread.  Raises TimeoutError after some seconds."""
+    Raises UnavailableError if there is none in time, and the errors of a bad argument.
+    """
     future = Future[_T]()
 
     def run() -> None:
         try:
-            future.set_result(call())
+            future.set_result(ask())
         except BaseException as error:
             future.set_exception(error)
 
     Thread(target=run, daemon=True).start()
-    if not wait([future], seconds).done:
-        raise TimeoutError(f"no answer in {seconds:g} s")
-    return future.result()
+    try:
+        return future.result(seconds or _PATIENCE)
+    except (TypeError, ValueError):
+        raise
+    except Exception as error:  # of any kind: it may be no scheduler
+        why = str(error) or "its scheduler or a worker was lost or stopped"
+        raise UnavailableError(f"the cluster at {address} does not answer: {why}") from None

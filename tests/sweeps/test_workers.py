@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 import os
 import re
 import signal
@@ -17,13 +16,12 @@ from pathlib import Path
 
 import pytest
 from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, process, wait_until
-from lagtop import LagtopError
 
 from lagrange_cli.errors import UnavailableError
 from lagrange_cli.sweeps import workers
 from lagrange_cli.sweeps.workers import in_order, parse_jobs
 
-LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1"]
+LONG = ["sweep", "--r0", "1:100:1e8", "--psidot0", "1", "--jobs", "3"]
 LOST = rb"Error: a process that shared the work was lost \(killed, or out of memory\).*\n"
 
 
@@ -38,7 +36,16 @@ def test_invalid_numbers_of_jobs_are_refused(text: str, lagtop: Lagtop) -> None:
     assert len(result.stderr) < 200
 
 
-@pytest.mark.parametrize("jobs", [2, *(pytest.param(x, marks=pytest.mark.slow) for x in (3, 0))])
+def test_results_and_errors_of_two_processes() -> None:
+    assert list(in_order(hex, range(50), 2)) == [*map(hex, range(50))]
+    with pytest.raises(ValueError, match="invalid literal"):
+        list(in_order(int, ["1", "x"], 2))
+    with pytest.raises(UnavailableError, match=r"was lost \(.*it ended with code 3"):
+        list(in_order(os._exit, [3], 2))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jobs", [2, 3, 0])
 def test_bytes_are_those_of_one_process(jobs: int, tmp_path: Path) -> None:
     """Without jobs, on a cluster."""
     file = tmp_path / "tops.csv"
@@ -66,25 +73,32 @@ def test_no_module_of_the_current_folder_is_run(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(f"{x}.py" for x in names)
 
 
-def children(process: int) -> dict[int, str]:
-    """Return the command lines of the processes that a process has started."""
-    found = Path(f"/proc/{process}/task/{process}/children").read_text().split()
-    return {int(pid): Path(f"/proc/{pid}/cmdline").read_text() for pid in found}
+def workers_of(process: int) -> list[int]:
+    """Return the processes that share the work of a process."""
+    children = Path(f"/proc/{process}/task").glob("*/children")  # of each thread
+    found = [int(pid) for file in children for pid in file.read_text().split()]
+    return [pid for pid in found if "serve()" in Path(f"/proc/{pid}/cmdline").read_text()]
 
 
 @contextmanager
-def sharing(folder: Path, *options: str) -> Iterator[subprocess.Popen[bytes]]:
-    """Start a long sweep in a process group of its own, and wait until it writes results."""
+def sharing(folder: Path) -> Iterator[tuple[subprocess.Popen[bytes], list[int]]]:
+    """Yield a long sweep that writes results, in a process group of its own, and its workers.
+
+    At the end none of the processes may be left.
+    """
     running = subprocess.Popen(
-        ["env", "--default-signal=HUP,INT,QUIT", *LAGTOP, *LONG, "-o", f"{folder}/o.csv", *options],
+        ["env", "--default-signal=HUP,INT,QUIT", *LAGTOP, *LONG, "-o", f"{folder}/o.csv"],
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         start_new_session=True,
-        env=os.environ | {"TMPDIR": str(folder)},
     )
     try:
         wait_until(lambda: any(x.stat().st_size for x in folder.glob(".lagtop-*")), running)
-        yield running
+        workers = workers_of(running.pid)
+        assert len(workers) == 3
+        yield running, workers
+        for group in (running.pid, *workers):
+            assert_gone(group)
     finally:
         with suppress(ProcessLookupError):
             os.killpg(running.pid, signal.SIGKILL)
@@ -98,13 +112,12 @@ def test_a_signal_ends_all_processes(
 ) -> None:
     """A terminal that is closed and a batch system send it to the whole group."""
     numbers = [getattr(signal, f"SIG{x}") for x in name.split()]
-    with sharing(tmp_path, "--jobs", "3") as running:
+    with sharing(tmp_path) as (running, _):
         begun = time.monotonic()
         for number in numbers:
             send(running.pid, number)
             time.sleep(0.05)
         said = running.communicate(timeout=60)[1]
-        assert_gone(running.pid)
     assert running.returncode in {x for n in numbers for x in (-n, 128 + n)}  # any comes first
     assert said == b""
     assert list(tmp_path.iterdir()) == []
@@ -113,21 +126,18 @@ def test_a_signal_ends_all_processes(
 
 @pytest.mark.slow
 def test_a_killed_worker_ends_the_sweep(tmp_path: Path) -> None:
-    with sharing(tmp_path, "--jobs", "3") as running:
-        pids = [pid for pid, line in children(running.pid).items() if "spawn_main" in line]
-        os.kill(pids[0], signal.SIGKILL)
+    with sharing(tmp_path) as (running, workers):
+        os.kill(workers[0], signal.SIGKILL)
         said = running.communicate(timeout=60)[1]
-        assert_gone(running.pid)
     assert (running.returncode, bool(re.fullmatch(LOST, said))) == (69, True), said
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.slow
 def test_workers_end_with_their_parent(tmp_path: Path) -> None:
-    with sharing(tmp_path, "--jobs", "3") as running:
+    with sharing(tmp_path) as (running, _):
         running.kill()
         running.communicate(timeout=60)
-        assert_gone(running.pid)
 
 
 @contextmanager
@@ -204,7 +214,7 @@ def test_a_scheduler_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(workers, "_PATIENCE", 1.5)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        with pytest.raises(UnavailableError, match=f"no scheduler answers at {address}"):
+        with pytest.raises(UnavailableError, match=f"the cluster at {address} does not answer"):
             list(in_order(str, [1], address=address))
 
 
@@ -218,25 +228,5 @@ def test_workers_that_do_not_answer(
         assert next(computed) == "0"
         monkeypatch.setattr(workers, "_PATIENCE", 3.0)
         processes[1].send_signal(number)
-        with pytest.raises(UnavailableError, match=r"was lost or stopped|were lost"):
+        with pytest.raises(UnavailableError, match=r"does not answer|were lost"):
             list(computed)
-
-
-def refuse(x: int) -> None:
-    """Fail."""
-    raise LagtopError(f"{x} is too large")
-
-
-def lose(x: int) -> int:
-    """Kill the process that has the item 5."""
-    if x == 5 and multiprocessing.parent_process() is not None:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return x
-
-
-@pytest.mark.slow
-def test_errors_of_the_work_and_lost_processes_are_raised() -> None:
-    with pytest.raises(LagtopError, match="0 is too large"):
-        list(in_order(refuse, range(9), 2))
-    with pytest.raises(UnavailableError, match="was lost"):
-        list(in_order(lose, range(9), 2))
