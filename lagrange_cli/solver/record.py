@@ -209,6 +209,10 @@ def _number(motion: Solution, name: str, digits: int | None) -> Rounded | None:
     return None if name == "psidot0" else motion.number(name, digits)
 
 
+FAST_WORDS = "pseudo-regular precession"
+"""The words of the remark on it, which numbers follow."""
+
+
 def remark_of(motion: Solution, *, radians: bool = False) -> str | None:
     """Return a line on special properties of a motion, with angles in degrees or `radians`."""
     facts = motion.facts
@@ -253,6 +257,6 @@ def _fast_remark(motion: Solution, radians: bool) -> str:
     tilt, period = short("nutation", nutation), short("T_nutation", lambda of: of["T_nutation"])
     rate = short("rate", lambda of: of["precession_rate_elementary"])
     return (
-        f"pseudo-regular precession: nutates by {tilt} {'rad' if radians else 'deg'} "
+        f"{FAST_WORDS}: nutates by {tilt} {'rad' if radians else 'deg'} "
         f"in {period} time; its mean is {where} mgs/(C r0) = {rate} rad/time"
     )

@@ -1,30 +1,33 @@
-"""Further keys that are formulas of the inputs, for many tops at once, in pairs of doubles.
+"""Numbers that are formulas of the inputs, for many tops at once, in pairs of doubles.
 
-`solver` declares the same keys with their meanings.  Where the terms of a formula cancel, `solve`
-computes the number.  Equation numbers are Chrapan's.
+They are further keys, which `solver` declares with their meanings, and the numbers of steady tops.
+Where the terms of a formula cancel, `solve` computes the number.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import numpy as np
 
 from ..arithmetic.pairs import PI, DoubleDouble, two_sum
 from ..arithmetic.types import Array, Mask
+from .formulas import OF_TORQUE_FREE, Motions, Start, turn_time
 from .tops import TopArrays
 from .trust import GOOD, PAIR_EPS
 
 _LEAST, _MOST = 1e-280, 1e280
 """Sizes between which pairs of doubles keep all of their digits."""
+_LEAST_SQUARE = 2.0**-20
+"""Ratio of the discriminant to b^2 from which a steady rate is known well."""
 _TURN = DoubleDouble(np.array([2 * PI.high]), np.array([2 * PI.low]))
 
 
 class Elementary:
     """The keys of many tops."""
 
-    def __init__(self, tops: TopArrays) -> None:
-        self.start = tops.start_in_pairs()
+    def __init__(self, tops: TopArrays, start: Start | None = None) -> None:
+        self.start = start or tops.start()
         self.A, self.C = DoubleDouble(tops.A), DoubleDouble(tops.C)
         self.twice_A_C = DoubleDouble(*two_sum(2 * tops.A, -tops.C))
         self.a, self.b, self.cos = self.start.a, self.start.b, self.start.cos
@@ -73,12 +76,16 @@ class Elementary:
         root = self.total(self.start.momentum, self.b * self.start.below)
         return -root * root
 
+    def discriminant(self) -> DoubleDouble:
+        """Return b^2 - 2 a cos theta0, negative if there is no steady precession."""
+        self.total(self.cos, error=1.0)
+        found = self.total(self.b * self.b, -2.0 * self.a * self.cos, error=self.a.high)
+        self.lost |= found.high == 0
+        return found
+
     def steady(self) -> DoubleDouble:
         """Return q = b +- sqrt(b^2 - 2 a cos theta0), of the sign of b; NaN if there is none."""
-        self.total(self.cos, error=1.0)
-        square = self.total(self.b * self.b, -2.0 * self.a * self.cos, error=self.a.high)
-        self.lost |= square.high == 0
-        both = abs(self.b) + square.sqrt()
+        both = abs(self.b) + self.discriminant().sqrt()
         return DoubleDouble.choose(self.b.high < 0, -both, both)
 
     def steady_min(self) -> DoubleDouble:
@@ -108,3 +115,30 @@ ELEMENTARY: dict[str, Callable[[Elementary], DoubleDouble]] = {
 """The formula of each key."""
 _QUOTIENTS = {"stability_factor", "precession_rate_elementary", "T_nutation_elementary"}
 """Keys that do not exist if their divisor, a or b, is 0."""
+
+
+class Steady(Motions):
+    """Tops whose tilt is kept by a rate of steady precession that a word names.
+
+    The cubic (4,9) has a double root u0, and a (u3 - u0) is a sum: psi'^2 sin^2 plus the
+    discriminant b^2 - 2 a u0.  If this is at least 2^-20 of b^2, the rate is good to 2^-80.
+    """
+
+    def __init__(self, tops: TopArrays, start: Start) -> None:
+        super().__init__(OF_TORQUE_FREE, start.in_doubles())
+        of = Elementary(tops, start)
+        slow, fast = ELEMENTARY["steady_rate_slow"](of), ELEMENTARY["steady_rate_fast"](of)
+        rate = DoubleDouble.choose(tops.steady == 1, slow, fast)
+        square, around, along = of.discriminant(), rate * start.sin, rate * of.cos
+        D = around * around + square
+        spin = of.total(start.r0, -along, error=abs(along.high) / _LEAST_SQUARE)
+        self.known: Mask = ~of.lost & (square.high > _LEAST_SQUARE * of.b.high**2)
+        self |= {"u3": (of.cos + D / of.a).high, "T_nutation": turn_time(np.sqrt(D.high))}
+        for key in ("psidot0", "mean_precession_rate", "precession_rate_start"):
+            self[key] = rate.high
+        self["T_precession"] = turn_time(rate.high)
+        self["mean_spin_rate"] = self["spin_rate_start"] = spin.high
+
+    def trusted(self, _: Collection[str]) -> Mask:
+        """Return which tops can be trusted."""
+        return self.known

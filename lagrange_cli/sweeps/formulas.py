@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import elliprf
+from scipy.special import ellipe, ellipkm1, elliprf
 
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
@@ -53,6 +53,10 @@ class Start(NamedTuple):
     above: Numbers  # 1 - u0 = 2 sin^2(theta0/2)
     theta_rate: Numbers
     psi_rate: Numbers
+
+    def in_doubles(self) -> Start:
+        """Return each number rounded to a double."""
+        return Start(*(x.high for x in self))
 
     @property
     def energy(self) -> Numbers:
@@ -209,13 +213,6 @@ def mean_parts(
     return half_mean(gaps.below_u1, gaps.below_u2), half_mean(gaps.above_u1, gaps.above_u2)
 
 
-def agm(x: Array, y: Array) -> Array:
-    """Return the arithmetic-geometric mean of x > 0 and y > 0 (DLMF 19.8.1)."""
-    while np.any(abs(x - y) > 2.0**-26 * x):
-        x, y = (x + y) / 2, np.sqrt(x * y)
-    return (x + y) / 2
-
-
 def period_mean(k_prime: Numbers, p: Numbers, x: Numbers, y: Numbers) -> Numbers:
     """Return the mean over a period of (x cn^2 + y sn^2)/(cn^2 + p sn^2), for k', p > 0.
 
@@ -237,26 +234,20 @@ def period_mean(k_prime: Numbers, p: Numbers, x: Numbers, y: Numbers) -> Numbers
             return (x * m + y) / (m + p)
 
 
-def nome(m: Array, k_prime: Array) -> Numbers:
-    """Return the nome q = exp(-pi K'/K) of m = k^2 < 1 (2,4).
+_NOME = (268616, 20910, 1707, 150, 15, 2, 1)
+"""Coefficients of the nome over e, a series in e^4 (DLMF 19.5.5)."""
 
-    The exponential would lose log(1/q) digits.  Instead, each step of the AGM of 1 and k' squares
-    the nome, until c/a is small and a short series in c/a gives it (DLMF 19.5.5); the roots of
-    that number follow.
+
+def nome(of: Motions) -> Numbers:
+    """Return the nome q = exp(-pi K'/K) (2,4).
+
+    The exponential loses log(1/q) digits.  Small nomes are therefore a series in
+    e = (1 - sqrt(k'))/2(1 + sqrt(k')), whose first difference is a quotient of k^2.
     """
-    a, b = (1 + k_prime) / 2, np.sqrt(k_prime)
-    c, steps = m / (4 * a), list[Mask]()
-    while np.any(far := c > 0.05 * a):
-        steps.append(far)
-        mean = (a + b) / 2
-        a, b = np.where(far, mean, a), np.where(far, np.sqrt(a * b), b)
-        c = np.where(far, c * (c / (4 * mean)), c)
-    e = c / (2 * (a + b))
-    e4 = e * e * e * e
-    q = e * (1 + e4 * (2 + e4 * (15 + e4 * (150 + e4 * 1707))))
-    for far in reversed(steps):
-        q = np.where(far, np.sqrt(q), q)
-    return q
+    root = np.sqrt(of["k_prime"])
+    e = of["m"] / (2 * (1 + of["k_prime"]) * (1 + root) ** 2)
+    by_exponential = np.exp(-np.pi * of["K_prime"] / of["K"])
+    return np.where(e < 0.14, e * np.polyval(_NOME, e**4), by_exponential)
 
 
 def tilt_deg(above: Array, below: Array) -> Numbers:
@@ -295,15 +286,6 @@ class Motions(dict[str, Any]):
 
 Formulas = dict[str, Callable[[Any], Any]]
 """A formula for each key; those that only other formulas use are not keys of the record."""
-
-
-def second_kind(of: Motions) -> Numbers:
-    """Return E by Legendre's relation, E = pi/2K' + K (K' - E')/K', a sum of positive terms.
-
-    (K' - E')/K' is the mean of k'^2 sn^2(u, k').
-    """
-    mean = period_mean(of["k"], 1.0, 0.0, of["k_prime"] * of["k_prime"])
-    return np.pi / (2 * of["K_prime"]) + of["K"] * mean
 
 
 def alpha(of: Any) -> Numbers:
@@ -359,12 +341,13 @@ OF_NUTATION: Formulas = _OF_ALL | {
     "u3": lambda of: (of.start.a + of.gaps.a_u3_above) / of.start.a,
     "m": lambda of: of.start.a * of.gaps.u1_u2 / of.gaps.a_u3_u2,  # k^2 (4,19)
     "k": lambda of: np.sqrt(of["m"]),
-    "k_prime": lambda of: np.sqrt(of.gaps.a_u3_u1 / of.gaps.a_u3_u2),  # (4,21); not from k
+    "mc": lambda of: of.gaps.a_u3_u1 / of.gaps.a_u3_u2,  # k'^2 (4,21); not 1 - m
+    "k_prime": lambda of: np.sqrt(of["mc"]),
     "modular_angle_deg": lambda of: np.degrees(np.arctan2(of["k"], of["k_prime"])),
-    "nome": lambda of: nome(of["m"], of["k_prime"]),
-    "K": lambda of: np.pi / 2 / agm(np.ones_like(of["k_prime"]), of["k_prime"]),
-    "K_prime": lambda of: np.pi / 2 / agm(np.ones_like(of["k"]), of["k"]),
-    "E": second_kind,
+    "nome": nome,
+    "K": lambda of: ellipkm1(of["mc"]),
+    "K_prime": lambda of: ellipkm1(of["m"]),
+    "E": lambda of: ellipe(1 - of["mc"]),  # not of m: near 1, E needs 1 - m
     "T_nutation": lambda of: 4 * of["K"] / np.sqrt(of.gaps.a_u3_u2),  # (5,1)
     "T_precession": lambda of: turn_time(of["mean_precession_rate"]),
     "u_quarter": u_quarter,

@@ -1,15 +1,14 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
 Tops released from rest go through `formulas` as arrays of doubles, others as arrays of pairs of
-doubles.  `solve` computes a top by itself if `trust` finds that digits are lost, if its sizes are
-beyond 1e+-30, and for a steady precession given by a word.  It also computes all further keys.  An
-invalid top gets an `error` and no numbers.
+doubles.  `solve` computes a top by itself if digits are lost or if its sizes are beyond 1e+-30, and
+all further keys that are not formulas of the inputs.  An invalid top gets an `error` and no
+numbers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,12 +18,11 @@ from ..arithmetic.types import Mask
 from ..errors import LagtopError
 from ..names import check_names
 from ..solver import keys as motion_record
-from ..solver.facts import Regime
+from ..solver.facts import FAST, Regime
 from ..solver.keys import degree_name, unit_name
-from ..solver.record import record_in_range
+from ..solver.record import FAST_WORDS, record_in_range, vertical_remark
 from ..solver.solve import solve
-from ..top.top import Top
-from .elementary import ELEMENTARY, Elementary
+from .elementary import ELEMENTARY, Elementary, Steady
 from .formulas import (
     OF_PENDULUMS,
     OF_RELEASED,
@@ -130,27 +128,13 @@ def records(
     `errors` are those of rows that stay empty.  The result does not depend on the `numpy.errstate`
     of the caller.
     """
+    block = _Block(tops, columns, errors, radians)
     with np.errstate(all="ignore"):  # `trust` rejects what an overflow or a 0/0 has touched
-        block = _Block(tops, columns, errors, radians)
         for regime, rows in tops.groups().items():
             block.fill(rows & block.missing, regime)
-        block.solve_the_rest(block.fill_elementary())
-        return block.columns
-
-
-def _motions(tops: TopArrays, regime: Regime | None, radians: bool) -> Motions:
-    """Return the motions of a group of tops: released from rest in a regime, or None."""
-    if regime is None:
-        return AnyStart(tops.start_in_pairs())
-    start, nutates = tops.start(), regime in {Regime.REGULAR, Regime.NO_SPIN}
-    remark = {"remark": lambda _: _remarks(regime, tops, start)}
-    gaps = gaps_from_rest(start) if nutates else None
-    motions = Motions(FORMULAS[regime] | remark, start, gaps)
-    motions["regime"] = regime.value
-    motions["path"] = "cusped" if regime == Regime.REGULAR else None
-    for key in ["theta_min_deg"] if nutates else ["theta_min_deg", "theta_max_deg"]:
-        motions[unit_name(key, radians=radians)] = tops.tilt_in(radians)
-    return motions
+        lost = block.fill_elementary()
+    block.solve_the_rest(lost)
+    return block.columns
 
 
 class _Block:
@@ -183,18 +167,35 @@ class _Block:
         """Fill the computed keys of those tops of a group that can be trusted."""
         if not rows.any():
             return
-        tops = self.tops if rows.all() else self.tops.part(rows)
-        motions = _motions(tops, regime, self.radians)
+        motions = self._motions(self.tops if rows.all() else self.tops.part(rows), regime)
         trusted = motions.trusted(self.computed)
         rows[rows] = trusted
         self.missing &= ~rows
-        target: Any = slice(None) if rows.all() else rows
+        target: Any = slice(None) if rows.all() else rows  # which is faster than a mask
         source: Any = slice(None) if np.all(trusted) else trusted
-        for key in self.computed:
+        for key in [*self.computed, *({"psidot0"} & motions.keys() & self.columns.keys())]:
             value = motions[key]
             if value is not None:
                 is_array = isinstance(value, np.ndarray)
                 self.columns[key][target] = value[source] if is_array else value
+
+    def _motions(self, tops: TopArrays, regime: Regime | None) -> Motions:
+        """Return the motions of a group of `TopArrays.groups`."""
+        start = tops.start()
+        if regime is None:
+            return AnyStart(start)
+        nutates = regime in {Regime.REGULAR, Regime.NO_SPIN}
+        if regime == Regime.STEADY:
+            motions: Motions = Steady(tops, start)
+        else:
+            rough = start.in_doubles()
+            motions = Motions(FORMULAS[regime], rough, gaps_from_rest(rough) if nutates else None)
+        motions["regime"] = regime.value
+        motions["path"] = "cusped" if regime == Regime.REGULAR else None
+        motions["remark"] = _remarks(regime, start) if "remark" in self.columns else None
+        for key in ["theta_min_deg"] if nutates else ["theta_min_deg", "theta_max_deg"]:
+            motions[unit_name(key, radians=self.radians)] = tops.tilt_in(self.radians)
+        return motions
 
     def fill_elementary(self) -> Mask:
         """Fill the keys that are formulas of the inputs; return the tops that lose digits."""
@@ -211,51 +212,34 @@ class _Block:
         """Fill by `solve` missing tops, `lost` elementary keys, and the further keys of all."""
         rows = self.valid & (self.missing | lost | bool(self.further))
         for row in np.flatnonzero(rows).tolist():
-            keys = list(self.further)
-            if self.missing[row]:
-                keys += self.computed
-            if self.missing[row] or lost[row]:
-                keys += self.elementary
-            self._solve(row, keys)
+            missing = self.missing[row]
+            keys = [*self.further, *(self.computed if missing else ())]
+            self._solve(row, [*keys, *(self.elementary if missing or lost[row] else ())])
 
     def _solve(self, row: int, keys: Sequence[str]) -> None:
         """Fill some keys of one top by `solve`."""
-        columns = self.columns
         try:
             motion = solve(self.tops.one(row))
             record, beyond = record_in_range(motion, radians=self.radians, keys=keys)
         except LagtopError as error:
-            columns["error"][row] = str(error)
+            self.columns["error"][row] = str(error)
             return
         if beyond:
-            columns["error"][row] = "; ".join(map(str, beyond))
-        for key in {"r0", "psidot0"} & columns.keys():  # some are known only to `solve`
+            self.columns["error"][row] = "; ".join(map(str, beyond))
+        for key in {"r0", "psidot0"} & self.columns.keys():  # some are known only to `solve`
             record[key] = getattr(motion.top, key)
         if record.get("remark"):
-            record["remark"] = _words(record["remark"])
+            record["remark"] = record["remark"].partition(":")[0]
         for key, value in record.items():
             if value is not None:
-                columns[key][row] = value
+                self.columns[key][row] = value
 
 
-def _remarks(regime: Regime, tops: TopArrays, start: Start) -> Any:
+def _remarks(regime: Regime, start: Start) -> Any:
     """Return the remarks on tops released from rest: the words of `solve`, without its numbers."""
-    if regime == Regime.HANGING:
-        return _remark_on(theta0_deg=180)
-    if regime == Regime.SLEEPING:
-        fast, slow = _remark_on(theta0_deg=0, r0=1e3), _remark_on(theta0_deg=0, r0=1.0)
-        return texts(start.sleep >= 0, fast, slow)
+    if regime in {Regime.HANGING, Regime.SLEEPING}:
+        stable, unstable = (vertical_remark(regime, x) for x in (True, False))
+        return texts(start.sleep.high >= 0, stable, unstable)
     if regime == Regime.REGULAR:
-        return texts(tops.fast(), _remark_on(r0=1e3), None)
+        return texts((start.b * start.b - start.a * float(FAST)).high >= 0, FAST_WORDS, None)
     return None
-
-
-@cache
-def _remark_on(**start: float) -> str:
-    """Return the words of the remark on the worked example with another start."""
-    return _words(solve(Top(**start)).record()["remark"])
-
-
-def _words(remark: str) -> str:
-    """Return a remark without the numbers that follow its words."""
-    return remark.partition(":")[0]

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arithmetic.pairs import DoubleDouble, pair, two_sum
 from ..arithmetic.types import Array, Mask
-from ..solver.facts import FAST, Regime
+from ..solver.facts import Regime
 from ..top.top import Top
 from ..top.values import STEADY_WORDS
 from .formulas import Start, where
@@ -76,20 +76,21 @@ class TopArrays(NamedTuple):
     def groups(self) -> dict[Regime | None, Mask]:
         """Return the tops of ordinary size that the formulas of sweeps compute.
 
-        Tops released from rest are keyed by their regime; None has those with other initial rates,
-        with a torque and off the vertical.
+        Tops released from rest, and steady ones given by a word, are keyed by their regime; None
+        has those with other initial rates, with a torque and off the vertical.
         """
-        ordinary = self._are_ordinary()
+        ordinary, steady, falls = self._are_ordinary(), self.steady > 0, self.thetadot0 != 0
         upright, hanging = (self.theta0_deg == 0) | (self.theta0_rad == 0), self.theta0_deg == 180
         inclined, torque = ordinary & ~(upright | hanging), (self.s > 0) & (self.g > 0)
-        at_rest = (self.thetadot0 == 0) & (self.psidot0 == 0)
+        at_rest = ~falls & (self.psidot0 == 0)
         return {
             Regime.SLEEPING: ordinary & at_rest & upright,
             Regime.HANGING: ordinary & at_rest & hanging,
             Regime.TORQUE_FREE: inclined & at_rest & ~torque,
             Regime.NO_SPIN: inclined & at_rest & torque & (self.r0 == 0),
             Regime.REGULAR: inclined & at_rest & torque & (self.r0 != 0),
-            None: inclined & ~at_rest & torque,
+            Regime.STEADY: inclined & steady & torque & ~falls,
+            None: inclined & ~steady & torque & (falls | (self.psidot0 != 0)),
         }
 
     def _are_ordinary(self) -> Mask:
@@ -102,7 +103,8 @@ class TopArrays(NamedTuple):
             return (x >= _SMALL) & (x <= most)
 
         ordinary: Mask = (2 * self.A >= self.C) & fits(self.m) & fits(self.A) & fits(self.C)
-        for x in (self.s, self.g, abs(self.r0), abs(self.thetadot0), abs(self.psidot0)):
+        rate: Array = np.where(self.steady > 0, 0.0, self.psidot0)
+        for x in (self.s, self.g, abs(self.r0), abs(self.thetadot0), np.abs(rate)):
             ordinary &= (x == 0) | fits(x)
         deg, rad = self.theta0_deg, self.theta0_rad
         ordinary &= (np.isnan(rad) & ((deg == 0) | fits(deg, 180))) | (
@@ -113,65 +115,35 @@ class TopArrays(NamedTuple):
         ordinary &= (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
         return ordinary & ~(abs(lam - 1) < _NEAR_1)
 
-    def fast(self) -> Mask:
-        """Return which tops released from rest precess pseudo-regularly, b^2 >= 50 a."""
-        a, b, *_ = self._constants()
-        fast: Mask = (b * b - a * float(FAST)).high >= 0
-        return fast
-
-    def _constants(self) -> tuple[DoubleDouble, ...]:
-        """Return the first five numbers of a `Start`."""
+    def start(self) -> Start:
+        """Return constants and start of the tops in pairs of doubles; a steady rate is NaN."""
         m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
         a, b = (m * g * s / A).scaled(2), C * r0 / A
         drift = r0 * DoubleDouble(*two_sum(2 * self.A, -self.C)) / A
-        return a, b, r0, (b * b).scaled(0.5) - a, drift.scaled(0.5)
-
-    def start(self) -> Start:
-        """Return constants and start of tops released from rest, each rounded once."""
-        zero = np.zeros_like(self.m)
-        constants = (x.high for x in self._constants())
-        return Start(*[*constants, *self._tilts(), zero, zero])
-
-    def start_in_pairs(self) -> Start:
-        """Return constants and start of tops in pairs of doubles."""
-        rates = DoubleDouble(self.thetadot0), DoubleDouble(self.psidot0)
-        return Start(*[*self._constants(), *self._tilts_in_pairs(), *rates])
-
-    def _tilts(self) -> tuple[Array, ...]:
-        """Return sin, cos, 1 + cos and 1 - cos of theta0, each with full relative accuracy."""
-        deg, rad = self.theta0_deg, self.theta0_rad
-        # sin(x + y) = sin x + y cos x for a pair, from the nearer pole and from 90 degrees
-        nearer = np.minimum(deg, 180 - deg)
-        arc, up = DoubleDouble(nearer) * _DEGREE, DoubleDouble(*two_sum(90.0, -nearer)) * _DEGREE
-        sin, near, far = np.sin(arc.high), np.sin(arc.high / 2), np.cos(arc.high / 2)
-        cos = np.sin(up.high) + up.low * sin
-        sin += arc.low * cos
-        near, far = near + arc.low / 2 * far, far - arc.low / 2 * near
-        down = deg > 90
-        cos = np.where(down, -cos, cos)
-        sin_half, cos_half = np.where(down, far, near), np.where(down, near, far)
-        if (given := ~np.isnan(rad)).any():
-            found = np.sin(rad), np.cos(rad), np.sin(rad / 2), np.cos(rad / 2)
-            of_degrees = sin, cos, sin_half, cos_half
-            pairs = zip(found, of_degrees, strict=True)
-            sin, cos, sin_half, cos_half = (np.where(given, x, y) for x, y in pairs)
-        return sin, cos, 2 * cos_half * cos_half, 2 * sin_half * sin_half
-
-    def _tilts_in_pairs(self) -> tuple[DoubleDouble, ...]:
-        """Return the numbers of `_tilts` in pairs."""
         deg, rad = self.theta0_deg, self.theta0_rad
         given = ~np.isnan(rad)
-        down = np.where(given, rad > np.pi / 2, deg > 90)
-        nearer = DoubleDouble(np.where(down, 180 - deg, deg)) * _DEGREE
+        down = np.where(given, rad > np.pi / 2, deg > 90)  # then the angle from the lower pole
+        arc = DoubleDouble(np.where(down, 180 - deg, deg)) * _DEGREE
         if given.any():
-            arc = DoubleDouble(np.where(given, rad, 0.0))
-            other = DoubleDouble(np.full_like(rad, 180.0)) * _DEGREE - arc
-            nearer = where(given, where(down, other, arc), nearer)
-        sine = _sine(nearer.scaled(0.5))
+            own = DoubleDouble(rad)
+            other = DoubleDouble(np.full_like(rad, 180.0)) * _DEGREE - own
+            arc = where(given, where(down, other, own), arc)
+        sine = _sine(arc.scaled(0.5))
         cosine = (1.0 - sine * sine).sqrt()
         sine, cosine = where(down, cosine, sine), where(down, sine, cosine)
-        cos = (cosine - sine) * (cosine + sine)
-        return (sine * cosine).scaled(2), cos, (cosine * cosine).scaled(2), (sine * sine).scaled(2)
+        return Start(
+            a=a,
+            b=b,
+            r0=r0,
+            sleep=(b * b).scaled(0.5) - a,
+            spin_drift=drift.scaled(0.5),
+            sin=(sine * cosine).scaled(2),
+            cos=(cosine - sine) * (cosine + sine),
+            below=(cosine * cosine).scaled(2),
+            above=(sine * sine).scaled(2),
+            theta_rate=DoubleDouble(self.thetadot0),
+            psi_rate=DoubleDouble(self.psidot0),
+        )
 
 
 _SINE = [pair(Fraction((-1) ** n, factorial(2 * n + 1))) for n in range(15)]
@@ -233,15 +205,11 @@ def _with_spins(tops: TopArrays, phi_rate: Array) -> TopArrays:
 
     Where the sum may have lost digits, or psi' is a word, r0 is NaN and phidot0 is kept.
     """
-    psi_rate, deg = tops.psidot0, tops.theta0_deg
+    psi_rate, given = tops.psidot0, ~np.isnan(phi_rate)
     with np.errstate(all="ignore"):
-        cos = tops.start_in_pairs().cos
-        exact = np.select([deg == 60, deg == 90, deg == 120], [0.5, 0.0, -0.5], np.nan)
-        cos = where(np.isnan(exact), cos, DoubleDouble(exact))
-        spins = (DoubleDouble(phi_rate) + DoubleDouble(psi_rate) * cos).high
-        lost = np.isnan(exact) & ~(abs(spins) > _LITTLE_LEFT * abs(phi_rate)) & (psi_rate != 0)
-        lost |= ~(abs(spins) < _MOST_SPIN)
-    given = ~np.isnan(phi_rate)
+        spins = (DoubleDouble(phi_rate) + DoubleDouble(psi_rate) * tops.start().cos).high
+        size = abs(phi_rate) + abs(psi_rate)
+        lost = ~(abs(spins) > _LITTLE_LEFT * size) & (psi_rate != 0) | ~(size < _MOST_SPIN)
     return tops._replace(
         r0=np.where(given, np.where(lost, np.nan, spins), tops.r0),
         phidot0=np.where(given & lost, phi_rate, np.nan),

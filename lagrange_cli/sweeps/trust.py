@@ -52,7 +52,7 @@ _SURE = 2.0**-10
 """Relative error at which a sign is trusted."""
 _SETTLED = 2.0**-90
 """Relative error at which the largest root is settled."""
-_NEWTON_STEPS, _STEPS_IN_PAIRS = 50, 4
+_NEWTON_STEPS, _STEPS_IN_PAIRS = 100, 4
 _MOST_SIZE = 2.0
 """Size of a mean rate, over the rate, up to which it is computed in doubles.
 
@@ -75,7 +75,7 @@ class AnyStart(Motions):
         D, self._of_D = largest_root(start, cubic)
         self.pairs = start, gaps_from_start(start, cubic, D)
         doubles = Gaps(*(x.high for x in self.pairs[1]))
-        super().__init__(_FORMULAS, Start(*(x.high for x in start)), doubles)
+        super().__init__(_FORMULAS, start.in_doubles(), doubles)
         self._bound_gaps()
 
     def trusted(self, keys: Collection[str]) -> Mask:
@@ -198,17 +198,16 @@ def largest_root(
 ) -> tuple[DoubleDouble, Array]:
     """Return D = a (u3 - u0) of tops in pairs, and a bound of its relative error.
 
-    D is the largest root of X^3 + c2 X^2 + a c1 X + a^2 c0.  Viete's formula gives a first value;
-    Newton's method refines it in doubles, then in pairs.
+    D is the largest root of X^3 + c2 X^2 + a c1 X + a^2 c0.  From a bound above it, Newton's method
+    descends in doubles, and ends in pairs.
     """
     c2, c1, c0 = cubic
     c1, c0 = start.a * c1, start.a * (start.a * c0)
-    rough = Start(*(x.high for x in start))
+    rough = start.in_doubles()
     of_c2, of_c1 = (sum(parts) for parts in _parts(rough))
     size2, size1, size0 = of_c2, rough.a * of_c1, c0.high
     b2, b1, b0 = c2.high, c1.high, c0.high
-    most = rough.energy + rough.b * rough.b + 2 * rough.a
-    x = np.fmin(most, _viete(b2, b1, b0))
+    x = rough.energy + rough.b * rough.b + 2 * rough.a
     for _ in range(_NEWTON_STEPS):
         slope = (3 * x + 2 * b2) * x + b1
         step = (((x + b2) * x + b1) * x + b0) / slope
@@ -228,12 +227,3 @@ def largest_root(
         if not (error > _SETTLED).any():
             break
     return root, error
-
-
-def _viete(c2: Array, c1: Array, c0: Array) -> Array:
-    """Return an estimate of the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real."""
-    square = (c2 * c2 - 3 * c1) / 9
-    radius = np.sqrt(square)
-    cosine = ((9 * c1 - 2 * c2 * c2) * c2 - 27 * c0) / (54 * square * radius)
-    root: Array = 2 * radius * np.cos(np.arccos(np.clip(cosine, -1, 1)) / 3) - c2 / 3
-    return root

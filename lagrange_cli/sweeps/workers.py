@@ -42,7 +42,7 @@ def parse_jobs(text: str) -> int:
     """
     if text == "auto":
         may_use = getattr(os, "sched_getaffinity", None)
-        return len(may_use(0)) if may_use else min(os.cpu_count() or 1, 61)  # Windows has no more
+        return len(may_use(0)) if may_use else os.cpu_count() or 1
     if not (text.isdecimal() and text.isascii() and 1 <= int(text[:9]) <= MOST_JOBS):
         raise LagtopError(f"must be auto or in [1, {MOST_JOBS}], got {text[:60]!r}")
     return int(text)
@@ -182,6 +182,8 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
                 client = _answer(
                     address, lambda: distributed.Client(address, timeout=_PATIENCE / 3)
                 )
+        except UnavailableError:
+            raise
         except (TypeError, ValueError) as error:
             why = f"dask must be the address of a scheduler, got {address!r}: {error}"
             raise LagtopError(why, "dask") from None

@@ -50,27 +50,18 @@ def test_every_regime_as_solve(inputs: dict[str, Any], radians: bool) -> None:
             assert words == found[key].item() or (value is None and np.isnan(found[key])), key
 
 
-@pytest.mark.parametrize("word", ["steady", "steady-fast"])
-def test_a_steady_top_per_row(word: str, lagtop: Lagtop) -> None:
-    """A row has the numbers of `solve`, with the rate as a number, or an error if there is none."""
-    keys = ["r0", "theta0_deg", "psidot0", "T_nutation", "regime", "error"]
-    spins, tilts = [-60.0, 50.0, 70.0], [30.0, 100.0]
-    found = sweep(r0=np.reshape(spins, (3, 1)), theta0_deg=tilts, psidot0=word, keys=keys)
-    for i, (r0, tilt) in enumerate((x, y) for x in spins for y in tilts):
-        row: list[Any] = [found[key].flat[i] for key in keys]
-        if i == 2:
-            assert np.isnan(row[2:4]).all()
-            assert row[-1].startswith(f"psidot0 cannot be {word}: |r0| must be at least 52.5611")
-        else:
-            motion = solve(Top(r0=r0, theta0_deg=tilt, psidot0=word))
-            assert row == [r0, tilt, motion.top.psidot0, motion.T_nutation, motion.regime, None]
-    grid = lagtop(
-        *f"sweep --r0=-60,50,70 --theta0 30,100 --psidot0 {word} --keys".split(), ",".join(keys)
-    )
-    cells = "".join(f"{r0},{tilt},{word}\n" for r0 in spins for tilt in tilts)
-    file = lagtop("sweep", "-", "--keys", ",".join(keys), input=f"r0,theta0_deg,psidot0\n{cells}")
-    assert file.stdout.replace("line 4: ", "") == grid.stdout
-    assert [*table(grid.stdout)[5].values()] == [*map(str, row[:-1]), ""]
+def test_a_steady_top_per_row(lagtop: Lagtop) -> None:
+    """A row has the rate as a number, or an error if there is none; a file may have the word."""
+    keys = ["--keys", "r0,psidot0,T_nutation,error"]
+    grid = lagtop("sweep", "--r0=-60,50,70", "--psidot0", "steady", *keys)
+    cells = "r0,psidot0\n-60,steady\n50,steady\n70,steady\n"
+    assert lagtop("sweep", "-", *keys, input=cells).stdout.replace("line 3: ", "") == grid.stdout
+    slow, absent, fast = table(grid.stdout)
+    assert absent["error"].startswith("psidot0 cannot be steady: |r0| must be at least 52.5611")
+    assert [absent["T_nutation"], slow["error"], fast["error"]] == ["", "", ""]
+    for row in (slow, fast):
+        motion = solve(Top(r0=float(row["r0"]), psidot0="steady"))
+        assert float(row["psidot0"]) == pytest.approx(motion.top.psidot0, rel=1e-15)
 
 
 def test_a_number_smaller_than_all_doubles_is_missing_and_named() -> None:
@@ -243,11 +234,7 @@ def peak_over_result(**inputs: Any) -> float:
 
 
 GRID = {"r0": np.linspace(1, 100, 200)[:, None]}
-
-
 STARTS = {"theta0_deg": np.linspace(1, 179, 60_000), "psidot0": np.linspace(-5, 5, 60_000)}
-
-
 BODY = {"m": 1587.0, "C": 17458.0, "s": 4.0, "g": 981.0}
 
 
