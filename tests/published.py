@@ -1,7 +1,7 @@
 """Numbers that others have printed, checked: a table of tests/README.md is made from here.
 
-The exact values are those of `lagtop` in many digits; a test compares them with the proved
-enclosures of `ball_reference`, which share no formula with it.
+The exact values are those of `lagtop` in many digits; a test compares them with those of
+`record_reference`, which shares no formula with it.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import mpmath
-from ball_reference import BallReference
 from conftest import ROOT
 from lagtop import Motion, read_scene, solve
 from ours import ManyDigits, Ours
+from record_reference import State, reference_record, reference_state
 
 from lagrange_cli.solver.tables import ProvedTable
 
@@ -26,17 +26,6 @@ Many = Any
 
 DIGITS, SHOWN = 60, 18
 ELLIPJ, _K = "k = 0.99999999997", "0.99999999997"
-
-
-class State(NamedTuple):
-    """Angles at a time, unwrapped, and their rates, by the names of the columns."""
-
-    theta: Many
-    phi: Many
-    psi: Many
-    thetadot: Many
-    phidot: Many
-    psidot: Many
 
 
 class Printed(NamedTuple):
@@ -129,13 +118,13 @@ def motion(scene: str) -> Motion:
     return solve(read_scene(str(ROOT / "sample_inputs" / f"{scene}.toml"), exact=True))
 
 
-def exact(x: Printed, *, by_balls: bool = False) -> Many:
+def exact(x: Printed, *, by_reference: bool = False) -> Many:
     """Return the exact value of a printed number, by lagtop or by the reference.
 
     The reference of cn is mpmath.
     """
     with mpmath.workdps(DIGITS):
-        if x.scene == ELLIPJ and by_balls:
+        if x.scene == ELLIPJ and by_reference:
             return mpmath.ellipfun("cn", 50, k=mpmath.mpf(_K))
         if x.scene == ELLIPJ:
             ar = ManyDigits(DIGITS)
@@ -143,9 +132,10 @@ def exact(x: Printed, *, by_balls: bool = False) -> Many:
         if not x.t:
             key = x.quantity
             record = motion(x.scene).record(digits=DIGITS, keys=[key])
-            return _middle(_balls(x.scene).exact(key)) if by_balls else mpmath.mpf(record[key])
-        if by_balls:
-            now = State(*map(_middle, _balls(x.scene).at(Fraction(x.t))[:6]))
+            inputs = motion(x.scene).top.as_dict()
+            return reference_record(inputs)[key] if by_reference else mpmath.mpf(record[key])
+        if by_reference:
+            now = reference_state(motion(x.scene).top.as_dict(), Fraction(x.t))
         else:
             table = ProvedTable(motion(x.scene), State._fields, DIGITS, radians=True)
             now = State(*(mpmath.mpf(found.value) for found in table.row(Fraction(x.t))))
@@ -153,18 +143,6 @@ def exact(x: Printed, *, by_balls: bool = False) -> Many:
         if x.quantity.startswith("Rot"):  # angles of a rotation have the whole turns of the print
             value += 2 * mpmath.pi * mpmath.nint((mpmath.mpf(x.text) - value) / 2 / mpmath.pi)
         return value
-
-
-@cache
-def _balls(scene: str) -> BallReference:
-    top = motion(scene).top
-    return BallReference({key: getattr(top, key) for key in top.fields})
-
-
-def _middle(ball: Any) -> Many:
-    """Return the middle of a ball of at least 25 digits."""
-    assert ball.rad() < 1e-25 * max(1, abs(float(ball)))
-    return mpmath.mpf(ball.mid().str(DIGITS, radius=False))
 
 
 def error(x: Printed) -> tuple[Many, bool]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple
 
 import mpmath as mp
@@ -19,6 +20,8 @@ from lagrange_cli.bench.reference import viete_roots
 ROOT_DIGITS, DIGITS = 2_000, 120
 Many = Any
 """A number of mpmath."""
+Angles = tuple[Many, Many, Many, Many]
+"""Tilt, spin, precession and nutation rate."""
 
 
 def exact(x: Any) -> Many:
@@ -51,21 +54,69 @@ def reference_record(
 
 
 class State(NamedTuple):
-    """A motion at a time: unwrapped angles in radians, and the nutation rate."""
+    """A motion at a time: unwrapped angles in radians, and their rates.
+
+    On the vertical all of the rotation counts as spin.
+    """
 
     theta: Many
     phi: Many
     psi: Many
     thetadot: Many
+    phidot: Many
+    psidot: Many
 
 
-def reference_state(inputs: Mapping[str, Any], t: Any, digits: int = DIGITS) -> State:
+def reference_state(
+    inputs: Mapping[str, Any], t: Any, digits: int = DIGITS, root_digits: int = ROOT_DIGITS
+) -> State:
     """Return the state of a motion at a time."""
-    with mp.workdps(ROOT_DIGITS):
-        of = _Motion(inputs, digits)
-        if t:
-            return of.state(exact(t))
-        return State(mp.acos(of.u0), mp.mpf(0), mp.mpf(0), of.fall)
+    of = _motion(tuple(inputs.items()), digits, root_digits)
+    with mp.workdps(root_digits):
+        angles = of.angles(exact(t)) if t else (mp.acos(of.u0), mp.mpf(0), mp.mpf(0), of.fall)
+        u, sin2 = mp.cos(angles[0]), mp.sin(angles[0]) ** 2
+        turn = of.turn if of.steady_tilt else (of.beta - of.b * u) / sin2 if sin2 else mp.mpf(0)
+        turn *= not of.vertical
+        return State(*angles, of.r0 - turn * u, turn)
+
+
+def reference_columns(
+    inputs: Mapping[str, Any], t: Any, root_digits: int = ROOT_DIGITS
+) -> dict[str, Many]:
+    """Return the columns of `lagtop table` at a time but t, dphi and dpsi."""
+    now = reference_state(inputs, t, DIGITS, root_digits)
+    of = _motion(tuple(inputs.items()), DIGITS, root_digits)
+    with mp.workdps(of.digits):
+        sin, u, (sin_half, cos_half) = mp.sin(now.theta), mp.cos(now.theta), _half(now.theta)
+        plus, minus = (now.psi + now.phi) / 2, (now.psi - now.phi) / 2
+        across, weight = now.psidot * sin, of.m * of.g * of.s
+        swing = (now.thetadot**2 + across**2) * of.A / 2
+        return now._asdict() | {
+            "u": u,
+            "p": across * mp.sin(now.phi) + now.thetadot * mp.cos(now.phi),
+            "q": across * mp.cos(now.phi) - now.thetadot * mp.sin(now.phi),
+            "r": of.r0,
+            "moment": weight * sin,
+            "axis_x": sin * mp.sin(now.psi),
+            "axis_y": -sin * mp.cos(now.psi),
+            "axis_z": u,
+            "quaternion_w": cos_half * mp.cos(plus),
+            "quaternion_x": sin_half * mp.cos(minus),
+            "quaternion_y": sin_half * mp.sin(minus),
+            "quaternion_z": cos_half * mp.sin(plus),
+            "energy": swing + of.C * of.r0**2 / 2 + weight * u,
+            "Lz": of.A * across * sin + of.C * of.r0 * u,
+        }
+
+
+def _half(angle: Many) -> tuple[Many, Many]:
+    return mp.sin(angle / 2), mp.cos(angle / 2)
+
+
+@cache
+def _motion(inputs: tuple[tuple[str, Any], ...], digits: int, root_digits: int) -> _Motion:
+    with mp.workdps(root_digits):
+        return _Motion(dict(inputs), digits)
 
 
 class _Motion:
@@ -329,19 +380,17 @@ class _Motion:
         assert wide > 0
         return self.half_sums(integrals, T / 2)
 
-    def state(self, t: Many) -> State:
-        """Return the state at a time."""
-        still = mp.acos(self.u0), self.r0 * t, mp.mpf(0), mp.mpf(0)
-        if self.vertical:
-            return State(*still)
+    def angles(self, t: Many) -> Angles:
+        """Return tilt, spin, precession and nutation rate at a time."""
         if self.steady_tilt:
-            return State(still[0], (self.r0 - self.turn * self.u0) * t, self.turn * t, still[3])
+            turn = self.turn * (not self.vertical)
+            return mp.acos(self.u0), (self.r0 - turn * self.u0) * t, turn * t, mp.mpf(0)
         turns = abs(t) * (mp.sqrt(self.wide) + abs(self.r0) + abs(self.b))
         with mp.workdps(self.digits + int(mp.log10(turns + 1))):
             return self._rising(t) if self.separatrix else self._nutating(t)
 
-    def _rising(self, t: Many) -> State:
-        """Return the state on the separatrix: 1 - u = (1 - u2) sech^2 h."""
+    def _rising(self, t: Many) -> Angles:
+        """Return angles and nutation rate on the separatrix: 1 - u = (1 - u2) sech^2 h."""
         u0, u2, b, rate = self.u0, self.u2, self.b, mp.sqrt(self.wide) / 2
         h0 = mp.acosh(mp.sqrt((1 - u2) / (1 - u0))) * (-1 if self.fall >= 0 else 1)
         h, ratio = h0 + rate * t, mp.sqrt((1 - u2) / (1 + u2)) if 1 + u2 else mp.inf
@@ -354,10 +403,10 @@ class _Motion:
         above = (1 - u2) * mp.sech(h) ** 2
         theta = 2 * mp.asin(mp.sqrt(above / 2))
         slope = -2 * above * mp.tanh(h) * rate / mp.sin(theta)
-        return State(theta, (self.r0 - b) * t + psi, psi, slope)
+        return theta, (self.r0 - b) * t + psi, psi, slope
 
-    def _nutating(self, t: Many) -> State:
-        """Return the state of a top that nutates: u = u2 + (u1 - u2) sn^2 w."""
+    def _nutating(self, t: Many) -> Angles:
+        """Return angles and nutation rate of a top that nutates: u = u2 + (u1 - u2) sn^2 w."""
         u0, u1, u2, wide = self.u0, self.u1, self.u2, self.wide
         K, speed = mp.elliprf(0, self.kc2, 1), mp.sqrt(wide) / 2
         sn2, cn2 = (u0 - u2) / (u1 - u2), (u1 - u0) / (u1 - u2)
@@ -385,4 +434,4 @@ class _Motion:
         below, above = (self.gaps[pole][0] * sn**2 + self.gaps[pole][1] * cn**2 for pole in (1, -1))
         theta = 2 * mp.atan2(mp.sqrt(above), mp.sqrt(below))
         slope = -2 * (u1 - u2) * sn * cn * dn * speed / mp.sqrt(above * below)
-        return State(theta, phi, psi, slope)
+        return theta, phi, psi, slope

@@ -1,34 +1,29 @@
-"""The reference in 50 digits against Arb with other formulas, and the definition of error."""
+"""The reference in 50 digits against theta functions, and the definition of error."""
 
 from __future__ import annotations
 
 import math
 import random
+from fractions import Fraction
 
 import mpmath
 import pytest
-from ball_reference import BallReference
-from balls.scene import many_digits
 from hard_scenes import HARD_KINDS, nutating
-from lagtop import Top
+from lagtop import Top, solve
 
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
+from lagrange_cli.solver.tables import ProvedTable
 
 
 @pytest.mark.parametrize("kind", HARD_KINDS)
 def test_attitudes_agree_with_the_reference(kind: str) -> None:
-    """Legendre's third integral from the lowest point, by mpmath and by Arb."""
+    """Legendre's third integral from the lowest point, and theta functions from the highest."""
     top = Top(**nutating(kind, random.Random(2)))
-    reference, balls = Reference(inputs_of(top)), BallReference(top.as_dict())
+    reference = Reference(inputs_of(top))
     t = 3.7 * float(reference.T)
+    row = ProvedTable(solve(top), ["quaternion"], 40).row(Fraction(t))
     with mpmath.workdps(50):
-        theta, phi, psi = map(many_digits, balls.at(t)[:3])
-        cos, sin = mpmath.cos(theta / 2), mpmath.sin(theta / 2)
-        plus, minus = (psi + phi) / 2, (psi - phi) / 2
-        attitude = (
-            *(cos * mpmath.cos(plus), sin * mpmath.cos(minus)),
-            *(sin * mpmath.sin(minus), cos * mpmath.sin(plus)),
-        )
+        attitude = [mpmath.mpf(part.value) for part in row]
     assert rotation_angle(attitude, reference.attitude(t)) < 1e-20
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import mpmath
 import pytest
-from published import PRINTED, Printed, State, error, exact, quaternion
+from published import PRINTED, Printed, error, exact, quaternion
+from record_reference import State
 
 
 def name(x: Printed) -> str:
@@ -13,8 +14,8 @@ def name(x: Printed) -> str:
 
 @pytest.mark.parametrize("x", PRINTED, ids=name)
 def test_exact_value(x: Printed) -> None:
-    """All digits of the table, and three more, are those of the balls."""
-    ours, checked = exact(x), exact(x, by_balls=True)
+    """All digits of the table, and three more, are those of the reference."""
+    ours, checked = exact(x), exact(x, by_reference=True)
     assert abs(ours - checked) <= 1e-21 * abs(checked)
 
 

@@ -1,1 +1,0 @@
-"""A second solution of the top, in ball arithmetic, for the tests alone."""
