@@ -91,8 +91,13 @@ class Ours:
         return self._third(ij, eta, v, k, 1)
 
     def _third(self, ij: str, eta: Any, v: Any, k: Any, which: int) -> Any:
-        points = self._point(eta), self._point(v)
-        return self.evaluated(lambda: self._functions(k).third(*points)[ij][which])
+        first, second = self._point(eta), self._point(v)
+
+        def values() -> Any:
+            functions = self._functions(k)
+            return functions.third(first, second, functions.zetas(second))
+
+        return self.evaluated(lambda: values()[ij][which])
 
     def quarter_period(self, k: Any) -> Any:
         """Return K."""

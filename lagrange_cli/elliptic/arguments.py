@@ -89,18 +89,13 @@ def parse_complex(text: str) -> ExactComplex:
     Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
     """
     text = text.strip()
-    if not _looks_complex(text):
+    if set("ijIJ").isdisjoint(text):
         return ExactComplex(parse_number(text))
     found = _COMPLEX.fullmatch(text)
     if found is None:
         raise LagtopError(f"must be a finite number, complex as 0.3+0.7i, got {quoted(text)}")
     real, sign, imag = found.groups()
     return ExactComplex(parse_number(real or "0"), parse_number(f"{sign}{imag or 1}"))
-
-
-def _looks_complex(text: str) -> bool:
-    """Return whether a text has a letter for the imaginary unit, valid or not."""
-    return not set("ijIJ").isdisjoint(text)
 
 
 def parse_small(text: str) -> ExactComplex:
@@ -128,7 +123,7 @@ def parse_arguments(text: str) -> Arguments:
         ends = [_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
         points = parse_range(text, lambda end: _multiple(end)[0])
         mixed = "must have both ends in units of K or none"
-    elif _looks_complex(text):
+    elif not set("ijIJ").isdisjoint(text):
         if "K" in text:
             raise LagtopError(f"must not contain K if numbers are complex, got {quoted(text)}")
         real, imag = zip(*map(parse_complex, text.split(",")), strict=True)

@@ -96,20 +96,6 @@ class Quadrature(NamedTuple):
         return [self.lower, self.upper, *self.outer, self.g, self.height]
 
     @property
-    def is_still(self) -> bool:
-        """Whether the band is a double root, so that eta is constant."""
-        return self.lower == self.upper
-
-    @property
-    def squares(self) -> tuple[Fraction, Fraction]:
-        """Squares of m' and m'' (3.2.3), exactly."""
-        upper, lower = (
-            prod((abs(root - end) for root in self.outer), start=Fraction(1)) + self.height**2
-            for end in (self.upper, self.lower)
-        )
-        return upper, lower
-
-    @property
     def layout(self) -> str:
         """The layout of the outer roots, in words."""
         if self.height:
@@ -125,7 +111,7 @@ class Quadrature(NamedTuple):
     def kind(self) -> str:
         """The degree of the radicand and its degeneracy, if any, in words."""
         degree = ("quadratic", "cubic", "quartic")[len(self.outer)]
-        if self.is_still:
+        if self.lower == self.upper:
             return f"{degree}, the band is a double root: eta is constant"
         if not self.outer:
             return "quadratic, k1 = 0: a harmonic oscillation"
@@ -162,7 +148,8 @@ class EtaConstants(NamedTuple):
 def eta_constants(quadrature: Quadrature) -> EtaConstants:
     """Return the constants in balls."""
     lower, upper, outer, g, height = quadrature
-    m1, m2 = (exact(square).sqrt() for square in quadrature.squares)
+    distances = ([abs(root - end) for root in outer] for end in (upper, lower))
+    m1, m2 = (exact(prod(x, start=Fraction(1)) + height**2).sqrt() for x in distances)
     width, total, product = exact(upper - lower), m1 + m2, exact(g) * m1 * m2
     crossed, apart = total, Fraction(len(outer))
     if height:
@@ -226,7 +213,7 @@ def eta_columns(
     below = 1 + c.d * sn
     eta: Value = (c.gamma + c.s * sn) / below
     rate: Value = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / below**2
-    if quadrature.is_still:
+    if quadrature.lower == quadrature.upper:
         eta, rate = quadrature.lower, Fraction(0)
     return dict(zip(ETA_COLUMNS, (tau, eta, rate, h1, am, sn), strict=True))
 

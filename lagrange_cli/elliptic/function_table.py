@@ -40,10 +40,7 @@ class FunctionRequest(NamedTuple):
 
     @property
     def is_real(self) -> bool:
-        """Whether each number has one column: k is in [0, 1], and u and the parameter are on axes.
-
-        For an imaginary parameter, Omega and Pi are then imaginary, and the column is `_imag`.
-        """
+        """Whether each number has one column; the column of imaginary ones is `_imag`."""
         is_mixed = self.parameter.real and self.parameter.imag
         return self.modulus.kind is Kind.UNIT and self.u.imag is None and not is_mixed
 
@@ -61,14 +58,16 @@ class FunctionRequest(NamedTuple):
             return
         rates = [float(rate.mid()) for rate in (functions.scale, functions.across)]
         along, across = (min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME for rate in rates)
+        v, (name, most) = self.parameter, ("u", along)
         if self.u.in_quarters:
-            check_reach("u in units of K", self.u.real, 2 * MAX_PERIODS)
-        else:
-            check_reach("u", self.u.real, along)
-        if self.u.imag is not None:
-            check_reach("the imaginary part of u", self.u.imag, across)
-        check_reach("param", ListedPoints([self.parameter.real]), along)
-        check_reach("the imaginary part of param", ListedPoints([self.parameter.imag]), across)
+            name, most = "u in units of K", 2 * MAX_PERIODS
+        for what, points, limit in (
+            (name, self.u.real, most),
+            ("the imaginary part of u", self.u.imag or ListedPoints([Fraction(0)]), across),
+            ("param", ListedPoints([v.real]), along),
+            ("the imaginary part of param", ListedPoints([v.imag]), across),
+        ):
+            check_reach(what, points, limit)
 
 
 def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
@@ -113,25 +112,23 @@ def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Numbers
     am, *values = functions.jacobi(u)
     of = dict(zip("scdn", (*values, acb(1)), strict=True))
     if has_am:
-        found |= angle("am", _on_axes(am, u.axes, odd=True), in_radians=request.radians)
+        found |= angle("am", _on_axes(am, u, odd=True), in_radians=request.radians)
     for name in QUOTIENTS:
         if name in wanted:
             p, q = (of[letter] for letter in name)
             quotient = None if name[1] == "s" and u.is_0 else p / q
-            found[name] = _on_axes(quotient, u.axes, odd="s" in name)
+            found[name] = _on_axes(quotient, u, odd="s" in name)
     return found
 
 
 def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Numbers:
     """Return the theta and the Zeta functions of u."""
-    families, kind, axes, found = request.families, functions.kind, u.axes, Numbers()
-    thetas = functions.thetas(u) if {"theta", "zeta"} & set(families) else {}
-    for ij, z in thetas.items() if "theta" in families else ():
+    families, kind, found = request.families, functions.kind, Numbers()
+    for ij, z in functions.thetas(u).items() if "theta" in families else ():
         is_real = kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0")
-        found[f"theta{ij}"] = _on_axes(z, axes, odd=ij == "11") if is_real else z
-    for ij, slope in functions.zetas(u, thetas).items() if "zeta" in families else ():
-        is_real = kind is not Kind.LARGE
-        found[f"zeta{ij}"] = _on_axes(slope, axes, odd=True) if is_real else slope
+        found[f"theta{ij}"] = _on_axes(z, u, odd=ij == "11") if is_real else z
+    for ij, slope in functions.zetas(u).items() if "zeta" in families else ():
+        found[f"zeta{ij}"] = slope if kind is Kind.LARGE else _on_axes(slope, u, odd=True)
     return found
 
 
@@ -152,12 +149,10 @@ def point(x: ExactComplex) -> Point:
     return Point(*(fmpq(part.numerator, part.denominator) for part in x))
 
 
-def _on_axes(z: acb | None, axes: set[str], *, odd: bool = False) -> acb | None:
-    """Return an even or odd function that is real on the real axis, without parts that are 0."""
-    if z is None:
-        return z
-    if "real" in axes:
+def _on_axes(z: acb | None, u: Point, *, odd: bool) -> acb | None:
+    """Return an even or odd function of u that is real for real u, without parts that are 0."""
+    if z is not None and u.imag == 0:
         z = acb(z.real)
-    if "imag" in axes:
+    if z is not None and u.real == 0:
         z = acb(0, z.imag) if odd else acb(z.real)
     return z

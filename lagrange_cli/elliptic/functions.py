@@ -4,8 +4,7 @@ All functions reduce to a modulus k in [0, 1] (see `modulus`), with the argument
 and tau = iT, T = K'/K.  Jacobi's, theta and Zeta functions are quotients of Arb's theta functions.
 Omega and Pi are differences of logarithms of theta functions.
 
-Results have the precision of Arb in use.  If it does not decide a branch, TooFewDigitsError is
-raised, and the caller repeats the evaluation with more digits.
+Results have the precision of Arb in use.  TooFewDigitsError is raised if it decides no branch.
 """
 
 from __future__ import annotations
@@ -17,12 +16,10 @@ from flint import acb, arb, fmpq
 from ..arithmetic.enclosures import TooFewDigitsError, nearest, sign
 from .modulus import Kind, Modulus
 
-INDICES = ("01", "00", "11", "10")
-"""The theta functions theta4, theta3, theta1 and theta2 of the angle pi z."""
 THIRD = ("01", "00", "11")
 """The indices of Omega and Pi."""
-_NUMBERS = {"11": 0, "10": 1, "00": 2, "01": 3}
-"""The positions of the theta functions in Arb's tuple."""
+_NUMBERS = {"01": 3, "00": 2, "11": 0, "10": 1}
+"""The theta functions theta4, theta3, theta1 and theta2 of pi z: their places in Arb's tuple."""
 _REDUCED = {
     Kind.UNIT: {},
     Kind.IMAGINARY: {"01": "00", "00": "01"},
@@ -38,19 +35,9 @@ class Point(NamedTuple):
     imag: Any = fmpq(0)
 
     @property
-    def axes(self) -> set[str]:
-        """The axes on which the point lies: `real`, `imag`, both or none."""
-        names = {"real"} if self.imag == 0 else set()
-        return names | {"imag"} if self.real == 0 else names
-
-    @property
     def is_0(self) -> bool:
         """Whether the number is exactly 0."""
-        return len(self.axes) == 2
-
-    def ball(self) -> acb:
-        """Return the number as a ball."""
-        return acb(self.real, self.imag)
+        return bool(self.real == 0 and self.imag == 0)
 
 
 class Functions:
@@ -83,7 +70,7 @@ class Functions:
         am is continuous around the real axis.  It is None beyond its branch points, the poles of sn
         next to the axis.  For k > 1 its real part stays within a quarter of a turn.
         """
-        sn, cn, dn = self._quotients(u.ball())
+        sn, cn, dn = self._quotients(acb(*u))
         is_beyond = u.imag != 0 and sign(abs(u.imag) * self.across * 2 - 1) > 0
         return None if is_beyond else self._amplitude(u, sn, cn), sn, cn, dn
 
@@ -104,7 +91,7 @@ class Functions:
     def _amplitude(self, u: Point, sn: acb, cn: acb) -> acb:
         """Return the angle with a sine and a cosine, next to that of the real part of u."""
         if self.is_0:
-            return u.ball()
+            return acb(*u)
         periods = u.real * self.scale * (self.kind is not Kind.LARGE)
         if u.imag == 0:
             turns = nearest(arb(periods))
@@ -118,38 +105,34 @@ class Functions:
     def thetas(self, v: Point) -> dict[str, acb]:
         """Return Theta_ij(v)."""
         if self.tau is None:
-            return {ij: acb(int(ij[0] == "0")) for ij in INDICES}
-        values = acb.modular_theta(v.ball() * self.rate, self.tau)
-        return {ij: values[_NUMBERS[ij]] for ij in INDICES}
+            return {ij: acb(int(ij[0] == "0")) for ij in _NUMBERS}
+        values = acb.modular_theta(acb(*v) * self.rate, self.tau)
+        return {ij: values[_NUMBERS[ij]] for ij in _NUMBERS}
 
-    def zetas(self, v: Point, thetas: dict[str, acb] | None = None) -> dict[str, acb | None]:
-        """Return Z_ij(v), the derivative of log Theta_ij(v); Z_11 has a pole at 0.
-
-        `thetas` are the theta functions of v if they are known.
-        """
-        x, values = v.ball(), thetas or self.thetas(v)
+    def zetas(self, v: Point) -> dict[str, acb | None]:
+        """Return Z_ij(v), the derivative of log Theta_ij(v); Z_11 has a pole at 0."""
+        x, values = acb(*v), self.thetas(v)
         if self.tau is None:
             found = {"01": acb(0), "00": acb(0), "11": x.cot(), "10": -x.tan()}
         else:
             slopes = acb.modular_theta(x * self.rate, self.tau, 1)
             found = {ij: self.rate * slopes[n] / values[ij] for ij, n in _NUMBERS.items()}
-        return {ij: None if ij == "11" and v.is_0 else found[ij] for ij in INDICES}
+        return {ij: None if ij == "11" and v.is_0 else found[ij] for ij in _NUMBERS}
 
     def third(
-        self, u: Point, v: Point, zetas: dict[str, acb | None] | None = None
+        self, u: Point, v: Point, zetas: dict[str, acb | None]
     ) -> dict[str, tuple[acb | None, acb | None]]:
         """Return Omega_ij(u, v) = log[Theta_ij(u - v)/Theta_ij(u + v)]/2 and Pi_ij(u, v) by index.
 
-        Pi_ij = u Z_ij(v) + Omega_ij; `zetas` are the Z_ij(v) if they are known.  The logarithms are
-        those of `_logarithms`.  None stands for a pole.
+        Pi_ij = u Z_ij(v) + Omega_ij; `zetas` are the Z_ij(v).  The logarithms are those of
+        `_logarithms`.  None stands for a pole.
         """
         less = Point(u.real - v.real, u.imag - v.imag)
         more = Point(u.real + v.real, u.imag + v.imag)
-        zetas = zetas or self.zetas(v)
         added = acb(0)
         if self.kind is Kind.LARGE:  # by the transformation of tau
             added = acb(0, 2) * arb.pi() * self.scale**2 / (1 - self.reduced_tau)
-            added *= u.ball() * v.ball()
+            added *= acb(*u) * acb(*v)
         ends = self._logarithms(less), self._logarithms(more)
         found: dict[str, tuple[acb | None, acb | None]] = {}
         for ij in THIRD:
@@ -161,7 +144,7 @@ class Functions:
             else:
                 first, second = (end[inner] for end in ends)
                 omega = (first - second) / 2 + added
-                found[ij] = omega, None if zeta is None else omega + u.ball() * zeta
+                found[ij] = omega, None if zeta is None else omega + acb(*u) * zeta
         return found
 
     def _logarithms(self, at: Point) -> dict[str, acb]:
@@ -200,7 +183,7 @@ def _floor(x: arb) -> int:
 
 def _log_sine(at: Point) -> acb:
     """Return log sin z up to a constant, continuous above and below the real axis."""
-    z = at.ball()
+    z = acb(*at)
     if at.imag < 0:
         z = z.conjugate()
     value = (1 - (acb(0, 2) * z).exp()).log() + acb(0, 1) * (arb.pi() / 2 - z)

@@ -109,15 +109,15 @@ class Legendre:
         if height.is_zero():
             return self._real(s, c2, d, square)
         is_upper = sign(height) > 0
-        at_quarter = square in {0, 1} if isinstance(square, Fraction) else False
+        at_quarter = isinstance(square, Fraction) and square in {0, 1}
         if (at_quarter and inside > 0 and sign(d.real) <= 0) or (is_upper and not inside):
             return Integrals(None, None)
         found = self._carlson(s, c2, d)
-        if not is_upper:
-            return found
-        if inside > 0:
+        if is_upper and inside > 0:
             return _each(acb.conjugate, found)
-        return _each(lambda x, whole: 2 * whole.real - x.conjugate(), found, self.complete)
+        if is_upper:
+            return _each(lambda x, whole: 2 * whole.real - x.conjugate(), found, self.complete)
+        return found
 
     def _carlson(self, s: acb, c2: acb, d: acb) -> Integrals:
         """Return F and E from sin phi, cos^2 phi and Delta^2 (DLMF 19.25.5, 19.25.9)."""
@@ -149,11 +149,10 @@ def _each(function: Callable[..., acb], *integrals: Integrals) -> Integrals:
 
 def _side(q: Fraction | arb, square: Fraction | arb) -> int:
     """Return the sign of 1 - q sin^2 phi."""
-    if isinstance(square, Fraction):
-        if isinstance(q, Fraction):
-            return (q * square < 1) - (q * square > 1)
-        square = exact(square)
-    return sign(1 - (exact(q) if isinstance(q, Fraction) else q) * square)
+    if isinstance(q, Fraction) and isinstance(square, Fraction):
+        return (q * square < 1) - (q * square > 1)
+    q, square = (x if isinstance(x, arb) else exact(x) for x in (q, square))
+    return sign(1 - q * square)
 
 
 def amplitude_rows(
@@ -187,11 +186,9 @@ def amplitude_rows(
             return {f"{heading}_re": x.real, f"{heading}_im": x.imag} | split(found)
         return {heading: x.real} | (split(found) if given.kind is Kind.LARGE else real_parts(found))
 
-    def constants() -> Legendre:
-        return Legendre(given.reduced(), given.m, n)
-
     inputs = [*given.value, n or Fraction(0)]
-    return rows_of(phi.numbers(digits), columns, constants, inputs, digits)
+    at = phi.numbers(digits)
+    return rows_of(at, columns, lambda: Legendre(given.reduced(), given.m, n), inputs, digits)
 
 
 def constants_record(

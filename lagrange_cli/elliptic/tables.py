@@ -38,9 +38,7 @@ def rows_of(
     is a number too large for a double if doubles are requested.
     """
 
-    @cache
-    def known(_: int) -> C:
-        return constants()
+    known = cache(lambda _: constants())
 
     def row(x: ExactComplex) -> dict[str, Any]:
         of_x = [*x, *inputs]
@@ -49,11 +47,7 @@ def rows_of(
     rows = map(row, arguments)
     first = next(rows)
     texts = ([NumberText(value_text(x)) for x in row.values()] for row in chain([first], rows))
-
-    def block() -> list[list[NumberText]]:
-        return list(islice(texts, _ROWS_AT_ONCE))
-
-    return list(first), iter(block, [])
+    return list(first), iter(lambda: list(islice(texts, _ROWS_AT_ONCE)), [])
 
 
 def numbers(
