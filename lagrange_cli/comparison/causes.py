@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import partial
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -23,11 +22,12 @@ _AS_GOOD, _ROUNDING = 10.0, 1e-9
 _FEW, _SOME, _LEAST = 12, 300, 3
 """Rows on which causes are tried first and then, and the least number of rows."""
 _MOST_SHIFTS = 500
+_AXES = "z", "y", "x", "-z", "-y", "-x"
 _FRAMES = [
-    *(Alignment(x, x) for x in "zyx"),
-    *(Alignment(x, x, left=True) for x in "zyx"),
-    *(Alignment(x, x) for x in ("-z", "-y", "-x")),
-    *(Alignment(y, x) for x, y in product(["z", "y", "x", "-z", "-y", "-x"], repeat=2) if x != y),
+    *(Alignment(x, x) for x in _AXES[:3]),
+    *(Alignment(x, x, left=True) for x in _AXES[:3]),
+    *(Alignment(x, x) for x in _AXES[3:]),
+    *(Alignment(y, x) for x, y in product(_AXES, repeat=2) if x != y),
 ]
 """All frames whose axes are those of lagtop in another order or direction, the likeliest first.
 
@@ -44,58 +44,45 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
     """
     if np.isfinite(errors(exact, run.few(_SOME))).sum() < _LEAST:
         return []
-    search = Search(exact, run)
-    alone = search.tried(search.single())
-    found = search.best(alone, limit)
-    for more in () if found else search.groups():
-        if found := search.best(search.tried(more, limit), limit):
-            break
+    search = _Search(exact, run)
+    found = next(filter(None, (search.best(x, limit) for x in search.groups())), [])
     if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
-        found = search.best([*found, *search.tried(search.pairs(in_other=False), limit)], limit)
-    return found or search.best(alone)
+        found = search.best([*found, *search.pairs(in_other=False)], limit)
+    return found or search.best(next(search.groups()))
 
 
-class Search:
+class _Search:
     """The search for the causes of the error of a trajectory."""
 
     def __init__(self, exact: Exact, run: Run) -> None:
         self.run, self.given = run, exact
         self.mistakes = mistakes(exact.top, run)
-        self._runs: dict[Callable[[Run], Run] | None, Run] = {}
-        self._frames: dict[Callable[[Run], Run] | None, dict[Alignment, float]] = {}
+        self._few: dict[object, Run] = {}
+        self._tilts: dict[object, dict[Alignment, float]] = {}
         self.enough = EXPLAINS * self.error(Cause(""), _SOME)
-
-    def _whole(self, cause: Cause) -> Run:
-        return self.run if cause.undo is None else cause.undo(self.run)
 
     def some(self, cause: Cause) -> Run:
         """Return some rows of the trajectory as it was meant."""
-        if cause.undo not in self._runs:
-            self._runs[cause.undo] = self._whole(cause).few(_SOME)
-        return self._runs[cause.undo]
+        if cause.undo not in self._few:
+            self._few[cause.undo] = cause.undone(self.run).few(_SOME)
+        return self._few[cause.undo]
 
     def error(self, cause: Cause, most: int = 0) -> float:
         """Return the greatest error without a cause, on so many rows or on all.
 
         It is infinite if no row is finite.
         """
-        run = self.some(cause).few(most) if most else self._whole(cause)
+        run = self.some(cause).few(most) if most else cause.undone(self.run)
         worst = errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
         return float(np.fmax.reduce(worst)) if np.isfinite(worst).any() else math.inf
 
-    def tried(self, causes: Iterable[Cause], limit: float = math.inf) -> list[Cause]:
-        """Return the causes that explain the error of some rows, with the error that remains."""
+    def best(self, causes: Iterable[Cause], limit: float = math.inf) -> list[Cause]:
+        """Return the simplest cause that leaves about as little as the best, and another one."""
         enough = min(self.enough, limit)
         hopeful = [x for x in causes if self.error(x, _FEW) <= enough]
         found = [x._replace(error=self.error(x, _SOME)) for x in hopeful]
-        return [x for x in found if x.error <= enough]
-
-    def best(self, found: list[Cause], limit: float = math.inf) -> list[Cause]:
-        """Return the simplest cause that leaves about as little as the best, and another one."""
-        enough = min(self.enough, limit)
-        found = [x for x in found if x.error <= enough]
-        while found:
-            bound = min(enough, max(_AS_GOOD * min(x.error for x in found), _ROUNDING))
+        while found := [x for x in found if x.error <= enough]:
+            bound = max(_AS_GOOD * min(x.error for x in found), _ROUNDING)
             good = [x for x in found if x.error <= bound]
             others = [x for x in good if x[1:3] != good[0][1:3]]  # another mistake
             whole = [x._replace(error=self.error(x)) for x in [good[0], *others[:1]]]
@@ -104,18 +91,15 @@ class Search:
             found.remove(good[0])
         return []
 
-    def single(self) -> list[Cause]:
-        """Return the single causes, the simplest first."""
+    def groups(self) -> Iterator[list[Cause]]:
+        """Yield groups of causes; each group is tried if the one before explains nothing.
+
+        They are single causes, a shift of the clock, a mistake with other zeros of the angles and
+        the clock, a mistake in another frame, two mistakes, and the reverse of time.
+        """
         early = 1 + next(i for i, x in enumerate(self.mistakes) if x.exact)
         same, other = (self.alignments(Cause(""), in_other) for in_other in (False, True))
-        return [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
-
-    def groups(self) -> Iterator[list[Cause]]:
-        """Yield groups of causes that are tried if no single cause explains the error.
-
-        They are a shift of the clock, a mistake with other zeros of the angles and the clock, a
-        mistake in another frame, two mistakes, and the reverse of time.
-        """
+        yield [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
         yield self.shifts()
         yield self.pairs(in_other=False)
         yield self.pairs(in_other=True)
@@ -132,77 +116,77 @@ class Search:
 
         Under each, the first row has the tilt of the exact motion.
         """
-        exact, run, given = (
-            mistake.exact or self.given,
-            self.some(mistake).few(_FEW),
-            self.run.align,
-        )
-        starts, times = {given.start, True}, {given.time, given.time or bool(run.t[0])}
+        exact, run, given = mistake.exact or self.given, self.some(mistake), self.run.align
+        times, starts = {given.time, given.time or bool(run.t[0])}, {given.start, True}
         for time, start in product(sorted(times), sorted(starts)):
             tilt = exact.at(run.t[:1] - run.t[0] * time)["theta"][0]
             for frame, seen in self.tilts(mistake).items():
                 align = frame._replace(start=start, time=time)
-                twice = in_other and start and align.is_reversed  # the same as a left-handed frame
-                if (frame[:3] != given[:3]) != in_other or align == given or twice:
-                    continue
-                if not abs(seen - tilt) > self.enough:
-                    yield self._cause(align, exact, run)
+                twice = in_other and start and _is_reversed(align)  # the same as a left-handed one
+                is_wanted = (frame[:3] != given[:3]) == in_other and align != given and not twice
+                if is_wanted and not abs(seen - tilt) > self.enough:
+                    yield _named(align, exact, run.few(_FEW))
 
     def tilts(self, cause: Cause) -> dict[Alignment, float]:
         """Return the tilt of the first row in each frame, NaN if it is not known."""
-        if cause.undo not in self._frames:
-            run, found = self.some(cause).few(1), self._frames.setdefault(cause.undo, {})
+        if cause.undo not in self._tilts:
+            run, found = self.some(cause).few(1), self._tilts.setdefault(cause.undo, {})
             for frame in [Alignment(*self.run.align[:3]), *_FRAMES]:
                 with suppress(LagtopError):  # a frame that needs more than is given
-                    seen = run._replace(align=frame).observed()
-                    found[frame] = float(angles_of(seen).get("theta", [math.nan])[0])
-        return self._frames[cause.undo]
-
-    def _cause(self, align: Alignment, exact: Exact, run: Run) -> Cause:
-        """Return an alignment as a cause."""
-        given, words, names = run.align, [align], []
-        if align[:3] == given[:3] and align.start and not given.start:
-            seen = run._replace(align=align._replace(start=False)).observed()
-            phi, psi = start_of(seen, exact.at(seen.t)) or (0.0, 0.0)
-            angles = {"psi": math.degrees(psi), "phi": math.degrees(phi)}
-            starts = [f"{x} starts at {y:.4g} degrees" for x, y in angles.items() if abs(y) > 1e-3]
-            names.append(" and ".join(starts))
-        elif align[:3] != given[:3] and (align.left or align.is_reversed):
-            axis = align.up.lstrip("-")
-            down = f"-{axis}" if align.left else axis
-            words.append(Alignment(down, down, not align.left, start=True, time=align.time))
-            names.append(f"the frame is left-handed with {axis} up, or has {axis} down")
-        elif align[:3] != given[:3]:
-            axes = [f"{align.up} is up"] * (align.up != given.up or given.left)
-            axes += [f"the figure axis is the body's {align.axis} axis"] * (
-                align.axis != given.axis
-            )
-            names.append(" and ".join(axes))
-        if align.time and not given.time:
-            names.append(f"the clock starts at {run.t[0]:.10g}")
-        remedy = " or ".join(f"align={x}" for x in words)
-        return Cause("; ".join(filter(None, names)), align=align, remedy=remedy)
+                    seen = angles_of(run._replace(align=frame).observed())
+                    found[frame] = float(seen.get("theta", [math.nan])[0])
+        return self._tilts[cause.undo]
 
     def shifts(self) -> list[Cause]:
         """Return the shift of the clock that explains most."""
         from scipy.optimize import minimize_scalar  # start-up
 
-        exact, few, t = self.given, self.run.few(20), self.run.t
+        exact, few = self.given, self.run.few(20)
         if self.run.align.start:
             return []
 
-        def error(shifts: float | Array) -> Any:
-            rows = {key: np.tile(x, (np.size(shifts), 1)) for key, x in few.given.items()}
-            rows["t"] -= np.repeat(shifts, len(few.given["t"]))[:, np.newaxis]
+        def error(shifts: Array) -> Array:
+            rows = {key: np.tile(x, (shifts.size, 1)) for key, x in few.given.items()}
+            rows["t"] -= np.repeat(shifts, few.t.size)[:, np.newaxis]
             found = errors(exact, few._replace(given=rows, missing=None))
-            return np.fmax.reduce(found.reshape(*np.shape(shifts), -1), axis=-1)
+            return np.asarray(np.fmax.reduce(found.reshape(shifts.size, -1), axis=1))
 
         step = 0.3 / sizes(exact.top)[2]
-        reach = max(exact.motion.T_nutation or 0.0, 10 * abs(t[-1] - t[0]) / len(t))
+        reach = max(exact.motion.T_nutation or 0.0, 10 * np.ptp(self.run.t) / self.run.t.size)
         count = math.ceil(min(reach / step, _MOST_SHIFTS))
         shifts = step * np.arange(-count, count + 1.0)
         best = float(shifts[np.argmin(np.nan_to_num(error(shifts), nan=np.inf))])
         ends, options = (best - step, best + step), {"xatol": 1e-9 * step}
-        found = minimize_scalar(error, bounds=ends, method="bounded", options=options)
+        found = minimize_scalar(
+            lambda x: float(error(np.array([x]))[0]), bounds=ends, method="bounded", options=options
+        )
         shift = float(found.x)
         return [Cause(f"the clock is shifted by {shift:.5g}", partial(Run.timed, shift=shift))]
+
+
+def _is_reversed(align: Alignment) -> bool:
+    """Return whether the frames are right-handed and have the same axis down, as NED has z."""
+    return not align.left and align.up.startswith("-") and align.axis == align.up
+
+
+def _named(align: Alignment, exact: Exact, run: Run) -> Cause:
+    """Return an alignment as a cause."""
+    given, words, names = run.align, [align], []
+    if align[:3] == given[:3] and align.start and not given.start:
+        seen = run._replace(align=align._replace(start=False)).observed()
+        phi, psi = np.degrees(start_of(seen, exact.at(seen.t)) or (0.0, 0.0))
+        starts = {"psi": psi, "phi": phi}.items()
+        names = [" and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > 1e-3)]
+    elif align[:3] != given[:3] and (align.left or _is_reversed(align)):
+        axis = align.up.lstrip("-")
+        down = f"-{axis}" if align.left else axis
+        words.append(Alignment(down, down, not align.left, start=True, time=align.time))
+        names = [f"the frame is left-handed with {axis} up, or has {axis} down"]
+    elif align[:3] != given[:3]:
+        axes = [f"{align.up} is up"] * (align.up != given.up or given.left)
+        axes += [f"the figure axis is the body's {align.axis} axis"] * (align.axis != given.axis)
+        names = [" and ".join(axes)]
+    if align.time and not given.time:
+        names.append(f"the clock starts at {run.t[0]:.10g}")
+    remedy = " or ".join(f"align={x}" for x in words)
+    return Cause("; ".join(filter(None, names)), align=align, remedy=remedy)

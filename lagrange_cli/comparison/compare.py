@@ -45,10 +45,6 @@ _SURE = 2.0
 """Largest change of a difference from row to row, in radians, for whole turns to be counted."""
 _KEPT = {"t", "error", *ANGLES}
 """Columns that are kept whole; only the extremes of the others are."""
-_COMPARED = {"attitude": "attitude", "axis": "axis", **dict.fromkeys(ANGLES, "angles")}
-_KEYS = {"error": "error_max", "norm": "norm_error", "distance": "pivot_slip"}
-_KEYS |= {"energy": "energy_drift", "Lz": "Lz_drift"}
-"""Keys of greatest differences; the others end in `_error_max`."""
 
 
 def _key(meaning: str, default: Any = None) -> Any:
@@ -196,31 +192,25 @@ def compared(
         raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
     if wrong := [step for step in step_sizes or [] if not step > 0]:
         raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
-    exact = Exact(motion)
-    steps = step_sizes or repeat(None)
-    results = [_measured(exact, x, step) for x, step in zip(runs, steps, strict=False)]
-    found = convergence(results) if step_sizes else None
+    exact, steps = Exact(motion), step_sizes or repeat(None)
+    results = [_measured(exact, *x) for x in zip(runs, steps, strict=False)]
+    found = convergence(results, limit) if step_sizes else None
     for i, (x, run) in enumerate(zip(results, runs, strict=True)):
         is_wrong = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
-        converges = found is not None and (
-            found.falls or (found.rise is None and min(found.errors) <= limit)
+        is_other = found is not None and not found.converges
+        causes = likely_causes(exact, run, limit) if is_wrong and (is_other or not found) else []
+        is_other = is_other or any(y.exact and y.error <= limit for y in causes)
+        slips, is_off = (x.pivot_slip or 0.0) > limit, x.error_start > limit
+        apply = True, is_wrong or slips, is_wrong and is_other, is_off, x.lost_at is not None
+        results[i] = replace(
+            x,
+            verdict=[word for word, it in zip(VERDICTS, apply, strict=True) if it][-1],
+            order=found and found.order,
+            cause="; or ".join(y.name for y in causes) or None,
+            explained=("most likely" if causes[0].error <= limit else "partly") if causes else None,
+            cause_error=max((y.error for y in causes), default=None),
+            remedy=" or ".join(y.remedy for y in causes if y.remedy) or None,
         )
-        causes = likely_causes(exact, run, limit) if is_wrong and not converges else []
-        is_known = any(y.exact and y.error <= limit for y in causes)
-        verdict = "drifts" if is_wrong or (x.pivot_slip or 0.0) > limit else "fine"
-        if is_wrong and (is_known or (found and not converges)):
-            verdict = "another top"
-        verdict = "off from the start" if x.error_start > limit else verdict
-        verdict = "lost" if x.lost_at is not None else verdict
-        results[i] = replace(x, verdict=verdict, order=found and found.order)
-        if causes:
-            results[i] = replace(
-                results[i],
-                cause="; or ".join(y.name for y in causes),
-                explained="most likely" if causes[0].error <= limit else "partly",
-                cause_error=max(y.error for y in causes),
-                remedy=" or ".join(y.remedy for y in causes if y.remedy) or None,
-            )
     return results, found
 
 
@@ -236,15 +226,15 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
             raise
         raise DataError(f"{shown_path(run.file)}: {wrong}") from None
     found = {name: np.concatenate([x.pop(name) for x in parts]) for name in [*parts[0]]}
-    t, error = found["t"], found["error"]
-    known: dict[str, Any] = {}
+    t, error, known = found.pop("t"), found["error"], dict[str, Any]()
     for name, values in found.items():
-        if name != "t" and (ends := _extremes(values)).size:
+        names = name, f"{name}_max", f"{name}_error_max"
+        if (ends := _extremes(values)).size:
             first = ends[0] if name in CONSERVED else 0.0
-            greatest = abs(ends - first).max() / (first if name == "distance" else 1.0)
-            known[_KEYS.get(name, f"{name}_error_max")] = float(greatest)
-            if name in ANGLES:
-                known[f"{name}_drift"] = _slope(t, values)
+            greatest = abs(ends - first).max() / (first if name == "pivot_slip" else 1.0)
+            known[next(x for x in names if x in COMPARISON_KEYS)] = float(greatest)
+        if name in ANGLES:
+            known[f"{name}_drift"] = _slope(t, values)
     lost = np.isnan(error) & (True if run.missing is None else np.logical_not(run.missing))
     return Comparison(
         file=run.file and utf8_path(run.file),
@@ -253,7 +243,8 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
         step=step,
         rows=t.size,
         rows_missing=0 if run.missing is None else int(run.missing.sum()),
-        compared=next((word for name, word in _COMPARED.items() if name in found), "rates"),
+        compared=next((x for x in ("attitude", "axis") if x in found), None)
+        or ("angles" if found.keys() & {*ANGLES} else "rates"),
         error_final=None if np.isnan(error[-1]) else float(error[-1]),
         lost_at=float(t[np.argmax(lost)]) if lost.any() else None,
         error_start=float(max(error[0], *found.get("rates", error)[:1])),
@@ -283,17 +274,16 @@ def _slope(t: Array, angle: Array) -> float | None:
 class Convergence(NamedTuple):
     """The dependence of the error on the step."""
 
-    order: float | None
-    """Fitted exponent; None if there are fewer than two errors to fit, or no single order."""
-    falls: bool
-    """Whether the error falls with the step, or is a rounding error."""
     errors: Sequence[float]
     """Greatest error of each trajectory, up to the time at which the first one loses the phase."""
-    rise: tuple[float, float, float, float] | None = None
-    """A step and its error, and a finer one with a greater error, if there are such steps."""
+    sentence: str
+    order: float | None = None
+    """Fitted exponent; None if there are fewer than two errors to fit, or no single order."""
+    converges: bool = True
+    """Whether the error falls with the step, or no error needs to fall."""
 
 
-def convergence(results: Sequence[Comparison]) -> Convergence | None:
+def convergence(results: Sequence[Comparison], limit: float) -> Convergence | None:
     """Return how the errors of trajectories fall with their steps, or None for fewer than two.
 
     The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
@@ -312,15 +302,23 @@ def convergence(results: Sequence[Comparison]) -> Convergence | None:
     rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)
     if rises.any():
         i = int(np.argmax(rises))
-        (fine, coarse), (after, before) = step[i : i + 2].tolist(), error[i : i + 2].tolist()
-        return Convergence(None, False, errors, (coarse, before, fine, after))
-    falls = error[0] < ROUNDING or error[1] >= error[0] * (step[1] / step[0]) ** LEAST_ORDER
+        (fine, coarse), (after, before) = step[i : i + 2], error[i : i + 2]
+        how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g} to {fine:g}"
+        why = "the order of the step sizes is wrong, the method varies, or the top is another one"
+        return Convergence(errors, f"The error rises {how}: {why}.", converges=False)
+    if error[0] >= ROUNDING and error[1] < error[0] * (step[1] / step[0]) ** LEAST_ORDER:
+        is_fine = max(errors) <= limit
+        why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
+        said = f"The error does not fall with the step: {why}."
+        return Convergence(errors, said, converges=min(errors) <= limit)
     usable = (error >= ROUNDING) & (error < LOST_PHASE)
     if len({*step[usable]}) < 2:
         usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
-    if not falls or len({*step[usable]}) < 2:
-        return Convergence(None, bool(falls), errors)
     x, y = np.log(step[usable]), np.log(error[usable])
-    orders = np.diff(y) / np.diff(x)
-    slope = float(np.polyfit(x, y, 1)[0]) if np.ptp(orders) <= _SPREAD else None
-    return Convergence(slope, bool(falls), errors)
+    order = float(np.polyfit(x, y, 1)[0]) if len({*x}) > 1 else None
+    if order is None or np.ptp(np.diff(y) / np.diff(x)) > _SPREAD or order < LEAST_ORDER:
+        why = "the errors are too small or too large, or the method varies"
+        said = f"The error falls with the step, but shows no single order of convergence: {why}."
+        return Convergence(errors, said)
+    said = f"The error falls with the step; the order of convergence is {order:.2f}."
+    return Convergence(errors, said, order)

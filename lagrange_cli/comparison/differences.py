@@ -29,9 +29,11 @@ WORDS = {
     "time": "the first row is at time 0",
 }
 """The words of an alignment, with their meanings."""
-CONSERVED = {"energy", "Lz", "distance"}
+CONSERVED = {"energy_drift", "Lz_drift", "pivot_slip"}
 """Differences that are counted from the first row."""
-_EXCHANGE_XY = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+_Z = np.array([0.0, 0.0, 1.0])
+_UNREAL, _UNITY = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, -1.0, 0.0]])
+"""Half turns: reversed, they turn y round as in Unreal, or exchange x and y, as Unity does."""
 _NEAR_POLE, _OFF_POLE = 1e-9, 0.01
 """Sines of the tilt: up to which only one angle is defined, and from which the azimuth is exact."""
 _BLOCK, _KEPT = 1 << 14, 300
@@ -74,39 +76,26 @@ class Alignment(NamedTuple):
         """Whether the figure axis is another one than usual in such a frame."""
         return self.axis != (self.up if self.left else "z")
 
-    @property
-    def is_reversed(self) -> bool:
-        """Whether the frames are right-handed and have the same axis down, as NED has z."""
-        return not self.left and self.up.startswith("-") and self.axis == self.up
-
     def framed(self, run: Observed) -> Observed:
         """Return a motion in the frames of lagtop.
 
-        Raises LagtopError if the attitude is not complete enough.
+        A left-handed frame is a right-handed one whose axes are all reversed.  Raises LagtopError
+        if the attitude is not complete enough.
         """
-        if run.quaternion is None and self.has_axis:
-            raise LagtopError("align axis needs the whole attitude: omit it", "align")
-        if run.quaternion is None and run.axis is None:
-            word = "up" * (self.up != "z" and run.space_rates is None)
-            if word := "left" if self.left else word:
-                needs = f"align {word} needs the axis or the whole attitude"
-                raise LagtopError(f"{needs}: omit it", "align")
-        if self.axis != "z" or self.up != "z":
-            run = run.turned(rotations.to_z(self.up), rotations.to_z(self.axis))
-        if self.left:  # as is usual: Unreal turns y round, Unity exchanges y and z
-            run = _mirrored(run, np.diag([1.0, -1, 1]) if self.up[-1] == "z" else _EXCHANGE_XY)
-        return run
-
-
-def _mirrored(run: Observed, mirror: Array) -> Observed:
-    """Return the motion after a reflection of both frames, a matrix of shape (3, 3)."""
-    names = (x for x in ("body_rates", "space_rates") if getattr(run, x) is not None)
-    changed: dict[str, Any] = {x: -getattr(run, x) @ mirror for x in names}
-    if (q := run.quaternion) is not None:
-        changed["quaternion"] = np.concatenate([q[:, :1], -q[:, 1:] @ mirror], axis=1)
-    if run.axis is not None:
-        changed["axis"] = run.axis @ mirror
-    return replace(run, **changed)
+        word = "axis" * self.has_axis
+        if not word and run.axis is None:
+            word = "left" * self.left or "up" * (self.up != "z" and run.space_rates is None)
+        if word and run.quaternion is None:
+            needs = "the whole attitude" if word == "axis" else "the axis or the whole attitude"
+            raise LagtopError(f"align {word} needs {needs}: omit it", "align")
+        if self[:3] == Alignment()[:3]:
+            return run
+        frames = rotations.to_z(self.up), rotations.to_z(self.axis)
+        if not self.left:
+            return run.turned(*frames)
+        mirror = _UNREAL if self.up[-1] == "z" else _UNITY
+        run = run.turned(*(rotations.product(mirror, x) for x in frames))
+        return run if run.axis is None else replace(run, axis=-run.axis)
 
 
 class Run(NamedTuple):
@@ -150,34 +139,36 @@ class Run(NamedTuple):
 class Exact:
     """The exact motion of a top, or one that follows from it by symmetry.
 
-    Spin and precession may be half a turn more, the motion may be turned over, with gravity
-    upwards, or have more `spin`.  The states at few times are kept.
+    `space` turns the motion, `body` is a turn before it, and `spin` is more rate of spin.  The
+    states at few times are kept.
     """
 
     def __init__(
-        self, motion: Motion, *, half: bool = False, over: bool = False, spin: float = 0.0
+        self,
+        motion: Motion,
+        space: Array = rotations.IDENTITY,
+        body: Array = rotations.IDENTITY,
+        spin: float = 0.0,
     ) -> None:
         self.motion, self.top = motion, motion.top
-        self._half, self._over, self._spin = half, over, spin
+        self._turns = space, body, spin
         self._kept: dict[bytes, dict[str, Array]] = {}
 
     def at(self, t: Array) -> dict[str, Array]:
         """Return the angles, and the `quaternion` and `rates` as arrays of shape (n, parts)."""
-        key = t.tobytes()
-        if key in self._kept:
+        if (key := t.tobytes()) in self._kept:
             return self._kept[key]
         found = self.motion.table(t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
-        states = {x: found[x] for x in ANGLES}
-        states["quaternion"] = np.stack([found[f"quaternion_{x}"] for x in "wxyz"], axis=1)
-        states["rates"] = np.stack([found[x] for x in "pqr"], axis=1)
-        if self._half or self._over or self._spin:
-            space = rotations.about_z(np.pi * self._half)
-            body = rotations.about_z(np.pi * self._half + np.asarray(self._spin * t))
-            space = rotations.product(rotations.HALF_TURN_X, space) if self._over else space
-            q = rotations.product(rotations.product(space, states["quaternion"]), body)
+        (*parts, p, q, r), (space, body, spin) = found.values(), self._turns
+        states = dict(zip(ANGLES, parts, strict=False))
+        states["quaternion"], states["rates"] = (
+            np.stack(x, axis=1) for x in (parts[3:], (p, q, r))
+        )
+        if spin or not np.array_equal([space, body], [rotations.IDENTITY] * 2):
+            body = rotations.product(rotations.about_z(spin * t), body)
+            turn = rotations.product(rotations.product(space, states["quaternion"]), body)
             rates = rotations.rotated(rotations.conjugate(body), states["rates"])
-            rates[:, 2] += self._spin
-            states = {**rotations.angles_of(q), "quaternion": q, "rates": rates}
+            states = rotations.angles_of(turn) | {"quaternion": turn, "rates": rates + _Z * spin}
         if t.size <= _KEPT:
             self._kept[key] = states
         return states
@@ -213,11 +204,11 @@ def blocks(exact: Exact, run: Run) -> Iterator[dict[str, Array]]:
     """Yield the times `t` of some rows and their differences from the exact motion, by name.
 
     `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
-    top; `energy` and `Lz` (4,2), (4,3) are over their sizes; `distance` is that of the mass centre
-    from the pivot, and `norm` the distance of a norm from 1.  Quantities that are not given are
-    missing.  `error` is the error of the attitude, or else of the axis, the angles, or the rates.
-    It is NaN in a row with a value that is not finite, unless only another quantity has empty
-    cells.  Raises LagtopError if the attitude is not complete enough for the alignment.
+    top.  `norm_error` is the distance of a norm from 1.  CONSERVED are the energy and Lz (4,2),
+    (4,3) over their sizes, and the distance of the mass centre from the pivot.  Quantities that are
+    not given are missing.  `error` is the error of the attitude, or else of the axis, the angles,
+    or the rates.  It is NaN in a row with a value that is not finite, unless only another quantity
+    has empty cells.  Raises LagtopError if the attitude is not complete enough for the alignment.
     """
     start = None
     for first in range(0, len(run.given["t"]), _BLOCK):
@@ -225,10 +216,9 @@ def blocks(exact: Exact, run: Run) -> Iterator[dict[str, Array]]:
         seen = run.observed(rows)
         states = exact.at(seen.t)
         if run.align.start and (start := start or start_of(seen, states)):
-            phi, psi = start
-            shifts = {"theta": 0.0, "phi": phi, "psi": psi}
+            shifts = dict(zip(ANGLES, (0.0, *start), strict=True))
             angles = {key: x - shifts[key] for key, x in seen.angles.items()}
-            seen = seen.turned(rotations.about_z(-psi), rotations.about_z(phi))
+            seen = seen.turned(rotations.about_z(-start[1]), rotations.about_z(start[0]))
             seen = replace(seen, angles=angles)
         missing = False if run.missing is None else run.missing[rows]
         yield {"t": seen.t} | _differences(exact.motion, seen, states, missing)
@@ -258,12 +248,10 @@ def _differences(
         del angles["psi"]
     found |= {key: within_half_turn(x - exact[key]) for key, x in angles.items()}
     found |= _rates(motion.top, run, q, states["rates"])
-    if run.norm is not None:
-        found["norm"] = abs(run.norm)
-    if run.distance is not None:
-        found["distance"] = run.distance
-    parts: Sequence[str] = [*angles] or ["rates"]
-    parts = [x for x in ("attitude", "axis") if x in found][:1] or parts
+    given = {"norm_error": run.norm, "pivot_slip": run.distance}
+    found |= {key: x for key, x in given.items() if x is not None}
+    compared = {"attitude", "axis"} & found.keys()
+    parts = [min(compared)] if compared else [*angles] or ["rates"]
     error = np.max([abs(found[x]) for x in parts], axis=0)
     lost = ~np.all([np.isfinite(x) for x in found.values()], axis=0)
     error[lost & np.logical_not(missing)] = np.nan
@@ -283,14 +271,12 @@ def _rates(top: Top, run: Observed, q: Array, exact: Array) -> dict[str, Array]:
         return found
     to_body = rotations.conjugate(run.quaternion)
     own = given if fixed is None else rotations.rotated(to_body, fixed)
-    up = rotations.rotated(to_body, np.array([0.0, 0.0, 1.0]))
+    up = rotations.rotated(to_body, _Z)
     A, C, r0 = float(top.A), float(top.C), float(top.r0)
-    moments = np.array([A, A, C])
-    energy = (moments * own**2).sum(axis=1) / 2 + torque * up[:, 2]
-    momentum = (moments * own * up).sum(axis=1)
-    kinetic, spin = (A * swing**2 + C * r0**2) / 2, math.hypot(A * swing, C * r0)
-    found["energy"] = energy / (kinetic + torque or 1.0)
-    found["Lz"] = momentum / (spin + math.sqrt(A * torque) or 1.0)
+    momentum, kinetic = np.array([A, A, C]) * own, (A * swing**2 + C * r0**2) / 2
+    energy, spin = (momentum * own).sum(axis=1) / 2, math.hypot(A * swing, C * r0)
+    found["energy_drift"] = (energy + torque * up[:, 2]) / (kinetic + torque or 1.0)
+    found["Lz_drift"] = (momentum * up).sum(axis=1) / (spin + math.sqrt(A * torque) or 1.0)
     return found
 
 

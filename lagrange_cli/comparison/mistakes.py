@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
@@ -12,6 +13,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..files import rotations
 from ..files.observed import ORDERS
 from ..names import ANGLES
 from ..solver.solve import solve
@@ -28,7 +30,7 @@ class Cause(NamedTuple):
 
     name: str
     undo: Callable[[Run], Run] | None = None
-    """Returns the trajectory as it was meant."""
+    """Corrects the trajectory."""
     exact: Exact | None = None
     """The motion of the other inputs."""
     align: Alignment | None = None
@@ -37,15 +39,15 @@ class Cause(NamedTuple):
     error: float = math.inf
     """The greatest error without the cause."""
 
+    def undone(self, run: Run) -> Run:
+        """Return the trajectory as it was meant."""
+        return self.undo(run) if self.undo else run
+
     def with_other(self, other: Cause) -> Cause:
         """Return this cause and another one of another kind at once."""
-        return Cause(
-            f"{self.name}; {other.name}",
-            self.undo or other.undo,
-            self.exact or other.exact,
-            self.align or other.align,
-            " and ".join(filter(None, (self.remedy, other.remedy))),
-        )
+        name, remedies = f"{self.name}; {other.name}", filter(None, (self.remedy, other.remedy))
+        undo, exact, align = self.undo or other.undo, self.exact or other.exact, self.align
+        return Cause(name, undo, exact, align or other.align, " and ".join(remedies))
 
 
 BACKWARDS = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
@@ -78,7 +80,10 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
     mirrored = top.psidot0 and run.observed(slice(1)).quaternion is not None
     mirror = " (or that of {}, if the frame is left-handed or has z down)" if mirrored else ""
     folded, ratio = math.remainder(math.degrees(tilt), math.tau), A / Fraction(top.C)
-    over = {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -rate}
+    half = rotations.about_z(math.pi)
+    both: dict[str, Any] = {"space": half, "body": half}
+    over: dict[str, Any] = {"space": rotations.product(rotations.HALF_TURN_X, half), "body": half}
+    over |= {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -rate}
     inputs: dict[str, dict[str, Any]] = {
         f"r0 has the wrong sign{left}{mirror.format('psidot0')}": {"r0": -top.r0},
         "the gyroscopic term is left out of Euler's equations (as if C = A)": {"C": top.A},
@@ -93,13 +98,13 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         "thetadot0 has the wrong sign": {"thetadot0": -rate},
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
         **{f"g is {g} (or m or s is wrong by as much)": {"g": Fraction(g)} for g in _GRAVITY},
-        "theta0 has the wrong sign": {"thetadot0": -rate, "half": True},
+        "theta0 has the wrong sign": {"thetadot0": -rate} | both,
         "theta0 in degrees was taken as radians": {
             "theta0_rad": abs(folded),
             "thetadot0": math.copysign(rate, rate * folded),
-            "half": folded < 0,
+            **(both if folded < 0 else {}),
         },
-        "g points upwards": over | {"half": True, "over": True},
+        "g points upwards": over,
         # A top with the same a and b, which need be no body: its spin differs by a constant rate.
         "A and C are exchanged": {
             "A": top.C,
@@ -109,11 +114,9 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         },
     }
     for name, changed in inputs.items():
-        shape = {key: changed.pop(key) for key in ("half", "over", "spin") if key in changed}
-        try:
-            yield Cause(name, exact=Exact(solve(top.replace(**changed)), **shape))
-        except LagtopError:  # there is no such top
-            continue
+        turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
+        with suppress(LagtopError):  # there is no such top
+            yield Cause(name, exact=Exact(solve(top.replace(**changed)), **turns))
 
 
 def _of_writing(run: Run) -> Iterator[Cause]:

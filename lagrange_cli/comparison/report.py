@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ..files.trajectory import read_trajectory
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import one_line
 from ..solver.solve import Motion
-from .compare import COMPARISON_KEYS, LEAST_ORDER, LIMIT, Comparison, Convergence
+from .compare import COMPARISON_KEYS, LIMIT, Comparison, Convergence
 from .differences import Alignment, Run
 
 _WRONG_NORM = 1e-6
@@ -65,15 +66,13 @@ def _used(rows: Quantities, conventions: Conventions) -> set[str]:
     first = rows_of(rows, slice(1))
 
     def motion(without: str) -> str:
-        return repr(observe({key: x for key, x in first.items() if key != without}, conventions))
+        with suppress(LagtopError):
+            return repr(
+                observe({key: x for key, x in first.items() if key != without}, conventions)
+            )
+        return ""
 
-    whole, used = motion(""), {"t"}
-    for key in rows.keys() - {"t"}:
-        try:
-            used |= {key} if motion(key) != whole else set()
-        except LagtopError:
-            used.add(key)
-    return used
+    return {"t", *(key for key in rows.keys() - {"t"} if motion(key) != motion(""))}
 
 
 def comparison_report(
@@ -92,7 +91,7 @@ def comparison_report(
     }
     lines = [line for x in results for line in _conclusions(x, limit, found, argument)]
     if found is not None:
-        lines.append(_order(results, found))
+        lines.append(found.sentence)
     return Report(conditions, fields_of([*COMPARISON_KEYS], *shown), results, lines)
 
 
@@ -114,7 +113,9 @@ def _conclusions(
         remedy = f" ({argument(x.remedy)})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
         yield f"{words}: {x.cause}{remedy}. {error}."
-    elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (found and found.falls):
+    elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (
+        found and found.converges
+    ):
         hint = ": compare runs with other step sizes" if x.verdict == "drifts" and not found else ""
         yield f"None of the known causes explains the error{hint}."
 
@@ -127,21 +128,3 @@ def sentence(x: Comparison) -> str:
     if x.rates_error_max is not None and x.compared != "rates":
         errors.append(f"its rates by {x.rates_error_max:.1e} (relative)")
     return ", ".join([f"{one_line(shown_path(x.file or ''))}: {verdict}", *errors])
-
-
-def _order(results: Sequence[Comparison], found: Convergence) -> str:
-    if found.rise is not None:
-        coarse, before, fine, after = found.rise
-        how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g}"
-        why = "the order of the step sizes is wrong, the method varies, or the top is another one"
-        return f"The error rises {how} to {fine:g}: {why}."
-    if not found.falls:
-        is_fine = all(x.verdict == "fine" for x in results)
-        why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
-        return f"The error does not fall with the step: {why}."
-    if found.order is None or found.order < LEAST_ORDER:
-        return (
-            "The error falls with the step, but shows no single order of convergence: the errors "
-            "are too small or too large, or the method varies."
-        )
-    return f"The error falls with the step; the order of convergence is {found.order:.2f}."
