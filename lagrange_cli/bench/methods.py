@@ -13,7 +13,6 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -108,8 +107,7 @@ def lagtop(motion: Motion, output: str) -> Sample:
     fresh.sampler()
     if output == "angles":
         return lambda t, _: (fresh.angles(t), None)
-    names = [f"quaternion_{part}" for part in "wxyz"]
-    return lambda t, _: ([*fresh.table(t, names).values()], None)
+    return lambda t, _: ([*fresh.table(t, ["quaternion"]).values()], None)
 
 
 def scipy_special(motion: Motion, _: Any) -> Sample:
@@ -120,12 +118,11 @@ def scipy_special(motion: Motion, _: Any) -> Sample:
     """
     from ..inverse.motions import angles
 
-    (a, b), inputs = constants(motion.top), motion.top.inputs(radians=True)
-    r0, theta, theta_rate, psi_rate = (float(inputs[x]) for x in STATE)
-    state = np.array([[a, b, theta, theta_rate, psi_rate]])
+    inputs = motion.top.inputs(radians=True)
+    (a, b), (r0, *start) = constants(motion.top), (float(inputs[x]) for x in STATE)
 
     def sample(t: Array, _: float) -> Run:
-        theta, phi, psi = angles(state, t)[:, 0]
+        theta, phi, psi = angles(np.array([[a, b, *start]]), t)[:, 0]
         return [theta, phi + (r0 - b) * t, psi], None
 
     return sample
@@ -150,13 +147,10 @@ def scipy_method(name: str, motion: Motion, tolerance: float) -> Sample:
 
 
 def fixed_steps(times: Array, longest: float) -> Iterator[tuple[int, float]]:
-    """Yield the number and the length of equal steps from 0 to the first time, and so on.
-
-    The number is the least whose steps are not too long.
-    """
-    for start, end in pairwise([0.0, *times.tolist()]):
-        count = math.ceil((end - start) / longest * (1 - 1e-9))
-        yield count, (end - start) / max(count, 1)
+    """Yield the number and length of equal steps from 0 to the first time, and so on."""
+    for gap in np.diff(times, prepend=0.0).tolist():
+        count = math.ceil(gap / longest * (1 - 1e-9))
+        yield count, gap / max(count, 1)
 
 
 def rk4(motion: Motion, per_period: int) -> Sample:

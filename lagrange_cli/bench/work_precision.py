@@ -14,19 +14,7 @@ from ..output.report import Report
 from ..output.terminal import Progress, silent
 from ..plot.style import LIGHT, plain
 from ..solver.solve import Motion
-from .measure import (
-    ERROR,
-    LIMIT,
-    RUNS,
-    Row,
-    Task,
-    looks,
-    machine,
-    measure,
-    panels_of,
-    report_of,
-    task_of,
-)
+from .measure import ERROR, LIMIT, RUNS, Row, Task, looks, measure, panels_of, report_of, task_of
 from .methods import METHODS
 
 if TYPE_CHECKING:
@@ -58,7 +46,8 @@ def bench(
     found = [measure(*run) for run in progress(runs, "methods")]
     each = len(found) // len(tasks)
     rows = [row for i in range(0, len(found), each) for row in marked(found[i : i + each])]
-    return report_of(conditions(tasks), KEYS, rows, [*conclusions(rows, len(spans) > 1)])
+    said, checked = conclusions(rows, len(spans) > 1), len(tasks[0].exact)
+    return report_of(conditions(tasks), KEYS, checked, rows, said)
 
 
 def marked(rows: Sequence[Row]) -> list[Row]:
@@ -111,13 +100,10 @@ def conditions(tasks: Sequence[Task]) -> dict[str, str]:
     """Return what the figures depend on."""
     scenes = dict.fromkeys(f"{x.scene}: {x.motion.top.as_text()}" for x in tasks)
     spans = [f"{x:g}" for x in dict.fromkeys(x.periods for x in tasks)]
-    return machine() | {
+    return {
         "scenes": "; ".join(scenes),
         "times": f"{tasks[0].times.size} from 0 over {', '.join(spans)} nutation "
         f"period{'s' * (spans != ['1'])}",
-        "error": "greatest rotation (rad) from the exact to the computed attitude, at "
-        f"{len(tasks[0].exact)} of the times; the reference is Legendre's third integral "
-        "in 50 digits of mpmath",
         "setting": "rtol = atol in the units of the scene; of fixed steps, their number per "
         "nutation period",
         "time": f"CPU, least of up to {RUNS} warm runs, without the set-up; a run of more than "
@@ -143,15 +129,13 @@ def methods_figure(report: Report) -> Figure:
         if front and not is_long:
             steps: dict[str, object] = {"color": LIGHT.faint, "lw": 7, "zorder": 0}
             axes.step(*zip(*front, strict=True), where="post", label="front", **steps)
-        for name, look in looks().items():
-            mine = [x for x in rows if x.method == name]
-            if not mine:
-                continue
-            points = [(x.drawn_error, x.ns_per_sample) for x in mine]
-            if is_long:
-                points = [(x.periods, x.drawn_error) for x in mine]
-            joined = is_long or not isinstance(mine[0].setting, str)
-            axes.plot(*zip(*sorted(points), strict=True), ls="-" if joined else "", **look)
+        for name in dict.fromkeys(x.method for x in rows):
+            points, joined = [], "-"
+            for x in (x for x in rows if x.method == name):
+                error, ns = x.drawn_error, x.ns_per_sample
+                points.append((x.periods, error) if is_long else (error, ns))
+                joined = "-" if is_long or not isinstance(x.setting, str) else ""
+            axes.plot(*zip(*sorted(points), strict=True), ls=joined, **looks()[name])
         labels = ("span (nutation periods)", ERROR) if is_long else (ERROR, "time per sample (ns)")
         axes.set(xscale="log", yscale="log", xlabel=labels[0], ylabel=labels[1])
         axes.set_title(plain(scene))

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..files import rotations
 from .differences import Alignment, Exact, Run, angles_of, errors, sizes, start_of
 from .mistakes import BACKWARDS, Cause, mistakes
 
@@ -174,7 +175,8 @@ def _named(align: Alignment, exact: Exact, run: Run) -> Cause:
     given, words, names = run.align, [align], []
     if align[:3] == given[:3] and align.start and not given.start:
         seen = run._replace(align=align._replace(start=False)).observed()
-        phi, psi = np.degrees(start_of(seen, exact.at(seen.t)) or (0.0, 0.0))
+        turns = np.asarray(start_of(seen, exact.at(seen.t)) or (0.0, 0.0))
+        phi, psi = np.degrees(rotations.within_half_turn(turns))
         starts = {"psi": psi, "phi": phi}.items()
         names = [" and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > 1e-3)]
     elif align[:3] != given[:3] and (align.left or _is_reversed(align)):

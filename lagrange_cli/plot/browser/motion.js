@@ -43,45 +43,30 @@ function carlsonF(x, y, z) {
   return carlsonF((x + shift) / 4, (y + shift) / 4, (z + shift) / 4);
 }
 
-/** The cubic (4,9): its roots u1 >= u2, and the distances 1 - u1, u1 - u0, u3 - u1, u3 - u0. */
-function cubicOf({ a, b, alpha, beta, u0, above, rise }) {
-  if (!a) {
-    const wide = alpha + b * b;
-    const middle = (b * beta) / wide || 0;
-    const spread = Math.sqrt(Math.max((b * beta) ** 2 - wide * (beta * beta - alpha), 0)) / wide || 0;
-    const [u1, u2] = wide ? [middle + spread, middle - spread] : [u0, u0];
-    return { u1, u2, gap: Math.max(1 - u1, 0), toTop: Math.max(u1 - u0, 0), fromLow: Math.max(u0 - u2, 0), wide };
+/** The cubic (4,9) about the start: u1 - u0, u0 - u2, 1 - u1, u3 - u1 and a (u3 - u2), without cancellation. */
+function cubicOf({ a, b, u0, above, sin, swing, along, rise }) {
+  const c1 = 2 * (b * along - u0 * swing) - a * sin * sin;  // times a, as is `leading`
+  let [third, leading] = [Infinity, swing + b * b];
+  if (a) {  // the largest root is Viète's, polished by Newton's method
+    const [p, q, r] = [2 * u0 - leading / a, c1 / a, rise / a];
+    const radius = Math.sqrt(Math.max(p * p - 3 * q, 0)) / 3;
+    const ratio = ((p * q) / 6 - (p / 3) ** 3 - r / 2) / radius ** 3 || 0;
+    third = 2 * radius * Math.cos(Math.acos(Math.max(-1, Math.min(1, ratio))) / 3) - p / 3;
+    for (let i = 0; i < 3; i += 1) third -= (((third + p) * third + q) * third + r) / ((3 * third + 2 * p) * third + q) || 0;
+    leading = a * third;
   }
-  const [c2, c1, c0] = [-(alpha + b * b) / a, (2 * b * beta) / a - 1, (alpha - beta * beta) / a];
-  const [shift, p] = [c2 / 3, Math.min(c1 - (c2 * c2) / 3, -1e-300)];
-  const size = 2 * Math.sqrt(-p / 3);
-  const ratio = (3 * (2 * shift ** 3 - shift * c1 + c0)) / (p * size);
-  const third = Math.acos(Math.max(-1, Math.min(1, ratio))) / 3;
-  const roots = [0, 1, 2].map((k) => size * Math.cos(third - (2 * Math.PI * k) / 3) - shift);
-  let [u2, u1, u3] = roots.sort((x, y) => x - y);
-  if (u3 > 50) {  // cosines beside a large root lose digits: (1 ± u1)(1 ± u2) keep them
-    const [high, low] = [(beta + b) ** 2 / (a * (u3 + 1)), (beta - b) ** 2 / (a * (u3 - 1))];
-    const [middle, width] = [(high - low) / 4, (high - low) ** 2 / 16 + 1 - (high + low) / 2];
-    const spread = Math.sqrt(Math.max(width, 0));
-    [u2, u1] = [middle - spread, middle + spread];
-  }
-  const isTop = !rise && Math.abs(u1 - u0) <= Math.abs(u2 - u0);
-  if (!rise && !isTop) u2 = u0;
+  const product = rise / leading || 0;  // (u1 - u0)(u0 - u2)
+  const half = (c1 + a * product) / (2 * leading) || 0;  // half their difference
+  const larger = Math.abs(half) + Math.sqrt(half * half + product);
+  const smaller = product / larger || 0;
+  const [toTop, fromLow] = half > 0 ? [larger, smaller] : [smaller, larger];
+  if (!a) return { toTop, fromLow, gap: Math.max(above - toTop, 0), wide: leading };
   // (1 - u1)(u3 - 1) and (u3 - 1) - (1 - u1) keep their digits next to the separatrix
-  const [product, excess] = [(beta - b) ** 2 / (a * (1 - u2)), -c2 - u2 - 2];
-  const root = Math.sqrt(excess * excess + 4 * product);
-  let gap = excess > 0 ? (2 * product) / (excess + root) || 0 : (root - excess) / 2;
-  if (isTop) gap = above;
-  u1 = 1 - gap;
-  const far = isTop ? Math.max(gap + excess, 0) + gap : root;
-  let [toTop, fromLow] = [Math.max(u1 - u0, 0), Math.max(u0 - u2, 0)];
-  if (rise) {  // the smaller distance follows from the rate of the tilt
-    if (toTop < fromLow) toTop = rise / (a * fromLow * (far + toTop)) || 0;
-    else fromLow = rise / (a * toTop * (far + toTop)) || 0;
-    u2 = u0 - fromLow;
-  } else [toTop, fromLow] = isTop ? [0, u0 - u2] : [u1 - u0, 0];
-  u3 = u1 + far;
-  return { u1, u2, u3, gap, toTop, fromLow, far, isTop, wide: a * (far + u1 - u2) };
+  const [beside, excess] = [(along - b * above) ** 2 / (a * (above + fromLow)) || 0, third + toTop - 2 * above];
+  const root = Math.sqrt(excess * excess + 4 * beside);
+  if (!toTop) return { toTop, fromLow, gap: above, far: Math.max(excess, -above) + 2 * above, wide: leading + a * fromLow };
+  const gap = excess > 0 ? (2 * beside) / (excess + root) || 0 : (root - excess) / 2;
+  return { toTop, fromLow, gap, far: root, wide: a * (root + toTop + fromLow) };
 }
 
 /** The motion of a scene: its numbers, `angles(t)` in radians, and whether it is only a sketch. */
@@ -91,11 +76,13 @@ export function motionOf(scene) {
   const sin = tilt === 180 ? 0 : Math.sin(2 * half);
   const u0 = Math.cos(2 * half);
   const swing = thetadot0 ** 2 + (psidot0 * sin) ** 2;
-  const [alpha, beta] = [swing + a * u0, psidot0 * sin * sin + b * u0];
+  const along = psidot0 * sin * sin;
+  const [alpha, beta] = [swing + a * u0, along + b * u0];
   const rise = (thetadot0 * sin) ** 2;
   const isVertical = !sin && !thetadot0;
   const above = 2 * Math.sin(half) ** 2;
-  const { u1, u2, u3, gap, toTop, fromLow, far, wide, isTop } = cubicOf({ a, b, alpha, beta, u0, above, rise });
+  const { toTop, fromLow, gap, far, wide } = cubicOf({ a, b, u0, above, sin, swing, along, rise });
+  const [u1, u2, band] = [1 - gap, u0 - fromLow, toTop + fromLow];
   const usual = (2 * Math.PI) / (Math.sqrt(a) + Math.abs(b) + Math.sqrt(swing) || Math.abs(r0) || 1);
   const kPrime = a ? Math.sqrt((a * far) / wide) : 1;
   const isPeriodic = !isVertical && wide > 0 && kPrime > 1e-8;
@@ -107,7 +94,7 @@ export function motionOf(scene) {
   // From the highest point down, where errors do not grow; it rises as it falls.
   const [across, sinTop] = [beta - b * u1, Math.sqrt(gap * (2 - gap))];
   let first = Math.sqrt(Math.max(alpha - a * u1, 0)) * (Math.sign(across) || 1);
-  if (sinTop > 1e-6) first = isTop ? psidot0 * sin : across / sinTop;
+  if (sinTop > 1e-6) first = toTop ? across / sinTop : psidot0 * sin;
   const top = [0, first, Math.sqrt(1 - gap / 2), Math.sqrt(gap / 2), 0, 0];
   const start = [thetadot0, psidot0 * sin, Math.cos(half), Math.sin(half), 0, 0];
   const states = [period ? top : start];
@@ -128,10 +115,10 @@ export function motionOf(scene) {
   const gain = { plus: before.plus + after.plus, minus: before.minus + after.minus };
   let since = 0;
   if (period && rise) {
-    const [band, x, y] = a ? [u1 - u2, far, far + toTop] : [u1 - u2, 1, 1];
+    const [x, y] = a ? [far, far + toTop] : [1, 1];
     since = (2 * Math.sqrt(toTop) * carlsonF(fromLow * x, band * y, band * x)) / Math.sqrt(a || wide);
     since = Math.min(since || 0, period / 2);
-  } else if (period && toTop > (u1 - u2) / 2) since = period / 2;
+  } else if (period && toTop > band / 2) since = period / 2;
   if (thetadot0 < 0) since = -since;
   function place(t) {
     if (!period) return isVertical ? places[0] : fromTop(t);
@@ -161,7 +148,7 @@ export function motionOf(scene) {
   const k = Math.sqrt(1 - kPrime ** 2);
   const isNear = (tilt && away(tilt) < 0.03) || most < 0.05;
   const [high, low, isSwinging] = isVertical ? [u0, u0, false] : [u1, u2, Boolean(a)];
-  const constant = isVertical || u1 - u2 < 1e-7;  // a double root has half of the digits
+  const constant = isVertical || band < 1e-7;  // a double root has half of the digits
   function factsOf() {
     const [atTop, atLow] = [beta - b * u1, beta - b * u2];  // as the precession there
     const plane = !r0 && !beta;
@@ -170,7 +157,7 @@ export function motionOf(scene) {
     if (isVertical) regime = tilt ? "hanging" : "sleeping";
     return {
       regime, constant, plane, spin: r0, spins: r0 !== 0, stable: b * b >= 2 * a,
-      turns_over: plane && gap === 0 && !isTop,
+      turns_over: plane && gap === 0 && toTop > 0,
       precesses: Math.abs(turn) > 1e-9 * Math.sqrt(wide),
       path: constant || plane ? null : Math.abs(atTop) < 1e-9 * Math.abs(atLow) ? "cusped" : curved,
     };
@@ -183,7 +170,7 @@ export function motionOf(scene) {
     f: (u) => (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2,
     facts: factsOf(),
     record: {
-      a, b, u1: high, u2: low, u3: isSwinging ? u3 : null, k: isSwinging ? k : null,
+      a, b, u1: high, u2: low, u3: isSwinging ? u1 + far : null, k: isSwinging ? k : null,
       T_nutation: period, T_spin: turnTime(spin), T_precession: turnTime(turn),
       theta_min_deg: isVertical ? tilt : 2 * DEGREE * Math.asin(Math.sqrt(gap / 2)),
       theta_max_deg: isVertical ? tilt : degrees(u2),
