@@ -211,7 +211,7 @@ def draw_globe(
     if path is not None:
         ends = camera[:2] @ path.T
         low, high = ends.min(axis=1), ends.max(axis=1)
-        if tips[1, 2] - low[1] < 1.6 * max(high - low):
+        if tips[1, 2] - low[1] < 1.3 * max(high - low):
             high[1] = max(high[1], tips[1, 2])
         room = 0.07 * max(high - low) + 0.005
         low, high = low - room, high + room
@@ -268,18 +268,17 @@ def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     t_max = last_time(motion, options, usual_span(motion, 3, 3))
     t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
     stds = [0 * t] * 3 if options.stds is None else options.stds(t)[[0, 3, 2]]  # of ϑ, Δφ, ψ
-    spin, turn = motion.mean_spin_rate or 0.0, motion.mean_precession_rate
-    note = ""
+    spin, turn = motion.mean_spin_rate, motion.mean_precession_rate
+    name, about, note = "φ", "", ""
+    if spin is not None:  # on the separatrix there is no mean rate
+        phi = phi - spin * t
+        name, about = "Δφ", f"spin less its mean rate {spin:.4g} {options.unit('rad/time')}"
     if motion.regime in (Regime.SLEEPING, Regime.HANGING):
         note = "spin only: there is no precession"
     elif turn is not None:
         axes[2].plot(t, turn * t * factor, color=look.ink, lw=0.9, ls=(0, (4, 3)), zorder=3)
         note = f"dashed: mean rate {turn:.4g} {options.unit('rad/time')}"
-    rows = (
-        ("ϑ", theta, ""),
-        ("Δφ", phi - spin * t, f"spin less its mean rate {spin:.4g} {options.unit('rad/time')}"),
-        ("ψ", psi, note),
-    )
+    rows = ("ϑ", theta, ""), (name, phi, about), ("ψ", psi, note)
     for ax, (name, angle, text), std, colour in zip(axes, rows, stds, look.lines, strict=True):
         if np.abs(angle).max() < 1e-13:  # rounding errors of an angle that is 0
             ax.set_ylim(-1, 1)
@@ -387,8 +386,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     inputs["psidot0"] = motion.top.as_dict()["psidot0"]  # it may be a word
     inputs |= {x: xs[np.newaxis, :], y: ys[:, np.newaxis]}
     found = sweep(keys=list(dict.fromkeys([key, "stability_factor", "b", "u1"])), **inputs)
-    values: Any = found[key]
-    title = (draw_classes if key in WORDS else draw_numbers)(ax, (xs, ys), values, key, options)
+    title = draw_cells(ax, (xs, ys), found[key], key, options)
     borders = {"border of stability (upright top)": (found["stability_factor"] - 1, look.ink, "--")}
     if key == "path":  # beta - b u, and with it the precession, is 0 at u1, at u = 1 or at u = -1
         size = np.nanmax(np.abs(found["b"]), initial=0.0) or 1.0
@@ -439,12 +437,20 @@ def grid_of(top: Top, options: Options) -> dict[str, Array]:
     return grid
 
 
-def draw_numbers(ax: Axes, grid: Sequence[Array], values: Array, key: str, options: Options) -> str:
-    """Draw a number in colours, with a colour bar, and return a title.
+def draw_cells(ax: Axes, grid: Sequence[Array], values: Any, key: str, options: Options) -> str:
+    """Draw numbers in colours, or words as classes with a legend, and return a title.
 
-    The colours span the values without the lowest and the highest 1 %, which may be a peak.
+    The colours span the numbers without the lowest and the highest 1 %, which may be a peak.
     """
-    declared, look = NUMBERS[key], options.look
+    look = options.look
+    if key in WORDS:
+        names, classes = np.unique(values.astype(str), return_inverse=True)
+        colours = ListedColormap(CLASSES[: names.size])
+        ax.pcolormesh(*grid, classes.reshape(values.shape), cmap=colours, rasterized=True)
+        for colour, name in zip(CLASSES, names, strict=False):
+            ax.plot([], [], "s", color=colour, label=name.replace("None", "undefined"))
+        return WORDS[key]
+    declared = NUMBERS[key]
     unit = options.unit(declared.unit)
     if declared.unit == "angle":  # keys of angles are in degrees
         values, unit = np.radians(values) * options.angle_unit[0], options.angle_unit[1]
@@ -460,17 +466,6 @@ def draw_numbers(ax: Axes, grid: Sequence[Array], values: Array, key: str, optio
     if shown.count() < shown.size:
         ax.plot([], [], "s", color=look.faint, mec=look.quiet, label="undefined")
     return f"{declared.symbol}: {declared.meaning} {declared.equation}".rstrip()
-
-
-def draw_classes(ax: Axes, grid: Sequence[Array], values: Any, key: str, _: Options) -> str:
-    """Draw words as coloured classes with a legend, and return a title."""
-    names, numbers = np.unique(values.astype(str), return_inverse=True)
-    classes = numbers.reshape(values.shape)
-    colours = ListedColormap(CLASSES[: names.size])
-    ax.pcolormesh(*grid, classes, cmap=colours, rasterized=True)
-    for colour, name in zip(CLASSES, names, strict=False):
-        ax.plot([], [], "s", color=colour, label=name.replace("None", "undefined"))
-    return WORDS[key]
 
 
 # --- sheets

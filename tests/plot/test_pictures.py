@@ -151,6 +151,8 @@ def test_angles_are_drawn_with_mean_rates_and_periods() -> None:
     above: Any = tilt.child_axes[0]
     assert [x.get_text() for x in above.get_xticklabels()] == ["T", "2 T", "3 T"]
     assert above.get_xticks()[1] == pytest.approx(2 * motion.T_nutation)
+    swing = drawn("angles", solve(read_scene("whittaker-71"))).axes[1]
+    assert (swing.get_ylabel(), swing.get_title("right")) == ("φ (deg)", "")
 
 
 def test_bands_are_one_standard_deviation_wide() -> None:
