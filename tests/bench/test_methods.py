@@ -89,7 +89,8 @@ def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("kind", "error"),
     [
-        *(("fast-spin", 1e-13), ("tiny-tilt-with-rates", 6e-13), ("near-steady", 3e-13)),
+        *(("fast-spin", 1e-13), ("slow-spin", 1e-5), ("near-separatrix", 0.1)),
+        *(("near-vertical", 3.0), ("tiny-tilt-with-rates", 6e-13), ("near-steady", 3e-13)),
         *(("near-hanging", 3e-10), ("extreme-sizes", 9e-13)),
     ],
 )
@@ -97,7 +98,7 @@ def test_the_closed_form_in_plain_doubles_is_fair(kind: str, error: float) -> No
     """The errors after 100 periods, as found outside the package."""
     tasks = [task_of(kind, x, 97.0, 9) for x in motions(kind, 1, 1952)]
     found = max(measure(x, "scipy.special", "double", runs=1).error_rad or 9.0 for x in tasks)
-    assert found <= 3 * error
+    assert error / 4 <= found <= 3 * error
 
 
 @pytest.mark.slow

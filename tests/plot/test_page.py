@@ -282,16 +282,15 @@ def test_the_page_runs_and_fits_a_phone(browser: Browser) -> None:
     width = browser.ask("return at('play').offsetWidth")
     browser.ask("at('play').click()")
     assert browser.ask("return at('play').offsetWidth") == width
-    rate = browser.driver.execute_async_script(
-        """const done = arguments[0];
-        let [count, start] = [0, performance.now()];
+    times = browser.driver.execute_async_script(
+        """const [done, shown] = [arguments[0], []];
         requestAnimationFrame(function next() {
-            count += 1;
-            if (count < 60) requestAnimationFrame(next);
-            else done((1000 * count) / (performance.now() - start));
+            shown.push(Number(document.getElementById("time").value));
+            if (shown.length < 10) requestAnimationFrame(next);
+            else done(shown);
         });"""
     )
-    assert rate > 10  # 60 on an idle machine
+    assert times[-1] > times[2] > 0
     browser.driver.find_element("id", "full").click()
     assert browser.ask("return document.fullscreenElement?.id") == "stage"
     browser.ask("document.exitFullscreen()")
