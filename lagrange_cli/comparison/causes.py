@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from functools import partial
+from functools import cache, partial
 from itertools import product
 
 import numpy as np
@@ -14,7 +14,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files import rotations
 from .differences import Alignment, Exact, Run, angles_of, errors, sizes, start_of
-from .mistakes import BACKWARDS, Cause, mistakes
+from .mistakes import BACKWARDS, Cause, Undo, mistakes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
@@ -58,22 +58,26 @@ class _Search:
     def __init__(self, exact: Exact, run: Run) -> None:
         self.run, self.given = run, exact
         self.mistakes = mistakes(exact.top, run)
-        self._few: dict[object, Run] = {}
-        self._tilts: dict[object, dict[Alignment, float]] = {}
+        self.some, self.tilt = cache(self._some), cache(self._tilt)
         self.enough = EXPLAINS * self.error(Cause(""), _SOME)
 
-    def some(self, cause: Cause) -> Run:
+    def _some(self, undo: Undo | None) -> Run:
         """Return some rows of the trajectory as it was meant."""
-        if cause.undo not in self._few:
-            self._few[cause.undo] = cause.undone(self.run).few(_SOME)
-        return self._few[cause.undo]
+        return (undo(self.run) if undo else self.run).few(_SOME)
+
+    def _tilt(self, undo: Undo | None, frame: Alignment) -> float:
+        """Return the tilt of the first row, NaN if it is not known, infinity without a frame."""
+        with suppress(LagtopError):  # a frame that needs more than is given
+            seen = angles_of(self.some(undo).few(1)._replace(align=frame).observed())
+            return float(seen.get("theta", [math.nan])[0])
+        return math.inf
 
     def error(self, cause: Cause, most: int = 0) -> float:
         """Return the greatest error without a cause, on so many rows or on all.
 
         It is infinite if no row is finite.
         """
-        run = self.some(cause).few(most) if most else cause.undone(self.run)
+        run = self.some(cause.undo).few(most) if most else cause.undone(self.run)
         worst = errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
         return float(np.fmax.reduce(worst)) if np.isfinite(worst).any() else math.inf
 
@@ -117,26 +121,17 @@ class _Search:
 
         Under each, the first row has the tilt of the exact motion.
         """
-        exact, run, given = mistake.exact or self.given, self.some(mistake), self.run.align
-        times, starts = {given.time, given.time or bool(run.t[0])}, {given.start, True}
-        for time, start in product(sorted(times), sorted(starts)):
-            tilt = exact.at(run.t[:1] - run.t[0] * time)["theta"][0]
-            for frame, seen in self.tilts(mistake).items():
-                align = frame._replace(start=start, time=time)
-                twice = in_other and start and _is_reversed(align)  # the same as a left-handed one
-                is_wanted = (frame[:3] != given[:3]) == in_other and align != given and not twice
-                if is_wanted and not abs(seen - tilt) > self.enough:
-                    yield _named(align, exact, run.few(_FEW))
-
-    def tilts(self, cause: Cause) -> dict[Alignment, float]:
-        """Return the tilt of the first row in each frame, NaN if it is not known."""
-        if cause.undo not in self._tilts:
-            run, found = self.some(cause).few(1), self._tilts.setdefault(cause.undo, {})
-            for frame in [Alignment(*self.run.align[:3]), *_FRAMES]:
-                with suppress(LagtopError):  # a frame that needs more than is given
-                    seen = angles_of(run._replace(align=frame).observed())
-                    found[frame] = float(seen.get("theta", [math.nan])[0])
-        return self._tilts[cause.undo]
+        exact, undo, given = mistake.exact or self.given, mistake.undo, self.run.align
+        run, t = self.some(undo).few(_FEW), self.some(undo).t[:1]
+        times, starts = {given.time, given.time or bool(t[0])}, {given.start, True}
+        frames = dict.fromkeys([Alignment(*given[:3]), *_FRAMES])
+        for time, start, frame in product(sorted(times), sorted(starts), frames):
+            align = frame._replace(start=start, time=time)
+            twice = in_other and start and _is_reversed(align)  # the same as a left-handed one
+            if (frame[:3] != given[:3]) == in_other and align != given and not twice:
+                tilt = exact.at(t - t * time)["theta"][0]
+                if not abs(self.tilt(undo, frame) - tilt) > self.enough:
+                    yield _named(align, exact, run)
 
     def shifts(self) -> list[Cause]:
         """Return the shift of the clock that explains most."""

@@ -25,11 +25,15 @@ _UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0}
 _FRAME_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 250, 480, 500, 960)
 
 
+Undo = Callable[[Run], Run]
+"""Returns a trajectory as it was meant."""
+
+
 class Cause(NamedTuple):
     """A cause of errors: an alignment, a way of writing, other inputs, or two of them."""
 
     name: str
-    undo: Callable[[Run], Run] | None = None
+    undo: Undo | None = None
     """Corrects the trajectory."""
     exact: Exact | None = None
     """The motion of the other inputs."""
