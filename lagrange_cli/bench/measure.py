@@ -52,8 +52,8 @@ class Row(NamedTuple):
     input_rounding: float | None = None
     """Greatest rotation (rad) that half an ulp of each input causes, added over the inputs."""
     verdict: str | None = None
-    options: str | None = None
-    """The options of the scene, if `scene` is a kind."""
+    inputs: str | None = None
+    """The inputs of the scene, if `scene` is a kind."""
     remark: str | None = None
 
     @property
@@ -74,7 +74,7 @@ FIELDS = {
         Field("evaluations", "evaluations"),
         Field("front", "front", lambda front: "*" if front else ""),
         Field("input_rounding", "input rounding", short),
-        Field("options"),
+        Field("inputs"),
     )
 }
 """The columns of both reports."""

@@ -125,7 +125,7 @@ KINDS: dict[str, Callable[[Random], Scene]] = {
 """The function that returns a random scene of each kind."""
 
 
-KEYS = "scene method setting periods error_rad input_rounding verdict options remark"
+KEYS = "scene method setting periods error_rad input_rounding verdict inputs remark"
 
 
 def stability(
@@ -169,7 +169,7 @@ def compared(kind: str, motion: Motion) -> Iterator[Row]:
             row = measure(task, name, METHODS[name].settings[-1], LIMIT, runs=1)
             verdict = verdict_of(row.error_rad, rounding, row.remark)
             row = row._replace(input_rounding=rounding, verdict=verdict)
-            yield row._replace(periods=span, options=motion.top.as_text())
+            yield row._replace(periods=span, inputs=motion.top.as_text())
 
 
 def neighbours(top: Top) -> Iterator[Reference]:
@@ -204,7 +204,7 @@ def badness(row: Row) -> tuple[int, float]:
 def failures(report: Report) -> list[str]:
     """Return the kinds in which lagtop is not at rounding level."""
     bad = [x for x in report.rows if x.method == "lagtop" and x.verdict != VERDICTS[0]]
-    return [f"{x.scene} over {periods_of(x.periods)}: {x.verdict} ({x.options})" for x in bad]
+    return [f"{x.scene} over {periods_of(x.periods)}: {x.verdict} ({x.inputs})" for x in bad]
 
 
 def periods_of(span: float) -> str:
