@@ -28,7 +28,8 @@ _STEP, _NOISE = 2.0**-17, 2.0**-33
 alike."""
 _MOST_NOISE = 0.01
 """Largest error of an uncertainty, over itself."""
-_WAVES = ("theta", "dphi", "dpsi")
+_WAVES = ("theta", "dphi", "dpsi", "dphi", "dpsi")
+"""`STD_COLUMNS` without the growth at mean rates."""
 _LEAST = 1e-9
 """Least error that is reported, in radians."""
 _ROUNDING = 2.0**-50
@@ -41,19 +42,22 @@ class AngleDerivatives:
     def __init__(self, motion: Motion, inputs: Sequence[str]) -> None:
         self.motion, self.inputs, self.record = motion, tuple(inputs), Derivatives(motion)
         self.period: float | None = motion.T_nutation
+        steep = {x: self._steepness(x) for x in self.inputs}
+        self.noise = {x: _NOISE * steep[x] for x in self.inputs}
+        """Sizes of the rounding errors of the derivatives, by input."""
+        self.beside: dict[str, list[tuple[Motion, float]]] = {}
+        """Neighbours with their weights in derivatives, by input."""
+        for name in self.inputs:
+            step = Fraction(_STEP / steep[name])
+            found = neighbours(motion, name, step)
+            self.beside[name] = [(x.motion, x.weight / float(step)) for x in found if x.weight]
         keys = ("T_nutation", "mean_spin_rate", "mean_precession_rate") if self.period else ()
         self.slopes = {x: [self.record.nearest(key, x) for key in keys] for x in self.inputs}
         """Derivatives of the period and of the mean rates of spin and precession, by input."""
-        steep = {x: self._steepness(x) for x in self.inputs}
-        self.steps = {x: _STEP / steep[x] for x in self.inputs}
-        self.noise = {x: _NOISE * steep[x] for x in self.inputs}
-        """Sizes of the rounding errors of the derivatives, by input."""
-        self.neighbours = {x: neighbours(motion, x, Fraction(h)) for x, h in self.steps.items()}
-        self.missing = {x for x, slopes in self.slopes.items() if any(map(math.isnan, slopes))}
+        lost = {x for x in self.inputs if any(map(math.isnan, self.slopes[x]))}
+        departs = {x for x in self.inputs if any(y.T_nutation for y, _ in self.beside[x])}
+        self.missing = lost if self.period else departs
         """The inputs by which the angles have no derivative."""
-        if not self.period:  # a neighbour that nutates departs at once
-            nutates = {x: any(y.motion.T_nutation for y in self.neighbours[x]) for x in self.inputs}
-            self.missing = {x for x in self.inputs if nutates[x]}
 
     def _steepness(self, name: str) -> float:
         """Return the largest relative change of a size of the motion per unit of an input.
@@ -72,31 +76,25 @@ class AngleDerivatives:
         They are NaN after the start if they do not exist.
         """
         found = np.zeros((len(self.inputs), len(STD_COLUMNS), t.size))
-        phase = t
+        phase, names = t, STD_COLUMNS
         if self.period:
             rates = self.motion.table(t, ["thetadot", "phidot", "psidot"]).values()
             means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
-            waving = np.array([rate - mean for rate, mean in zip(rates, means, strict=True)])
+            waving = [rate - mean for rate, mean in zip(rates, means, strict=True)]
             half = self.motion.sampler().half
             period = Period(half.rate / 2, *(2 * part for part in half[1:]))
             _, rest, lost = whole_periods(t, period, float(np.abs(t).max(initial=0.0)))
-            phase = (rest - lost) / self.period
+            phase, names = (rest - lost) / self.period, _WAVES
         for values, name in zip(found, self.inputs, strict=True):
-            waves, growths = np.zeros((3, t.size)), np.zeros(2)
-            for _, motion, weight in self.neighbours[name]:
-                if weight:
-                    sampler, share = motion.sampler(), weight / self.steps[name]
-                    at = phase * (motion.T_nutation or 1.0)
-                    waves += share * sampler.evaluate(at, _WAVES)
-                    growths += share * np.array([sampler.spin.rate[0], sampler.precession.rate[0]])
+            for motion, share in self.beside[name]:
+                at = phase * (motion.T_nutation or 1.0)
+                values[:] += share * motion.sampler().evaluate(at, names)
             if self.period:
                 by_period, *by_rates = self.slopes[name]
-                growths = np.array(by_rates)
-                waves -= waving * (t * (by_period / self.period))
-            values[0] = waves[0]
-            if not self.motion.facts.plane:  # else the others change by half turns only
-                values[1:3] = waves[1:] + np.multiply.outer(growths, t)
-                values[3:] = waves[1:]
+                values[:] -= np.array(waving + waving[1:]) * (t * (by_period / self.period))
+                values[1:3] += np.multiply.outer(by_rates, t)
+            if self.motion.facts.plane:  # the other angles change by half turns only
+                values[1:] = 0.0
         return self._completed(found, t)
 
     def in_digits(self, t: Array) -> Array:

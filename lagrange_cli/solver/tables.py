@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from itertools import islice
 
 import numpy as np
@@ -23,7 +23,6 @@ from ..arithmetic.enclosures import (
     decided,
     equal_digits,
     exact,
-    fraction,
     nearest,
     root,
     settled,
@@ -39,6 +38,7 @@ from .attitude import ConstantTilt, Course, Nutation, SingleSwing, start_of
 from .columns import (
     DEFAULT_COLUMNS,
     FORMULAS,
+    REDUCED,
     WITHIN_A_TURN,
     Columns,
     chosen_columns,
@@ -52,8 +52,6 @@ from .series import near
 DEFAULT_ROWS = 101
 _ROWS_AT_ONCE = 64
 """Proved rows that are returned together."""
-_EXTRA = 16
-"""Step in digits by which the precision grows with time, so that one precision serves many rows."""
 STD_COLUMNS = (*ANGLES, "dphi", "dpsi")
 """The columns that have uncertainties."""
 _BALLS = {
@@ -164,9 +162,8 @@ def table(
 ) -> dict[str, Array]:
     """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
     times, at = doubles_of("t", t), columns_at(motion, columns, radians=True, wrap=wrap)
-    found = at(times.reshape(-1))
-    names = chosen_columns(columns)
-    return {name: x.reshape(times.shape) for name, x in zip(names, found, strict=True)}
+    found = at(times.reshape(-1)).reshape(-1, *times.shape)
+    return dict(zip(chosen_columns(columns), found, strict=True))
 
 
 def grid(
@@ -202,7 +199,7 @@ def grid(
 
 
 def ball_columns(
-    motion: Solution, digits: int, time: Fraction, constants: dict[str, arb]
+    motion: Solution, time: Fraction, constants: Callable[[int], dict[str, arb]], digits: int
 ) -> Columns:
     """Return columns at one time, in balls of the precision in use.
 
@@ -226,9 +223,9 @@ def ball_columns(
 
     formulas, more = _BALL_FORMULAS, {"wave": wave, "tilting": at.tilting}
     if isinstance(course, SingleSwing) and time:
-        formulas, more = formulas | _SWING, more | {"swing_rate": course.rate}
+        formulas, more["swing_rate"] = formulas | _SWING, course.rate
     items = {"t": t, "X": at.x, "Y": at.y, "spin": spin, "precession": precession}
-    return Columns(formulas, _BALLS, constants, items, more)
+    return Columns(formulas, _BALLS, constants(digits), items, more)
 
 
 def within_a_turn(angle: arb, *, plane: bool) -> arb:
@@ -258,45 +255,28 @@ class ProvedTable:
         self.chosen = chosen_columns(columns)
         self.header = headings(columns, radians=radians)
         self._constants = cache(lambda digits: column_constants(motion.balls(digits)))
-        self._speed = decided(self._fastest, motion.facts.equal)
-
-    def _fastest(self, digits: int) -> Fraction:
-        """Return about the largest number of turns per unit of time."""
-        of = self.motion.balls(digits)
-        rates = (abs(of[name]) for name in ("a", "b", "r0", "thetadot0", "psidot0"))
-        return fraction(sum(rates, arb(1)).mid())
 
     def row(self, time: Fraction) -> list[Rounded]:
         """Return the numbers of the columns at an exact time.
 
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
-        sample = cache(
-            lambda digits: ball_columns(self.motion, digits, time, self._constants(digits))
-        )
-        turns = len(str(int(abs(time) * self._speed)))  # digits of the whole turns
-        most = max(self.motion.facts.equal, equal_digits([time], self.digits or 0))
+        facts = self.motion.facts
+        columns = cache(partial(ball_columns, self.motion, time, self._constants))
+        most = max(facts.equal, equal_digits([time], self.digits or 0))
 
-        def number(name: str) -> Rounded:
-            found = settled(
-                f"{name} at t = {float(time)}",
-                lambda digits: self._ball(name, sample(digits)),
-                self.digits,
-                most,
-                lost=turns // _EXTRA * _EXTRA,
-            )
-            assert found is not None
-            return found
+        def ball(name: str, digits: int) -> arb:
+            value: arb = columns(digits)[name]
+            if self.wrap and name in REDUCED:
+                value = within_a_turn(value, plane=facts.plane)
+            in_degrees = self.chosen[name].unit == "angle" and not self.radians
+            return value * 180 / arb.pi() if in_degrees else value
 
-        return [number(name) for name in self.chosen]
-
-    def _ball(self, name: str, sample: Columns) -> arb:
-        """Return a ball that contains a column, with angles in the unit in use."""
-        value: arb = sample[name]
-        if self.wrap and name in {"phi", "psi"}:
-            value = within_a_turn(value, plane=self.motion.facts.plane)
-        in_degrees = self.chosen[name].unit == "angle" and not self.radians
-        return value * 180 / arb.pi() if in_degrees else value
+        found = []
+        for name in self.chosen:
+            what = f"{name} at t = {float(time)}"
+            found.append(settled(what, partial(ball, name), self.digits, most))
+        return [number for number in found if number]
 
     def rows(
         self, times: Points, *, radii: bool = False
