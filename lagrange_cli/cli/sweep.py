@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import closing
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ..sweeps.plan import NumberedBlock
     from ..top.given import Given
 
+MOST_JOBS = 1024
 FEW = 50
 """Largest number of tops whose records are drawn as a table on a terminal."""
 
@@ -39,9 +41,16 @@ def _warn(text: str) -> None:
 
 
 def _parse_jobs(text: str) -> int:
-    from ..sweeps.workers import parse_jobs  # start-up of help
+    """Return a number of processes; `auto` is one for each core that this process may use.
 
-    return parse_jobs(text)
+    Raises LagtopError.
+    """
+    if text == "auto":
+        may_use = getattr(os, "sched_getaffinity", None)
+        return len(may_use(0)) if may_use else os.cpu_count() or 1
+    if not (text.isdecimal() and text.isascii() and 1 <= int(text[:9]) <= MOST_JOBS):
+        raise LagtopError(f"must be auto or in [1, {MOST_JOBS}], got {quoted(text)}")
+    return int(text)
 
 
 @opt.command(

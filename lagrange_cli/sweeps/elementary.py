@@ -26,8 +26,8 @@ _TURN = DoubleDouble(np.array([2 * PI.high]), np.array([2 * PI.low]))
 class Elementary:
     """The keys of many tops."""
 
-    def __init__(self, tops: TopArrays, start: Start | None = None) -> None:
-        self.start = start or tops.start()
+    def __init__(self, tops: TopArrays, start: Start) -> None:
+        self.start = start
         self.A, self.C = DoubleDouble(tops.A), DoubleDouble(tops.C)
         self.twice_A_C = DoubleDouble(*two_sum(2 * tops.A, -tops.C))
         self.a, self.b, self.cos = self.start.a, self.start.b, self.start.cos

@@ -1,9 +1,8 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
 Tops released from rest go through `formulas` as arrays of doubles, others as arrays of pairs of
-doubles.  `solve` computes a top by itself if digits are lost or if its sizes are beyond 1e+-30, and
-all further keys that are not formulas of the inputs.  An invalid top gets an `error` and no
-numbers.
+doubles.  `solve` computes a top by itself if digits are lost, if its sizes are beyond 1e+-30, or if
+a key is not among FAST_KEYS.  An invalid top gets an `error` and no numbers.
 """
 
 from __future__ import annotations
@@ -41,8 +40,8 @@ TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
 OF_MODULI = ("k_squared", "comodular_angle_deg")
 """Further keys that are formulas of the moduli."""
-COMPUTED = frozenset({*motion_record.record_keys(), *OF_MODULI})
-"""Keys that are computed from a motion, in degrees, and inputs."""
+FAST_KEYS = frozenset({*motion_record.record_keys(), *OF_MODULI, *ELEMENTARY})
+"""Keys that are formulas of the inputs or of the motion, in degrees."""
 FORMULAS = {
     Regime.SLEEPING: OF_VERTICAL,
     Regime.HANGING: OF_VERTICAL,
@@ -128,111 +127,83 @@ def records(
     `errors` are those of rows that stay empty.  The result does not depend on the `numpy.errstate`
     of the caller.
     """
-    block = _Block(tops, columns, errors, radians)
-    with np.errstate(all="ignore"):  # `trust` rejects what an overflow or a 0/0 has touched
-        for regime, rows in tops.groups().items():
-            block.fill(rows & block.missing, regime)
-        lost = block.fill_elementary()
-    block.solve_the_rest(lost)
-    return block.columns
-
-
-class _Block:
-    """The columns of a block of tops, while they are being filled."""
-
-    def __init__(
-        self,
-        tops: TopArrays,
-        columns: Mapping[str, ResultColumn],
-        errors: Mapping[int, str],
-        radians: bool,
-    ) -> None:
-        self.tops, self.radians = tops, radians
-        self.columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
-        inputs = tops._asdict() | {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
-        results = [key for key in columns if key not in inputs and key != "error"]
-        self.elementary = [key for key in results if key in ELEMENTARY]
-        self.computed = [key for key in results if degree_name(key) in COMPUTED]
-        """The numbers and texts that `Motions` have."""
-        self.further = [key for key in results if key not in {*self.elementary, *self.computed}]
-        for key, column in self.columns.items():
-            column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
-        self.columns["error"][[*errors]] = [*errors.values()]
-        self.valid = np.ones(tops.m.shape, dtype=np.bool_)
-        self.valid[[*errors]] = False
-        self.missing = self.valid.copy()
-        """Valid tops whose computed keys are not filled yet."""
-
-    def fill(self, rows: Mask, regime: Regime | None) -> None:
-        """Fill the computed keys of those tops of a group that can be trusted."""
-        if not rows.any():
-            return
-        motions = self._motions(self.tops if rows.all() else self.tops.part(rows), regime)
-        trusted = motions.trusted(self.computed)
-        rows[rows] = trusted
-        self.missing &= ~rows
-        target: Any = slice(None) if rows.all() else rows  # which is faster than a mask
-        source: Any = slice(None) if np.all(trusted) else trusted
-        for key in [*self.computed, *({"psidot0"} & motions.keys() & self.columns.keys())]:
-            value = motions[key]
-            if value is not None:
-                is_array = isinstance(value, np.ndarray)
-                self.columns[key][target] = value[source] if is_array else value
-
-    def _motions(self, tops: TopArrays, regime: Regime | None) -> Motions:
-        """Return the motions of a group of `TopArrays.groups`."""
-        start = tops.start()
-        if regime is None:
-            return AnyStart(start)
-        nutates = regime in {Regime.REGULAR, Regime.NO_SPIN}
-        if regime == Regime.STEADY:
-            motions: Motions = Steady(tops, start)
-        else:
-            rough = start.in_doubles()
-            motions = Motions(FORMULAS[regime], rough, gaps_from_rest(rough) if nutates else None)
-        motions["regime"] = regime.value
-        motions["path"] = "cusped" if regime == Regime.REGULAR else None
-        motions["remark"] = _remarks(regime, start) if "remark" in self.columns else None
-        for key in ["theta_min_deg"] if nutates else ["theta_min_deg", "theta_max_deg"]:
-            motions[unit_name(key, radians=self.radians)] = tops.tilt_in(self.radians)
-        return motions
-
-    def fill_elementary(self) -> Mask:
-        """Fill the keys that are formulas of the inputs; return the tops that lose digits."""
-        lost = np.zeros_like(self.valid)
-        if self.elementary:
-            numbers, done = Elementary(self.tops), self.valid & ~self.missing
-            for key in self.elementary:
-                values, unknown = numbers.number(key)
-                self.columns[key][done] = values[done]
-                lost |= unknown & done
-        return lost
-
-    def solve_the_rest(self, lost: Mask) -> None:
-        """Fill by `solve` missing tops, `lost` elementary keys, and the further keys of all."""
-        rows = self.valid & (self.missing | lost | bool(self.further))
-        for row in np.flatnonzero(rows).tolist():
-            missing = self.missing[row]
-            keys = [*self.further, *(self.computed if missing else ())]
-            self._solve(row, [*keys, *(self.elementary if missing or lost[row] else ())])
-
-    def _solve(self, row: int, keys: Sequence[str]) -> None:
-        """Fill some keys of one top by `solve`."""
+    columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
+    inputs = tops._asdict() | {unit_name("theta0_deg", radians=radians): tops.tilt_in(radians)}
+    for key, column in columns.items():
+        column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
+    columns["error"][[*errors]] = [*errors.values()]
+    keys = [key for key in columns if key not in inputs and key != "error"]
+    missing = np.ones(tops.m.shape, dtype=np.bool_)
+    missing[[*errors]] = False
+    with np.errstate(all="ignore"):  # what an overflow or a 0/0 has touched is not trusted
+        for regime, group in tops.groups().items():
+            rows = group & missing
+            if {degree_name(key) for key in keys} <= FAST_KEYS and rows.any():
+                missing &= ~_filled(tops, rows, regime, columns, keys, radians=radians)
+    for row in np.flatnonzero(missing).tolist():
         try:
-            motion = solve(self.tops.one(row))
-            record, beyond = record_in_range(motion, radians=self.radians, keys=keys)
+            motion = solve(tops.one(row))
+            record, beyond = record_in_range(motion, radians=radians, keys=keys)
         except LagtopError as error:
-            self.columns["error"][row] = str(error)
-            return
+            columns["error"][row] = str(error)
+            continue
         if beyond:
-            self.columns["error"][row] = "; ".join(map(str, beyond))
-        for key in {"r0", "psidot0"} & self.columns.keys():  # some are known only to `solve`
+            columns["error"][row] = "; ".join(map(str, beyond))
+        for key in {"r0", "psidot0"} & columns.keys():  # some are known only to `solve`
             record[key] = getattr(motion.top, key)
         if record.get("remark"):
             record["remark"] = record["remark"].partition(":")[0]
         for key, value in record.items():
             if value is not None:
-                self.columns[key][row] = value
+                columns[key][row] = value
+    return columns
+
+
+def _filled(
+    tops: TopArrays,
+    rows: Mask,
+    regime: Regime | None,
+    columns: Mapping[str, ResultColumn],
+    keys: Sequence[str],
+    *,
+    radians: bool,
+) -> Mask:
+    """Fill the keys of those tops of a group whose numbers can all be trusted; return these."""
+    some = tops if rows.all() else tops.part(rows)
+    start = some.start(rough=regime in FORMULAS and not ELEMENTARY.keys() & {*keys})
+    motions, elementary = _motions(some, start, regime, radians), Elementary(some, start)
+    known, found = motions.trusted(keys), dict[str, Any]()
+    for key in [*keys, *({"psidot0"} & motions.keys() & columns.keys())]:
+        if key in ELEMENTARY:
+            found[key], lost = elementary.number(key)
+            known = known & ~lost
+        else:
+            found[key] = motions[key]
+    rows[rows] = known
+    target: Any = slice(None) if rows.all() else rows  # which is faster than a mask
+    source: Any = slice(None) if np.all(known) else known
+    for key, value in found.items():
+        if value is not None:
+            columns[key][target] = value[source] if isinstance(value, np.ndarray) else value
+    return rows
+
+
+def _motions(tops: TopArrays, start: Start, regime: Regime | None, radians: bool) -> Motions:
+    """Return the motions of a group of `TopArrays.groups`."""
+    if regime is None:
+        return AnyStart(start)
+    nutates = regime in {Regime.REGULAR, Regime.NO_SPIN}
+    if regime == Regime.STEADY:
+        motions: Motions = Steady(tops, start)
+    else:
+        rough = start.in_doubles()
+        motions = Motions(FORMULAS[regime], rough, gaps_from_rest(rough) if nutates else None)
+    motions["regime"] = regime.value
+    motions["path"] = "cusped" if regime == Regime.REGULAR else None
+    motions.formulas = motions.formulas | {"remark": lambda _: _remarks(regime, start)}
+    for key in ["theta_min_deg"] if nutates else ["theta_min_deg", "theta_max_deg"]:
+        motions[unit_name(key, radians=radians)] = tops.tilt_in(radians)
+    return motions
 
 
 def _remarks(regime: Regime, start: Start) -> Any:

@@ -115,8 +115,11 @@ class TopArrays(NamedTuple):
         ordinary &= (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
         return ordinary & ~(abs(lam - 1) < _NEAR_1)
 
-    def start(self) -> Start:
-        """Return constants and start of the tops in pairs of doubles; a steady rate is NaN."""
+    def start(self, *, rough: bool = False) -> Start:
+        """Return constants and start of the tops in pairs of doubles; a steady rate is NaN.
+
+        If `rough`, the functions of the tilt are good to a double, which is faster.
+        """
         m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
         a, b = (m * g * s / A).scaled(2), C * r0 / A
         drift = r0 * DoubleDouble(*two_sum(2 * self.A, -self.C)) / A
@@ -128,8 +131,13 @@ class TopArrays(NamedTuple):
             own = DoubleDouble(rad)
             other = DoubleDouble(np.full_like(rad, 180.0)) * _DEGREE - own
             arc = where(given, where(down, other, own), arc)
-        sine = _sine(arc.scaled(0.5))
-        cosine = (1.0 - sine * sine).sqrt()
+        half = arc.scaled(0.5)
+        if rough:
+            near, far = np.sin(half.high), np.cos(half.high)
+            sine, cosine = DoubleDouble(near + half.low * far), DoubleDouble(far - half.low * near)
+        else:
+            sine = _sine(half)
+            cosine = (1.0 - sine * sine).sqrt()
         sine, cosine = where(down, cosine, sine), where(down, sine, cosine)
         return Start(
             a=a,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import pickle
 import pkgutil
 import subprocess
@@ -21,7 +20,6 @@ from .. import __version__
 from ..errors import LagtopError, UnavailableError
 from ..output.terminal import waiting
 
-MOST_JOBS = 1024
 _AHEAD = 4
 """Items for each process that are handed out before the next result is taken."""
 _PATIENCE = 20.0
@@ -33,19 +31,6 @@ _T = TypeVar("_T")
 P = TypeVar("P")
 Submit = Callable[[Callable[[Any], Any], Any], Callable[[], Any]]
 """A function that hands out work and an item, and returns a function that waits for the result."""
-
-
-def parse_jobs(text: str) -> int:
-    """Return a number of processes; `auto` is one for each core that this process may use.
-
-    Raises LagtopError.
-    """
-    if text == "auto":
-        may_use = getattr(os, "sched_getaffinity", None)
-        return len(may_use(0)) if may_use else os.cpu_count() or 1
-    if not (text.isdecimal() and text.isascii() and 1 <= int(text[:9]) <= MOST_JOBS):
-        raise LagtopError(f"must be auto or in [1, {MOST_JOBS}], got {text[:60]!r}")
-    return int(text)
 
 
 def in_order(
@@ -96,8 +81,7 @@ def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
     """Yield a function that hands work to other Python processes, which are killed at the end.
 
     Each belongs to a thread, which starts it, sends it work through a pipe and waits for the
-    result.  It imports nothing from the current folder, and gets no signal of the terminal, as it
-    has a process group of its own.  It ends if its pipe is closed, that is, also with this process.
+    result.  It ends if its pipe is closed, that is, also with this process.
     """
     own, processes = local(), list[subprocess.Popen[bytes]]()
 
@@ -128,14 +112,16 @@ def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
 
 
 def _started() -> subprocess.Popen[bytes]:
-    """Start a Python process that serves this one.  Raises UnavailableError."""
-    paths = [path for path in sys.path if path]
-    code = f"import sys; sys.path[:] = {paths!r}; from {__name__} import serve; serve()"
-    command, pipe = [sys.executable, "-P", "-c", code], subprocess.PIPE
+    """Start a process that serves this one.  Raises UnavailableError.
+
+    It imports nothing from the current folder.  As it has a process group of its own, it gets no
+    signal of the terminal.
+    """
+    code = f"import sys; sys.path[:] = {[*filter(None, sys.path)]!r}; import {__name__} as of"
+    command, pipe = [sys.executable, "-P", "-c", f"{code}; of.serve()"], subprocess.PIPE
+    how: Any = {"stdin": pipe, "stdout": pipe, "stderr": subprocess.DEVNULL, "process_group": 0}
     try:
-        return subprocess.Popen(
-            command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, process_group=0
-        )
+        return subprocess.Popen(command, **how)
     except OSError as error:
         raise UnavailableError(f"cannot start a process: {error.strerror or error}") from None
 

@@ -24,12 +24,7 @@ def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
     assert sum(len(lines) - 1 for lines in alone) == 9000
 
 
-NINES = "9" * 5000
-
-
-@pytest.mark.parametrize(
-    "text", ["0/3", "4/3", "1", "a/b", "1/0", "-1/3", f"1/{NINES}", f"{NINES}/1", "\u0661/2"]
-)
+@pytest.mark.parametrize("text", ["0/3", "4/3", "1", "a/b", "-1/3", f"1/{'9' * 5000}", "\u0661/2"])
 def test_wrong_shard(text: str, lagtop: Lagtop) -> None:
     assert_one_line(lagtop("sweep", "--shard", text), 2, "--shard must be I/N")
 
@@ -45,24 +40,15 @@ def test_parts_that_cannot_be(tmp_path: Path, lagtop: Lagtop) -> None:
         assert_one_line(tops, 2, f"--parts needs a file of tops that can be read again, got {name}")
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        ["--keys", "K,r0"],
-        ["--g", "0"],
-        ["--rad"],
-        ["--format", "ndjson"],
-        ["--r0", "1:9:5001"],
-        ["--theta0", "1,2"],
-    ],
-)
-def test_parts_of_another_sweep_are_refused(
-    options: list[str], tmp_path: Path, lagtop: Lagtop
-) -> None:
+OTHERS = "--keys K,r0|--g 0|--rad|--format ndjson|--r0 1:9:5001|--theta0 1,2".split("|")
+
+
+def test_parts_of_another_sweep_are_refused(tmp_path: Path, lagtop: Lagtop) -> None:
     assert lagtop(*GRID, "--shard", "2/3", "--parts", tmp_path).exit_code == 0
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    result = lagtop(*GRID, *options, "--parts", tmp_path)
-    assert_one_line(result, 74, f"cannot write {tmp_path}: it holds parts of another sweep")
+    for options in OTHERS:
+        result = lagtop(*GRID, *options.split(), "--parts", tmp_path)
+        assert_one_line(result, 74, f"cannot write {tmp_path}: it holds parts of another sweep")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 

@@ -43,7 +43,8 @@ def assert_trusted(scenes: list[Scene], least: int, **word: str) -> None:
     """
     scenes = [{"thetadot0": 0.0, "psidot0": 0.0, **in_doubles(scene), **word} for scene in scenes]
     columns: Scene = {name: [scene[name] for scene in scenes] for name in scenes[0]} | word
-    found = sweep(**columns, keys=[*TEXTS, "psidot0", *KEYS, "error"])
+    found: Scene = sweep(**columns, keys=[*ELEMENTARY, *OF_MODULI])  # which need a finer start
+    found = found | sweep(**columns, keys=[*TEXTS, "psidot0", *NUMBER_KEYS, "error"])
     fine = [i for i, x in enumerate(found["error"]) if not x or "at least 5e-324" in x]
     assert len(fine) >= least
     for i in fine:
