@@ -43,15 +43,17 @@ def assert_trusted(scenes: list[Scene], least: int, **word: str) -> None:
     """
     scenes = [{"thetadot0": 0.0, "psidot0": 0.0, **in_doubles(scene), **word} for scene in scenes]
     columns: Scene = {name: [scene[name] for scene in scenes] for name in scenes[0]} | word
-    found: Scene = sweep(**columns, keys=[*ELEMENTARY, *OF_MODULI])  # which need a finer start
-    found = found | sweep(**columns, keys=[*TEXTS, "psidot0", *NUMBER_KEYS, "error"])
-    fine = [i for i, x in enumerate(found["error"]) if not x or "at least 5e-324" in x]
+    further = sweep(**columns, keys=[*ELEMENTARY, *OF_MODULI, "error"])  # of a finer start
+    found = sweep(**columns, keys=[*TEXTS, "psidot0", *NUMBER_KEYS, "error"])
+    errors = [x or y for x, y in zip(found["error"], further["error"], strict=True)]
+    found |= {key: further[key] for key in (*ELEMENTARY, *OF_MODULI)}
+    fine = [i for i, x in enumerate(errors) if not x or "at least 5e-324" in x]
     assert len(fine) >= least
     for i in fine:
         scene, motion = scenes[i], solve(Top(**scenes[i]))
         remark = motion.remark and motion.remark.partition(":")[0]
         assert [found[key][i] for key in TEXTS] == [motion.regime, motion.path, remark], scene
-        keys = [key for key in KEYS if not found["error"][i] or not math.isnan(found[key][i])]
+        keys = [key for key in KEYS if not (errors[i] and math.isnan(found[key][i]))]
         record = motion.record(keys=keys)
         for key, exact in record.items():
             value = float(found[key][i])
