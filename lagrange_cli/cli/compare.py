@@ -77,7 +77,7 @@ def compare_command(
 ) -> None:
     """Compare trajectories with the exact motion.
 
-    A trajectory is a file (CSV, text, JSON lines, npy, npz or Parquet), or - for standard input.
+    A trajectory is a file (CSV, text, JSON or Parquet), or - for standard input.
     Its columns are recognised by name, such as t, theta, axis, quaternion or matrix.  Angles are in
     degrees unless their names or --rad say otherwise; errors are in radians.
 

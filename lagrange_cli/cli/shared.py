@@ -64,8 +64,8 @@ def count(most: float = 1e9) -> Parsed:
     return Parsed("N", parse)
 
 
-def values(parse: Callable[[str], Any] = parse_number, **allowed: Any) -> Parsed:
-    """Return the type of an input that may have a unit; `parse` reads its numbers."""
+def values(parse: Callable[..., Any] | None = None, **allowed: Any) -> Parsed:
+    """Return the type of an input that may have a unit (see `parse_value`)."""
     return Parsed("X", partial(parse_value, parse=parse, **allowed), keyed=True)
 
 

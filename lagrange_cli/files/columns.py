@@ -11,10 +11,11 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.text import quoted
+from ..arithmetic.text import quoted, shortened
 from ..errors import LagtopError
 from ..names import ANGLES, suggestion
 from ..top.inputs import declared
+from ..top.units import factor_of
 from .headings import name_and_unit
 
 if TYPE_CHECKING:
@@ -154,18 +155,6 @@ def known_quantities(names: Sequence[str]) -> int:
     return len(found) if "t" in found else 0
 
 
-def named_twice(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> tuple[str, str] | None:
-    """Return two names of the same part of a quantity, or of the same angle, or None."""
-    plain = [plain_name(name)[0] for name in names]
-    for key, quantity in found.items():
-        angle = {x[0] for x, _ in QUANTITIES[key].spellings} if key in ANGLES else set()
-        for i in quantity.columns:
-            for other, word in enumerate(plain):
-                if other != i and word in {plain[i], *angle}:
-                    return names[i], names[other]
-    return None
-
-
 def plain_name(name: str) -> tuple[str, str | None]:
     """Return a name in lower-case letters and digits only, and its unit.
 
@@ -183,12 +172,43 @@ def plain_name(name: str) -> tuple[str, str | None]:
     return re.sub(r"[^a-z0-9]", "", text), unit or None
 
 
-def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
-    """Return a quantity with the factor that converts it, to s, m, rad/s, rad or degrees.
+def found_in(names: Sequence[str], asked: Sequence[str] = ()) -> dict[str, FoundQuantity]:
+    """Return the quantities of a trajectory with the factors that convert them, if any.
 
-    `names` are those of all columns.  Raises LagtopError for a unit that the quantity cannot have,
-    and for parts in different units.
+    The factors lead to s, m, rad/s and rad.  Only the quantities that are `asked` for are returned,
+    or all, then with a time among them.  Raises LagtopError for columns without a time or a
+    quantity besides, for a unit that a quantity cannot have, and for parts in different units; the
+    key of the error is `columns` if the names themselves are at fault.
     """
+    found = quantities_in(names)
+    if not asked:
+        _check_names(names, found)
+    return {
+        key: _in_known_unit(key, x, names) for key, x in found.items() if key in (asked or found)
+    }
+
+
+def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> None:
+    """Raise LagtopError without a time and a quantity, and for two names of the same part."""
+    if "t" not in found or len(found) < 2:
+        wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
+        shown = shortened(", ".join(map(repr, names)), 120)
+        lacks_z = {"x", "y"} <= {*names} and "z" not in names
+        remedy = "z is missing" if lacks_z else "name them with columns=t,quaternion or the like"
+        raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
+    plain = [plain_name(name)[0] for name in names]
+    for key, quantity in found.items():
+        angle = {x[0] for x, _ in QUANTITIES[key].spellings} if key in ANGLES else set()
+        for i in quantity.columns:
+            for other, word in enumerate(plain):
+                if other != i and word in {plain[i], *angle}:
+                    wrong = f"must name each quantity once, got {names[i]!r} and {names[other]!r}"
+                    remedy = "use columns=t,theta,_ or the like, where _ leaves one out"
+                    raise LagtopError(f"columns {wrong}: {remedy}", "columns")
+
+
+def _in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
+    """Return a quantity with the factor that converts it, to s, m, rad/s or rad, if any."""
     named = [names[i] for i in found.columns]
     if len({plain_name(part)[1] for part in named}) > 1:
         shown = " and ".join(map(repr, named[:2]))
@@ -200,8 +220,6 @@ def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> Found
         return found
     if not own:
         raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
-    from ..top.units import factor_of  # for few files only
-
     into = "rad" if own == "angle" else own
     return found._replace(unit=into, factor=factor_of(key, str(unit), into))
 

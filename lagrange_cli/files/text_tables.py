@@ -10,7 +10,6 @@ from __future__ import annotations
 import csv
 import re
 from array import array
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -57,26 +56,18 @@ class Lines:
 
     def blocks(self) -> Iterator[tuple[Sequence[int], Sequence[str]]]:
         """Yield the numbers of some lines, and the lines, which are split block by block."""
-        for number, chunk in _chunks(self.text):
-            skipped = max(self.first - number, 0)
-            lines = chunk.split("\n")[skipped:]
-            numbers: Sequence[int] = range(number + skipped, number + skipped + len(lines))
-            if _NO_ROW.search(f"\n{chunk}"):
-                kept = [i for i, line in enumerate(lines) if not _NO_ROW.match(f"\n{line}")]
-                numbers, lines = [numbers[i] for i in kept], [lines[i] for i in kept]
-            yield numbers, lines
-
-
-def _chunks(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the lines of a text, many at a time, after the number of the first of them."""
-    at, number = 0, 1
-    while at < len(text):
-        end = text.find("\n", at + _AT_ONCE)
-        chunk = text[at:] if end < 0 else text[at:end]
-        at += len(chunk) + 1
-        if not chunk.isspace():  # a small archive may hold millions of empty lines
-            yield number, chunk
-        number += chunk.count("\n") + 1
+        at, number = 0, 1
+        while at < len(self.text):
+            end = self.text.find("\n", at + _AT_ONCE)
+            chunk = self.text[at:] if end < 0 else self.text[at:end]
+            skipped, after = max(self.first - number, 0), number + chunk.count("\n") + 1
+            if not chunk.isspace():  # a small archive may hold millions of empty lines
+                lines, numbers = chunk.split("\n")[skipped:], [*range(number + skipped, after)]
+                if _NO_ROW.search(f"\n{chunk}"):
+                    kept = [i for i, line in enumerate(lines) if not _NO_ROW.match(f"\n{line}")]
+                    numbers, lines = [numbers[i] for i in kept], [lines[i] for i in kept]
+                yield numbers, lines
+            at, number = at + len(chunk) + 1, after
 
 
 @dataclass
@@ -144,43 +135,56 @@ class Table:
         `names` are the names of all columns in messages.  Raises DataError with the place of a cell
         that is no number.
         """
-        found = self._at_once(columns)
-        if found is not None:
-            return found
-        values, empty, lines = array("d"), bytearray(), array("q")
-        for number, row in self.rows:
-            cells = self._cells_at(number, row)
-            missing = [cells[i] is None or cells[i] == "" for i in columns]
-            if not all(missing):
-                lines.append(number)
-                empty.extend(missing)
-                values.extend(self._double(number, i, names[i], cells[i]) for i in columns)
-        shape = (len(lines), len(columns))
-        mask = np.frombuffer(empty, np.bool_).reshape(shape)
-        return Numbers(np.frombuffer(values, np.float64).reshape(shape), mask, lines)
+        found = self._at_once() or self._at_once(columns) or self._one_by_one(columns, names)
+        if found.values.shape[1] != len(columns):
+            found = Numbers(found.values[:, columns], found.empty[:, columns], found.lines)
+        kept = ~found.empty.all(axis=1)
+        return found if kept.all() else Numbers(*(np.asarray(x)[kept] for x in found))
 
-    def _at_once(self, columns: Sequence[int]) -> Numbers | None:
-        """Return columns of numbers, or None if NumPy cannot read the rows as numbers."""
-        lines, rows = array("q"), self.rows
-        if not isinstance(rows, Lines) or not self.delimiter or next(iter(rows), None) is None:
+    def _at_once(self, columns: Sequence[int] | None = None) -> Numbers | None:
+        """Return columns of numbers, or None if NumPy cannot read the rows.
+
+        Without `columns`, all cells must be numbers.  With them, a cell may be empty, and other
+        columns may hold words.
+        """
+        rows, mark, lines = self.rows, self.delimiter, array("q")
+        if not isinstance(rows, Lines) or not mark or next(iter(rows), None) is None:
             return None
 
         def texts() -> Iterator[str]:
             for numbers, block in rows.blocks():
                 lines.extend(numbers)
-                yield from (x.translate(_SWAPPED) for x in block) if self.decimal == "," else block
+                swapped = (x.translate(_SWAPPED) for x in block) if self.decimal == "," else block
+                yield from map(filled, swapped) if columns else swapped
 
-        mark = None if self.delimiter == " " else self.delimiter
+        def filled(line: str) -> str:
+            """Return a line with -nan in its empty cells."""
+            if line.count(mark) != self.width - 1 or "-nan" in line or mark == " ":
+                raise ValueError
+            for _ in range(2):  # two neighbours share a delimiter
+                line = f"{mark}{line}{mark}".replace(mark * 2, f"{mark}-nan{mark}")[1:-1]
+            return line
+
+        blank = mark.strip(" ") or None  # None: any blanks
         try:
-            values = np.loadtxt(texts(), delimiter=mark, ndmin=2, comments=None)
-        except ValueError:  # words or missing numbers
+            values = np.loadtxt(texts(), delimiter=blank, usecols=columns, comments=None, ndmin=2)
+        except ValueError:
             return None
-        if values.shape != (len(lines), self.width):
+        if values.shape != (len(lines), len(columns or range(self.width))):
             return None
-        chosen = values if [*columns] == [*range(self.width)] else values[:, columns]
-        empty = np.broadcast_to(np.bool_(0), chosen.shape)
-        is_whole = lines[-1] - lines[0] == len(lines) - 1
-        return Numbers(chosen, empty, range(lines[0], lines[-1] + 1) if is_whole else lines)
+        return Numbers(values, np.isnan(values) & np.signbit(values) & bool(columns), lines)
+
+    def _one_by_one(self, columns: Sequence[int], names: Sequence[str]) -> Numbers:
+        """Return columns of numbers.  Raises DataError with the place of another cell."""
+        values, empty, lines = array("d"), bytearray(), array("q")
+        for number, row in self.rows:
+            cells = self._cells_at(number, row)
+            lines.append(number)
+            empty.extend(cells[i] in (None, "") for i in columns)
+            values.extend(self._double(number, i, names[i], cells[i]) for i in columns)
+        shape = (len(lines), len(columns))
+        mask = np.frombuffer(empty, np.bool_).reshape(shape)
+        return Numbers(np.frombuffer(values, np.float64).reshape(shape), mask, lines)
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
@@ -225,7 +229,7 @@ class Numbers(NamedTuple):
     """Shape (rows, columns); NaN for an empty cell."""
     empty: Mask
     """Whether a cell is empty, in the same shape."""
-    lines: Sequence[int]
+    lines: Any
     """The number of each row in messages."""
 
 
@@ -257,22 +261,16 @@ def read_table(
     cells = _split(rows[0][1], layout.delimiter) if rows else []
     count = len(headings or cells)
     if headings is None and not width:  # perhaps in a comment, as numpy.savetxt writes them
-        headings = _heading_in_comments(text, sample, count, known, layout.delimiter)
+        above = text[: max(text.find(f"\n{sample[0][1]}"), 0)].rstrip() if sample else ""
+        headings = _heading_in_comments(above[-_AT_ONCE:], count, known, layout.delimiter)
     first = rows[0][0] if rows else text.count("\n") + 2
     table = Table(name, headings, count, Lines(text, first), layout.delimiter)
     return replace(table, decimal=decimal or _decimal_mark(table, rows[:_SAMPLE]))
 
 
-def _heading_in_comments(
-    text: str, sample: Sequence[tuple[int, str]], count: int, known: Known, delimiter: str
-) -> list[str] | None:
-    """Return the headings in the last fitting comment above the first row, or None."""
-    first = sample[0][0] if sample else 0
-    above = deque[str]((), _TITLES)
-    for number, chunk in _chunks(text):
-        if number < first:
-            above.extend(chunk.split("\n")[: first - number])
-    for line in reversed(above):
+def _heading_in_comments(above: str, count: int, known: Known, delimiter: str) -> list[str] | None:
+    """Return the headings in the last fitting comment of the text above the first row, or None."""
+    for line in reversed(above.split("\n")[-_TITLES:]):
         bare = re.sub(r"^\s*(?:[#%]+|//)", "", line)
         for mark in dict.fromkeys([delimiter, *_splits(bare)]):
             cells = _split(bare, mark)

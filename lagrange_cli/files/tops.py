@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -22,7 +21,7 @@ from ..top.given import Given, gather
 from ..top.inputs import TILT, checked_double, one_of_each, overridden
 from ..top.ranges import MOST_POINTS, Points
 from ..top.top import INPUTS
-from ..top.values import STEADY_WORDS, Value, tilt_key
+from ..top.values import STEADY_WORDS, Value, conversion, tilt_key
 from .headings import name_and_unit
 from .text_tables import Table, read_table
 
@@ -168,11 +167,11 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
             raise DataError(f"{name}: the column {column} must be called {TILT} [{unit}]")
         if column in INPUTS or unit:  # a tilt needs its unit in the name or in the heading
             try:
-                one = Value(Fraction(1)).given_in(unit, column)
+                factor, unit = conversion(column, unit)
             except LagtopError as error:
                 raise DataError(f"{name}, heading {heading}: {error}") from None
-            column = tilt_key(column, one)
-            units[column] = one
+            column = tilt_key(column, Value(factor, unit))
+            units[column] = Value(factor, unit)
         columns.append(column)
     carried = [x for x in columns if x not in units and x not in computed]
     _check_spelling(carried, units.keys(), name)

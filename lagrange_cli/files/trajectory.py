@@ -20,24 +20,15 @@ from ..errors import DataError, LagtopError, UnavailableError
 from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
 from ..names import repeated
 from ..top.ranges import ListedPoints
-from .columns import (
-    QUANTITIES,
-    SKIPPED,
-    FoundQuantity,
-    converted,
-    expanded,
-    in_known_unit,
-    known_quantities,
-    named_twice,
-    quantities_in,
-)
+from .columns import SKIPPED, converted, expanded, found_in, known_quantities
 from .text_tables import Table, read_table
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array, Mask
     from .observed import Conventions
 
-_PARQUET = b"PAR1"
+_BYTES_OF_A_NUMBER = 24
+"""Most characters of a number in CSV."""
 _FINE = 1e-7
 """Largest rounding of a time, over the time between two rows, that does not matter."""
 
@@ -60,51 +51,44 @@ class Trajectory:
         if names is None:
             remedy = f"name its {table.width} columns with columns=t,quaternion or the like"
             raise DataError(f"{table.name} has no header: {remedy}")
-        self.names = list(names)
-        self.quantities = self._found(columns is not None)
-        used = sorted(i for found in self.quantities.values() for i in found.columns)
-        self.used = [self.names[i] for i in used]
-        """The names of the columns that are read."""
-        self.unused = [x for i, x in enumerate(self.names) if i not in used and x != SKIPPED]
-        """The names of the other columns, except those that `columns` leaves out."""
-        self._numbers = table.numbers(used, self.names)
-        self._places = {key: [*map(used.index, x.columns)] for key, x in self.quantities.items()}
-        self._check()
-        self.elapsed = self._elapsed(table)
-        """Times since the first row, each rounded once."""
-
-    def _found(self, are_given: bool) -> dict[str, FoundQuantity]:
-        """Return the quantities of the columns, whose names may be given.  Raises LagtopError."""
-        found = quantities_in(self.names)
-        if "t" not in found or len(found) < 2:
-            wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
-            shown = shortened(", ".join(map(repr, self.names)), 120)
-            lacks_z = {"x", "y"} <= {*self.names} and "z" not in self.names
-            named = "name them with columns=t,quaternion or the like"
-            remedy = "z is missing" if lacks_z else named
-            wrong = f"must have columns among {wanted}, got {shown}: {remedy}"
-            raise DataError(f"{self.name} {wrong}")
-        if twice := named_twice(self.names, found):
-            wrong = f"must name each quantity once, got {twice[0]!r} and {twice[1]!r}"
-            if are_given:
-                raise LagtopError(f"columns {wrong}", "columns")
-            remedy = "name the columns with columns=t,theta,_ or the like, where _ leaves one out"
-            raise DataError(f"{self.name} {wrong}: {remedy}")
+        self.names = names
         try:
-            return {key: in_known_unit(key, x, self.names) for key, x in found.items()}
+            self.quantities = found_in(names)
         except LagtopError as error:
-            raise DataError(f"{self.name}: {error}") from None
-
-    def _check(self) -> None:
-        """Raise DataError for a quantity without numbers, and for a time that is not finite."""
+            if columns is not None and error.key:
+                raise
+            raise DataError(f"{table.name}: {error}") from None
+        used = sorted(i for found in self.quantities.values() for i in found.columns)
+        self.used = [names[i] for i in used]
+        """The names of the columns that are read."""
+        self.unused = [x for i, x in enumerate(names) if i not in used and x != SKIPPED]
+        """The names of the other columns, except those that `columns` leaves out."""
+        self._numbers = table.numbers(used, names)
+        self._places = {key: [*map(used.index, x.columns)] for key, x in self.quantities.items()}
         for key, places in self._places.items():
-            if self._numbers.lines and self._numbers.empty[:, places].all():
-                shown = ", ".join(self.names[i] for i in self.quantities[key].columns)
+            if len(self._numbers.lines) and self._numbers.empty[:, places].all():
+                shown = ", ".join(self.used[i] for i in places)
                 remedy = "remove its columns, or leave them out with columns=t,_ or the like"
                 raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
         t = self._numbers.values[:, self._places["t"][0]]
         for i in np.flatnonzero(~np.isfinite(t))[:1]:
             raise DataError(f"{self.where(i)}: t must be a finite number, got {t[i]}")
+        self.elapsed = self._elapsed(table, t)
+        """Times since the first row, each rounded once."""
+
+    def _elapsed(self, table: Table, t: Array) -> Array:
+        """Return the times since the first row, from exact numbers if doubles are too coarse.
+
+        Unix times are such numbers: neighbouring doubles are 2e-7 s apart.
+        """
+        found, steps = self.quantities["t"], np.abs(np.diff(t))
+        steps = steps[steps > 0]
+        if steps.size and np.abs(t).max() * 2.0**-53 > _FINE * np.median(steps):
+            cells = (table.plain(x) for _, x in table.column(found.columns[0]))
+            exact = (Decimal(x) for x in cells if x)
+            first = next(exact)
+            t = np.fromiter((x - first for x in chain([first], exact)), np.float64)
+        return converted("t", found, t - t[:1], radians=True)
 
     def where(self, row: int) -> str:
         """Return the name of the file and the place of a row."""
@@ -133,23 +117,6 @@ class Trajectory:
         implied: dict[str, Any] = {key: says for key, says in found.items() if says}
         return given._replace(**implied)
 
-    def _elapsed(self, table: Table) -> Array:
-        """Return the times since the first row, from exact numbers if doubles are too coarse.
-
-        Unix times are such numbers: neighbouring doubles are 2e-7 s apart.
-        """
-        (place,), (column,) = self._places["t"], self.quantities["t"].columns
-        t: Array = self._numbers.values[:, place]
-        steps = np.abs(np.diff(t))
-        steps = steps[steps > 0]
-        if steps.size and np.abs(t).max() * 2.0**-53 > _FINE * np.median(steps):
-            cells = (table.plain(x) for _, x in table.column(column))
-            exact = (Decimal(x) for x in cells if x)
-            first = next(exact)
-            t = np.fromiter((x - first for x in chain([first], exact)), np.float64)
-        found = self.quantities["t"]
-        return converted("t", found, t - t[:1], radians=True)
-
     def check_times(self, t: Array) -> None:
         """Raise DataError for a time that turns back; it may repeat."""
         ways = np.sign(np.diff(t))
@@ -170,8 +137,8 @@ def read_trajectory(
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
     content = read_bytes(path)
-    if content.startswith(_PARQUET):
-        return Trajectory(_read_parquet(content, name), names)
+    if content.startswith(b"PAR1"):
+        content = _csv_of_parquet(content, name)
     text = decoded(content, name)
     del content  # one copy of a large file is enough
     table = read_table(text, name, known_quantities, decimal, len(names or ()) or None)
@@ -180,44 +147,35 @@ def read_trajectory(
     return Trajectory(table, names)
 
 
-def _read_parquet(content: bytes, name: str) -> Table:
-    """Return the columns of numbers of a Parquet file; a list of a fixed size is several columns.
-
-    Null becomes an empty cell.
-    """
+def _csv_of_parquet(content: bytes, name: str) -> bytes:
+    """Return the columns of numbers of a Parquet file as CSV; a list of a fixed size is several."""
     try:
         import pyarrow as pa
-        from pyarrow import parquet
+        from pyarrow import compute, csv, parquet
     except ImportError:
         remedy = "pip install 'lagtop[parquet]'"
         raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
     try:
         file = parquet.ParquetFile(BytesIO(content))
-        sizes = {x.name: getattr(x.type, "list_size", 0) for x in file.schema_arrow}
-        kinds = {x.name: getattr(x.type, "value_type", x.type) for x in file.schema_arrow}
         if twice := repeated(file.schema_arrow.names):
             raise ValueError(f"two columns are named {twice!r}")
-        names = [x for x, y in kinds.items() if pa.types.is_floating(y) or pa.types.is_integer(y)]
-        size = 8 * file.metadata.num_rows * sum(max(sizes[x], 1) for x in names)
-        if size > LARGEST_FILE:
-            raise ValueError(f"it must have at most {LARGEST_FILE} bytes of numbers, has {size}")
-        rows = _ParquetRows(file.read(columns=names))
+        sizes = {}
+        for x in file.schema_arrow:
+            kind = getattr(x.type, "value_type", x.type)
+            if pa.types.is_floating(kind) or pa.types.is_integer(kind):
+                sizes[x.name] = getattr(x.type, "list_size", 0)
+        size = file.metadata.num_rows * sum(max(x, 1) for x in sizes.values())
+        if size > (most := LARGEST_FILE // _BYTES_OF_A_NUMBER):
+            raise ValueError(f"it must have at most {most} numbers, has {size}")
+        table, columns = file.read(columns=[*sizes]), dict[str, Any]()
+        for x, count in sizes.items():
+            parts = {f"{x}_{i}": compute.list_element(table[x], i) for i in range(count)}
+            columns |= parts or {x: table[x]}
+        csv.write_csv(pa.table(columns), stream := BytesIO())
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
         raise DataError(f"{name}: bad Parquet file: {why}") from None
-    headings = [f"{x}_{i}" if sizes[x] else x for x in names for i in range(sizes[x] or 1)]
-    return Table(name, headings, len(headings), rows, "", place="row")
-
-
-class _ParquetRows:
-    """The rows of a Parquet file with their numbers, as JSON objects."""
-
-    def __init__(self, table: Any) -> None:
-        self.table = table
-
-    def __iter__(self) -> Iterator[tuple[int, Any]]:
-        batches = self.table.to_batches(max_chunksize=1 << 12)
-        return enumerate((row for batch in batches for row in batch.to_pylist()), 1)
+    return stream.getvalue()
 
 
 def read_times(path: str, decimal: str = "") -> ListedPoints:
@@ -228,16 +186,15 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     """
     table = read_table(read_text(path), shown_path(path), known_quantities, decimal)
     names = ["t"] * (table.width < 2) if table.headings is None else table.headings
-    found = quantities_in(names).get("t")
+    try:
+        found = found_in(names, ["t"]).get("t")
+    except LagtopError as error:
+        raise DataError(f"{table.name}: {error}") from None
     if found is None:
         shown = shortened(", ".join(map(repr, names))) or f"{table.width} columns without headings"
         wanted = "the time must be a number below the heading t or time"
         raise DataError(f"{table.name}: {wanted}, got {shown}")
-    try:
-        factor = in_known_unit("t", found, names).factor or 1
-    except LagtopError as error:
-        raise DataError(f"{table.name}: {error}") from None
-    times = ListedPoints(_Times(table, found.columns[0], Fraction(factor)))
+    times = ListedPoints(_Times(table, found.columns[0], Fraction(found.factor or 1)))
     if not times.count:
         raise DataError(f"{table.name} must hold at least one time, got none")
     return times

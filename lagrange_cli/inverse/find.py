@@ -419,9 +419,10 @@ def _text(key: str, number: Any) -> str:
 
 def _input(name: str, given: Any) -> Value:
     """Return a number, or a pair as a range.  Raises LagtopError."""
-    if name == "psidot0" and isinstance(given, str) and given in STEADY_WORDS:
-        return Value(given)
-    value = value_of(name, given, parse_number_or_span)
+    if isinstance(given, str):
+        steady = name == "psidot0"
+        return parse_value(name, given, parse_number_or_span, uncertain=True, steady=steady)
+    value = value_of(name, given)
     if np.asarray(value.number, object).shape != (2,):
         return value
     first, last = (exact_number(name, x) for x in value.number)

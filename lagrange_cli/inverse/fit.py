@@ -8,10 +8,9 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ..arithmetic.text import parse_number
 from ..errors import check_type
 from ..top.given import gather
-from ..top.values import STEADY_WORDS, Value, value_of
+from ..top.values import parse_value, value_of
 from .advice import hints
 from .known import Known, known_inputs
 from .outcome import Outcome
@@ -66,7 +65,9 @@ def fit(
         t, sigma=sigma, theta=theta, phi=phi, psi=psi, axis=axis, quaternion=quaternion
     )
     given = {
-        name: Value(x) if x in STEADY_WORDS else value_of(name, x, parse_number)
+        name: parse_value(name, x, uncertain=True, steady=name == "psidot0")
+        if isinstance(x, str)
+        else value_of(name, x)
         for name, x in (known or {}).items()
     }
     found = gather(given)

@@ -52,10 +52,6 @@ class Points:
         first, last = self.at(np.array([0, self.count - 1]))
         return [float(first), float(last)]
 
-    def scaled(self, factor: Fraction) -> Points:
-        """Return the points times a factor > 0."""
-        raise NotImplementedError
-
     def blocks(self) -> Iterator[Array]:
         """Yield all points as arrays of at most `POINTS_AT_ONCE`."""
         import numpy as np
@@ -79,10 +75,6 @@ class EvenPoints(Points):
 
     def __str__(self) -> str:
         return f"{self.start}:{self.start + (self.count - 1) * self.step}:{self.count}"
-
-    def scaled(self, factor: Fraction) -> Points:
-        """Return the points times a factor."""
-        return EvenPoints(self.start * factor, self.step * factor, self.count)
 
     def at(self, index: Index) -> Array:
         """Return start + i step for every i of `index`, each rounded once.
@@ -124,10 +116,6 @@ class LogPoints(Points):
     def __str__(self) -> str:
         return f"log:{self.first}:{self.last}:{self.count}"
 
-    def scaled(self, factor: Fraction) -> Points:
-        """Return the points times a factor > 0."""
-        return LogPoints(self.first * factor, self.last * factor, self.count)
-
     def at(self, index: Index) -> Array:
         """Return first (last/first)^(i/(count - 1)) for every i, computed in 30 digits."""
         import numpy as np
@@ -150,10 +138,6 @@ class ListedPoints(Points):
 
     def __str__(self) -> str:
         return ",".join(map(str, self.exact))
-
-    def scaled(self, factor: Fraction) -> Points:
-        """Return the points times a factor."""
-        return ListedPoints([point * factor for point in self.exact])
 
     def at(self, index: Index) -> Array:
         """Return the doubles nearest to the points with these indices."""

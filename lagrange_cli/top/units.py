@@ -42,7 +42,7 @@ _TABLE = """
 1 1 -2 0 | 0 | N=1 dyn=1e-5
 0 1 -2 0 | 0 | g_0=9.80665
 0 0 0 1 | 0 | rad=1 mrad=1e-3
-0 0 0 1 | 1 | deg=1/180 °=1/180 arcmin=1/10800 turn=2 rev=2 gon=1/200
+0 0 0 1 | 1 | deg=1/180 arcmin=1/10800 turn=2 rev=2 gon=1/200
 0 0 -1 1 | 1 | rpm=1/30
 """
 """The dimensions, the power of pi, and the exact sizes of units."""
@@ -55,6 +55,11 @@ UNITS: dict[str, Unit] = {
     for name, size in (pair.split("=") for pair in pairs.split())
 }
 """The known units by name."""
+SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "°": "deg"}
+SPELLINGS |= dict.fromkeys(("degree", "degrees"), "deg") | dict.fromkeys(
+    ("radian", "radians"), "rad"
+)
+"""Other spellings of units."""
 EXAMPLES = {"mass": "kg or g", "mass len²": "kg*m^2 or g*cm^2", "len": "m or cm", "time": "s or ms"}
 EXAMPLES |= {"len/time²": "m/s^2 or cm/s^2", "rad/time": "rad/s or rpm"}
 EXAMPLES |= dict.fromkeys(("deg", "rad"), "deg or rad")
@@ -82,7 +87,7 @@ def unit_of_text(text: str) -> Unit:
     while place < len(text):
         match = _FACTOR.match(text, place)
         name = match[2] if match else text[place:]
-        unit = Unit() if name == "1" else UNITS.get(name)
+        unit = Unit() if name == "1" else UNITS.get(SPELLINGS.get(name, name))
         if match is None or unit is None:
             raise LagtopError(_ASKED.get(name) or f"no such unit{_meant(name, text)}")
         found = found.times(unit, int(match[3] or 1) * (-1 if match[1] == "/" else 1))

@@ -51,20 +51,9 @@ class Value(NamedTuple):
     std: Fraction | None = None
     """Standard uncertainty, in the same unit; None if there is none."""
 
-    def given_in(self, unit: str, key: str, wanted: str | None = None) -> Value:
-        """Return the number as one in a unit, converted to SI, or to `wanted` (see `factor_of`).
 
-        `key` is the input or the quantity.  Raises LagtopError for a unit of other dimensions.
-        """
-        if not unit:
-            return self
-        from .units import factor_of, unit_to_keep  # start-up
-
-        wanted = unit_to_keep(key, unit) if wanted is None else wanted
-        factor = factor_of(key, unit, wanted)
-        is_number = isinstance(self.number, Fraction)
-        number = self.number * factor if is_number else self.number.scaled(factor)
-        return Value(number, wanted, None if self.std is None else self.std * factor)
+Read = Callable[[str], Fraction]
+"""Returns the number in a text, or raises LagtopError without the name of an input."""
 
 
 def tilt_key(name: str, value: Value, *, radians: bool = False) -> str:
@@ -77,13 +66,13 @@ def tilt_key(name: str, value: Value, *, radians: bool = False) -> str:
 def parse_value(
     key: str,
     text: str,
-    parse: Callable[[str], Any] = parse_number,
+    parse: Callable[..., Any] | None = None,
     *,
     uncertain: bool = False,
     steady: bool = False,
     wanted: str | None = None,
 ) -> Value:
-    """Read the input or quantity `key`; `parse` reads its number.
+    """Read the input or quantity `key`: a number, or what `parse` makes of the text.
 
     `uncertain` allows an uncertainty, `steady` allows `STEADY_WORDS`, and `wanted` is the unit of
     the result.  Raises LagtopError if `parse` does, with the whole text in place of the number, for
@@ -93,21 +82,41 @@ def parse_value(
     if steady and number in STEADY_WORDS:
         return Value(number)
     got = f"got {quoted(text.strip())}"
+    if re.search(r"±|\+/?-", unit):
+        wrong = f"must have its unit once, at the end, as in '24.0 ± 0.2 cm', {got}"
+        raise LagtopError(f"{key} {wrong}", key)
+    factor, unit = conversion(key, unit, wanted)
+
+    def read(text: str) -> Fraction:
+        return parse_number(text) * factor
+
     try:
-        if re.search(r"±|\+/?-", unit):
-            raise LagtopError(f"must have its unit once, at the end, as in '24.0 ± 0.2 cm', {got}")
         plain, std = _split_uncertainty(number)
         if std is not None and not uncertain:
             raise LagtopError(f"must have no uncertainty in this command, {got}: leave it out")
-        found = Value(parse(plain), "", std)
+        found = parse(plain, read) if parse else read(plain)
     except LagtopError as error:
         whole = str(error).replace(f"got {quoted(number)}", got)
         if number in STEADY_WORDS:
-            whole = steady_refused(number)
+            keys = "steady_rate_slow and steady_rate_fast"
+            whole = f"must be a number unless one top is solved, got {number}: see the keys {keys}"
         elif steady and not re.search(r"\d", number):
             whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
         raise LagtopError(f"{key} {whole}", key) from None
-    return found.given_in(unit, key, wanted)
+    return Value(found, unit, None if std is None else std * factor)
+
+
+def conversion(key: str, unit: str, wanted: str | None = None) -> tuple[Fraction, str]:
+    """Return the factor from a unit of the input or quantity `key` to SI or to `wanted`, and that.
+
+    Raises LagtopError for a unit of other dimensions (see `units.factor_of`).
+    """
+    if not unit:
+        return Fraction(1), ""
+    from .units import factor_of, unit_to_keep  # start-up
+
+    wanted = unit_to_keep(key, unit) if wanted is None else wanted
+    return factor_of(key, unit, wanted), wanted
 
 
 def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
@@ -150,20 +159,12 @@ def split_unit(text: str) -> tuple[str, str]:
     return number, unit
 
 
-def steady_refused(word: str) -> str:
-    """Return the message about a word for the rates of many tops, without the name of the input."""
-    keys = "steady_rate_slow and steady_rate_fast"
-    return f"must be a number unless one top is solved, got {word}: see the keys {keys}"
-
-
-def value_of(name: str, given: Any, parse: Callable[[str], Any] | None = None) -> Value:
+def value_of(name: str, given: Any) -> Value:
     """Return a number or an array of Python as a value.
 
-    Numbers of the package uncertainties are accepted, and texts if `parse` reads their numbers.
-    Raises LagtopError for an uncertainty that is not finite, and if `parse` does.
+    Numbers of the package uncertainties are accepted.  Raises LagtopError for an uncertainty that
+    is not finite.
     """
-    if parse is not None and isinstance(given, str):
-        return parse_value(name, given, parse, uncertain=True)
     if isinstance(given, Value):
         return given
     if hasattr(given, "magnitude"):  # NumPy would drop the unit of a quantity of pint
@@ -199,53 +200,46 @@ class Span(NamedTuple):
     logarithmic: bool = False
     """Whether the interval is divided into equal ratios instead of equal steps."""
 
-    def scaled(self, factor: Fraction) -> Span:
-        """Return the interval multiplied by a factor > 0."""
-        return self._replace(first=self.first * factor, last=self.last * factor)
-
     def __str__(self) -> str:
         return f"{float(self.first):g} to {float(self.last):g}"
 
 
-def _ends(text: str, parts: Sequence[str], parse: Callable[[str], Fraction]) -> Span:
+def _ends(text: str, parts: Sequence[str], read: Read) -> Span:
     """Return the span of two ends.  Raises LagtopError if a logarithmic one contains 0."""
-    span = Span(parse(parts[0]), parse(parts[1]), text.startswith(LOG))
+    span = Span(read(parts[0]), read(parts[1]), text.startswith(LOG))
     if span.logarithmic and not span.first * span.last > 0:
         wanted = "must have two ends of one sign, not 0, in a log: range"
         raise LagtopError(f"{wanted}, got {quoted(text)}")
     return span
 
 
-def parse_span(text: str) -> Span:
-    """Parse an interval, `from:to` or `log:from:to`.
+def parse_number_or_span(text: str, read: Read = parse_number) -> Fraction | Span:
+    """Return a number, or an interval `[log:]from:to` whose second end is the larger one.
 
-    Raises LagtopError for anything else, and unless the second end is the larger one.
+    Raises LagtopError for anything else.
     """
+    if ":" not in text:
+        return read(text)
     _refuse_units_inside(text)
     ends = text.removeprefix(LOG).split(":")
     if len(ends) != 2:
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
-    span = _ends(text, ends, parse_number)
+    span = _ends(text, ends, read)
     if not span.first < span.last:
         raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
     return span
 
 
-def parse_number_or_span(text: str) -> Fraction | Span:
-    """Parse a number, or an interval `[log:]from:to`.  Raises LagtopError."""
-    return parse_span(text) if ":" in text else parse_number(text)
-
-
-def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
+def parse_range(text: str, read: Read = parse_number) -> Points:
     """Return the points of `start:stop:count` or, with equal ratios, of `log:start:stop:count`.
 
-    `parse` reads the two ends.  Raises LagtopError for anything else, for a count of 1 between
-    different ends, and for a logarithmic range over 0.
+    Raises LagtopError for anything else, for a count of 1 between different ends, and for a
+    logarithmic range over 0.
     """
     parts = text.removeprefix(LOG).split(":")
     if len(parts) != 3:
         raise LagtopError(f"must be a range [log:]start:stop:count, got {quoted(text)}")
-    (first, last, logarithmic), count = _ends(text, parts, parse), parse_number(parts[2])
+    (first, last, logarithmic), count = _ends(text, parts, read), parse_number(parts[2])
     if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {quoted(text)}")
     if count == 1 and first != last:
@@ -257,14 +251,14 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
     return EvenPoints(first, (last - first) / max(size - 1, 1), size)
 
 
-def parse_values(text: str) -> Points:
+def parse_values(text: str, read: Read = parse_number) -> Points:
     """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
     _refuse_units_inside(text)
     if ":" in text:
-        return parse_range(text)
+        return parse_range(text, read)
     if re.fullmatch(rf"\s*{_DECIMAL}\s*-\s*{_DECIMAL}\s*", text):
         raise LagtopError(f"must be a range start:stop:count, got {quoted(text)}")
-    return ListedPoints([parse_number(part) for part in text.split(",")])
+    return ListedPoints([read(part) for part in text.split(",")])
 
 
 def _refuse_units_inside(text: str) -> None:
