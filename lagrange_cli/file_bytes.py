@@ -15,7 +15,7 @@ from typing import Any
 from .errors import DataError
 
 LARGEST_FILE = 1 << 28
-"""Most bytes of an input file after decompression.  Reading takes up to 14 times the memory."""
+"""Most bytes of an input file after decompression.  Reading takes up to 21 times the memory."""
 _AT_ONCE = 1 << 20
 _BINARY = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0", b"\x93NUM")
 """The first bytes of archives and new workbooks, of an empty archive, of old workbooks, of npy."""

@@ -16,7 +16,7 @@ from ..errors import LagtopError, SomeFailedError
 from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
-from ..top.inputs import BODY, DECLARED, example_options, remark_on
+from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
 from ..top.values import Value, parse_value, tilt_key
 from .app import complain, with_options
 
@@ -296,7 +296,9 @@ def warn(found: Given, *, uses_stds: bool = False) -> None:
     if found.file is not None and found.file.hides:
         complain(f"Warning: {found.file.name} is read from this folder, not the scene of that name")
     if found.missing:
-        words = example_options(found.missing, units=found.si)
+        units = {name: f" {unit}" for name, unit in BODY_UNITS.items()} if found.si else {}
+        texts = {name: f"{value:g}{units.get(name, '')}" for name, value in found.missing.items()}
+        words = [f"--{name} {quoted(x) if found.si else x}" for name, x in texts.items()]
         complain(f"Warning: {remark_on(found.missing, words)}")
     if found.stds and not uses_stds:
         used = "solve, table and plot angles use it"

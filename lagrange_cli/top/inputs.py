@@ -78,7 +78,7 @@ EXAMPLE = {
 }
 """The inputs of the worked example of Chrapan (1952), section 8, in CGS: the defaults."""
 BODY = {name: EXAMPLE[name] for name in ("m", "A", "C", "s", "g")}
-_BODY_UNITS = {"m": "g", "A": "g*cm^2", "C": "g*cm^2", "s": "cm", "g": "cm/s^2"}
+BODY_UNITS = {"m": "g", "A": "g*cm^2", "C": "g*cm^2", "s": "cm", "g": "cm/s^2"}
 _POWERS = {"m": 3, "A": 7, "C": 7, "s": 2, "g": 2}
 BODY_IN_SI = {name: Fraction(x) / 10 ** _POWERS[name] for name, x in BODY.items()}
 _SAME = STANDS_FOR | dict.fromkeys(("theta0_deg", "theta0_rad"), TILT)
@@ -119,13 +119,6 @@ def remark_on(missing: Iterable[str], words: Sequence[str]) -> str:
     *others, last = missing
     named = f"{', '.join(others)} and {last} default" if others else f"{last} defaults"
     return f"{named} to the worked example, in g, cm and s: {' '.join(words)}"
-
-
-def example_options(missing: Mapping[str, float], *, units: bool = False) -> list[str]:
-    """Return the options that set the defaults of the worked example, with units or without."""
-    if units:
-        return [f"--{name} '{value:g} {_BODY_UNITS[name]}'" for name, value in missing.items()]
-    return [f"--{name} {value:g}" for name, value in missing.items()]
 
 
 def warn_of(missing: Mapping[str, float], stacklevel: int) -> None:

@@ -200,18 +200,6 @@ def test_a_table_carries_the_uncertainties_of_the_angles(lagtop: Lagtop) -> None
             assert float(row[f"{angle}_std"]) == pytest.approx(math.hypot(*parts), 1e-5, 1e-12)
 
 
-def test_a_table_knows_what_measured_inputs_stand_for(lagtop: Lagtop) -> None:
-    """With phidot0 in the place of r0 an uncertain psidot0 moves r0 too."""
-    shared = ["--phidot0", "50", "--t-max", "0.6", "--n", "2", "--columns", "phi"]
-    text = lagtop("table", "--psidot0", "3.0000(1)", *shared).stdout
-    std = float(text.splitlines()[-1].partition(",")[2])
-    low, high = (
-        float(lagtop("table", "--psidot0", rate, *shared).stdout.splitlines()[-1])
-        for rate in (2.9999, 3.0001)
-    )
-    assert std == pytest.approx(abs(high - low) / 2, rel=1e-5)
-
-
 def test_a_table_has_uncertainties_in_radians_and_of_chosen_angles(lagtop: Lagtop) -> None:
     result = lagtop("table", "--theta0", "30(1)", "--columns", "t,psi,axis", "--n", 2, "--t-max", 1)
     assert result.stdout.splitlines()[0] == "t,psi_deg,axis_x,axis_y,axis_z,psi_deg_std"

@@ -53,10 +53,3 @@ def test_commands_name_the_option_of_a_wrong_list(words: str, lagtop: Lagtop) ->
     for names in ("", f"{known},", f"{known},x", f"{known} {known}", f"{known},{known}"):
         result = lagtop(*words.split()[:-1], names)
         assert_one_line(result, 2, f"{option} must ")
-
-
-def test_an_unknown_scene_names_the_shipped_ones(lagtop: Lagtop) -> None:
-    unknown = lagtop("solve", "nosuch")
-    assert_one_line(unknown, 65, "nosuch: No such file or directory (the built-in scenes are ")
-    assert "simo-wong-1991" in unknown.stderr
-    assert "(did you mean 'hanging-still'?)" in lagtop("solve", "hanging").stderr

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from conftest import Lagtop
 from lagtop import LagtopError, Regime, Top, solve
 from scenes import UNIT
 
@@ -79,10 +78,3 @@ def test_the_steady_motion_is_that_of_the_exact_root() -> None:
 def test_words_that_fit_no_motion_are_refused(inputs: Any, message: str) -> None:
     with pytest.raises(LagtopError, match=message):
         Top(**{"psidot0": "steady", **inputs})
-
-
-def test_commands_take_the_words_where_psidot0_is_known(lagtop: Lagtop) -> None:
-    found = lagtop("solve", "--r0", "60(1)", "--psidot0", "steady", "--get", "psidot0,regime")
-    assert found.stdout == "steady\nsteady precession\n"
-    rows = lagtop(*"table --r0 60 --psidot0 steady-fast --t-max 1 --n 2 --digits 20".split()).stdout
-    assert {row.split(",")[1] for row in rows.splitlines()[1:]} == {"30.0"}
