@@ -22,7 +22,7 @@ import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from decimal import Decimal, localcontext
@@ -39,8 +39,6 @@ from lagtop import LagtopError, Motion, Top, solve, sweep
 from record_reference import reference_record
 
 from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
-from lagrange_cli.cli.app import with_options
-from lagrange_cli.cli.solve import solve_command
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS
 
@@ -91,19 +89,14 @@ def varied(rng: random.Random, scene: Scene, long: bool) -> tuple[Scene, int]:
     return scene, digits
 
 
-def typed(top: Top) -> str:
-    """Return the command that solves a top, with all digits of its inputs."""
+def typed(command: str, top: Top, *options: str) -> str:
+    """Return a command for a top, with all digits of its inputs."""
     names = {"theta0_deg": "theta0", "theta0_rad": "rad --theta0", "A_cm": "A-cm"}
     given = [(names.get(x, x), Fraction(y)) for x, y in top.as_dict().items() if y is not None]
     with localcontext() as context:
         context.prec = 2000
         words = [f"--{x} {(Decimal(y.numerator) / y.denominator).normalize():g}" for x, y in given]
-    return f"lagtop solve {' '.join(words)}"
-
-
-def options_of(top: Top) -> str:
-    """Return a top as options of the command line."""
-    return with_options(top.as_text(), solve_command.params)
+    return " ".join(["lagtop", command, *words, *options])
 
 
 def number_of(motion: Motion, key: str, digits: int) -> Any:
@@ -119,7 +112,7 @@ def check_record(tally: Tally, exact: Numbers, motion: Motion, digits: int) -> N
     """Check every number of a motion: correctly rounded, or rightly none."""
     for key in NUMBERS:
         value, true = number_of(motion, key, digits), exact.get(key)
-        show = f"{typed(motion.top)} --digits {digits or 17} --get {key}  # {value}"
+        show = typed("solve", motion.top, f"--digits {digits or 17} --get {key}  # {value}")
         if (value is None) != (true is None):
             known = true and mpmath.nstr(true, 20)
             tally.violations.append(f"{key} is {value!r}, the reference has {known}: {show}")
@@ -171,7 +164,7 @@ def check_attitudes(tally: Tally, motion: Motion, exact: Numbers, times: list[fl
         away = rotation_angle(computed, reference.attitude(t))
         with mpmath.workdps(60):
             tau = float(mpmath.mpf(t) - mpmath.nint(t / reference.T) * reference.T)
-        show = f"lagtop table {options_of(motion.top)} --columns quaternion --t-min {t!r} --n 1"
+        show = typed("table", motion.top, f"--columns quaternion --t-min {t!r} --n 1")
         tally.note("attitude", away / (2.0**-52 * (1 + abs(tau) * speed)), ATTITUDE, show)
 
 
@@ -197,7 +190,7 @@ def check_sweep(tally: Tally, tilt: str, checks: list[tuple[Scene, Numbers]]) ->
             continue
         for key in NUMBER_KEYS:
             value, true = float(columns[key][i]), exact.get(key)
-            show = f"lagtop sweep {options_of(Top(**scene))} --keys {key}  # {value!r}"
+            show = typed("sweep", Top(**scene), f"--keys {key}  # {value!r}")
             if true is None or math.isnan(value):
                 if true is not None or not math.isnan(value):
                     tally.violations.append(f"sweep {key} is {value!r}: {show}")
@@ -245,15 +238,6 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
     return kind, tally
 
 
-def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
-    """Yield the report, a line per kind and then what exceeds its bound."""
-    for kind, tally in tallies.items():
-        worst = ", ".join(f"{name} {x:.3g}" for name, x in tally.worst.items())
-        counts = ", ".join(f"{name} {n}" for name, n in tally.counts.items())
-        yield f"{kind}: {counts}; worst: {worst}; beyond: {len(tally.violations)}"
-        yield from (f"    {line}" for line in tally.violations[:MOST_SHOWN])
-
-
 def main() -> int:
     """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -278,10 +262,13 @@ def main() -> int:
     with ProcessPoolExecutor(options.jobs) as pool:
         for kind, tally in pool.map(run_chunk, tasks):
             tallies[kind].add(tally)
-    print("\n".join(lines_of(tallies)))
+    for kind, tally in tallies.items():
+        worst = ", ".join(f"{name} {x:.3g}" for name, x in tally.worst.items())
+        counts = ", ".join(f"{name} {n}" for name, n in tally.counts.items())
+        beyond = [f"\n    {line}" for line in tally.violations[:MOST_SHOWN]]
+        print(f"{kind}: {counts}; worst: {worst}; beyond: {len(tally.violations)}", *beyond, sep="")
     done = sum(tally.counts["scenes"] for tally in tallies.values())
-    seconds = time.monotonic() - begun
-    print(f"{done} scenes, seed {options.seed}, in {seconds:.0f} s")
+    print(f"{done} scenes, seed {options.seed}, in {time.monotonic() - begun:.0f} s")
     return 1 if any(tally.violations for tally in tallies.values()) else 0
 
 
