@@ -9,14 +9,14 @@ common positive factor, X is theta2 and Y is theta1 of the angle pi (z - i s y),
 place y of its own.  The phase is counted from the nearer turning point: X or Y then has a positive
 real part, and its argument cannot jump.  Equation numbers are Chrapan's.
 
-The constants below are those of one motion in one precision.  Their methods take and return balls,
-and raise TooFewDigitsError if the precision does not decide them.
+A course has the constants of one motion in one precision.  Among them are `spin` and `precession`,
+the mean rates, `unit`, a unit of time, and `start`, arg X and arg Y at t = 0 without their mean
+growth.  Its methods raise TooFewDigitsError if the precision does not decide them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -67,29 +67,23 @@ class Side(NamedTuple):
     """|X| at u1, or |Y| at u2, where |X|^2 + |Y|^2 is 1 at u1 and k' at u2."""
 
 
-@dataclass(frozen=True)
 class Nutation:
     """The constants of a motion that nutates."""
 
-    period: arb
-    spin: arb
-    """The mean spin rate (6,3)."""
-    precession: arb
-    """The mean precession rate (7,3)."""
-    since: arb
-    """Periods from a passage of u1 to t = 0."""
-    ratio: arb | None
-    """K'/K, or None if k = 0."""
-    hyperbolic: bool
-    """Whether K > K'."""
-    bend: arb
-    """-u'' at u1."""
-    sides: tuple[Side, Side]
-    """The constants of X and of Y."""
-    falls: int
-    """1 if the tilt grows after t = 0, else -1."""
-
-    unit = property(lambda self: self.period)
+    def __init__(self, facts: Facts, of: Names) -> None:
+        self.spin, self.precession = of["mean_spin_rate"], of["mean_precession_rate"]
+        self.period = self.unit = of["T_nutation"]
+        self.falls = _falls(facts)
+        self.since = _since_u1(facts, of)
+        """Periods from a passage of u1 to t = 0."""
+        self.ratio: arb | None = None if of["m_k"].is_zero() else of["K_prime"] / of["K"]
+        """K'/K, or None if k = 0."""
+        self.hyperbolic = self.ratio is not None and float(self.ratio.mid()) < 1
+        """Whether K > K'."""
+        self.bend = of["swing"] * of["narrow"] / 2
+        """-u'' at u1."""
+        self.sides = _sides(facts, of, of["K_prime"] if self.hyperbolic else of["K"])
+        """The constants of X and of Y."""
 
     @cached_property
     def start(self) -> tuple[arb, arb]:
@@ -159,53 +153,46 @@ class Nutation:
         return theta1, theta2
 
 
-@dataclass(frozen=True)
 class ConstantTilt:
     """The constants of a motion at constant tilt."""
 
-    spin: arb
-    precession: arb
-    x: arb
-    """cos(theta/2)."""
-    y: arb
-    """sin(theta/2)."""
-
-    rate = h0 = arb(0)
     start = arb(0), arb(0)
-    unit = property(lambda self: _time_of_a_radian(self.spin, self.precession))
+    rate = h0 = arb(0)
+    """A constant tilt is a swing at the rate 0."""
+
+    def __init__(self, facts: Facts, of: Names) -> None:
+        self.precession = arb(0) if facts.vertical else of["psidot0"]
+        self.spin = of["r0"] - self.precession * of["theta0"].cosine
+        self.unit = _time_of_a_radian(self.spin, self.precession)
+        self.x, self.y, *_ = start_of(facts, of)
 
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
         return Attitude(self.x, self.y, self.spin * t, self.precession * t, arb(0))
 
 
-@dataclass(frozen=True)
 class SingleSwing:
     """The constants of a motion on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = h0 + rate t."""
 
-    spin: arb
-    """r0 - b/2, the spin rate without the effect of the swing."""
-    precession: arb
-    """b/2."""
-    x: arb
-    """cos(theta_max/2)."""
-    y: arb
-    """sin(theta_max/2), with the sign of b."""
-    rate: arb
-    h0: arb
-    """h at t = 0, exactly 0 if the axis is lowest then."""
-    falls: int
-    """1 if the tilt grows after t = 0, else -1."""
-
-    start = property(lambda self: (self.turn(self.h0), arb(0)))
-    unit = property(lambda self: _time_of_a_radian(self.spin, self.precession, self.rate))
+    def __init__(self, facts: Facts, of: Names) -> None:
+        u0, u2, self.falls = of["theta0"].cosine, of["u2"], _falls(facts)
+        self.precession = of["b"] / 2
+        self.spin = of["r0"] - self.precession
+        self.x = arb(0) if facts.over_bottom else root((1 + u2) / 2)
+        """cos(theta_max/2)."""
+        self.y = root((1 - u2) / 2) * (-1 if facts.spin < 0 else 1)
+        """sin(theta_max/2), with the sign of b."""
+        self.rate = root(of["wide"]) / 2
+        self.h0 = -self.falls * root((u0 - u2) / (1 - u0)).asinh() if not facts.turning else arb(0)
+        """h at t = 0, exactly 0 if the axis is lowest then."""
+        self.unit = _time_of_a_radian(self.spin, self.precession, self.rate)
+        self.start = self.turn(self.h0), arb(0)
 
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
         h = self.h0 + self.rate * t
-        turned = self.turn(h) - self.turn(self.h0)
-        height = self.y * h.tanh()
-        x = root(self.x * self.x + height * height)
+        turned = self.turn(h) - self.start[0]
+        x = root(self.x * self.x + (self.y * h.tanh()) * (self.y * h.tanh()))
         phi, psi = self.spin * t + turned, self.precession * t + turned
         return Attitude(x, abs(self.y) * h.sech(), phi, psi, -h)
 
@@ -215,47 +202,26 @@ class SingleSwing:
         return arb.atan2(self.y * side, self.x)
 
 
-def _time_of_a_radian(*rates: arb) -> arb:
-    """Return the inverse of about the largest rate, or 1 if all rates are 0."""
-    fastest = max(rates, key=lambda rate: abs(float(rate.mid())))
-    return arb(1) if fastest.contains(0) else abs(1 / fastest.mid())
-
-
 Course = Nutation | ConstantTilt | SingleSwing
-"""The constants from which the attitude of any motion follows.
-
-Each kind has its `unit` of time, and as `start` arg X and arg Y at t = 0 without their mean growth.
-"""
+"""The constants from which the attitude of any motion follows."""
 
 
 def course_of(facts: Facts, of: Names) -> Course:
     """Return the constants of a motion, from its facts and its numbers in the precision in use."""
-    falls = -1 if facts.inputs["thetadot0"] < 0 else 1
-    cosine = of["theta0"].cosine
     if facts.steady:
-        start, turn = start_of(facts, of), arb(0) if facts.vertical else of["psidot0"]
-        return ConstantTilt(of["r0"] - turn * cosine, turn, start.x, start.y)
-    if facts.separatrix:
-        x = arb(0) if facts.over_bottom else root((1 + of["u2"]) / 2)
-        y = root((1 - of["u2"]) / 2) * (-1 if facts.spin < 0 else 1)
-        h0 = arb(0)
-        if not facts.turning:
-            h0 = -falls * root((cosine - of["u2"]) / (1 - cosine)).asinh()
-        precession = of["b"] / 2
-        return SingleSwing(of["r0"] - precession, precession, x, y, root(of["wide"]) / 2, h0, falls)
-    ratio = None if of["m_k"].is_zero() else of["K_prime"] / of["K"]
-    hyperbolic = ratio is not None and float(ratio.mid()) < 1
-    return Nutation(
-        period=of["T_nutation"],
-        spin=of["mean_spin_rate"],
-        precession=of["mean_precession_rate"],
-        since=_since_u1(facts, of, cosine, falls),
-        ratio=ratio,
-        hyperbolic=hyperbolic,
-        bend=of["swing"] * of["narrow"] / 2,
-        sides=_sides(facts, of, of["K_prime"] if hyperbolic else of["K"]),
-        falls=falls,
-    )
+        return ConstantTilt(facts, of)
+    return SingleSwing(facts, of) if facts.separatrix else Nutation(facts, of)
+
+
+def _falls(facts: Facts) -> int:
+    """Return 1 if the tilt grows after t = 0, else -1."""
+    return -1 if facts.inputs["thetadot0"] < 0 else 1
+
+
+def _time_of_a_radian(*rates: arb) -> arb:
+    """Return the inverse of about the largest rate, or 1 if all rates are 0."""
+    fastest = max(rates, key=lambda rate: abs(float(rate.mid())))
+    return arb(1) if fastest.contains(0) else abs(1 / fastest.mid())
 
 
 def start_of(facts: Facts, of: Names) -> Attitude:
@@ -286,11 +252,12 @@ def _sides(facts: Facts, of: Names, unit: arb) -> tuple[Side, Side]:
     return found[0], found[1]
 
 
-def _since_u1(facts: Facts, of: Names, u0: arb, falls: int) -> arb:
+def _since_u1(facts: Facts, of: Names) -> arb:
     """Return the periods from the nearest passage of u1 to t = 0, by (4,22)-(4,24)."""
     if facts.turning:
         return arb(1 - facts.turning) / 4
+    u0 = of["theta0"].cosine
     sine2, cosine2 = (of["u1"] - u0) * of["wide"], (u0 - of["u2"]) * of["narrow"]
     amplitude = arb.atan2(root(sine2), root(cosine2))
     periods: arb = acb.elliptic_f(acb(amplitude), acb(of["m_k"])).real / (2 * of["K"])
-    return falls * periods
+    return _falls(facts) * periods

@@ -308,22 +308,19 @@ def shown_keys(
 
 
 CHAIN = {
-    "Inputs": ["m", "A", "C", "s", "g", "r0", "theta0_deg"],
-    "The body": ["a", "spin_share"],
-    "The start": ["u1", "b", "roots_sum", "roots_product"],
-    "The roots": [
-        *("roots_sum_squared", "roots_product_fourfold", "roots_gap_squared", "roots_gap"),
-        *("u3_twice", "u2_twice", "u3", "u2"),
-    ],
-    "Modulus and amplitude": [
-        *("k_squared", "modular_angle_deg", "comodular_angle_deg", "amplitude_deg"),
-    ],
-    "Integrals": ["K", "E", "alpha", "E_amplitude"],
-    "Nutation": ["T_nutation", "u_quarter"],
-    "Spin and precession": [
-        *("mean_spin_rate", "mean_precession_rate", "spin_rate_half", "precession_rate_half"),
-        *("T_spin", "T_precession"),
-    ],
+    step: names.split()
+    for step, names in {
+        "Inputs": "m A C s g r0 theta0_deg",
+        "The body": "a spin_share",
+        "The start": "u1 b roots_sum roots_product",
+        "The roots": "roots_sum_squared roots_product_fourfold roots_gap_squared roots_gap "
+        "u3_twice u2_twice u3 u2",
+        "Modulus and amplitude": "k_squared modular_angle_deg comodular_angle_deg amplitude_deg",
+        "Integrals": "K E alpha E_amplitude",
+        "Nutation": "T_nutation u_quarter",
+        "Spin and precession": "mean_spin_rate mean_precession_rate spin_rate_half "
+        "precession_rate_half T_spin T_precession",
+    }.items()
 }
 """Keys by step of section 8, in the order of the paper."""
 

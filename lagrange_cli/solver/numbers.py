@@ -45,28 +45,24 @@ def nome_of(k: arb, k_prime: arb) -> arb:
     """Return the nome exp(-pi K'/K); 0 for k = 0."""
     if k.is_zero():
         return arb(0)
-    found: arb = (-arb.pi() * arb(1).agm(k_prime) / arb(1).agm(k)).exp()
-    return found
+    return (-arb.pi() * arb(1).agm(k_prime) / arb(1).agm(k)).exp()
 
 
 def complete_E(k_prime: arb) -> arb:
     """Return the complete integral of the second kind, 2 R_G(0, k'^2, 1)."""
     if k_prime.is_zero():
         return arb(1)
-    found: arb = 2 * acb.elliptic_rg(acb(0), acb(square(k_prime)), acb(1)).real
-    return found
+    return 2 * acb.elliptic_rg(acb(0), acb(square(k_prime)), acb(1)).real
 
 
 def ellint_F(phi: arb, k: arb) -> arb:
     """Return Legendre's integral of the first kind."""
-    found: arb = acb.elliptic_f(acb(phi), acb(square(k))).real
-    return found
+    return acb.elliptic_f(acb(phi), acb(square(k))).real
 
 
 def ellint_E(phi: arb, k: arb) -> arb:
     """Return Legendre's integral of the second kind."""
-    found: arb = acb.elliptic_e_inc(acb(phi), acb(square(k))).real
-    return found
+    return acb.elliptic_e_inc(acb(phi), acb(square(k))).real
 
 
 FUNCTIONS: dict[str, Any] = {
@@ -312,5 +308,4 @@ def mean_of_inverse(at_u1: arb, at_u2: arb, m_k_prime: arb) -> arb:
         if m.overlaps(g):
             break
     value, ratio = (A * m + B) / (m + p) / at_u2, g / m
-    found: arb = (value * ratio).union(value / ratio)
-    return found
+    return (value * ratio).union(value / ratio)

@@ -21,15 +21,12 @@ from ..top.top import Top
 from .facts import Facts, Regime
 from .keys import (
     CONDITIONS,
-    INPUTS,
     LINES,
-    NUMBER_KEYS,
     NUMBERS,
     all_keys,
     bare_name,
     degree_name,
     record_keys,
-    unit_name,
 )
 from .numbers import Numbers
 
@@ -170,32 +167,30 @@ def record_in_range(
     keys: Collection[str] | None = None,
 ) -> tuple[dict[str, Any], list[OutOfRangeError]]:
     """Return `Motion.record`, and an error for each number beyond the range of doubles."""
-    names, numbers = record_keys(radians=radians), NUMBER_KEYS
-    wanted = set(names if keys is None else keys)
-    if not wanted <= set(names):
-        names, numbers = all_keys(radians=radians), list(NUMBERS)
+    words: dict[str, Callable[[], str | None]] = {
+        "regime": lambda: motion.regime.value,
+        "path": lambda: motion.path,
+        "remark": lambda: remark_of(motion, radians=radians),
+    }
+    wanted = set(record_keys(radians=radians) if keys is None else keys)
+    record: dict[str, Any] = {}
     found: dict[str, Rounded | None] = {}
     beyond = []
-    for name in [*INPUTS, *numbers]:
-        shown = unit_name(name, radians=radians)
-        if shown in wanted:
+    for name in all_keys(radians=radians):
+        if name in wanted and name in words:
+            record[name] = words[name]()
+        elif name in wanted:
             try:
-                found[shown] = _number(motion, shown, digits)
+                found[name] = _number(motion, name, digits)
             except OutOfRangeError as error:
-                found[shown] = None
+                found[name] = None
                 beyond.append(error)
-    values = {name: None if number is None else number.value for name, number in found.items()}
-    values["regime"] = motion.regime.value
-    if motion.top.steady_word:
-        values["psidot0"] = motion.top.steady_word
-    if "path" in wanted:
-        values["path"] = motion.path
-    if "remark" in wanted:
-        values["remark"] = remark_of(motion, radians=radians)
-    record = {name: values[name] for name in names if name in wanted}
+            number = found[name]
+            record[name] = None if number is None else number.value
+    if "psidot0" in record and motion.top.steady_word:
+        record["psidot0"] = motion.top.steady_word
     if radii:
-        known = {name: found[name] for name in record if name in found}
-        record |= {f"{name}_radius": x and x.radius for name, x in known.items()}
+        record |= {f"{name}_radius": number and number.radius for name, number in found.items()}
     return record, beyond
 
 
