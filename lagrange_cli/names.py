@@ -1,9 +1,10 @@
-"""Lists of names: parsing, and checks against the known names."""
+"""Names of numbers: how they are presented, parsed, and checked against the known names."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
 
 from .arithmetic.text import quoted
 from .errors import LagtopError
@@ -12,6 +13,27 @@ ANGLES = ("theta", "phi", "psi")
 """Tilt, spin and precession, in the order used everywhere."""
 _MOST_CHARACTERS, _FIRST = 240, 12
 """The most characters of a list in a message, and the number of names shown of a longer list."""
+
+
+class Key(NamedTuple):
+    """The presentation of a number of a record; the unit `angle` stands for degrees or radians."""
+
+    group: str
+    symbol: str
+    meaning: str
+    unit: str = ""
+    equation: str = ""
+    formula: str = ""
+    """The formula, written with names of keys, such as `2*m*g*s/A`; see `solver.explanation`."""
+    only: str = ""
+    """The condition of the number, such as `if r0 is not 0`; some regimes lack it too."""
+    evaluated: str = ""
+    """The form of the formula that the solver evaluates."""
+
+    def in_units(self, *, radians: bool, named: Callable[[str], str] = str) -> Key:
+        """Return the key with its unit as printed; `named` gives the names of units of a system."""
+        angle = "rad" if radians else "deg"
+        return self._replace(unit=angle if self.unit == "angle" else named(self.unit))
 
 
 def split_names(text: str) -> list[str]:

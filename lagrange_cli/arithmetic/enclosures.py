@@ -10,13 +10,10 @@ digits: numbers computed from them that differ at all differ, for all practical 
 some hundreds of digits.  A sign that D digits leave open is 0 (`sign_to`).  A number that they
 cannot round is the simplest fraction in its ball: 0, or a tie between two roundings (`settled`).
 
-How to use it:
-
     at_precision(40, lambda: arb(2).sqrt())          # a value computed in 40 digits
-    sign(x), root(x), nearest(x)                     # in a computation: decide, or ask for more
     sign_to(lambda digits: x(digits), most=D)        # a sign, 0 only if D digits leave it open
     settled("k", lambda digits: x(digits), None, D)  # the nearest double; 20 in place of None: text
-    decided(lambda digits: ..., most=D)              # any other question
+    decided(lambda digits: ..., most=D)              # any other question, with `sign` and `nearest`
 
 Rules for code that uses balls:
 
@@ -236,7 +233,7 @@ class Rounded(NamedTuple):
             away = max(_distance(x, self.value) for x in ends_of(arb(exact.mid(), radius)))
         else:
             away = _distance(exact, self.value)
-        return text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec)
+        return text_of(_TWO_DIGITS.multiply(away, _A_HAIR_MORE), 2)
 
 
 def settled(
@@ -291,7 +288,8 @@ def _alike(what: str, ball: arb, digits: int | None) -> Any:
 
 _EXACT = own_context(1_000_000, [])
 """More digits than any ball has."""
-_OUTWARDS, _SHORT = own_context(20, [], ROUND_UP), own_context(2, [], ROUND_UP)
+_SHORT, _OUTWARDS = own_context(20, []), own_context(20, [], ROUND_UP)
+_TWO_DIGITS = own_context(2, [], ROUND_UP)
 _A_HAIR_MORE = Decimal("1.000000000001")
 _MORE_DIGITS = "use digits=N"
 
@@ -326,8 +324,11 @@ def rounded(what: str, value: Exact, digits: int | None, remedy: str = "change t
     except OverflowError:  # of a fraction; a decimal becomes infinite
         found = math.inf
     if math.isinf(found) or (value and not found):
-        bound = "0 or at least 5e-324" if not found else "within 1.8e308"
-        raise OutOfRangeError(f"{what} must be {bound} in size, got {_brief(value)}: {remedy}")
+        bound, shown = (
+            "within 1.8e308" if found else "0 or at least 5e-324",
+            _decimal(value, _SHORT),
+        )
+        raise OutOfRangeError(f"{what} must be {bound} in size, got {shown:.3e}: {remedy}")
     return found
 
 
@@ -342,11 +343,6 @@ def text_of(value: Exact, digits: int) -> NumberText:
     figures, e, exponent = f"{found:{style}}".partition("e")
     point = "" if "." in figures else ".0"
     return NumberText(f"{figures}{point}{e}{exponent}")
-
-
-def _brief(value: Exact) -> str:
-    """Return a number with four digits, for a message."""
-    return f"{_decimal(value, own_context(20, [])):.3e}"
 
 
 def _decimal(value: Exact, context: Context) -> Decimal:

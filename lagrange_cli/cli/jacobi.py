@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from ..arithmetic.key import Key
 from ..elliptic import eta, legendre
 from ..elliptic.arguments import (
     Arguments,
@@ -18,7 +17,7 @@ from ..elliptic.function_table import FAMILIES, FunctionRequest, function_rows
 from ..elliptic.modulus import GivenModulus
 from ..elliptic.tables import Rows
 from ..errors import LagtopError
-from ..names import check_names
+from ..names import Key, check_names
 from ..output.destination import Output
 from ..output.terminal import with_progress
 from ..top.ranges import Points

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
-from ..arithmetic.key import Key
 from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError
-from ..names import check_names
+from ..names import Key, check_names
 from ..output.destination import Output
 from ..solver.facts import Regime
 from ..solver.keys import all_keys, key_of, record_keys, shown_keys, unit_name

@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from ..arithmetic.key import Key
+from ..names import Key
 
 
 class Document(str):

@@ -11,9 +11,9 @@ from io import StringIO
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.key import Key
 from ..arithmetic.text import double_text, value_text
 from ..file_bytes import utf8_path
+from ..names import Key
 from .terminal import printable
 from .text import csv_text
 

@@ -162,7 +162,7 @@ class ConstantTilt:
 
     def __init__(self, facts: Facts, of: Names) -> None:
         self.precession = arb(0) if facts.vertical else of["psidot0"]
-        self.spin = of["r0"] - self.precession * of["theta0"].cosine
+        self.spin = of["r0"] - self.precession * of["u0"]
         self.unit = _time_of_a_radian(self.spin, self.precession)
         self.x, self.y, *_ = start_of(facts, of)
 
@@ -175,7 +175,7 @@ class SingleSwing:
     """The constants of a motion on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = h0 + rate t."""
 
     def __init__(self, facts: Facts, of: Names) -> None:
-        u0, u2, self.falls = of["theta0"].cosine, of["u2"], _falls(facts)
+        u0, u2, self.falls = of["u0"], of["u2"], _falls(facts)
         self.precession = of["b"] / 2
         self.spin = of["r0"] - self.precession
         self.x = arb(0) if facts.over_bottom else root((1 + u2) / 2)
@@ -256,7 +256,7 @@ def _since_u1(facts: Facts, of: Names) -> arb:
     """Return the periods from the nearest passage of u1 to t = 0, by (4,22)-(4,24)."""
     if facts.turning:
         return arb(1 - facts.turning) / 4
-    u0 = of["theta0"].cosine
+    u0 = of["u0"]
     sine2, cosine2 = (of["u1"] - u0) * of["wide"], (u0 - of["u2"]) * of["narrow"]
     amplitude = arb.atan2(root(sine2), root(cosine2))
     periods: arb = acb.elliptic_f(acb(amplitude), acb(of["m_k"])).real / (2 * of["K"])

@@ -23,8 +23,7 @@ from typing import Any
 from flint import arb
 
 from ..arithmetic.enclosures import exact
-from ..arithmetic.key import Key
-from ..names import ANGLES, check_names
+from ..names import ANGLES, Key, check_names
 from .numbers import Numbers, code_of
 
 GROUPS = {

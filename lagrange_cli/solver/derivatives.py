@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from flint import arb
 
@@ -31,9 +31,6 @@ from ..top.inputs import DECLARED
 from ..top.top import Top
 from .keys import NUMBER_KEYS, TEXTBOOK_KEYS, bare_name
 from .solve import Motion, solve
-
-if TYPE_CHECKING:
-    pass
 
 DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK_KEYS]
 """The keys that have derivatives."""

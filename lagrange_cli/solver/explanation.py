@@ -13,8 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
-from ..arithmetic.key import Key
-from ..names import check_names
+from ..names import Key, check_names
 from .columns import shown_columns
 from .facts import Facts
 from .keys import KEYS, LINES, all_keys, bare_name, shown_keys, unit_name
@@ -153,7 +152,7 @@ def _with_limits(formula: str, facts: Facts) -> str:
     """
     for name, pole, passes in (("P", "upper", facts.over_top), ("Q", "lower", facts.over_bottom)):
         limit = f"2*pi*K/T_nutation (limit over the {pole} pole)"
-        formula = formula.replace(LINES[name].key.formula, limit) if passes else formula
+        formula = formula.replace(LINES[name].formula, limit) if passes else formula
     return formula
 
 

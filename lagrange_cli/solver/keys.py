@@ -20,9 +20,9 @@ which are finite without torque, and exactly 0 if two roots coincide:
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
-from ..arithmetic.key import Key
+from ..names import Key
 from ..top.derived import FAST, SLOW
 from ..top.inputs import DECLARED, NINE, TILT
 
@@ -160,6 +160,11 @@ U | | cos ϑ half a period after the start | |
    | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))
    ~ u2 + (u1 - cos(theta0))*wide/(wide + a*(u2 - cos(theta0)))
 V | | cos ϑ between two quarters | | (5,2) | u1 - (u1 - u2)*k_prime/(1 + k_prime)
+nutation | | angle of the nutation | angle | | theta_max - theta_min
+excess | | of the mean rate over the elementary one, in ppm | | §8
+   | 1000000*(mean_precession_rate/precession_rate_elementary - 1)
+swing_rate | | rate of the swing on the separatrix | rad/time | | course.rate
+lowest | | time at which it is lowest | time | | -course.h0/course.rate
 """
 
 
@@ -197,14 +202,7 @@ CONDITIONS: dict[str, Callable[[Any], bool]] = {
 """The condition of a key, as lines and messages name it, and the test of a motion that it is."""
 
 
-class Line(NamedTuple):
-    """A line of the table: what is shown, and the formula that is evaluated."""
-
-    key: Key
-    evaluated: str
-
-
-def _read(table: str) -> Iterator[tuple[str, Line]]:
+def _read(table: str) -> Iterator[tuple[str, Key]]:
     """Yield the lines of the table by name."""
     group = common = ""
     for text in table.strip().replace("\n ", " ").splitlines():
@@ -213,22 +211,19 @@ def _read(table: str) -> Iterator[tuple[str, Line]]:
             continue
         name, symbol, meaning, unit, equation, formula, *only = map(str.strip, text.split("|", 6))
         printed, _, evaluated = formula.partition(" ~ ")
-        key = Key(group, symbol, meaning, unit, equation, printed, only[0] if only else common)
-        yield name, Line(key, evaluated or printed.partition(" where ")[0])
+        evaluated = evaluated or printed.partition(" where ")[0]
+        condition = only[0] if only else common
+        yield name, Key(group, symbol, meaning, unit, equation, printed, condition, evaluated)
 
 
-def _with_definitions(line: Line) -> Line:
-    """Return a line whose printed formula defines the names that follow `where`."""
-    formula, _, names = line.key.formula.partition(" where ")
-    if not names:
-        return line
-    defined = ", ".join(f"{name} = {_TABLE[name].key.formula}" for name in names.split(", "))
-    return line._replace(key=line.key._replace(formula=f"{formula} where {defined}"))
+def _with_definitions(key: Key) -> Key:
+    """Return a key whose printed formula defines the names that follow `where`."""
+    formula, where, names = key.formula.partition(" where ")
+    defined = ", ".join(f"{name} = {_TABLE[name].formula}" for name in names.split(", ") if where)
+    return key._replace(formula=f"{formula}{where}{defined}")
 
 
 _TABLE = dict(_read(_TEXT))
-_LINES = {x: _with_definitions(line) for x, line in _TABLE.items() if line.key.group != "where"}
-_FIRST_FURTHER = list(_LINES).index("energy_without_spin")
 
 
 def bare_name(name: str) -> str:
@@ -246,10 +241,11 @@ def degree_name(name: str) -> str:
     return f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
 
 
-LINES = {bare_name(name): line for name, line in (_TABLE).items()}
+LINES = {bare_name(name): key for name, key in _TABLE.items()}
 """All lines by the names that formulas use."""
-NUMBERS = {name: line.key for name, line in _LINES.items()}
+NUMBERS = {name: _with_definitions(key) for name, key in _TABLE.items() if key.group != "where"}
 """The declaration of each number by key."""
+_FIRST_FURTHER = list(NUMBERS).index("energy_without_spin")
 NUMBER_KEYS = list(NUMBERS)[:_FIRST_FURTHER]
 """The numbers of a record, in order; `regime` precedes them, `path` and `remark` follow."""
 FURTHER_KEYS = list(NUMBERS)[_FIRST_FURTHER:]

@@ -12,8 +12,9 @@ from __future__ import annotations
 import ast
 from functools import cache, partial
 from itertools import pairwise
+from operator import itemgetter
 from types import CodeType
-from typing import Any, NamedTuple
+from typing import Any
 
 from flint import acb, arb, ctx
 
@@ -22,13 +23,6 @@ from ..top.derived import rates_of
 from .attitude import Course, course_of
 from .facts import Facts
 from .keys import LINES
-
-
-class Tilt(NamedTuple):
-    """The sine and the cosine of the tilt at the start, which are exact if they are rational."""
-
-    sine: arb
-    cosine: arb
 
 
 def square(x: arb) -> arb:
@@ -71,12 +65,12 @@ FUNCTIONS: dict[str, Any] = {
     "agm": lambda x, y: y.agm(arb(x)),
     "atan2": arb.atan2,
     "complete_E": complete_E,
-    "cos": lambda tilt: tilt.cosine,
+    "cos": itemgetter(1),  # of theta0
     "ellint_E": ellint_E,
     "ellint_F": ellint_F,
     "max": lambda x, y: x.max(arb(y)),
     "nome_of": nome_of,
-    "sin": lambda tilt: tilt.sine,
+    "sin": itemgetter(0),
     "sqrt": root,
     "square": square,
 }
@@ -130,16 +124,21 @@ class Numbers(dict[str, Any]):
         return arb.pi()
 
     @property
-    def theta0(self) -> Tilt:
-        """The tilt at the start."""
-        return Tilt(*self.facts.tilt.sine_and_cosine())
+    def theta0(self) -> tuple[arb, arb]:
+        """Sine and cosine of the tilt at the start, exact if they are rational."""
+        return self.facts.tilt.sine_and_cosine()
+
+    @property
+    def u0(self) -> arb:
+        """The cosine of the tilt at the start."""
+        return self["theta0"][1]
 
     # inputs that are derived
 
     @property
     def r0(self) -> arb:
         """The total spin rate, from phidot0."""
-        return self["phidot0"] + self["psidot0"] * self["theta0"].cosine
+        return self["phidot0"] + self["psidot0"] * self["u0"]
 
     @property
     def psidot0(self) -> arb:
@@ -149,7 +148,7 @@ class Numbers(dict[str, Any]):
     @property
     def steady_rates(self) -> tuple[arb, arb]:
         """The slow and the fast rate w of steady precession, cos(theta0) w^2 - b w + a/2 = 0."""
-        a, b, u0 = self["a"], self["b"], self["theta0"].cosine
+        a, b, u0 = self["a"], self["b"], self["u0"]
         if not (self.facts.a or self.facts.spin):
             return arb(0), arb(0)
         q = b + (-1 if self.facts.spin < 0 else 1) * root(square(b) - 2 * a * u0)
@@ -170,7 +169,7 @@ class Numbers(dict[str, Any]):
     @property
     def roots(self) -> tuple[arb, arb]:
         """The roots u2 and u1 of the cubic (4,9); the known ones are divided out."""
-        facts, u0 = self.facts, self["theta0"].cosine
+        facts, u0 = self.facts, self["u0"]
         if facts.steady:
             return u0, u0
         if facts.separatrix:  # the sum of the roots less 2

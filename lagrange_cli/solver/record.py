@@ -87,7 +87,7 @@ class Solution:
         bare = bare_name(name)
         if bare not in LINES:
             return True
-        return bare not in self.facts.undefined and CONDITIONS[LINES[bare].key.only](self)
+        return bare not in self.facts.undefined and CONDITIONS[LINES[bare].only](self)
 
     def number(self, name: str, digits: int | None = None) -> Rounded | None:
         """Return a number correctly rounded to a double or to `digits`; None if it does not exist.
@@ -228,30 +228,22 @@ def vertical_remark(regime: Regime, stable: bool) -> str:
 
 def _fast_remark(motion: Solution, radians: bool) -> str:
     """Return the remark on a pseudo-regular precession, numbers with three digits."""
-    equal = motion.facts.equal
 
-    def short(what: str, ball: Callable[[Numbers], arb]) -> str:
-        found = settled(what, lambda digits: ball(motion.balls(digits)), 3, equal)
+    def short(name: str) -> str:
+        found = motion.number(name, 3)
         assert found is not None
         return f"{float(found.value):.3g}"
 
-    def nutation(of: Numbers) -> arb:
-        angle: arb = of["theta_max"] - of["theta_min"]
-        return angle if radians else angle * 180 / arb.pi()
-
     def excess(digits: int) -> int:
-        of = motion.balls(digits)
-        parts = 10**6 * (of["mean_precession_rate"] / of["precession_rate_elementary"] - 1)
-        found = (parts + 0.5).floor().unique_fmpz()
+        found = (motion.balls(digits)["excess"] + 0.5).floor().unique_fmpz()
         if found is None:
             raise TooFewDigitsError
         return int(found)
 
-    parts = decided(excess, equal)
+    parts, unit = decided(excess, motion.facts.equal), "rad" if radians else "deg"
     where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
-    tilt, period = short("nutation", nutation), short("T_nutation", lambda of: of["T_nutation"])
-    rate = short("rate", lambda of: of["precession_rate_elementary"])
     return (
-        f"{FAST_WORDS}: nutates by {tilt} {'rad' if radians else 'deg'} "
-        f"in {period} time; its mean is {where} mgs/(C r0) = {rate} rad/time"
+        f"pseudo-regular precession: nutates by {short(f'nutation_{unit}')} {unit} "
+        f"in {short('T_nutation')} time; its mean is {where} mgs/(C r0) = "
+        f"{short('precession_rate_elementary')} rad/time"
     )

@@ -6,12 +6,9 @@ import warnings
 from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
-from flint import arb
-
-from ..arithmetic.enclosures import settled
 from ..errors import LagtopError, OutOfRangeWarning
 from ..top.top import Top
-from .attitude import SingleSwing, Swing
+from .attitude import Swing
 from .facts import facts_of
 from .keys import KEYS, NUMBER_KEYS, NUMBERS, all_keys
 from .record import Solution, record_in_range
@@ -80,14 +77,8 @@ class Motion(Solution):
         """
         if not self.facts.separatrix:
             return None
-
-        def number(name: str, of: Callable[[SingleSwing], arb]) -> float:
-            most = self.facts.equal
-            found = settled(name, lambda digits: of(self.balls(digits)["course"]), None, most)
-            return 0.0 if found is None else float(found.value)
-
-        rate = number("rate", lambda course: course.rate)
-        return Swing(rate, number("lowest", lambda course: -course.h0 / course.rate))
+        found = self.number("swing_rate"), self.number("lowest")
+        return Swing(*(0.0 if x is None else float(x.value) for x in found))
 
     def numbers(self) -> dict[str, float | None]:
         """Return the numbers of the record by key, angles in degrees; see `record`."""

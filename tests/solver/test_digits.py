@@ -27,10 +27,11 @@ HAIR, TINY = 1e-9, mpmath.mpf(10) ** -110
 
 @pytest.mark.parametrize("name", SCENES)
 def test_every_number_is_the_nearest_double_and_its_radius_holds(name: str) -> None:
-    """By the record in mpmath; a number exists in both or in neither."""
+    """By the record in mpmath; a number exists in both or in neither, and has thirty digits."""
     top = Top(**SCENES[name])
     motion, exact_record = solve(top), reference_record(top.as_dict())
     record, plain = motion.record(radii=True, keys=all_keys()), motion.record()
+    many = motion.record(digits=30, keys=list(NUMBERS))
     assert {key: record[key] for key in plain} == plain
     with mpmath.workdps(120):
         for key in NUMBERS:
@@ -42,6 +43,8 @@ def test_every_number_is_the_nearest_double_and_its_radius_holds(name: str) -> N
                 assert away <= math.ulp(value) / 2 * (1 + HAIR) + TINY, key
                 assert radius <= abs(true) * 2.0**-52 or not value, key
                 assert str(value) != "-0.0", key
+                apart = abs(mpmath.mpf(many[key]) - true)
+                assert apart <= abs(true) * mpmath.mpf("1.0001e-29") + TINY, key
 
 
 @pytest.mark.parametrize("digits", [1, 20, 100])

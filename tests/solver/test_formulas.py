@@ -9,13 +9,12 @@ import mpmath
 import numpy as np
 import pytest
 from lagtop import Motion, Top, solve
-from scenes import EVERY_KIND
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from lagrange_cli.solver.columns import COLUMNS, SCALARS, shown_columns
 from lagrange_cli.solver.explanation import explanations, listed
-from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys, bare_name
+from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys
 
 TOPS = {
     "worked example": Top(),
@@ -171,51 +170,3 @@ def test_a_missing_number_has_a_reason() -> None:
     (period,) = explanations(solve(Top(g=0.0, psidot0=3.0)), ["T_nutation"])
     assert period.value == solve(Top(g=0.0, psidot0=3.0)).T_nutation
     assert period.missing == "u3: defined only if there is a torque"
-
-
-def cases(motion: Motion) -> dict[str, bool]:
-    """Return each case in which a number may not exist, and whether it is that of the motion."""
-    facts, top, record = motion.facts, motion.top, motion.record()
-    nutates = record["T_nutation"] is not None and not facts.steady
-    turning = record["u_quarter"] is not None or motion.angles([0.0]).theta[0] == pytest.approx(
-        np.radians(record["theta_max_deg"]), abs=1e-12
-    )
-    at_top = record["u_quarter"] is not None
-    half_on_pole = turning and (facts.over_bottom if at_top else facts.over_top)
-    too_slow = abs(top.r0) < motion.r0_steady_min
-    level = top.theta0_deg == 90
-    moves = bool(top.g or top.r0 or top.thetadot0)
-    return {
-        "if there is a torque": top.g != 0,
-        "if r0 is not 0": top.r0 != 0,
-        "if k > 0": record["k"] not in {0, None},
-        "if the top moves": moves,
-        "if the start is at u1": at_top,
-        "if the top is released from rest": facts.released,
-        "if the mean spin rate is not 0": bool(record["mean_spin_rate"]),
-        "if the mean precession rate is not 0": bool(record["mean_precession_rate"]),
-        "if the axis does not leave the vertical at the start": not (top.pole and top.thetadot0),
-        "if the axis is not vertical half a period after the start": not half_on_pole,
-        "if |r0| >= r0_steady_min and the tilt is not 90 degrees": not (too_slow or level),
-        "if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees": not (
-            too_slow or (level and not top.r0)
-        ),
-        "if the top nutates": nutates,
-        "if the top nutates after release from rest": nutates and facts.released,
-        "if the top nutates and does not pass over a pole": nutates
-        and not (facts.over_top or facts.over_bottom),
-        "if the top nutates, and the axis is not vertical half a period after the start": (
-            nutates and not half_on_pole
-        ),
-    }
-
-
-@pytest.mark.parametrize("scene", EVERY_KIND.values(), ids=EVERY_KIND)
-def test_the_reason_of_a_missing_number_is_the_case_of_the_motion(scene: dict[str, Any]) -> None:
-    motion = solve(Top(**scene))
-    holds = cases(motion)
-    for name, value in motion.record(keys=all_keys()).items():
-        key = NUMBERS.get(name)
-        if key is None or bare_name(name) in motion.facts.undefined or name == "u2_criterion":
-            continue
-        assert (value is None) == (bool(key.only) and not holds[key.only]), name
