@@ -1,6 +1,6 @@
 """Errata of the sources: errata one by one, and the figures of Chrapan's section 8.
 
-The tables of tests/README.md are made from here.  The registers of equations check the errata: each
+A table of tests/README.md is made from here.  The registers of equations check the errata: each
 of them must be listed, and each that is listed by an equation must fail as printed.
 """
 
@@ -42,18 +42,6 @@ def misprints(source: str, *sections: int) -> set[str]:
     return {x.place for x in some if x.tested == "yes"}
 
 
-def errata_table() -> list[str]:
-    """Return the errata as a table in Markdown."""
-    lines = ["| place | right | kind |", "|---|---|---|"]
-    for erratum in ERRATA:
-        place = (
-            erratum.place if erratum.source == "Chrapan" else f"{erratum.source}, {erratum.place}"
-        )
-        right = erratum.right.replace("|", "\\|")
-        lines.append(f"| {place.replace(' as printed', '')} | {right} | {erratum.kind} |")
-    return lines
-
-
 class Figure(NamedTuple):
     """A number of section 8: a row of `figures.tsv`.
 
@@ -79,20 +67,18 @@ def true_values() -> dict[str, Any]:
 
 
 def figures_table() -> list[str]:
-    """Return section 8 as a table in Markdown; what is wrong is bold."""
-    lines = [
-        "| quantity | printed | true | to 15 digits | from the printed figures |",
-        "|---|---|---|---|---|",
-    ]
+    """Return the wrong figures of section 8 as a table in Markdown; all others must be right."""
+    lines = ["| quantity | printed | true | to 15 digits | from the printed figures |"]
+    lines.append("|---|---|---|---|---|")
     values = true_values()
     with mpmath.workdps(40):
         for figure in FIGURES:
             true = values[figure.key]
             shown = round_alike(true, figure.text)
             assert (shown == figure.text) == (not figure.own), figure.name
-            shown = f"**{shown}**" if figure.own else shown
-            digits = mpmath.nstr(true, 15)
-            lines.append(f"| {figure.name} | {figure.text} | {shown} | {digits} | {figure.own} |")
+            if figure.own:
+                cells = figure.name, figure.text, shown, mpmath.nstr(true, 15), figure.own
+                lines.append(f"| {' | '.join(cells)} |")
     return lines
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
@@ -366,3 +366,19 @@ def nutating(kind: str, rng: random.Random) -> Scene:
         with suppress(LagtopError):
             exact_motion(solve(Top(**scene)))
             return scene
+
+
+COSINES = ("u1", "u2", "u_quarter")
+
+
+def size_in_sweeps(key: str, record: Mapping[str, Any], r0: Any) -> Any:
+    """Return the size to which a sweep's error of a key is compared, given the exact record.
+
+    It is 1 for a cosine and the larger part of a difference for a rate at T/2.
+    """
+    if key in COSINES:
+        return 1
+    if not key.endswith("rate_half"):
+        return abs(record[key])
+    turn, apart = record["precession_rate_half"], record["spin_rate_half"] - r0
+    return max(abs(r0), abs(turn + apart) / 2, abs(turn - apart) / 2)

@@ -20,6 +20,7 @@ from typing import Any
 
 import pytest
 from conftest import Lagtop, Solved
+from hard_scenes import size_in_sweeps
 from lagtop import LagtopError, Motion, Top, sensitivities, solve, sweep
 
 from lagrange_cli.top.inputs import STANDS_FOR
@@ -37,7 +38,6 @@ HAIR = Fraction(1, 10**29)
 LARGEST, SMALLEST = Fraction(2) ** 1024, Fraction(1, 2**1074)
 RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
 ANGLES = ("theta", "phi", "psi", "dphi", "dpsi")
-COSINES = ("u1", "u2", "u_quarter")
 SWEEP_EPS = 10
 
 
@@ -106,18 +106,6 @@ def test_doubles(share: int) -> None:
             assert_double(motion, key, text)
 
 
-def sweep_size(key: str, row: dict[str, Fraction | None], r0: float) -> Fraction | None:
-    """Return what 10 eps refer to: the number, 1 for a cosine, the larger part of a difference."""
-    if key in COSINES:
-        return Fraction(1)
-    turn, spin = row["precession_rate_half"], row["spin_rate_half"]
-    if key.endswith("_half") and turn is not None and spin is not None and row["b"] is not None:
-        apart = spin - Fraction(r0) + row["b"]
-        return max(abs(Fraction(r0)), abs(turn + apart) / 2, abs(turn - apart) / 2)
-    exact = row[key]
-    return None if exact is None else abs(exact)
-
-
 @pytest.mark.parametrize("tilt", ["theta0_deg", "theta0_rad"])
 def test_sweeps(tilt: str) -> None:
     """Many tops at once have the same words, and numbers within 10 eps."""
@@ -138,11 +126,11 @@ def test_sweeps(tilt: str) -> None:
         texts = numbers_of(entry).items()
         row = {key: None if text is None else Fraction(text) for key, text in texts if key in keys}
         for key in keys:
-            value, size = float(columns[key][i]), sweep_size(key, row, float(top.r0))
-            exact = row[key]
-            if exact is None or size is None:
+            value, exact = float(columns[key][i]), row[key]
+            if exact is None:
                 assert math.isnan(value), (key, entry["top"])
             else:
+                size = size_in_sweeps(key, row, Fraction(top.r0))
                 assert abs(Fraction(value) - exact) <= SWEEP_EPS * EPS * size, (key, entry["top"])
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import click
 import pytest
-from errata import errata_table, figures_table
+from errata import figures_table
 from published import published_table
 
 import lagrange_cli
@@ -178,7 +178,6 @@ KINDS_OF_KEYS = {"record": "key", "column": "column"}
 """The headings of the tables of keys and columns."""
 TABLES: list[tuple[Callable[[], list[str]], str]] = [
     (inputs_table, "sample_inputs"),
-    (errata_table, "tests"),
     (figures_table, "tests"),
     *(
         (partial(keys_table, kind, heading), "lagrange_cli/solver")

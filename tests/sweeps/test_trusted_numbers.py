@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hard_scenes import KINDS, in_doubles, nutating
+from hard_scenes import KINDS, in_doubles, nutating, size_in_sweeps
 from lagtop import Top, solve, sweep
 from scenes import EVERY_KIND, UNIT
 
@@ -21,19 +21,8 @@ from lagrange_cli.sweeps.trust import AnyStart
 
 KEYS = [*NUMBER_KEYS, *ELEMENTARY, *OF_MODULI]
 TEXTS = ["regime", "path", "remark"]
-COSINES = {"u1", "u2", "u_quarter"}
 MEANS = {"mean_spin_rate", "mean_precession_rate", "T_spin", "T_precession"}
 Scene = dict[str, Any]
-
-
-def size_of(key: str, record: Scene, r0: float) -> Any:
-    """Return the size to which the error of a key is compared."""
-    if key in COSINES:
-        return 1.0
-    if not key.endswith("rate_half"):
-        return abs(record[key])
-    turn, apart = record["precession_rate_half"], record["spin_rate_half"] - r0
-    return max(abs(r0), abs(turn + apart) / 2, abs(turn - apart) / 2)
 
 
 def assert_trusted(scenes: list[Scene], least: int, **word: str) -> None:
@@ -60,7 +49,7 @@ def assert_trusted(scenes: list[Scene], least: int, **word: str) -> None:
             if exact is None:
                 assert math.isnan(value), (key, scene)
             elif value != exact:
-                error = abs(value - exact) / size_of(key, record, scene["r0"]) / 2.0**-52
+                error = abs(value - exact) / size_in_sweeps(key, record, scene["r0"]) / 2.0**-52
                 assert error <= (10 if key in MEANS else 4), (key, error, scene)
         assert found["psidot0"][i] == pytest.approx(float(motion.top.psidot0), rel=1e-15)
 

@@ -34,7 +34,7 @@ import mpmath
 
 sys.path.append(str(Path(__file__).parents[1]))  # references of the tests
 
-from hard_scenes import KINDS, Scene, as_decimals
+from hard_scenes import KINDS, Scene, as_decimals, size_in_sweeps
 from lagtop import LagtopError, Motion, Top, solve, sweep
 from record_reference import reference_record
 
@@ -44,7 +44,6 @@ from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS
 
 HALF_ULP, ATTITUDE, SWEEP_EPS = 0.5 + 1e-9, 8.0, 10.0
 """The bounds: of a number in its last place, of an attitude in units, of a sweep in eps."""
-COSINES = ("u1", "u2", "u_quarter")
 CHUNK, MOST_SHOWN = 20, 40
 Numbers = Mapping[str, Any]
 
@@ -195,11 +194,7 @@ def check_sweep(tally: Tally, tilt: str, checks: list[tuple[Scene, Numbers]]) ->
                 if true is not None or not math.isnan(value):
                     tally.violations.append(f"sweep {key} is {value!r}: {show}")
                 continue
-            size = 1.0 if key in COSINES else abs(true)
-            if key.endswith("_half"):
-                turn, spin = exact["precession_rate_half"], exact["spin_rate_half"]
-                apart, r0 = spin - mpmath.mpf(scene["r0"]) + exact["b"], abs(scene["r0"])
-                size = max(r0, abs(turn + apart) / 2, abs(turn - apart) / 2)
+            size = size_in_sweeps(key, exact, mpmath.mpf(scene["r0"]))
             away = abs(mpmath.mpf(value) - true)
             tally.note("sweep", float(away / size / 2.0**-52) if away else 0.0, SWEEP_EPS, show)
 
