@@ -9,7 +9,6 @@ import subprocess
 import sys
 import tarfile
 import warnings
-from functools import partial
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -84,67 +83,54 @@ def test_the_import_alone_loads_nothing_heavy() -> None:
 
 @pytest.fixture(scope="module")
 def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build the sdist, and the wheel from it."""
+    """Build the sdist, and the wheel from it; unpack the wheel into the folder `site`."""
     folder = tmp_path_factory.mktemp("dist")
     build = [sys.executable, "-m", "build", "--outdir", str(folder), str(ROOT)]
     subprocess.run(build, capture_output=True, check=True)
+    (wheel,) = folder.glob("*.whl")
+    with ZipFile(wheel) as archive:
+        archive.extractall(folder / "site")
     return folder
 
 
 @pytest.mark.slow
 def test_the_wheel_works_in_an_empty_folder(distributions: Path, tmp_path: Path) -> None:
-    (wheel,) = distributions.glob("*.whl")
-    site, empty = tmp_path / "site", tmp_path / "empty"
-    with ZipFile(wheel) as archive:
-        archive.extractall(site)
-    empty.mkdir()
-    run = partial(
-        subprocess.run,
-        cwd=empty,
-        env={**os.environ, "PYTHONPATH": str(site), "PYTHONSAFEPATH": "1"},
-        capture_output=True,
-        check=True,
-        text=True,
-    )
-    code = "import lagtop; print(lagtop.__file__)"
-    assert Path(run([sys.executable, "-c", code]).stdout.strip()).is_relative_to(site)
-    solve = [sys.executable, "-m", "lagrange_cli", "solve", "--theta0", "30"]
-    assert run([*solve, "--get", "T_nutation"]).stdout == "0.4292501244785477\n"
-    assert run([*solve[:3], "view", "-o", "page.html"]).returncode == 0
-    assert {path.name for path in empty.iterdir()} == {"page.html"}
+    site = distributions / "site"
+    env = os.environ | {"PYTHONPATH": str(site), "PYTHONSAFEPATH": "1"}
+
+    def run(*words: str) -> str:
+        command = [sys.executable, *words]
+        done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, check=True)
+        return done.stdout.decode()
+
+    assert Path(run("-c", "import lagtop; print(lagtop.__file__)")).is_relative_to(site)
+    T = run("-m", "lagrange_cli", "solve", "--theta0", "30", "--get", "T_nutation")
+    assert T == "0.4292501244785477\n"
+    run("-m", "lagrange_cli", "view", "-o", "page.html")
+    assert {path.name for path in tmp_path.iterdir()} == {"page.html"}
 
 
 @pytest.mark.slow
 def test_type_checkers_see_the_names_of_the_wheel(distributions: Path, tmp_path: Path) -> None:
-    (wheel,) = distributions.glob("*.whl")
-    with ZipFile(wheel) as archive:
-        archive.extractall(tmp_path / "site")
     lines = ["from lagtop import Top, solve", "k: str | None = solve(Top()).path", "Top(mass=3)"]
     (tmp_path / "user.py").write_text("\n".join(lines))
-    done = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "user.py"],
-        cwd=tmp_path,
-        env={**os.environ, "MYPYPATH": "site"},
-        capture_output=True,
-        check=False,
-        text=True,
-    )
-    found = [x for x in done.stdout.splitlines() if x.startswith("user.py") and "note:" not in x]
+    command = [sys.executable, "-m", "mypy", "--strict", "user.py"]
+    env = os.environ | {"MYPYPATH": str(distributions / "site")}
+    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, check=False)
+    said = done.stdout.decode().splitlines()
+    found = [x for x in said if x.startswith("user.py") and "note:" not in x]
     assert found == ['user.py:3: error: Unexpected keyword argument "mass" for "Top"  [call-arg]']
 
 
 @pytest.mark.slow
 def test_the_distributions_hold_what_they_should(distributions: Path) -> None:
-    (wheel,), (sdist,) = distributions.glob("*.whl"), distributions.glob("*.tar.gz")
-    with ZipFile(wheel) as archive:
-        files = archive.namelist()
-        (metadata,) = (name for name in files if name.endswith("METADATA"))
-        readme = archive.read(metadata).decode()
-    assert {name.split("/")[0] for name in files if ".dist-info" not in name} == {
-        *("lagrange_cli", "lagtop.py", "lagtop-stubs"),
-    }
-    assert {"lagrange_cli/py.typed", "lagrange_cli/CITATION.cff"} <= set(files)
-    assert "How exact and how fast" in readme
+    site = distributions / "site"
+    (metadata,) = site.glob("*.dist-info/METADATA")
+    assert "How exact and how fast" in metadata.read_text()
+    named = {path.name for path in site.iterdir()} - {metadata.parent.name}
+    assert named == {"lagrange_cli", "lagtop.py", "lagtop-stubs"}
+    assert {"py.typed", "CITATION.cff"} <= {path.name for path in (site / "lagrange_cli").iterdir()}
+    (sdist,) = distributions.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         roots = {name.split("/")[1] for name in archive.getnames() if "/" in name}
     assert roots - {".gitignore", "PKG-INFO", "pyproject.toml"} == {
