@@ -114,7 +114,7 @@ def at_precision(digits: int, compute: Callable[[], T]) -> T:
                 _Precision.host = ctx.prec
             _Precision.own = outer
             ctx.prec = outer or _Precision.host
-            if not outer and sys.getswitchinterval() != _Precision.interval:
+            if not outer:
                 sys.setswitchinterval(_Precision.interval)
 
 

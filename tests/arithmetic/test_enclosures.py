@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import os
 import random
@@ -16,6 +17,7 @@ from fractions import Fraction
 import flint
 import mpmath
 import pytest
+from conftest import ROOT
 from flint import arb
 
 from lagrange_cli.arithmetic.enclosures import (
@@ -347,3 +349,23 @@ def test_numbers_do_not_depend_on_other_threads() -> None:
         sys.setswitchinterval(interval)
         flint.ctx.prec = host
     assert together == alone * 4
+
+
+WITH_BALLS = ["solver/facts", "solver/numbers", "solver/attitude"]
+WITH_BALLS += [f"elliptic/{name}" for name in ("functions", "function_table", "legendre", "eta")]
+ORDER = ast.Lt | ast.LtE | ast.Gt | ast.GtE | ast.Eq | ast.NotEq
+EXACT = re.compile(
+    r"(self\.)?sign\(.*\)|len\(.*\)|float\(.*\)|facts\.inputs\[.*\]|word|name|'.*'|n % 2( == 0)?"
+    r"|(.*\.)?(turning|spin|over|minus|plus|pole|fall|falls|inside|past|within)"
+    r"|(.*\.)?(real|imag|upper|lower|g|square|n)|q \* square"
+)
+"""Signs, counts, words and exact inputs: they may be compared, also with 0."""
+
+
+@pytest.mark.parametrize("name", WITH_BALLS)
+def test_no_code_acts_on_an_undecided_comparison_of_balls(name: str) -> None:
+    tree = ast.parse((ROOT / "lagrange_cli" / f"{name}.py").read_text())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare) and any(isinstance(x, ORDER) for x in node.ops):
+            sides = [ast.unparse(x) for x in (node.left, *node.comparators)]
+            assert any(map(EXACT.fullmatch, sides)), f"line {node.lineno}: ask sign()"

@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import ast
 import random
-import re
 from collections import ChainMap
 from functools import partial
 from typing import Any
 
 import pytest
-from conftest import ROOT
 from flint import acb, arb
 from hard_scenes import KINDS
 from lagtop import Top, solve
@@ -64,29 +62,6 @@ def test_the_printed_formula_has_the_value_of_the_evaluated_one(kind: str) -> No
                 assert apart.abs_upper() <= arb(10) ** -30 * size.abs_upper(), (name, motion.top)
                 checked += 1
     assert checked > 15 * 30
-
-
-BALLS = {"facts.py", "numbers.py", "attitude.py"}
-WHOLE = re.compile(
-    r"(self\.)?sign\(.*\)|len\(.*\)|float\(.*\)|facts\.inputs\[.*\]|word|'2'|n % 2( == 0)?"
-    r"|(.*\.)?(turning|spin|over|minus|plus|pole|fall|falls)"
-)
-"""Signs, counts, words and exact inputs, which may be compared."""
-
-
-def test_no_code_acts_on_an_undecided_comparison_of_balls() -> None:
-    """In these files comparisons are with whole numbers (signs and counts) only."""
-    for name in BALLS:
-        tree = ast.parse((ROOT / "lagrange_cli" / "solver" / name).read_text())
-        for node in ast.walk(tree):
-            if isinstance(node, ast.Compare):
-                inner = [node.left, *node.comparators]
-                ordered = any(
-                    isinstance(x, ast.Lt | ast.LtE | ast.Gt | ast.GtE | ast.Eq | ast.NotEq)
-                    for x in node.ops
-                )
-                is_whole = any(WHOLE.fullmatch(ast.unparse(x)) for x in inner)
-                assert is_whole or not ordered, f"{name}:{node.lineno}: ask sign()"
 
 
 def test_formulas_use_names_that_exist() -> None:
