@@ -37,7 +37,7 @@ from contextlib import suppress
 from decimal import ROUND_UP, Context, Decimal
 from fractions import Fraction
 from functools import partial
-from itertools import count, takewhile
+from itertools import chain, count, takewhile
 from threading import RLock
 from typing import Any, NamedTuple, TypeVar
 
@@ -194,7 +194,7 @@ def decided(
     """
     least = max(digits or 0, _LEAST_DIGITS)
     growing = takewhile(lambda x: x < most, (least + _GUARD * 4**i for i in count()))
-    for working in (*growing, most, most + 1, most + 2):
+    for working in chain(growing, range(most, most + 3)):
         with suppress(TooFewDigitsError):
             return at_precision(working + lost, partial(compute, working + lost))
     raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
