@@ -234,7 +234,7 @@ def period_mean(k_prime: Numbers, p: Numbers, x: Numbers, y: Numbers) -> Numbers
             return (x * m + y) / (m + p)
 
 
-_NOME = (268616, 20910, 1707, 150, 15, 2, 1)
+_NOME = (48555069, 3567400, 268616, 20910, 1707, 150, 15, 2, 1)
 """Coefficients of the nome over e, a series in e^4 (DLMF 19.5.5)."""
 
 
@@ -247,7 +247,7 @@ def nome(of: Motions) -> Numbers:
     root = np.sqrt(of["k_prime"])
     e = of["m"] / (2 * (1 + of["k_prime"]) * (1 + root) ** 2)
     by_exponential = np.exp(-np.pi * of["K_prime"] / of["K"])
-    return np.where(e < 0.14, e * np.polyval(_NOME, e**4), by_exponential)
+    return np.where(e < 0.2, e * np.polyval(_NOME, e**4), by_exponential)
 
 
 def tilt_deg(above: Array, below: Array) -> Numbers:
