@@ -7,7 +7,7 @@ import platform
 import time
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import distributions
 from itertools import cycle
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -155,11 +155,9 @@ def machine() -> dict[str, str]:
     with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8") as lines:
         names += [line.partition(":")[2].strip() for line in lines if "model name" in line]
     vector = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
+    found = {x.name: x.version for x in distributions()}
     for name in ("lagtop", "numpy", "scipy", "mpmath", "heyoka", "mujoco"):
-        try:
-            versions.append(f"{name} {version(name)}")
-        except PackageNotFoundError:
-            versions.append(f"no {name}")
+        versions.append(f"{name} {found[name]}" if name in found else f"no {name}")
     system = f"{platform.system()} {platform.machine()}"
     parts = names[-1], system, *(vector or ["unknown vector instructions"])[-1:]
     return {"machine": ", ".join(parts), "versions": ", ".join(versions)}

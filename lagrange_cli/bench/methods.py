@@ -41,8 +41,6 @@ Sample = Callable[[Array, float], Run]
 
 It may raise SlowError, or ArithmeticError if the method fails.
 """
-STATE = "r0", "theta0_rad", "thetadot0", "psidot0"
-"""The inputs of the start."""
 Slope = Callable[[float, Any], list[Any]]
 """The derivative of p, q (body axes) and of the quaternion, by time and state."""
 
@@ -83,15 +81,15 @@ def constants(top: Top) -> tuple[float, float]:
     return 2 * float(top.m) * float(top.g) * float(top.s) / A, float(top.C) * float(top.r0) / A
 
 
-def counted(slope: Slope, limit: float) -> tuple[Slope, list[int]]:
+def counted(slope: Slope, limit: float) -> tuple[Callable[[float, Array], Array], list[int]]:
     """Return the slope with a limit of CPU seconds, and a list whose element counts its calls."""
     end, calls = time.process_time() + limit, [0]
 
-    def watched(t: float, state: Array) -> list[float]:
+    def watched(t: float, state: Array) -> Array:
         calls[0] += 1
         if calls[0] % 256 == 0 and time.process_time() > end:
             raise SlowError
-        return slope(t, state.tolist())
+        return np.array(slope(t, state.tolist()))
 
     return watched, calls
 
@@ -118,8 +116,12 @@ def scipy_special(motion: Motion, _: Any) -> Sample:
     """
     from ..inverse.motions import angles
 
-    inputs = motion.top.inputs(radians=True)
-    (a, b), (r0, *start) = constants(motion.top), (float(inputs[x]) for x in STATE)
+    inputs, names = motion.top.inputs(radians=True), ("theta0_rad", "thetadot0", "psidot0")
+    (a, b), r0, start = (
+        constants(motion.top),
+        float(motion.top.r0),
+        [float(inputs[x]) for x in names],
+    )
 
     def sample(t: Array, _: float) -> Run:
         theta, phi, psi = angles(np.array([[a, b, *start]]), t)[:, 0]
@@ -158,18 +160,13 @@ def rk4(motion: Motion, per_period: int) -> Sample:
     (start, equations), period = problem_of(motion.top), float(motion.T_nutation or 1)
 
     def sample(t: Array, limit: float) -> Run:
-        slope, calls = counted(equations, limit)
-
-        def f(state: Array) -> Array:
-            return np.array(slope(0.0, state))
-
-        state, rows = start, []
+        (f, calls), state, rows = counted(equations, limit), start, []
         for count, h in fixed_steps(t, period / per_period):
             for _ in range(count):
-                k1 = f(state)
-                k2 = f(state + h / 2 * k1)
-                k3 = f(state + h / 2 * k2)
-                state = state + h / 6 * (k1 + 2 * (k2 + k3) + f(state + h * k3))
+                k1 = f(0.0, state)
+                k2 = f(0.0, state + h / 2 * k1)
+                k3 = f(0.0, state + h / 2 * k2)
+                state = state + h / 6 * (k1 + 2 * (k2 + k3) + f(0.0, state + h * k3))
             rows.append(state[2:])
         return np.array(rows).T, calls[0]
 
