@@ -267,12 +267,12 @@ def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     look, (factor, unit) = options.look, options.angle_unit
     t_max = last_time(motion, options, usual_span(motion, 3, 3))
     t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
-    stds = [0 * t] * 3 if options.stds is None else options.stds(t)[[0, 3, 2]]  # of ϑ, Δφ, ψ
     spin, turn = motion.mean_spin_rate, motion.mean_precession_rate
-    name, about, note = "φ", "", ""
+    order, name, about, note = [0, 1, 2], "φ", "", ""
     if spin is not None:  # on the separatrix there is no mean rate
-        phi = phi - spin * t
-        name, about = "Δφ", f"spin less its mean rate {spin:.4g} {options.unit('rad/time')}"
+        phi, order, name = phi - spin * t, [0, 3, 2], "Δφ"
+        about = f"spin less its mean rate {spin:.4g} {options.unit('rad/time')}"
+    stds = [0 * t] * 3 if options.stds is None else options.stds(t)[order]
     if motion.regime in (Regime.SLEEPING, Regime.HANGING):
         note = "spin only: there is no precession"
     elif turn is not None:

@@ -45,28 +45,39 @@ function carlsonF(x, y, z) {
 
 /** The cubic (4,9) about the start: u1 - u0, u0 - u2, 1 - u1, u3 - u1 and a (u3 - u2), without cancellation. */
 function cubicOf({ a, b, u0, above, sin, swing, along, rise }) {
-  const c1 = 2 * (b * along - u0 * swing) - a * sin * sin;  // times a, as is `leading`
-  let [third, leading] = [Infinity, swing + b * b];
-  if (a) {  // the largest root is Viète's, polished by Newton's method
-    const [p, q, r] = [2 * u0 - leading / a, c1 / a, rise / a];
-    const radius = Math.sqrt(Math.max(p * p - 3 * q, 0)) / 3;
-    const ratio = ((p * q) / 6 - (p / 3) ** 3 - r / 2) / radius ** 3 || 0;
-    third = 2 * radius * Math.cos(Math.acos(Math.max(-1, Math.min(1, ratio))) / 3) - p / 3;
-    for (let i = 0; i < 3; i += 1) third -= (((third + p) * third + q) * third + r) / ((3 * third + 2 * p) * third + q) || 0;
-    leading = a * third;
+  const c1 = 2 * (b * along - u0 * swing) - a * sin * sin;
+  const isTop = !rise && c1 <= 0;  // the start is the highest point
+  let leading = swing + b * b;  // a (u3 - u0)
+  const [p, q, r] = [2 * u0 - leading / a, c1 / a, rise / a];
+  const radius = Math.sqrt(Math.max(p * p - 3 * q, 0)) / 3;
+  const ratio = ((p * q) / 6 - (p / 3) ** 3 - r / 2) / radius ** 3 || 0;
+  const third = Math.acos(Math.max(-1, Math.min(1, ratio))) / 3;
+  function root(turn) {  // Viète's, polished by Newton's method
+    let x = 2 * radius * Math.cos(third + turn) - p / 3;
+    for (let i = 0; i < 3; i += 1) x -= (((x + p) * x + q) * x + r) / ((3 * x + 2 * p) * x + q) || 0;
+    return x;
   }
-  const product = rise / leading || 0;  // (u1 - u0)(u0 - u2)
-  const half = (c1 + a * product) / (2 * leading) || 0;  // half their difference
-  const larger = Math.abs(half) + Math.sqrt(half * half + product);
-  const smaller = product / larger || 0;
-  const [toTop, fromLow] = half > 0 ? [larger, smaller] : [smaller, larger];
+  const isNear = a && ratio < 0;  // u1 is next to u3, so that only u2 has all digits
+  let [toTop, fromLow] = [0, isNear ? Math.max(-root((2 * Math.PI) / 3), 0) : 0];
+  if (!isNear) {
+    if (a) leading = a * root(0);
+    const product = rise / leading || 0;  // (u1 - u0)(u0 - u2)
+    const half = (c1 + a * product) / (2 * leading) || 0;  // half their difference
+    const larger = Math.abs(half) + Math.sqrt(half * half + product);
+    const smaller = product / larger || 0;
+    [toTop, fromLow] = half > 0 ? [larger, smaller] : [smaller, larger];
+  }
   if (!a) return { toTop, fromLow, gap: Math.max(above - toTop, 0), wide: leading };
   // (1 - u1)(u3 - 1) and (u3 - 1) - (1 - u1) keep their digits next to the separatrix
-  const [beside, excess] = [(along - b * above) ** 2 / (a * (above + fromLow)) || 0, third + toTop - 2 * above];
-  const root = Math.sqrt(excess * excess + 4 * beside);
-  if (!toTop) return { toTop, fromLow, gap: above, far: Math.max(excess, -above) + 2 * above, wide: leading + a * fromLow };
-  const gap = excess > 0 ? (2 * beside) / (excess + root) || 0 : (root - excess) / 2;
-  return { toTop, fromLow, gap, far: root, wide: a * (root + toTop + fromLow) };
+  const [beside, excess] = [(along - b * above) ** 2 / (a * (above + fromLow)) || 0, fromLow - p - 2 * above];
+  let far = Math.sqrt(excess * excess + 4 * beside);
+  let gap = excess > 0 ? (2 * beside) / (excess + far) || 0 : (far - excess) / 2;
+  if (isTop) [gap, far] = [above, Math.max(above + excess, 0) + above];
+  else if (isNear) {
+    toTop = Math.max(above - gap, 0);
+    if (rise && toTop < fromLow) toTop = rise / (a * fromLow * (far + toTop)) || 0;
+  }
+  return { toTop, fromLow, gap, far, wide: a * (far + toTop + fromLow) };
 }
 
 /** The motion of a scene: its numbers, `angles(t)` in radians, and whether it is only a sketch. */
