@@ -14,11 +14,12 @@ from fractions import Fraction
 
 import numpy as np
 
+from ..arithmetic.enclosures import decided
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from .derivatives import Derivatives, neighbours, sines, size_of
-from .sampling import Period, whole_periods
+from .sampling import period_of, whole_periods
 from .solve import Motion
 from .tables import STD_COLUMNS, ProvedTable
 from .uncertainty import MISLEADING, away
@@ -42,6 +43,9 @@ class AngleDerivatives:
     def __init__(self, motion: Motion, inputs: Sequence[str]) -> None:
         self.motion, self.inputs, self.record = motion, tuple(inputs), Derivatives(motion)
         self.period: float | None = motion.T_nutation
+        if self.period:
+            of, most = motion.balls, motion.facts.equal
+            self.length = decided(lambda x: period_of(of(x)["T_nutation"]), most, digits=24)
         steep = {x: self._steepness(x) for x in self.inputs}
         self.noise = {x: _NOISE * steep[x] for x in self.inputs}
         """Sizes of the rounding errors of the derivatives, by input."""
@@ -81,9 +85,7 @@ class AngleDerivatives:
             rates = self.motion.table(t, ["thetadot", "phidot", "psidot"]).values()
             means = 0.0, self.motion.mean_spin_rate, self.motion.mean_precession_rate
             waving = [rate - mean for rate, mean in zip(rates, means, strict=True)]
-            half = self.motion.sampler().half
-            period = Period(half.rate / 2, *(2 * part for part in half[1:]))
-            _, rest, lost = whole_periods(t, period, float(np.abs(t).max(initial=0.0)))
+            _, rest, lost = whole_periods(t, self.length, float(np.abs(t).max(initial=0.0)))
             phase, names = (rest - lost) / self.period, _WAVES
         for values, name in zip(found, self.inputs, strict=True):
             for motion, share in self.beside[name]:

@@ -5,9 +5,9 @@ The attitude is a pair of complex numbers, the Cayley-Klein parameters:
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
 1. A time is reduced, exactly, to whole half periods of the nutation and a phase (`whole_periods`).
-2. The times nearer to u1 and those nearer to u2 are evaluated apart (`ThetaSampler.parts`).
+2. The times nearer to u1 and those nearer to u2 are evaluated apart (`ThetaParts.at`).
 3. Real and imaginary part of X and of Y are polynomials (`series`); they vanish separately where
-   the axis passes over a pole, so that no digits cancel (`ThetaSampler.about`).
+   the axis passes over a pole, so that no digits cancel (`ThetaParts.about`).
 4. One arctangent each gives the tilt and the periodic parts of arg X and arg Y (`_FORMULAS`).
 5. A mean rate times t is added to each angle (`Growth`).
 
@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +31,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError, OutOfRangeError
 from ..names import ANGLES
 from ..top.ranges import MAX_PERIODS, MAX_TIME
-from .attitude import ConstantTilt, Course, Nutation, SingleSwing
+from .attitude import Course, Nutation
 from .columns import FORMULAS, REDUCED, TIMELESS, WITHIN_A_TURN, Columns
 from .facts import Facts
 from .series import Frame, near, theta_series
@@ -49,6 +50,11 @@ _TINY = 5e-324
 """The smallest argument that is not 0."""
 np.empty(2**19)  # glibc keeps freed memory from now on: pages are not faulted again in each call
 Index = slice | NDArray[np.intp]
+Parts = Callable[[Array, float], Iterator[tuple[Index, dict[str, Any]]]]
+"""A function of times and of max |t| that yields the items of formulas at some times, by index.
+
+Among them are the parts of X and Y, up to a common positive factor.  No real part is negative.
+"""
 
 
 class Angles(NamedTuple):
@@ -160,10 +166,9 @@ def polynomial(coefficients: Sequence[float], x: Array) -> Array:
     return value
 
 
-def _divided(x: Array, y: Array, otherwise: Array) -> Array:
+def _ratio(x: Array, y: Array, otherwise: Array | float = 0.0) -> Array:
     """Return x/y; where y is 0, return another number."""
-    found: Array = np.divide(x, y, out=otherwise, where=y != 0.0)
-    return found
+    return np.where(y != 0.0, x / y, otherwise)
 
 
 def _argument(real: Array, imag: Array) -> Array:
@@ -173,9 +178,7 @@ def _argument(real: Array, imag: Array) -> Array:
 
 _FUNCTIONS: dict[str, Any] = {
     **{"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "square": np.square, "arctan": np.arctan},
-    "ratio": lambda x, y: _divided(x, y, np.zeros_like(y)),
-    **{"divided": _divided, "polynomial": polynomial, "argument": _argument},
-    "at_least_0": lambda x: np.maximum(x, 0.0),
+    **{"ratio": _ratio, "polynomial": polynomial, "argument": _argument, "maximum": np.maximum},
 }
 _FORMULAS = FORMULAS | {
     "XX": "square(re_X) + square(im_X)",
@@ -188,12 +191,10 @@ _FORMULAS = FORMULAS | {
     "arg_Y": "argument(re_Y, im_Y) + x*slope_Y",
     "spin": "of_spin.angle(arg_X - arg_Y, t)",
     "spin_wave": "of_spin.wave(arg_X - arg_Y, t)",
-    "reduced_spin": "of_spin.reduced(arg_X - arg_Y, t)",
-    "spin_turn": "reduced_spin[0]",
+    "spin_turn": "of_spin.reduced(arg_X - arg_Y, t)[0]",
     "precession": "of_precession.angle(arg_X + arg_Y, t)",
     "precession_wave": "of_precession.wave(arg_X + arg_Y, t)",
-    "reduced_precession": "of_precession.reduced(arg_X + arg_Y, t)",
-    "precession_turn": "reduced_precession[0]",
+    "precession_turn": "of_precession.reduced(arg_X + arg_Y, t)[0]",
     "reduced_X": "of_X.reduced(arg_X, t)",
     "angle_X": "reduced_X[0]",
     "signed_X": "X*(1 - 2*(reduced_X[1] % 2))",
@@ -203,15 +204,88 @@ _FORMULAS = FORMULAS | {
     # the nutation rate times 2 N X Y
     "scaled_rate": "polynomial(rate_series, s_x)*S_x*C_x",
     # on a pole, where the sign of the nutation rate changes, its size by (4,2)
-    "nutation_rate": "divided(scaled_rate, 2*N*X*Y, sqrt(at_least_0(energy_constant - a*u)))",
+    "nutation_rate": "ratio(scaled_rate, 2*N*X*Y, sqrt(maximum(energy_constant - a*u, 0)))",
 }
 
 
-class Sampler:
-    """The angles of one motion over time; subclasses have the parts of X and Y."""
+class ThetaParts:
+    """The parts of X and Y of a top that nutates, by its theta series."""
 
-    half = Period(0.0, 0.0, 0.0, 0.0)
-    """Half the period of the nutation, infinite if there is none."""
+    def __init__(self, of: Nutation) -> None:
+        series, step = theta_series(of), nearest(2 * of.since)
+        offset, scale = 2 * of.since - step, series.scale
+        self.frames = series.frames[:: -1 if step % 2 else 1]
+        """The series about the turning points of the even and of the odd steps."""
+        self.half = period_of(of.period / 2)
+        self.offset = near(offset)
+        """Half periods from the turning point of step 0 to t = 0, from -1/2 to 1/2."""
+        self.speed = near(2 * scale / of.period)
+        """Argument of the series per unit of time."""
+        self.first = near(scale * offset)
+        """Argument at t = 0."""
+        slopes = [near(slope / scale) for slope in series.slopes]
+        self.slopes = dict(zip(("slope_X", "slope_Y"), slopes, strict=True))
+        """What is added to arg X and arg Y per unit of the argument to make them periodic."""
+        self.over_pole = not all(part[0] for frame in self.frames for part in frame.parts[::2])
+        self.hyperbolic, self.steep = of.hyperbolic, near(scale) > 2 * _STEEPEST
+
+    def at(self, t: Array, farthest: float) -> Iterator[tuple[Index, dict[str, Any]]]:
+        """Yield the parts about even and about odd turning points."""
+        step, rest, lost = whole_periods(t, self.half, farthest, self.offset)
+        x = (rest - lost) * self.speed + self.first
+        if self.over_pole:  # just before or after a passage, or a start
+            x = np.where(x == 0.0, np.copysign(_TINY, t), x)
+        half = 0.5 * step
+        even = half == np.rint(half)
+        for frame, chosen in zip(self.frames, (even, ~even), strict=True):
+            index = np.flatnonzero(chosen)
+            if index.size == t.size:
+                yield slice(None), self.about(frame, x)
+            elif index.size:
+                yield index, self.about(frame, x[index])
+
+    def about(self, frame: Frame, x: Array) -> dict[str, Any]:
+        """Return the parts at arguments x of the series about one turning point."""
+        if self.hyperbolic:
+            S = np.sinh(np.clip(x, -_STEEPEST, _STEEPEST) if self.steep else x)
+            s = S * S
+            C = np.sqrt(s + 1.0)
+        else:
+            S = np.tan(x)
+            s = S * S
+            C = s + 1.0  # 1/cos^2
+            s /= C
+        a, b, c, d = (polynomial(part, s) for part in frame.parts)
+        b *= S
+        d *= S
+        if self.hyperbolic:
+            one, other = (b, c) if frame.at_u1 else (a, d)
+            one *= C
+            other *= C
+        named = {"re_X": a, "im_X": b, "re_Y": c, "im_Y": d, "rate_series": frame.rate}
+        return named | {"x": x, "S_x": S, "C_x": C, "s_x": s} | self.slopes
+
+
+def swing_parts(
+    constants: Sequence[float], tilt: float, t: Array, farthest: float
+) -> Iterator[tuple[Index, dict[str, Any]]]:
+    """Yield the parts of X and Y on the separatrix at all times.
+
+    1 - u = (1 - u2)/cosh^2 h, h = rate t + h0.  A constant tilt is a swing at the rate 0.
+    """
+    x, y, rate, h0 = constants
+    h = t * rate + h0
+    shrink = np.exp(-np.abs(h))
+    Y, tanh = y * (2.0 * shrink / (1.0 + shrink * shrink)), np.tanh(h)
+    real, imag, zero = np.full_like(h, x), y * tanh, np.zeros_like(h)
+    found = {"re_X": real, "im_X": imag, "re_Y": Y, "im_Y": zero}
+    found |= {"arg_X": np.arctan2(imag, real), "arg_Y": zero}
+    found["scaled_rate"] = -4.0 * rate * Y * Y * tanh
+    yield slice(None), found if rate else found | {"tilt": np.full_like(h, tilt)}
+
+
+class Sampler:
+    """The angles of one motion over time."""
 
     def __init__(self, of: Course, tilt: float) -> None:
         """Take the constants of a motion and its tilt at t = 0."""
@@ -222,18 +296,15 @@ class Sampler:
         self.known = _FUNCTIONS | {"of_spin": self.spin, "of_precession": self.precession}
         self.known |= {"of_X": of_X, "of_Y": of_Y}
         """What formulas need at any time."""
+        if isinstance(of, Nutation):
+            self.parts: Parts = ThetaParts(of).at
+        else:
+            constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
+            self.parts = partial(swing_parts, constants, tilt)
         self.tilt = tilt
-        self.max_time = min(float((int(MAX_PERIODS) * of.unit).mid()), MAX_TIME)
+        self.max_time = min(float((int(MAX_PERIODS) * unit).mid()), MAX_TIME)
         fastest = max(abs(self.spin.rate[0]), abs(self.precession.rate[0]))
         self.max_wrapped = MOST_TURNS * 2 * math.pi / fastest if fastest else math.inf
-
-    def parts(self, t: Array, farthest: float) -> Iterator[tuple[Index, dict[str, Any]]]:
-        """Yield some times by their index, each with the items of formulas; `farthest` is max |t|.
-
-        These are the parts of X and Y, up to a common positive factor.  Neither real part is
-        negative.
-        """
-        raise NotImplementedError
 
     def check(self, t: ArrayLike, name: str = "t", *, wrap: bool = False) -> float:
         """Return the greatest |t|.
@@ -281,85 +352,6 @@ class Sampler:
         return Angles(*angles.reshape(3, *times.shape))
 
 
-class ThetaSampler(Sampler):
-    """The angles of a top that nutates, by its theta series."""
-
-    def __init__(self, of: Nutation, tilt: float) -> None:
-        super().__init__(of, tilt)
-        series, step = theta_series(of), nearest(2 * of.since)
-        offset, scale = 2 * of.since - step, series.scale
-        self.frames = series.frames[:: -1 if step % 2 else 1]
-        """The series about the turning points of the even and of the odd steps."""
-        self.half = period_of(of.period / 2)
-        self.offset = near(offset)
-        """Half periods from the turning point of step 0 to t = 0, from -1/2 to 1/2."""
-        self.speed = near(2 * scale / of.period)
-        """Argument of the series per unit of time."""
-        self.first = near(scale * offset)
-        """Argument at t = 0."""
-        slopes = [near(slope / scale) for slope in series.slopes]
-        self.slopes = dict(zip(("slope_X", "slope_Y"), slopes, strict=True))
-        """What is added to arg X and arg Y per unit of the argument to make them periodic."""
-        self.over_pole = not all(part[0] for frame in self.frames for part in frame.parts[::2])
-        self.hyperbolic, self.steep = of.hyperbolic, near(scale) > 2 * _STEEPEST
-
-    def parts(self, t: Array, farthest: float) -> Iterator[tuple[Index, dict[str, Any]]]:
-        """Yield the parts about even and about odd turning points."""
-        step, rest, lost = whole_periods(t, self.half, farthest, self.offset)
-        x = (rest - lost) * self.speed + self.first
-        if self.over_pole:  # just before or after a passage, or a start
-            x = np.where(x == 0.0, np.copysign(_TINY, t), x)
-        half = 0.5 * step
-        even = half == np.rint(half)
-        for frame, chosen in zip(self.frames, (even, ~even), strict=True):
-            index = np.flatnonzero(chosen)
-            if index.size == t.size:
-                yield slice(None), self.about(frame, x)
-            elif index.size:
-                yield index, self.about(frame, x[index])
-
-    def about(self, frame: Frame, x: Array) -> dict[str, Any]:
-        """Return the parts at arguments x of the series about one turning point."""
-        if self.hyperbolic:
-            S = np.sinh(np.clip(x, -_STEEPEST, _STEEPEST) if self.steep else x)
-            s = S * S
-            C = np.sqrt(s + 1.0)
-        else:
-            S = np.tan(x)
-            s = S * S
-            C = s + 1.0  # 1/cos^2
-            s /= C
-        a, b, c, d = (polynomial(part, s) for part in frame.parts)
-        b *= S
-        d *= S
-        if self.hyperbolic:
-            one, other = (b, c) if frame.at_u1 else (a, d)
-            one *= C
-            other *= C
-        named = {"re_X": a, "im_X": b, "re_Y": c, "im_Y": d, "rate_series": frame.rate}
-        return named | {"x": x, "S_x": S, "C_x": C, "s_x": s} | self.slopes
-
-
-class SwingSampler(Sampler):
-    """The single swing on the separatrix; a constant tilt, which is one at the rate 0."""
-
-    def __init__(self, of: SingleSwing | ConstantTilt, tilt: float) -> None:
-        super().__init__(of, tilt)
-        self.constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
-
-    def parts(self, t: Array, farthest: float) -> Iterator[tuple[Index, dict[str, Any]]]:
-        """Yield the parts at all times: 1 - u = (1 - u2)/cosh^2 h, lowest at h = 0."""
-        x, y, rate, h0 = self.constants
-        h = t * rate + h0
-        shrink = np.exp(-np.abs(h))
-        Y, tanh = y * (2.0 * shrink / (1.0 + shrink * shrink)), np.tanh(h)
-        real, imag, zero = np.full_like(h, x), y * tanh, np.zeros_like(h)
-        found = {"re_X": real, "im_X": imag, "re_Y": Y, "im_Y": zero}
-        found |= {"arg_X": np.arctan2(imag, real), "arg_Y": zero}
-        found["scaled_rate"] = -4.0 * rate * Y * Y * tanh
-        yield slice(None), found if rate else found | {"tilt": np.full_like(h, self.tilt)}
-
-
 def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampler:
     """Return the sampler of a motion, from its facts and its numbers in balls of some digits.
 
@@ -367,8 +359,6 @@ def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampl
     """
 
     def sampler(digits: int) -> Sampler:
-        course, tilt = balls(digits)["course"], near(facts.tilt.angle())
-        nutates = isinstance(course, Nutation)
-        return ThetaSampler(course, tilt) if nutates else SwingSampler(course, tilt)
+        return Sampler(balls(digits)["course"], near(facts.tilt.angle()))
 
     return decided(sampler, facts.equal, digits=_DIGITS)
