@@ -179,6 +179,20 @@ def test_the_exact_value_is_within_the_radius(value: str, digits: int | None) ->
     assert Rounded(0.5, Fraction(1, 2)).radius == "0.0"
 
 
+def test_a_radius_does_not_rest_on_the_middle_of_a_wide_ball() -> None:
+    """The first ball, 1 within 2^-62, is enough for the double but not for the radius."""
+    value = 1 + Fraction(1, 2**60)
+
+    def ball(digits: int) -> arb:
+        off = Fraction(1, 2 ** (24 + digits))
+        return between(value - 2 * off, value)
+
+    found = settled("x", ball, None, 1200)
+    assert found is not None
+    assert found.value == 1
+    assert Fraction(1, 2**60) <= Fraction(float(found.radius)) < Fraction(11, 10 * 2**60)
+
+
 def test_digits_are_those_of_mpmath() -> None:
     """Numbers of any size, whose digits and exponents look like those of mpmath.nstr."""
     rng = random.Random(17)
