@@ -25,7 +25,7 @@ _STEP, _SHORT_STEP, _LEAST_SIZE = 1e-6, 1e-7, 1e-3
 """Steps of central and of forward differences, over the size of a parameter, and its least size."""
 _IN_PHASE = 0.7
 """Largest rms residual of the spin, in radians, of a motion that may be out of phase."""
-_STEPS = 60
+STEPS = 60
 """Evaluations of the least squares."""
 _POLE, _FAR = 1e-9, 1e3
 """Least distance from a pole, and weighted residual of a motion that does not exist."""
@@ -133,10 +133,14 @@ class Problem:
         """Return residuals over standard deviations, a row for each top, and priors at the end."""
         sizes = self.sizes[:, np.newaxis] / math.sqrt(self.recording.rows_per_bin)
         found = (self.residuals(x) / sizes)[:, self.recording.present]
-        value = self.values(x)
-        priors = [(value[y] - self.known[y]) / std for y, std in self.stds.items()]
-        rows: Array = np.nan_to_num(np.column_stack([found, *priors]), nan=_FAR, posinf=_FAR)
+        rest = np.column_stack([found, *self.priors(x)])
+        rows: Array = np.nan_to_num(rest, nan=_FAR, posinf=_FAR)
         return rows
+
+    def priors(self, x: Array) -> list[Array]:
+        """Return the distances of uncertain inputs from what is known of them, in sigmas."""
+        value = self.values(x)
+        return [(value[y] - self.known[y]) / std for y, std in self.stds.items()]
 
     def noise(self, x: Array) -> Array:
         """Return the logarithm of the noise that each top leaves, summed over the channels."""
@@ -274,7 +278,7 @@ class Minimum:
         """
         recording = problem.recording
         problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
-        x, cost = problem.solve(start, _STEPS)
+        x, cost = problem.solve(start, STEPS)
         present = recording.present
         share = present.sum() * recording.rows_per_bin
         share = share / max(present.sum() - problem.count, 1)
@@ -285,7 +289,7 @@ class Minimum:
             problem.sizes = size * factors
             if done:
                 break
-            x, cost = problem.solve(x, _STEPS // 4)
+            x, cost = problem.solve(x, STEPS // 4)
         slopes = problem.slopes(x, problem.weighted)
         size = np.linalg.norm(slopes, axis=0) + 1e-300
         _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
@@ -368,7 +372,7 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
         def held(at: Array, row: Array = row, wanted: float = wanted) -> Array:
             return np.column_stack([problem.weighted(at), _STIFF * ((at - x) @ row - wanted)])
 
-        end, _ = problem.solve(x + wanted * spread[:, axis], _STEPS // 3, held)
+        end, _ = problem.solve(x + wanted * spread[:, axis], STEPS // 3, held)
         grown[side, axis] = float(np.sum(problem.weighted(end[np.newaxis]) ** 2)) - base
     least = np.maximum(grown.min(axis=0, initial=math.inf), 0.04)
     factors = np.sqrt(np.clip(_CURVED**2 / least, 1.0, 100.0))

@@ -23,7 +23,7 @@ from .known import Known, estimates, scaled_known, time_power
 from .motions import STATE
 from .nutation import nutating_outcome
 from .outcome import FAILED, Number, Outcome
-from .problem import Minimum, Problem
+from .problem import STEPS, Minimum, Problem
 from .recording import Recording
 from .signals import (
     Signal,
@@ -397,7 +397,15 @@ def _constrained(
         problem.turns += shift
         v["r0"] += shift
     x = np.array([problem.known.get(name, v.get(name, 0.0)) for name in problem.names])
-    return Minimum.of(problem, x, floors, factors)
+    free, weights = old.names[: old.count], np.linalg.pinv(found.spread[: old.count])
+
+    def apart(at: Array) -> Array:
+        """Return distances from the minimum without known inputs, and from these."""
+        values = problem.values(at)
+        rest = np.stack([values[name] - v[name] for name in free], axis=-1)
+        return np.column_stack([rest @ weights.T, *problem.priors(at)])
+
+    return Minimum.of(problem, problem.solve(x, STEPS, apart)[0], floors, factors)
 
 
 def _best_starts(

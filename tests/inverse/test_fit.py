@@ -242,6 +242,16 @@ def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
         assert unsure[key][:2] == pytest.approx(sure[key][:2], rel=1e-4)
 
 
+@pytest.mark.parametrize("rough", [{"C": "0.003(1)"}, {"m": "0.2(2)", "A": 4.44e-3}])
+def test_a_rough_input_is_improved(rough: dict[str, Any]) -> None:
+    """The fit with it begins in phase with the recording, whatever b the rough value implies."""
+    t, seen = recorded("theta", "psi", "phi", seed=9)
+    found = fitted(t, seen, known=LAB | rough)
+    assert found.verdict == "good", found.failures()
+    sure = fitted(t, seen, known=LAB)
+    assert found.numbers["b"][:2] == pytest.approx(sure.numbers["b"][:2], rel=0.01)
+
+
 @pytest.mark.slow
 def test_a_prior_lies_between_a_known_input_and_none() -> None:
     """The estimate of A is the mean of prior and data, weighted by their variances."""
