@@ -23,8 +23,8 @@ Rules for code that uses balls:
 
 Threads: one computation runs at a time.  A host program may change the precision of Arb during it.
 A ball is true whatever the precision was, only wider, so no decision rests on a wide ball: more
-digits are taken.  If the precision is not the own one after a computation, it is computed again.
-The precision of the host is restored afterwards, also after an exception, Ctrl-C or a fork.
+digits are taken.  A computation after which the precision is another one is repeated.  The
+precision of the host is restored afterwards, also after an exception, Ctrl-C or a fork.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class _Precision:
     """0 if nothing is computed."""
     host = 0
     interval = 0.0
-    """The switch interval of the host."""
+    """The switch interval of the host, while another one is in use."""
 
 
 _lock = _Precision.lock
@@ -87,14 +87,14 @@ _lock = _Precision.lock
 def at_precision(digits: int, compute: Callable[[], T]) -> T:
     """Return `compute()`, evaluated with balls of `digits` digits.  Calls may be nested.
 
-    It is evaluated again, with fewer and fewer switches of threads, if another thread has changed
-    the precision.
+    If another thread has changed the precision, it is evaluated again, with fewer and fewer
+    switches of threads.
     """
     with _lock:
         outer = _Precision.own
         try:  # without a call before it and first in its `finally`: Ctrl-C arrives at calls
             if not outer:
-                _Precision.host, _Precision.interval = ctx.prec, sys.getswitchinterval()
+                _Precision.host = ctx.prec
             _Precision.own = own = int(digits * BITS) + 2
             for interval in _INTERVALS:
                 ctx.prec = own
@@ -107,6 +107,7 @@ def at_precision(digits: int, compute: Callable[[], T]) -> T:
                     if ctx.prec == own:
                         return found
                 _Precision.host = ctx.prec
+                _Precision.interval = _Precision.interval or sys.getswitchinterval()
                 sys.setswitchinterval(max(interval, _Precision.interval))
             return compute()
         finally:
@@ -114,8 +115,9 @@ def at_precision(digits: int, compute: Callable[[], T]) -> T:
                 _Precision.host = ctx.prec
             _Precision.own = outer
             ctx.prec = outer or _Precision.host
-            if not outer:
+            if _Precision.interval and not outer:
                 sys.setswitchinterval(_Precision.interval)
+                _Precision.interval = 0.0
 
 
 if hasattr(os, "register_at_fork"):  # a child of another thread has the precision of the host

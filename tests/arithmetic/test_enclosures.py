@@ -283,11 +283,13 @@ def test_the_precision_of_the_host_is_restored(error: type[BaseException]) -> No
 
 
 def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept() -> None:
+    interval, intervals = sys.getswitchinterval(), []
     with flint.ctx.workprec(77):
         seen: list[int] = []
 
         def disturbed() -> arb:
             seen.append(flint.ctx.prec)
+            intervals.append(sys.getswitchinterval())
             if len(seen) < 3:
                 flint.ctx.prec = 60
             return arb(2).sqrt()
@@ -297,6 +299,8 @@ def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept() -> 
         assert len(seen) == 3
         assert found.rel_accuracy_bits() > 160
         assert flint.ctx.prec == 60
+        assert intervals == sorted(intervals)
+        assert intervals[2] > interval == sys.getswitchinterval()
 
 
 @pytest.mark.parametrize("taken_back", [False, True])
