@@ -365,7 +365,7 @@ def write_report(
     """
     check_plot(plot, out.path)
     with opened(plot) if plot else nullcontext() as picture, opened(out.path) as stream:
-        report = _with_options(find())
+        report = _report_with_options(find())
         if picture and draw:
             from ..plot.style import report_bytes
 
@@ -377,7 +377,7 @@ def write_report(
     return report
 
 
-def _with_options(report: Report) -> Report:
+def _report_with_options(report: Report) -> Report:
     """Return a report with the options of the command in place of arguments."""
     params = click.get_current_context().command.params
     conditions = {name: with_options(x, params) for name, x in report.conditions.items()}

@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import re
 from array import array
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import islice
@@ -40,7 +40,7 @@ _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
-Known = Callable[[Sequence[str]], int]
+CountKnown = Callable[[Sequence[str]], int]
 """Returns the number of known headings in a row, which distinguishes headings from titles."""
 
 
@@ -129,7 +129,7 @@ class Table:
         """Return an error with the name of the file and the number of a row."""
         return DataError(f"{self.name}, {self.place} {number}{column}: {what}")
 
-    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> Numbers:
+    def numbers(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
         """Return columns of numbers, without the rows that have none in these columns.
 
         `names` are the names of all columns in messages.  Raises DataError with the place of a cell
@@ -137,11 +137,11 @@ class Table:
         """
         found = self._at_once() or self._at_once(columns) or self._one_by_one(columns, names)
         if found.values.shape[1] != len(columns):
-            found = Numbers(found.values[:, columns], found.empty[:, columns], found.lines)
+            found = NumericColumns(found.values[:, columns], found.empty[:, columns], found.lines)
         kept = ~found.empty.all(axis=1)
-        return found if kept.all() else Numbers(*(np.asarray(x)[kept] for x in found))
+        return found if kept.all() else NumericColumns(*(np.asarray(x)[kept] for x in found))
 
-    def _at_once(self, columns: Sequence[int] | None = None) -> Numbers | None:
+    def _at_once(self, columns: Sequence[int] | None = None) -> NumericColumns | None:
         """Return columns of numbers, or None if NumPy cannot read the rows.
 
         Without `columns`, all cells must be numbers.  With them, a cell may be empty, and other
@@ -172,9 +172,9 @@ class Table:
             return None
         if values.shape != (len(lines), len(columns or range(self.width))):
             return None
-        return Numbers(values, np.isnan(values) & np.signbit(values) & bool(columns), lines)
+        return NumericColumns(values, np.isnan(values) & np.signbit(values) & bool(columns), lines)
 
-    def _one_by_one(self, columns: Sequence[int], names: Sequence[str]) -> Numbers:
+    def _one_by_one(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
         """Return columns of numbers.  Raises DataError with the place of another cell."""
         values, empty, lines = array("d"), bytearray(), array("q")
         for number, row in self.rows:
@@ -184,7 +184,7 @@ class Table:
             values.extend(self._double(number, i, names[i], cells[i]) for i in columns)
         shape = (len(lines), len(columns))
         mask = np.frombuffer(empty, np.bool_).reshape(shape)
-        return Numbers(np.frombuffer(values, np.float64).reshape(shape), mask, lines)
+        return NumericColumns(np.frombuffer(values, np.float64).reshape(shape), mask, lines)
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
@@ -222,7 +222,7 @@ class Table:
         return text.translate(_SWAPPED) if self.decimal == "," else text
 
 
-class Numbers(NamedTuple):
+class NumericColumns(NamedTuple):
     """Columns of numbers."""
 
     values: Array
@@ -234,7 +234,7 @@ class Numbers(NamedTuple):
 
 
 def read_table(
-    text: str, name: str, known: Known, decimal: str = "", width: int | None = None
+    text: str, name: str, known: CountKnown, decimal: str = "", width: int | None = None
 ) -> Table:
     """Read a text table.
 
@@ -268,7 +268,9 @@ def read_table(
     return replace(table, decimal=decimal or _decimal_mark(table, rows[:_SAMPLE]))
 
 
-def _heading_in_comments(above: str, count: int, known: Known, delimiter: str) -> list[str] | None:
+def _heading_in_comments(
+    above: str, count: int, known: CountKnown, delimiter: str
+) -> list[str] | None:
     """Return the headings in the last fitting comment of the text above the first row, or None."""
     for line in reversed(above.split("\n")[-_TITLES:]):
         bare = re.sub(r"^\s*(?:[#%]+|//)", "", line)
@@ -307,7 +309,7 @@ class _Layout(NamedTuple):
     """The delimiter of the rows of numbers."""
 
 
-def _layout(texts: Sequence[str], known: Known, decimal: str) -> _Layout:
+def _layout(texts: Sequence[str], known: CountKnown, decimal: str) -> _Layout:
     """Return the layout of a file whose headings are the row with the most known names.
 
     Titles in words may hold known names, too: headings are as many as the cells below, and have the
@@ -331,7 +333,7 @@ def _layout(texts: Sequence[str], known: Known, decimal: str) -> _Layout:
                 found = score, _Layout(cells, i + 1, [*fits, *delimiters, mark][0])
     if found:
         return found[1]
-    some = (i for i, row in enumerate(splits) if any(map(_has_number, [*row.values()][:-1] or row)))
+    some = (i for i, row in enumerate(splits) if _has_number(row))
     first = next(some, min(len(texts), 1)) if below is None else below
     near = first if first < len(texts) else first - 1
     delimiter = [*numeric[near], *splits[near]][0] if texts else " "
@@ -344,17 +346,14 @@ def _layout_of(texts: Sequence[str], width: int, decimal: str) -> _Layout:
     Numbers begin with the first row that has so many cells, like the row below it, and a number.
     """
     splits = [_splits(text, decimal) for text in texts]
-    best: tuple[int, ...] = ()
-    found = _Layout(None, len(texts), " ")
-    for i, row in enumerate(splits):
-        below = splits[i + 1] if i + 1 < len(splits) else row
-        for mark, cells in row.items():
-            is_wide = len(cells) == width
-            fits = is_wide and len(below.get(mark, ())) == width
-            score = fits, is_wide, -i, _are_numbers(cells)
-            if _has_number(cells) and score > best:
-                best, found = score, _Layout(None, i, mark)
-    return found
+    ranked = [
+        (len(below.get(mark, ())) == len(cells) == width, len(cells) == width, -i, cells, mark)
+        for i, (row, below) in enumerate(zip(splits, [*splits[1:], *splits[-1:]], strict=True))
+        for mark, cells in row.items()
+        if any(map(_NUMBER.fullmatch, cells))
+    ]
+    best = max(ranked, key=lambda x: (*x[:3], _are_numbers(x[3])), default=None)
+    return _Layout(None, -best[2], best[4]) if best else _Layout(None, len(texts), " ")
 
 
 def _splits(text: str, decimal: str = "") -> dict[str, list[str]]:
@@ -369,8 +368,11 @@ def _are_numbers(cells: Sequence[str]) -> bool:
     return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x)
 
 
-def _has_number(cells: Sequence[str]) -> bool:
-    return any(map(_NUMBER.fullmatch, cells))
+def _has_number(row: Mapping[str, Sequence[str]]) -> bool:
+    """Return whether a cell of a row is a number, by any delimiter but blanks if it has another."""
+    return any(
+        _NUMBER.fullmatch(x) for cells in [*row.values()][:-1] or row.values() for x in cells
+    )
 
 
 def _split(text: str, delimiter: str) -> list[str]:

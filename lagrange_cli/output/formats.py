@@ -25,18 +25,17 @@ if TYPE_CHECKING:
 
 Texts = Sequence[Sequence[str]]
 """A block of rows with numbers as text; an empty text is a missing number."""
-Columns = Sequence[Any]
+BlockColumns = Sequence[Any]
 """The columns of a block, in one of two types.
 
 Arrays hold numbers, with one or several columns each and NaN for missing values.  Lists hold texts
 and JSON values.
 """
-Names = Sequence[str]
 MOST_DRAWN_ROWS = 10_000
 """Most rows of a table for people, because rich takes long for many."""
 
 
-def block_text(columns: Columns, names: Names, fmt: str) -> bytes:
+def block_text(columns: BlockColumns, names: Sequence[str], fmt: str) -> bytes:
     """Return a block of rows in a format; NaN, None and an empty number are missing values."""
     if not len(columns[0]):
         return b""
@@ -86,7 +85,7 @@ def _shown(value: Any) -> str | None:
     return shortened(printable(value if isinstance(value, str) else json_text(value), ""), 500)
 
 
-def _json_rows(columns: Columns, names: Names) -> list[bytes]:
+def _json_rows(columns: BlockColumns, names: Sequence[str]) -> list[bytes]:
     """Return a JSON object per row."""
     lists = chain.from_iterable(
         [x] if isinstance(x, Sequence) else x.reshape(len(x), -1).T.tolist() for x in columns
@@ -104,7 +103,11 @@ def _fragment(value: Any) -> Any:
 
 
 def write(
-    stream: BinaryIO, names: Names, blocks: Iterable[bytes], fmt: str, width: int | None = None
+    stream: BinaryIO,
+    names: Sequence[str],
+    blocks: Iterable[bytes],
+    fmt: str,
+    width: int | None = None,
 ) -> None:
     """Write blocks of rows, with the bytes before, between and after them.
 
@@ -132,7 +135,7 @@ def write(
     stream.write(b"]\n" if fmt == "json" else b"")
 
 
-def part_file(fmt: str, names: Names, number: int, text: bytes) -> bytes:
+def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes:
     """Return the content of the file of a part, from the text that `block_text` made.
 
     The concatenation of CSV or NDJSON files is the output of `write`: only part 0 begins with the
@@ -141,7 +144,7 @@ def part_file(fmt: str, names: Names, number: int, text: bytes) -> bytes:
     return text if number or fmt != "csv" else _csv_header(names) + text
 
 
-def _csv_header(names: Names) -> bytes:
+def _csv_header(names: Sequence[str]) -> bytes:
     return f"{','.join(map(csv_text, names))}\n".encode()
 
 
@@ -155,7 +158,7 @@ def check_parquet() -> None:
         ) from None
 
 
-def _parquet_file(columns: Columns, names: Names) -> bytes:
+def _parquet_file(columns: BlockColumns, names: Sequence[str]) -> bytes:
     """Return columns as a Parquet file: numbers with null for NaN, and texts."""
     import pyarrow as pa
     from pyarrow import parquet
@@ -172,7 +175,7 @@ def _parquet_file(columns: Columns, names: Names) -> bytes:
     return file.getvalue()
 
 
-def _write_parquet(stream: BinaryIO, names: Names, blocks: Iterable[bytes]) -> None:
+def _write_parquet(stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes]) -> None:
     """Write Parquet files as one, a row group per file."""
     import pyarrow as pa
     from pyarrow import parquet

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import LagtopError, SomeFailedError
 from ..files.tops import Product, TopsFile, read_tops
-from ..output.formats import Columns, block_text
+from ..output.formats import BlockColumns, block_text
 from ..top.given import Given, gather
 from ..top.inputs import EXAMPLE, checked_double, overridden
 from ..top.ranges import Points
@@ -144,7 +144,7 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, A
     return overridden(defaults, doubles) | words
 
 
-def runs_of(columns: Iterable[ResultColumn]) -> Columns:
+def runs_of(columns: Iterable[ResultColumn]) -> BlockColumns:
     """Return neighbouring columns of numbers as one array of rows, and texts as lists."""
     runs: list[Any] = []
     for are_numbers, run in groupby(columns, lambda column: column.dtype == np.float64):

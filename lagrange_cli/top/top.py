@@ -34,7 +34,7 @@ _OTHER_END = {"s": "a low centre of mass", "g": "upward gravity"}
 """Causes of a negative input that turning the top over describes."""
 
 
-class Parts(NamedTuple):
+class BodyAndStart(NamedTuple):
     """The inputs of a top by key: m, A, C, s and g of its body, and the others of its start."""
 
     body: dict[str, Number]
@@ -173,11 +173,11 @@ class Top:
         return type(self)(**overridden(self.parts.body | self.parts.start, changes))
 
     @property
-    def parts(self) -> Parts:
+    def parts(self) -> BodyAndStart:
         """The inputs by key in two parts, `body` and `start`, such as for a sweep of one body."""
         given = {name: x for name, x in self.as_dict().items() if x is not None}
         body = ("m", "A" if self.A_cm is None else "A_cm", "C", "s", "g")
-        return Parts({name: given.pop(name) for name in body}, given)
+        return BodyAndStart({name: given.pop(name) for name in body}, given)
 
     def inputs(self, *, radians: bool = False) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
