@@ -7,12 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from functools import partial, wraps
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
 
 from ..arithmetic.text import is_decimal, parse_number, quoted
-from ..errors import LagtopError, SomeFailedError
+from ..errors import LagtopError, SomeFailedError, UnavailableError
 from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
@@ -343,13 +344,12 @@ def output(
 
 def _check_parquet(path: str, others: Mapping[str, Any]) -> None:
     """Raise LagtopError if Parquet cannot be written to a path, or cannot hold the numbers."""
-    from ..output.formats import check_parquet
-
     if is_screen(path):
         raise LagtopError("--format parquet is not for a terminal: use -o FILE.parquet")
     if others.get("digits") or others.get("certify"):
         raise LagtopError("--format parquet holds doubles: with --digits use csv, json or table")
-    check_parquet()
+    if find_spec("pyarrow") is None:
+        raise UnavailableError("--format parquet needs pyarrow: pip install 'lagtop[parquet]'")
 
 
 def write_report(

@@ -114,16 +114,17 @@ class Table:
 
     def column(self, index: int) -> Iterator[tuple[int, Any]]:
         """Yield the numbers of the rows and the cells of one column.  Raises DataError."""
-        for number, row in self.rows:
-            yield number, self._cells_at(number, row)[index]
+        return ((number, cells[index]) for number, cells in self._checked_rows())
 
-    def _cells_at(self, number: int, row: Any) -> list[Any]:
-        try:
-            cells = self.cells(row)
-            self.check(cells)
-            return cells
-        except LagtopError as error:
-            raise self.wrong(number, error) from None
+    def _checked_rows(self) -> Iterator[tuple[int, list[Any]]]:
+        """Yield the numbers of the rows and their cells.  Raises DataError."""
+        for number, row in self.rows:
+            try:
+                cells = self.cells(row)
+                self.check(cells)
+            except LagtopError as error:
+                raise self.wrong(number, error) from None
+            yield number, cells
 
     def wrong(self, number: int, what: object, column: str = "") -> DataError:
         """Return an error with the name of the file and the number of a row."""
@@ -177,8 +178,7 @@ class Table:
     def _one_by_one(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
         """Return columns of numbers.  Raises DataError with the place of another cell."""
         values, empty, lines = array("d"), bytearray(), array("q")
-        for number, row in self.rows:
-            cells = self._cells_at(number, row)
+        for number, cells in self._checked_rows():
             lines.append(number)
             empty.extend(cells[i] in (None, "") for i in columns)
             values.extend(self._double(number, i, names[i], cells[i]) for i in columns)

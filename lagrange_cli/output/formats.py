@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import orjson
 
 from ..arithmetic.text import NumberText, shortened
-from ..errors import LagtopError, UnavailableError
+from ..errors import LagtopError
 from .terminal import printable
 from .text import csv_text, json_text
 
@@ -146,16 +146,6 @@ def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes
 
 def _csv_header(names: Sequence[str]) -> bytes:
     return f"{','.join(map(csv_text, names))}\n".encode()
-
-
-def check_parquet() -> None:
-    """Raise UnavailableError if pyarrow is not installed."""
-    try:
-        import pyarrow.parquet  # noqa: F401
-    except ImportError:
-        raise UnavailableError(
-            "format parquet needs pyarrow: pip install 'lagtop[parquet]'", "format"
-        ) from None
 
 
 def _parquet_file(columns: BlockColumns, names: Sequence[str]) -> bytes:
