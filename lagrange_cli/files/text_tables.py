@@ -390,7 +390,9 @@ def split_row(text: str, delimiter: str) -> list[str]:
     if '"' not in text:
         return text.split() if delimiter == " " else [x.strip() for x in text.split(delimiter)]
     try:
-        rows = csv.reader([text.strip()], delimiter=delimiter, strict=True, skipinitialspace=True)
+        rows = csv.reader(
+            [text.strip(" ")], delimiter=delimiter, strict=True, skipinitialspace=True
+        )
         return [x.strip() for x in next(rows)]
     except csv.Error as error:
         limit = "a quoted cell must have at most 131072 characters"

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT, Lagtop, Solved, assert_one_line
-from lagtop import LagtopError, Top, solve
+from lagtop import Top, solve
 from scenes import SAMPLES
 
 from lagrange_cli import errors
@@ -153,15 +153,6 @@ def test_get_with_digits_and_radians(lagtop: Lagtop) -> None:
     result = lagtop("solve", "--get", "theta_max_rad", "--rad", "--theta0", "1", "--digits", "25")
     table = lagtop("solve", "--rad", "--theta0", "1", "--digits", "25", "--format", "json").stdout
     assert f'"theta_max_rad":{result.stdout.strip()},' in table
-
-
-def test_get_what_is_not_there(lagtop: Lagtop) -> None:
-    absent = lagtop("solve", "--theta0", "0", "--get", "T_nutation")
-    assert (absent.exit_code, absent.stdout) == (1, "")
-    assert absent.stderr == "Error: T_nutation is undefined in the regime 'sleeping'\n"
-    in_csv = lagtop("solve", "--get", "T_nutation,k", "--format", "csv").stdout
-    bare = lagtop("solve", "--get", "T_nutation,k").stdout
-    assert in_csv == f"T_nutation,k\n{bare.replace(chr(10), ',', 1)}"
 
 
 def test_several_values(lagtop: Lagtop) -> None:
@@ -392,19 +383,6 @@ def test_scenes_are_found_by_name(
     assert_one_line(
         unknown, 65, "simo-wong: No such file or directory (did you mean 'simo-wong-1991'?"
     )
-
-
-def test_every_error_is_of_one_family_and_says_its_exit_code() -> None:
-    codes = {
-        name: error.exit_code
-        for name, error in vars(errors).items()
-        if isinstance(error, type) and issubclass(error, LagtopError) and error is not LagtopError
-    }
-    assert codes == {
-        **{"DataError": 65, "SceneError": 65, "UnavailableError": 69, "CannotWriteError": 74},
-        **{"SomeFailedError": 1, "AbsentError": 1, "OutOfRangeError": 2},
-    }
-    assert LagtopError.exit_code == 2
 
 
 def test_the_exit_codes_have_one_wording(lagtop: Lagtop) -> None:

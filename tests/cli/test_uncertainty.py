@@ -181,25 +181,6 @@ def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
     assert lagtop("view", scene, "-o", tmp_path / "top.html").stderr == said
 
 
-def test_a_table_carries_the_uncertainties_of_the_angles(lagtop: Lagtop) -> None:
-    """Columns of the table itself, an uncertainty to either side, differ by twice as much."""
-    arguments = ["--t-max", "0.6", "--n", "4", "--psidot0", "1"]
-    uncertain = ["--r0", "50.0000(2)", "--theta0", "30.0000+/-0.0001", *arguments]
-    rows = dicts(lagtop("table", *uncertain).stdout)
-    assert list(rows[0])[4:] == ["theta_deg_std", "phi_deg_std", "psi_deg_std"]
-    sides = [
-        [
-            dicts(lagtop("table", *given, *arguments).stdout)
-            for given in ([name, value - std], [name, value + std])
-        ]
-        for name, value, std in (("--r0", 50, 0.0002), ("--theta0", 30, 0.0001))
-    ]
-    for i, row in enumerate(rows):
-        for angle in ("theta_deg", "phi_deg", "psi_deg"):
-            parts = [(float(high[i][angle]) - float(low[i][angle])) / 2 for low, high in sides]
-            assert float(row[f"{angle}_std"]) == pytest.approx(math.hypot(*parts), 1e-5, 1e-12)
-
-
 def test_a_table_has_uncertainties_in_radians_and_of_chosen_angles(lagtop: Lagtop) -> None:
     result = lagtop("table", "--theta0", "30(1)", "--columns", "t,psi,axis", "--n", 2, "--t-max", 1)
     assert result.stdout.splitlines()[0] == "t,psi_deg,axis_x,axis_y,axis_z,psi_deg_std"

@@ -170,6 +170,26 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> N
         read_trajectory(str(path)).values(radians=True)
 
 
+@pytest.mark.parametrize("mark", [",", ";", "\t"])
+def test_missing_cells_and_words_are_read_at_once_as_one_by_one(mark: str, tmp_path: Path) -> None:
+    """A cell in quotes makes NumPy give up; -nan is a lost number and no missing cell."""
+    path, found = tmp_path / "file", []
+    rows = "0,1,a,2 1,,b,3 2,4,,5 3,nan,c, ,,d, 5,,e, 6,-nan,f,6".split()
+    for texts in (rows, rows[:-1], [*rows[:-1], '"7",,,'], [*rows, '"7",,,']):
+        path.write_text("\n".join(["t,theta,note,psi", *texts]).replace(",", mark))
+        file = read_trajectory(str(path))
+        values = np.concatenate([*file.values(radians=True).values()], axis=1)
+        missing = np.stack([*file.missing().values()], axis=1)
+        assert file.where(4).endswith("line 7")  # the fifth row is empty in all used columns
+        found.append((values[:5], missing[:5]))
+        assert len(values) == len(texts) - 1
+    for values, missing in found[1:]:
+        assert np.array_equal(values, found[0][0], equal_nan=True)
+        assert np.array_equal(missing, found[0][1])
+    assert not missing[3, 1]
+    assert missing[:, 1].tolist() == [False, True, False, False, True]
+
+
 NAMED = {
     "Start time: unknown\nClock,Tilt,Azimuth\n0.5,30,1\n1.5,40,2\n": "t theta psi",
     "run 1 of 2, tilt\nt1;tilt1;t2;tilt2\n0,5;30;0,5;7\n1,5;40;1,5;8\n2,5;50;;\n": "_ _ t theta",
