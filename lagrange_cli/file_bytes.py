@@ -17,8 +17,8 @@ from .errors import DataError
 LARGEST_FILE = 1 << 28
 """Most bytes of an input file after decompression.  Reading takes up to 21 times the memory."""
 _AT_ONCE = 1 << 20
-_BINARY = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0", b"\x93NUM")
-"""The first bytes of archives and new workbooks, of an empty archive, of old workbooks, of npy."""
+_BINARY = (b"PAR1", b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0", b"\x93NUM")
+"""The first bytes of Parquet, archives and new workbooks, empty archives, old workbooks, npy."""
 _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -82,7 +82,7 @@ def decoded(content: bytes, name: str) -> str:
     Raises DataError for other bytes, with their line.
     """
     if content.startswith(_BINARY):
-        wrong = "a workbook, an archive or an array of NumPy is no text: save it as CSV"
+        wrong = "a workbook, an archive, Parquet or an array of NumPy is no text: save it as CSV"
         raise DataError(f"{name}: {wrong}")
     try:
         text = content.decode("utf-16" if content[:2] in _UTF16 else "utf-8-sig")

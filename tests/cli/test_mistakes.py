@@ -48,7 +48,7 @@ MISTAKES = {
     "sweep|--r0|60rpm:80rpm:3": "must have its unit once, at the end, as in '60:80:3 rpm'",
     "table|--t-max|1e15": "--digits",
     "find|T_nutation=1": "no input is unknown: give a range, such as --r0 10:200",
-    "compare|book.xlsx": "a workbook, an archive or an array of NumPy is no text: save it as CSV",
+    "compare|book.xlsx": "an archive, Parquet or an array of NumPy is no text: save it as CSV",
     "compare|bare.csv": "has no header: name its 2 columns with --columns t,quaternion or the like",
     "compare|empty.csv": "psi is empty (psi): remove its columns",
     "compare|thousands.csv": "use --decimal point or --decimal comma",
