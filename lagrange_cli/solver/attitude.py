@@ -36,10 +36,10 @@ class Attitude(NamedTuple):
     """cos(theta/2), up to a positive factor common with y."""
     y: arb
     """sin(theta/2), up to that factor."""
-    phi: arb
-    """Spin, unwrapped from 0 at t = 0."""
-    psi: arb
-    """Precession, unwrapped from 0 at t = 0."""
+    dphi: arb
+    """Spin, unwrapped from 0 at t = 0, less its mean rate times t."""
+    dpsi: arb
+    """Precession, unwrapped from 0 at t = 0, less its mean rate times t."""
     tilting: arb
     """A number with the sign of the nutation rate; on the separatrix the argument -h."""
 
@@ -94,21 +94,21 @@ class Nutation:
         """Return the attitude at a time."""
         z = self.since + t / self.period
         n, rest, values = self._values(z)
-        phi, psi = self._grown(t, self.start, self._waves(n, rest, values))
-        return Attitude(abs(values[0]), abs(values[1]), phi, psi, rest * (-1) ** n)
+        x, y = (
+            last - first
+            for first, last in zip(self.start, self._waves(n, rest, values), strict=True)
+        )
+        return Attitude(abs(values[0]), abs(values[1]), x - y, x + y, rest * (-1) ** n)
 
     def growth(self, first: arb, last: arb) -> tuple[arb, arb]:
         """Return the growth of spin and precession between two phases z."""
-        return self._grown((last - first) * self.period, self.waves(first), self.waves(last))
+        t = (last - first) * self.period
+        x, y = (end - start for start, end in zip(self.waves(first), self.waves(last), strict=True))
+        return self.spin * t + x - y, self.precession * t + x + y
 
     def waves(self, z: arb) -> tuple[arb, arb]:
         """Return arg X and arg Y at a phase z, without their mean growth."""
         return self._waves(*self._values(z))
-
-    def _grown(self, t: arb, first: tuple[arb, arb], last: tuple[arb, arb]) -> tuple[arb, arb]:
-        """Return the growth of spin and precession in a time, from the waves at both ends."""
-        dx, dy = last[0] - first[0], last[1] - first[1]
-        return self.spin * t + dx - dy, self.precession * t + dx + dy
 
     def _waves(self, n: int, rest: arb, values: list[acb]) -> tuple[arb, arb]:
         """Return arg X and arg Y without their mean growth.
@@ -168,7 +168,7 @@ class ConstantTilt:
 
     def at(self, t: arb) -> Attitude:
         """Return the attitude at a time."""
-        return Attitude(self.x, self.y, self.spin * t, self.precession * t, arb(0))
+        return Attitude(self.x, self.y, arb(0), arb(0), arb(0))
 
 
 class SingleSwing:
@@ -193,8 +193,7 @@ class SingleSwing:
         h = self.h0 + self.rate * t
         turned = self.turn(h) - self.start[0]
         x = root(self.x * self.x + (self.y * h.tanh()) * (self.y * h.tanh()))
-        phi, psi = self.spin * t + turned, self.precession * t + turned
-        return Attitude(x, abs(self.y) * h.sech(), phi, psi, -h)
+        return Attitude(x, abs(self.y) * h.sech(), turned, turned, -h)
 
     def turn(self, h: arb) -> arb:
         """Return arg X without its mean growth; on the lower pole, the limit at t = 0."""

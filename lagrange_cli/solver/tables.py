@@ -34,7 +34,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import ANGLES
 from ..top.ranges import EvenPoints, Points
-from .attitude import ConstantTilt, Course, Nutation, SingleSwing, start_of
+from .attitude import Course, SingleSwing, start_of
 from .columns import (
     DEFAULT_COLUMNS,
     FORMULAS,
@@ -62,8 +62,6 @@ _BALL_FORMULAS = FORMULAS | {
     "XX": "square(X)",
     "YY": "square(Y)",
     "tilt": "2*atan2(Y, X)",
-    "spin_wave": "wave('spin', spin)",
-    "precession_wave": "wave('precession', precession)",
     "spin_turn": "spin",
     "precession_turn": "precession",
     "angle_X": "(precession + spin)/2",
@@ -208,24 +206,15 @@ def ball_columns(
     t, of = exact(time), motion.balls(digits)
     course: Course = of["course"]
     at = course.at(t) if time else start_of(motion.facts, of)
-    spin, precession = at.phi, at.psi
+    spin, precession = course.spin * t + at.dphi, course.precession * t + at.dpsi
     if motion.facts.plane:  # these angles change only at the poles, by half turns
         spin, precession = (arb.pi() * nearest(x / arb.pi()) for x in (spin, precession))
-
-    def wave(name: str, angle: arb) -> arb:
-        """Return an angle less its mean rate times t; on the separatrix the rate is its limit."""
-        if isinstance(course, ConstantTilt):
-            return arb(0)
-        if isinstance(course, Nutation) and motion.is_zero(f"mean_{name}_rate"):
-            return angle
-        waveless: arb = getattr(course, name) * t
-        return angle - waveless
-
-    formulas, more = _BALL_FORMULAS, {"wave": wave, "tilting": at.tilting}
-    if isinstance(course, SingleSwing) and time:
-        formulas, more["swing_rate"] = formulas | _SWING, course.rate
     items = {"t": t, "X": at.x, "Y": at.y, "spin": spin, "precession": precession}
-    return Columns(formulas, _BALLS, constants(digits), items, more)
+    items |= {"spin_wave": at.dphi, "precession_wave": at.dpsi, "tilting": at.tilting}
+    formulas = _BALL_FORMULAS
+    if isinstance(course, SingleSwing) and time:
+        formulas, items["swing_rate"] = formulas | _SWING, course.rate
+    return Columns(formulas, _BALLS, constants(digits), items)
 
 
 def within_a_turn(angle: arb, *, plane: bool) -> arb:
