@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 _BYTES_OF_A_NUMBER = 24
 """Most characters of a number in CSV."""
+_MOST_PARTS = 9
+"""Most columns of a quantity: those of a matrix."""
 _FINE = 1e-7
 """Largest rounding of a time, over the time between two rows, that does not matter."""
 
@@ -161,16 +163,17 @@ def _csv_of_parquet(content: bytes, name: str) -> bytes:
             raise ValueError(f"two columns are named {twice!r}")
         sizes = {}
         for x in file.schema_arrow:
-            kind = getattr(x.type, "value_type", x.type)
+            parts = getattr(x.type, "list_size", 0)
+            kind = x.type.value_type if 0 < parts <= _MOST_PARTS else x.type
             if pa.types.is_floating(kind) or pa.types.is_integer(kind):
-                sizes[x.name] = getattr(x.type, "list_size", 0)
+                sizes[x.name] = parts
         size = file.metadata.num_rows * sum(max(x, 1) for x in sizes.values())
         if size > (most := LARGEST_FILE // _BYTES_OF_A_NUMBER):
             raise ValueError(f"it must have at most {most} numbers, has {size}")
         table, columns = file.read(columns=[*sizes]), dict[str, Any]()
         for x, count in sizes.items():
-            parts = {f"{x}_{i}": compute.list_element(table[x], i) for i in range(count)}
-            columns |= parts or {x: table[x]}
+            cells = {f"{x}_{i}": compute.list_element(table[x], i) for i in range(count)}
+            columns |= cells or {x: table[x]}
         csv.write_csv(pa.table(columns), stream := BytesIO())
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
