@@ -6,7 +6,7 @@ Where the terms of a formula cancel, `solve` computes the number.  Equation numb
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 
 import numpy as np
 
@@ -132,13 +132,9 @@ class Steady(Motions):
         square, around, along = of.discriminant(), rate * start.sin, rate * of.cos
         D = around * around + square
         spin = of.total(start.r0, -along, error=abs(along.high) / _LEAST_SQUARE)
-        self.known: Mask = ~of.lost & (square.high > _LEAST_SQUARE * of.b.high**2)
+        self.known = ~of.lost & (square.high > _LEAST_SQUARE * of.b.high**2)
         self |= {"u3": (of.cos + D / of.a).high, "T_nutation": turn_time(np.sqrt(D.high))}
         for key in ("psidot0", "mean_precession_rate", "precession_rate_start"):
             self[key] = rate.high
         self["T_precession"] = turn_time(rate.high)
         self["mean_spin_rate"] = self["spin_rate_start"] = spin.high
-
-    def trusted(self, _: Collection[str]) -> Mask:
-        """Return which tops can be trusted."""
-        return self.known

@@ -266,6 +266,8 @@ class Motions(dict[str, Any]):
     Each is computed once, by a formula that takes the motions.  Angles are in degrees or radians.
     """
 
+    known: Any = True
+
     def __init__(self, formulas: Formulas, start: Start, gaps: Gaps | None = None) -> None:
         super().__init__()
         self.formulas, self.start, self.gaps = formulas, start, gaps
@@ -281,7 +283,7 @@ class Motions(dict[str, Any]):
 
     def trusted(self, _: Collection[str]) -> Any:
         """Return which tops can be trusted for some keys."""
-        return True
+        return self.known
 
 
 Formulas = dict[str, Callable[[Any], Any]]
@@ -324,15 +326,13 @@ OF_VERTICAL: Formulas = _OF_ALL | {
 }
 """Formulas of tops released on the vertical."""
 OF_TORQUE_FREE: Formulas = OF_VERTICAL | {
-    "k": lambda _: 0.0,
-    "modular_angle_deg": lambda _: 0.0,
-    "nome": lambda _: 0.0,
+    **dict.fromkeys(("k", "modular_angle_deg", "nome"), lambda _: 0.0),
     "k_prime": lambda _: 1.0,
-    "K": lambda _: np.pi / 2,
-    "E": lambda _: np.pi / 2,
+    **dict.fromkeys(("K", "E"), lambda _: np.pi / 2),
     "T_nutation": lambda of: turn_time(of.start.b),
-    "mean_precession_rate": lambda of: of.start.psi_rate,
-    "precession_rate_start": lambda of: of.start.psi_rate,
+    **dict.fromkeys(
+        ("mean_precession_rate", "precession_rate_start"), lambda of: of.start.psi_rate
+    ),
 }
 """Formulas of tops released without a torque."""
 OF_NUTATION: Formulas = _OF_ALL | {

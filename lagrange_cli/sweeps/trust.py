@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from functools import reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,7 +79,7 @@ class AnyStart(Motions):
         super().__init__(_FORMULAS, start.in_doubles(), doubles)
         self._bound_gaps()
 
-    def trusted(self, keys: Collection[str]) -> Mask:
+    def trusted(self, keys: Collection[str]) -> Any:
         """Return which tops can be trusted for some keys."""
         return self.known & self._rates_are_known() if _RATES & {*keys} else self.known
 
@@ -109,7 +110,7 @@ class AnyStart(Motions):
         )
         worst = reduce(np.maximum, (error / gap for gap, error in errors))
         self.noise: Array = worst + PAIR_EPS
-        self.known: Mask = (worst < GOOD) & (reduce(np.minimum, (gap for gap, _ in errors)) > 0)
+        self.known = (worst < GOOD) & (reduce(np.minimum, (gap for gap, _ in errors)) > 0)
         self._sizes = momentum + b * x1, momentum + b * x2
         ends = (gaps.momentum_u1, of_x1), (gaps.momentum_u2, of_x2)
         for size, (value, of_x) in zip(self._sizes, ends, strict=True):
