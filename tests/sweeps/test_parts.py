@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from conftest import Lagtop, assert_one_line, joined
 
-GRID = ["sweep", "--r0", "1:9:9000", "--keys", "r0,K"]
+GRID = ["sweep", "--r0", "1:9:9", "--keys", "r0,K"]
+
+
+@pytest.fixture(autouse=True)
+def small_parts() -> Iterator[None]:
+    """Make parts of four tops, so that nine tops have three."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("lagrange_cli.sweeps.plan.BLOCK_ROWS", 4)
+        yield
 
 
 def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
@@ -21,7 +29,7 @@ def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
     assert whole.splitlines()[-1].startswith(b"9.0,")
     alone = [lagtop(*GRID, "--shard", f"{i}/3").stdout.splitlines() for i in (1, 2, 3)]
     assert {lines[0] for lines in alone} == {"r0,K"}
-    assert sum(len(lines) - 1 for lines in alone) == 9000
+    assert sum(len(lines) - 1 for lines in alone) == 9
 
 
 @pytest.mark.parametrize("text", ["0/3", "4/3", "1", "a/b", "-1/3", f"1/{'9' * 5000}", "\u0661/2"])
@@ -40,7 +48,7 @@ def test_parts_that_cannot_be(tmp_path: Path, lagtop: Lagtop) -> None:
         assert_one_line(tops, 2, f"--parts needs a file of tops that can be read again, got {name}")
 
 
-OTHERS = "--keys K,r0|--g 0|--rad|--format ndjson|--r0 1:9:5001|--theta0 1,2".split("|")
+OTHERS = "--keys K,r0|--g 0|--rad|--format ndjson|--r0 1:9:8|--theta0 1,2".split("|")
 
 
 def test_parts_of_another_sweep_are_refused(tmp_path: Path, lagtop: Lagtop) -> None:
@@ -103,14 +111,14 @@ def test_a_changed_file_is_another_sweep(tmp_path: Path, lagtop: Lagtop) -> None
 def test_a_sweep_is_resumed_with_its_errors(tmp_path: Path, lagtop: Lagtop) -> None:
     """The exit code and the last line count the errors of all parts, computed now or before."""
     file, parts = tmp_path / "tops.csv", tmp_path / "parts"
-    file.write_text("r0\n" + "".join(f"{'x' if i in (7, 5000) else i}\n" for i in range(9000)))
+    file.write_text("r0\n" + "".join(f"{'x' if i in (3, 5) else i}\n" for i in range(9)))
     options = ["sweep", file, "--keys", "r0"]
     whole, first = lagtop(*options), lagtop(*options, "--parts", parts)
     again = lagtop(*options, "--parts", parts)
     (parts / "part-000001.csv").unlink()
     (parts / "errors-000000.json").write_text("damaged")  # then the part is computed again
     mended = lagtop(*options, "--parts", parts)
-    last = "Error: 2 of 9000 tops have an error; the first: line 9: r0 must be a finite decimal"
+    last = "Error: 2 of 9 tops have an error; the first: line 5: r0 must be a finite decimal"
     for result, found in ((whole, 0), (first, 0), (again, 3), (mended, 1)):
         *resumed, said = result.stderr.splitlines()
         assert (result.exit_code, said[: len(last)]) == (1, last)
