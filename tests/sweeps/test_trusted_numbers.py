@@ -99,6 +99,21 @@ def test_numbers_whose_parts_cancel(name: str) -> None:
     assert_trusted(CANCELLING[name], len(CANCELLING[name]))
 
 
+SPECIAL: list[Scene] = [
+    *(EXAMPLE | x for x in ({"theta0_rad": 0}, {"theta0_rad": 3.141592, "thetadot0": -2})),
+    *({"m": 1e-40, "A": 1e-40, "C": 1e-40, "s": 1, "g": 1}, EXAMPLE | {"r0": 1e70}),
+    EXAMPLE | {"theta0_deg": 1e-100},
+    *(UNIT | {"r0": r0, "theta0_deg": 30} for r0 in (10.0, math.nextafter(10.0, 0.0), -1e9)),
+    EXAMPLE | {"psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151},
+]
+
+
+@pytest.mark.parametrize("scene", SPECIAL)
+def test_special_tops(scene: Scene) -> None:
+    """A tilt in radians, sizes beyond 1e30, the least spin of the remark, a start at u2."""
+    assert_trusted([{"r0": 50.0, **scene}], 1)
+
+
 RATES = random.Random("steady")
 STEADY: list[Scene] = [
     *(EXAMPLE | {"r0": RATES.gauss(0, 90), "theta0_deg": RATES.uniform(0, 180)} for _ in range(40)),
