@@ -118,8 +118,5 @@ def compare_command(
 
 def as_options(remedy: str) -> str:
     """Return the arguments of a remedy as options, such as `--align up=y,left`."""
-    return re.sub(r"\b(align|quaternion_order|rates_frame)=", _as_option, remedy)
-
-
-def _as_option(argument: re.Match[str]) -> str:
-    return f"--{argument[1].replace('_', '-')} "
+    argument = r"\b(align|quaternion_order|rates_frame)="
+    return re.sub(argument, lambda found: f"--{found[1].replace('_', '-')} ", remedy)
