@@ -140,7 +140,7 @@ def read_trajectory(
     names, name = None if columns is None else expanded(columns), shown_path(path)
     content = read_bytes(path)
     if content.startswith(b"PAR1"):
-        content = _csv_of_parquet(content, name)
+        content, decimal = _csv_of_parquet(content, name), "."
     text = decoded(content, name)
     del content  # one copy of a large file is enough
     table = read_table(text, name, known_quantities, decimal, len(names or ()) or None)

@@ -46,6 +46,8 @@ def columns_of_parquet(path: Path) -> None:
 def test_parquet_is_read(tmp_path: Path) -> None:
     columns_of_parquet(tmp_path / "a")
     found = read(tmp_path / "a")
+    with_commas = read_trajectory(str(tmp_path / "a"), None, ",")
+    assert np.array_equal(with_commas.values(radians=True)["t"], found["t"])
     assert np.array_equal(found["t"][:, 0], DATA[:, 0])
     assert np.array_equal(found["quaternion"], DATA[:, 1:])
 
