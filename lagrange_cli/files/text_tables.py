@@ -421,8 +421,8 @@ def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
             headings |= dict.fromkeys(entries_of(row, table.sizes))
         except LagtopError as error:  # which is raised again when the row is read
             wrong = wrong or table.wrong(number, error)
-            if not headings and number > _SAMPLE:
-                break
+        if not headings and number > _SAMPLE:
+            break
     if not headings and wrong:
         raise wrong
     return replace(table, headings=[*headings], width=len(headings))
