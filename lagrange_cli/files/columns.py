@@ -192,7 +192,7 @@ def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> No
     """Raise LagtopError without a time and a quantity, and for two names of the same part."""
     if "t" not in found or len(found) < 2:
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
-        shown = shortened(", ".join(map(repr, names)), 120)
+        shown = shortened(", ".join(map(repr, names)), 120) or "none"
         lacks_z = {"x", "y"} <= {*names} and "z" not in names
         remedy = "z is missing" if lacks_z else "name them with columns=t,quaternion or the like"
         raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
