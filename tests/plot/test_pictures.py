@@ -274,6 +274,7 @@ def test_a_film_shows_the_top_its_trace_and_the_time() -> None:
     assert len(triangles) == len(shades) > 20
     assert len({to_hex(np.array(x) / max(x)) for x in shades}) == 2  # a sector shows the spin
     assert rim[1:].mean(axis=0) == pytest.approx([0.62 * right, 0.62 * up])
+    assert np.stack(data(lines[-2]), axis=1) == pytest.approx(rim)
     near, far = (np.stack(data(x)) for x in lines[-4:-2])
     last = [x[:, np.isfinite(x[0])][:, -1] for x in (near, far)]
     assert min(np.abs(x - [right, up]).max() for x in last) < 0.05  # the trace ends at the axle
