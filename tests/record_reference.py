@@ -326,7 +326,8 @@ class _Motion:
             rates = grown[0] / T, grown[1] / T
         names = ("mean_spin_rate", "T_spin"), ("mean_precession_rate", "T_precession")
         for (name, period), rate in zip(names, rates, strict=True):
-            is_zero = abs(rate) < mp.mpf(10) ** (20 - self.digits) * (abs(self.r0) + abs(self.b))
+            size = abs(self.r0) + abs(self.b) + mp.sqrt(wide)
+            is_zero = abs(rate) < mp.mpf(10) ** (20 - self.digits) * size
             found |= {name: rate * (not is_zero)}
             found |= {period: None if is_zero or not rate else 2 * mp.pi / abs(rate)}
         if not self.nutates:

@@ -104,6 +104,8 @@ EVERY_KIND: dict[str, dict[str, Any]] = {
     "torque-free": UNIT | {"theta0_deg": 50, "g": 0, "r0": 2, "psidot0": 1, "thetadot0": 1},
     "torque-free at rest": UNIT | {"theta0_deg": 50, "g": 0, "r0": 2},
     "without torque over the poles": UNIT | {"theta0_deg": 31, "g": 0, "r0": 0, "thetadot0": 2},
+    "without torque on a great circle": UNIT
+    | {"theta0_deg": 50, "g": 0, "r0": 0, "psidot0": 1, "thetadot0": 0.5},
     "level and steady": UNIT | {"theta0_deg": 90, "r0": 2, "psidot0": 0.5},
     "level without spin": UNIT | {"theta0_deg": 90, "r0": 0},
     "upright, idle": UNIT | {"theta0_deg": 0, "r0": 0},
