@@ -17,7 +17,7 @@ up to a common positive factor.  With N = |X|^2 + |Y|^2, both 1 + u = 2 |X|^2/N 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from flint import arb
@@ -75,19 +75,16 @@ Lz | c2 | vertical angular momentum; constant except for rounding | mass len²/t
 """
 """In formulas, t1 is the time of a passage of u1."""
 
-_DEFINED = {
+FORMULAS = {
     "N": "XX + YY",
     "sine": "2*X*Y/N",  # of the tilt
     "across": "ratio(plus*Y, X) + ratio(minus*X, Y)",  # psi' sin(theta), across the line of nodes
     "south": "ratio(plus*N, 2*XX)",  # (beta + b)/2/(1 + u), the part of psi' from the lower pole
     "north": "ratio(minus*N, 2*YY)",  # (beta - b)/2/(1 - u), the part of psi' from the upper pole
 }
-"""Names in evaluated formulas; `column_constants` and `Columns` have the others."""
-
+"""The form of each column that is evaluated, and of names in it; see `Columns` for the others."""
 SCALARS: dict[str, Key] = {}
 """The presentation of each column; its group is the name of several columns, or empty."""
-FORMULAS = dict(_DEFINED)
-"""The form of each column that is evaluated, and of the names in it."""
 for _line in _TEXT.strip().replace("\n ", " ").splitlines():
     _name, _symbol, _meaning, _unit, _equation, _formula = map(str.strip, _line.split("|"))
     _printed, _, _evaluated = map(str.strip, _formula.partition("~"))
@@ -124,29 +121,21 @@ def shown_columns(*, radians: bool = False, named: Callable[[str], str] = str) -
     return {name: keys[name].in_units(radians=radians, named=named) for name in COLUMNS}
 
 
-def column_names() -> list[str]:
-    """Return the names of all columns, groups first."""
-    return list(COLUMNS | SCALARS)
-
-
 def chosen_columns(names: Sequence[str]) -> dict[str, Key]:
     """Return the columns of some names, groups expanded.
 
     Raises LagtopError for an unknown or repeated name.
     """
-    check_names("columns", names, column_names())
+    check_names("columns", names, [*COLUMNS | SCALARS])
     chosen = [part for name in names for part in COLUMNS.get(name, [name])]
     check_names("columns", chosen, chosen)
     return {name: SCALARS[name] for name in chosen}
 
 
-def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
-    """Return the headings of some columns.  Raises LagtopError for an unknown one."""
-    unit = "rad" if radians else "deg"
-    return [
-        f"{name}_{unit}" if column.unit == "angle" else name
-        for name, column in chosen_columns(columns).items()
-    ]
+def headings(columns: Iterable[str], *, radians: bool) -> list[str]:
+    """Return the headings of some columns."""
+    unit = "_rad" if radians else "_deg"
+    return [name + unit * (SCALARS[name].unit == "angle") for name in columns]
 
 
 def column_constants(of: Numbers) -> dict[str, arb]:
@@ -178,12 +167,8 @@ class Columns(dict[str, Any]):
       signed_Y: |X| and |Y|, negative if an odd number of them is left out.
     """
 
-    def __init__(
-        self, formulas: Mapping[str, str], *items: Mapping[str, Any], **others: Any
-    ) -> None:
-        for known in items:
-            self.update(known)
-        self.update(others)
+    def __init__(self, formulas: Mapping[str, str], items: Mapping[str, Any]) -> None:
+        super().__init__(items)
         self.formulas = formulas
 
     def __missing__(self, name: str) -> Any:

@@ -338,7 +338,7 @@ class Sampler:
             for first in range(0, t.size, BLOCK):  # short arrays stay in the cache
                 block, rows = t[first : first + BLOCK], found[:, first : first + BLOCK]
                 for index, items in self.parts(block, farthest) if moves else [(slice(None), {})]:
-                    columns = Columns(_FORMULAS, known, items, t=block[index])
+                    columns = Columns(_FORMULAS, known | items | {"t": block[index]})
                     for row, name in zip(rows, names, strict=True):
                         row[index] = columns[name]
         return found

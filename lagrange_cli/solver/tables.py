@@ -127,13 +127,14 @@ def rows(
     They follow as last columns for each angle among the columns.  Raises LagtopError for an unknown
     column and, before the first block, for a time out of range.
     """
-    header, chosen = headings(columns, radians=radians), chosen_columns(columns)
+    chosen = chosen_columns(columns)
     within = wrap or not WITHIN_A_TURN.isdisjoint(chosen)
     ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
     for name, end in zip(ends, times.bounds(), strict=False):  # empty if times are read later
         motion.sampler().check(end, name, wrap=within)
     angles = [i for i, name in enumerate(STD_COLUMNS) if stds is not None and name in chosen]
-    named = headings([STD_COLUMNS[i] for i in angles], radians=radians) if angles else []
+    header = headings(chosen, radians=radians)
+    named = headings([STD_COLUMNS[i] for i in angles], radians=radians)
     at = columns_at(motion, columns, radians=radians, wrap=wrap)
 
     def parts() -> Iterator[Array]:
@@ -214,7 +215,7 @@ def ball_columns(
     formulas = _BALL_FORMULAS
     if isinstance(course, SingleSwing) and time:
         formulas, items["swing_rate"] = formulas | _SWING, course.rate
-    return Columns(formulas, _BALLS, constants(digits), items)
+    return Columns(formulas, _BALLS | constants(digits) | items)
 
 
 def within_a_turn(angle: arb, *, plane: bool) -> arb:
@@ -242,7 +243,7 @@ class ProvedTable:
         """Raise LagtopError for an unknown column."""
         self.motion, self.digits, self.radians, self.wrap = motion, digits, radians, wrap
         self.chosen = chosen_columns(columns)
-        self.header = headings(columns, radians=radians)
+        self.header = headings(self.chosen, radians=radians)
         self._constants = cache(lambda digits: column_constants(motion.balls(digits)))
 
     def row(self, time: Fraction) -> list[Rounded]:

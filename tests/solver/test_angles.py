@@ -115,8 +115,8 @@ def test_columns_that_are_not_requested_are_not_computed(
 ) -> None:
     made: list[Columns] = []
 
-    def recorded(*items: Any, **others: Any) -> Columns:
-        made.append(Columns(*items, **others))
+    def recorded(*items: Any) -> Columns:
+        made.append(Columns(*items))
         return made[-1]
 
     monkeypatch.setattr(sampling, "Columns", recorded)
