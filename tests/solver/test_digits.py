@@ -19,7 +19,14 @@ from scenes import EVERY_KIND, NAMED, UNIT
 from lagrange_cli.errors import OutOfRangeError, OutOfRangeWarning
 from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS, all_keys
 
-SCENES = EVERY_KIND | NAMED
+DERIVED: dict[str, dict[str, Any]] = {
+    "phidot0": UNIT | {"phidot0": 1, "psidot0": 2, "theta0_deg": 40},
+    "A_cm": {"m": 3, "A_cm": 0.1, "C": 1, "s": 0.7, "g": 1, "r0": 2, "theta0_deg": 40},
+    "steady": {"r0": 60, "psidot0": "steady"},
+    "steady-fast, phidot0": UNIT
+    | {"C": 0.5, "phidot0": -5, "theta0_deg": 70, "psidot0": "steady-fast"},
+}
+SCENES = EVERY_KIND | NAMED | DERIVED
 HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
 HAIR, TINY = 1e-9, mpmath.mpf(10) ** -110
 """Relative and absolute errors of the reference, rounded up."""
