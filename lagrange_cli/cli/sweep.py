@@ -119,24 +119,23 @@ def sweep_command(
     path = words[0] if words else None
     digest = digest_of(path) if path is not None and parts is not None else ""
     how: dict[str, Any] = {"radians": top.radians, "fmt": out.fmt, "decimal": decimal, "keys": keys}
-    todo = plan(path, top.inputs, top.scene, **how)
-    opt.warn(todo.given)
-    sweep = todo.sweep
-    if not (out.is_named or 0 < todo.size <= FEW) and out.fmt == "table":
+    sweep, every_block, size, given = plan(path, top.inputs, top.scene, **how)
+    opt.warn(given)
+    if not (out.is_named or 0 < size <= FEW) and out.fmt == "table":
         sweep, out = sweep._replace(fmt="csv"), out._replace(fmt="csv")
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
     count, (first, every) = ErrorCount(hidden), shard or (1, 1)
-    blocks: Iterable[NumberedBlock] = islice(todo.blocks, first - 1, None, every)
+    blocks: Iterable[NumberedBlock] = islice(every_block, first - 1, None, every)
     folder = None if parts is None else Parts(parts, sweep, digest)
     if folder:
         blocks = folder.missing(blocks, count)
     with closing(in_order(sweep.part, blocks, jobs or 1, dask, _warn)) as computed:
-        total = todo.size // every or None
+        total = size // every or None
         done = with_progress(count.passing(computed), "tops", total, lambda part: part.size)
         if folder:
             folder.write(done)
         else:
-            names = _headings(sweep.header, todo.given, out.fmt, radians=top.radians)
+            names = _headings(sweep.header, given, out.fmt, radians=top.radians)
             out.blocks(names, (part.text for part in done))
     if folder and folder.found:
         complain(f"Resumed: {folder.found} parts were already in {parts}")

@@ -74,17 +74,6 @@ class Sweep(NamedTuple):
         return Part(number, text, given.size, len(failed), found[failed[0]] if failed else "")
 
 
-class Plan(NamedTuple):
-    """A sweep, and its blocks."""
-
-    sweep: Sweep
-    blocks: Iterator[NumberedBlock]
-    size: int
-    """The number of tops; 0 if the tops come from a file."""
-    given: Given
-    """Inputs that all tops share, and which of them are defaults."""
-
-
 def plan(
     path: str | None,
     axes: Mapping[str, Value],
@@ -94,10 +83,11 @@ def plan(
     radians: bool = False,
     fmt: str = "csv",
     decimal: str = "",
-) -> Plan:
-    """Return the plan for a grid or, with a `path`, for a file of tops.
+) -> tuple[Sweep, Iterator[NumberedBlock], int, Given]:
+    """Return a sweep, its blocks, size and inputs, for a grid or a `path` to a file of tops.
 
-    The last axis varies fastest.  Raises LagtopError.
+    The last axis varies fastest.  The size is the number of tops, 0 for a file.  The inputs are
+    those that all tops share.  Raises LagtopError.
     """
     chosen = list(check_keys(keys, radians=radians))
     if path is None:
@@ -106,7 +96,7 @@ def plan(
         grid, ranges = Product(points), _ranges(points)
         shared = shared_inputs(found, varying=ranges)
         sweep = Sweep(chosen, ranges, shared, chosen, radians, fmt, found.si)
-        return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, found)
+        return sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, found
     if ranges := _ranges({name: x.number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
@@ -116,7 +106,7 @@ def plan(
     with_error = list(dict.fromkeys([*chosen, "error"]))
     header = [*source.carried, *with_error]
     sweep = Sweep(header, {}, shared, with_error, radians, fmt, found.si)
-    return Plan(sweep, enumerate(source.blocks(BLOCK_ROWS)), 0, found)
+    return sweep, enumerate(source.blocks(BLOCK_ROWS)), 0, found
 
 
 def _ranges(axes: Mapping[str, Points]) -> dict[str, str]:
