@@ -246,7 +246,7 @@ def read_table(
     if sample and sample[0][1].lstrip()[0] in "{[":
         return _json_table(text, name, sample[0])
     for number, line in sample:
-        if max(map(line.count, "\t;, ")) > MOST_CELLS:
+        if max(map(line.count, '\t;, "')) > MOST_CELLS:
             raise DataError(f"{name}, line {number}: a row must have at most {MOST_CELLS} cells")
     texts = [line for _, line in sample[: _TITLES + 1]]
     layout = _layout_of(texts, width, decimal) if width else _layout(texts, known, decimal)
