@@ -14,7 +14,8 @@ which are finite without torque, and exactly 0 if two roots coincide:
 
     swing = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1)
 
-`where` names lines of the last group.  Equation numbers are Chrapan's.
+`where` names lines of the last group, which has numbers for remarks and `Motion.swing` too.
+Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
