@@ -125,7 +125,7 @@ def twice() -> bytes:
         (b"", "must hold a trajectory, got no row"),
         (
             b"t,theta\n0,1\n\n# c\n1,1_0\n",
-            "line 5, column 2: theta must be a finite decimal number, got '1_0'",
+            "line 5, column 2: theta must be a finite decimal number, got '1_0' (leave",
         ),
         (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
         (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),
