@@ -99,7 +99,7 @@ def test_keys_of_a_grid_are_all_that_is_printed(lagtop: Lagtop) -> None:
         failed = lagtop("sweep", "--r0", "50", "--theta0", "30,-1", "--keys", key)
         assert (failed.exit_code, failed.stderr) == (1, f"{said}{remedy}\n")
         assert failed.stdout.splitlines()[::2] == [key, cell]
-    assert lagtop("sweep", "--C", "1,1e6").exit_code == 1
+    assert lagtop("sweep", "--C", "1,8e4").exit_code == 1
 
 
 def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
