@@ -6,8 +6,8 @@ A line of the table is
 
 and an indented line continues the line before.  A formula is in names of columns and keys.  If
 digits would be lost, as next to a pole, the form that is evaluated follows after `~`, in names that
-are defined below.  Arrays of doubles (`tables.Sample`) and proved rows (`tables.BallSample`)
-evaluate the same forms; both start from the attitude
+are defined below.  Arrays of doubles (`sampling`) and proved rows (`tables`) evaluate
+the same forms; both start from the attitude
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
