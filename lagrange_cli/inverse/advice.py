@@ -21,7 +21,7 @@ _CALMER = 0.7
 """Noise of harmonics in another frame, over that in the given one, from which a fit is tried."""
 _HELD, _RELEASED = 12, 6.0
 """Least number of rows before a release, and the standard deviations that show it."""
-_WINDOWS = (8, 12, 20, 32)
+_WINDOWS = (12, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
 _BODY = ("m", "g", "s", "A", "A_cm", "C")

@@ -21,9 +21,10 @@ from .recording import Recording, shifted_origin
 
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
-_MOST, _ABOVE, _ROUNDING = 0.3, 6.0, 1e-10
-"""Largest rms residual of a channel in radians, or over the noise of its neighbours, and rms of
-rounding errors in radians."""
+LARGEST = 0.3
+"""Largest rms residual of a channel in radians."""
+_ABOVE, _ROUNDING = 6.0, 1e-10
+"""Largest rms residual over the noise of neighbours, and rms of rounding errors in radians."""
 _ROWS_PER_LAG, _LAGS, _WEAK = 4.0, 12, 0.1
 """Least number of rows per period over the reach of a correlation, the longest reach of noise, and
 a correlation that is none."""
@@ -165,7 +166,7 @@ def misfits(
         )
     scale, unit = angle_unit(radians=radians)
     for name, rest in residuals.items():
-        if rest.rms > _MOST:
+        if rest.rms > LARGEST:
             yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
     for name, rest in residuals.items():
         yield from rest.faults(name, frequency, chance)

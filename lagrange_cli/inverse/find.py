@@ -213,32 +213,36 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
     if len(axes) > 1:
         looked = f"scanned {ranges} at {each} values each: only the best points were followed"
     motions = [solve(search.top(point)) for point in points]
-    misses = [_miss(search, *x) for x in zip(motions, points, strict=True)]
-    kept = [x for x, miss in zip(motions, misses, strict=True) if miss is None]
+    missed = [
+        [(x, y) for x in search.bounds if not x.holds(y := _number(m, x.key))] for m in motions
+    ]
+    kept = [motion for motion, wrong in zip(motions, missed, strict=True) if not wrong]
     if not kept:
-        wanted = ", ".join(map(str, search.bounds))
-        why = f"of {len(motions)} with {search.target_text} none has {wanted}: "
-        why = why + min(x for x in misses if x)[1] if motions else _nearest(search, values)
+        why = f"of {len(motions)} with {search.target_text} none has "
+        why += f"{', '.join(map(str, search.bounds))}: the nearest has"
+        misses = [_miss(search, *x) for x in zip(missed, points, strict=True)]
+        why = f"{why} {min(misses)[1]}" if motions else _nearest(search, values)
         raise AbsentError(f"no top found: {why}; {looked}")
     return kept, looked
 
 
-def _miss(search: Search, motion: Motion, point: Sequence[float]) -> tuple[float, str] | None:
-    """Return how far a motion is from the other conditions, and a text, or None if it meets all."""
-    wrong = {x.key: (y, x.value) for x in search.bounds if not x.holds(y := _number(motion, x.key))}
-    known = [abs(y - x) for y, x in wrong.values() if y is not None and not isinstance(x, str)]
-    off, shown = sum(known), ", ".join(f"{key} = {y}" for key, (y, _) in wrong.items())
-    distance = f", {off:.2g} off," if known else ""
-    text = f"the nearest has {shown}{distance} at {_where(search, point)}"
-    return (off, text) if wrong else None
+def _miss(
+    search: Search, wrong: Sequence[tuple[Condition, Any]], point: Sequence[float] | Array
+) -> tuple[float, str]:
+    """Return how far numbers are from their conditions, and a text with the unknown inputs."""
+    sizes, texts = [0.0], []
+    for condition, y in wrong:
+        if y is None or isinstance(y, str):
+            texts.append(f"{condition.key} = {y}")
+        else:
+            sizes.append(abs(y - float(condition.value)))
+            texts.append(f"{condition.key} = {double_text(y)}, {sizes[-1]:.2g} off,")
+    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, point, strict=True))
+    return sum(sizes), f"{' '.join(texts)} at {where}"
 
 
 def _number(motion: Motion, key: str) -> Any:
     return motion.record(radians=key.endswith("_rad"), keys=[key])[key]
-
-
-def _where(search: Search, point: Sequence[float] | Array) -> str:
-    return ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, point, strict=True))
 
 
 def _distances(search: Search, residuals: Array) -> tuple[Array, Array]:
@@ -259,14 +263,13 @@ def _nearest(search: Search, values: Array) -> str:
         return f"no border of {search.target_text}"
     at = values[int(np.argmin(_distances(search, search.swept(values))[1]))]
     try:
-        solve(search.top(at))
+        record = solve(search.top(at)).record(radians=search.radians, keys=list(search.targets))
     except LagtopError as error:
         return f"no top of the scan has {search.target_text} ({error})"
-    if np.isnan(missed := search.residuals(at)).any():
+    if None in record.values():
         return f"no top of the scan has {search.target_text}"
-    numbers = zip(search.targets.items(), missed.tolist(), strict=True)
-    reached = [f"{key} = {double_text(x + y)}, {abs(x):.2g} off," for (key, y), x in numbers]
-    return f"nearest to {search.target_text} is {' '.join(reached)} at {_where(search, at)}"
+    wrong = [(Condition(key, "=", x), record[key]) for key, x in search.targets.items()]
+    return f"nearest to {search.target_text} is {_miss(search, wrong, at)[1]}"
 
 
 def _borders(search: Search, values: Array) -> list[list[float]]:
@@ -422,10 +425,7 @@ def _input(name: str, given: Any) -> Value:
     if isinstance(given, str):
         steady = name == "psidot0"
         return parse_value(name, given, parse_number_or_span, uncertain=True, steady=steady)
-    value = value_of(name, given)
-    if np.asarray(value.number, object).shape != (2,):
-        return value
-    first, last = (exact_number(name, x) for x in value.number)
-    if not first < last:
-        raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
-    return value._replace(number=Span(first, last))
+    if np.shape(given) != (2,):
+        return value_of(name, given)
+    first, last = (float(exact_number(name, x)) for x in given)
+    return parse_value(name, f"{first!r}:{last!r}", parse_number_or_span)

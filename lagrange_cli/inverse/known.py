@@ -11,6 +11,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import check_names
+from ..output.report import uncertain_text
 from ..top.inputs import checked_double
 from ..top.top import Top
 from ..top.values import STEADY_WORDS
@@ -21,6 +22,8 @@ Known = Mapping[str, tuple[float, float]]
 The key `steady` stands for `psidot0` if that is one of the STEADY_WORDS.
 """
 WEIGHT = {"m", "g", "s"}
+CONTRADICTS = 3.0
+"""Standard deviations from which a known input contradicts the recording."""
 _POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1}
 _RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
 
@@ -122,6 +125,28 @@ def estimates(
             r0 = _nearest(r0, float((v["b"] * moment)[0] / known["C"][0]), turn)
         found["C"] = v["b"] * moment / r0
     return found
+
+
+def compared(
+    name: str, given: tuple[float, float], found: tuple[float, float], known: Known
+) -> tuple[float, bool, str]:
+    """Return the distance of a known input from its value by the recording, in sigmas.
+
+    A text says whether both agree, as the second number does, and else what to omit or check.
+    """
+    size, unit = (180 / math.pi, " deg") if name == "theta0" else (1.0, "")
+    far = abs(given[0] - found[0]) / max(math.hypot(given[1], found[1]), 1e-9 * abs(found[0]))
+    shown, own = (
+        (uncertain_text(x * size, std * size) if std else f"{x * size:.6g}") + unit
+        for x, std in (given, found)
+    )
+    if far <= CONTRADICTS:
+        text = f"known {name} = {shown} agrees with the recording, which gives {own}"
+        return far, True, f"{text}: {far:.1f} sigma"
+    others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
+    check = f", or check {', '.join(others)}" if others and name in {"A", "A_cm", "C"} else ""
+    text = f"known {name} = {shown} contradicts the recording, which gives {own}"
+    return far, False, f"{text}, {far:.3g} sigma apart: omit {name}{check}"
 
 
 def _nearest(rate: Array, given: float, turn: float) -> Array:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from ..arithmetic.types import Array
 from .known import WEIGHT, Known
@@ -29,13 +30,15 @@ STEPS = 60
 """Evaluations of the least squares."""
 _POLE, _FAR = 1e-9, 1e3
 """Least distance from a pole, and weighted residual of a motion that does not exist."""
-_DAMPING, _STUCK, _GAIN = 1e-3, 1e12, 1e-10
-"""First damping of the least squares, the largest one, and the relative gain of their end."""
+_GAIN = 1e-7
+"""Relative gain at which the least squares end."""
 _APART = 4.0
 """Standard deviations between different tops."""
 _CURVED, _BENT, _BROKEN, _STIFF = 2.0, 2.0, 6.0, 100.0
 """Standard deviations at which chi^2 is compared with a parabola, the factors above it that show a
 bent valley and one without a floor, and the weight of the distance at which it is searched."""
+_SHAPE_ROWS = 300
+"""Rows that show the shape of chi^2."""
 
 
 class Problem:
@@ -87,6 +90,11 @@ class Problem:
         """Return the same problem for another form of the recording."""
         sizes = self.sizes if sizes is None else sizes
         return Problem(recording, self.inputs, sizes, free=self.free, turns=self.turns)
+
+    @property
+    def rows(self) -> int:
+        """The number of rows."""
+        return self.recording.t.size
 
     def thinned(self, count: int) -> Problem:
         """Return the same problem for at most `count` rows of the recording."""
@@ -161,44 +169,26 @@ class Problem:
     def solve(
         self, x: Array, steps: int, function: Callable[[Array], Array] | None = None
     ) -> tuple[Array, float]:
-        """Return the least squares from one start by Levenberg's and Marquardt's method.
+        """Return the least squares from one start by the method of Levenberg and Marquardt.
 
         They are the parameters and half the sum of squares after at most `steps` evaluations.  The
         `function` returns the weighted residuals of many tops.
         """
-        function = function or self.weighted
+        weighted = function or self.weighted
         low = np.array([{"a": 1e-30, "theta0": _POLE}.get(name, -np.inf) for name in self.names])
         high = np.array([math.pi - _POLE if name == "theta0" else np.inf for name in self.names])
-        x = np.clip(x, low, high)
-        rest = function(x[np.newaxis])[0]
-        cost, damping, factor = float(rest @ rest), _DAMPING, 2.0
-        slopes, scale = None, np.full(x.size, 1e-300)
-        for _ in range(steps):
-            if slopes is None:
-                slopes = self.slopes(x, function, central=False)
-                normal, gradient = slopes.T @ slopes, slopes.T @ rest
-                scale = np.maximum(scale, np.diag(normal))
-            step = -np.linalg.lstsq(normal + np.diag(damping * scale), gradient, rcond=None)[0]
-            moved = np.clip(x + step, low, high)
-            found = function(moved[np.newaxis])[0]
-            gain, wanted = (
-                cost - float(found @ found),
-                -float(step @ (gradient + normal @ step / 2)),
-            )
-            if gain > 0:
-                is_done = gain < _GAIN * cost and 2 * wanted < _GAIN * cost + 1e-300
-                x, rest, cost, slopes = moved, found, cost - gain, None
-                damping = max(
-                    damping * max(1 / 3, 1 - (gain / max(wanted, 1e-300) - 1) ** 3), 1e-15
-                )
-                factor = 2.0
-                if is_done:
-                    break
-            else:
-                if 2 * wanted < _GAIN * cost + 1e-300 or damping > _STUCK:
-                    break
-                damping, factor = damping * factor, 2 * factor
-        return x, cost / 2
+        found = least_squares(
+            lambda at: weighted(np.clip(at, low, high)[np.newaxis])[0],
+            np.clip(x, low, high),
+            lambda at: self.slopes(np.clip(at, low, high), weighted, central=False),
+            method="lm",
+            x_scale="jac",
+            max_nfev=steps,
+            ftol=_GAIN,
+            xtol=_GAIN**1.5,
+            gtol=_GAIN**1.5,
+        )
+        return np.clip(found.x, low, high), float(found.cost)
 
     def rephased(self, x: Array) -> Array:
         """Return parameters whose r0 is right to a turn over the recording, if it is free."""
@@ -270,11 +260,18 @@ class Minimum:
 
     @classmethod
     def of(
-        cls, problem: Problem, start: Array, floors: Array, factors: Array | float = 1.0
+        cls,
+        problem: Problem,
+        start: Array,
+        floors: Array,
+        factors: Array | float = 1.0,
+        *,
+        is_final: bool = False,
     ) -> Minimum:
         """Converge; standard deviations that were not given come from the residuals.
 
-        They are at least the `floors`.  `factors` widen them for noise that is correlated.
+        They are at least the `floors`.  `factors` widen them for noise that is correlated.  The
+        curvature of chi^2 is checked only of a minimum that `is_final`.
         """
         recording = problem.recording
         problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
@@ -282,7 +279,7 @@ class Minimum:
         present = recording.present
         share = present.sum() * recording.rows_per_bin
         share = share / max(present.sum() - problem.count, 1)
-        for _ in range(0 if recording.sigma else 4):
+        for _ in range(0 if recording.sigma else 3):
             rest = np.where(present, problem.residuals(x[np.newaxis])[0], np.nan)
             size = np.maximum(np.sqrt(np.nanmean(rest**2, axis=1) * share), floors)
             done = np.allclose(size * factors, problem.sizes, rtol=1e-3)
@@ -296,7 +293,7 @@ class Minimum:
         sure = values > _DEPENDENT * values[0]
         loose = np.abs(rows[~sure]).max(axis=0, initial=0.0) > _SHARE
         spread = rows[sure].T / values[sure] / size[:, np.newaxis]
-        stretch, is_curved = _curvature(problem, x, spread)
+        stretch, is_curved = _curvature(problem, x, spread) if is_final else (1.0, False)
         spread = spread * stretch
         if "a" in problem.names:  # a <= 0 is no top
             i, b = problem.names.index("a"), problem.values(x[np.newaxis])["b"][0]
@@ -340,11 +337,13 @@ class Minimum:
         def columns(x: Array) -> Array:
             return np.stack([*function(x).values()], axis=-1)
 
+        if not (values := function(self.x[np.newaxis])):
+            return {}
         slopes = self.problem.slopes(self.x, columns) @ self.spread
         priors, _ = np.linalg.qr(self.spread[self.problem.count :].T)
         own = np.linalg.norm(slopes - slopes @ priors @ priors.T, axis=1)
         stds = np.linalg.norm(slopes, axis=1)
-        found = zip(function(self.x[np.newaxis]).items(), stds, own, strict=True)
+        found = zip(values.items(), stds, own, strict=True)
         numbers = {key: (float(x), float(y), float(z)) for (key, (x,)), y, z in found}
         return {key: x for key, x in numbers.items() if np.isfinite(x).all()}
 
@@ -360,20 +359,25 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
 
     Two standard deviations away on either side, chi^2 should have grown by 4.  If it grows by much
     more, the valley of chi^2 is bent, and its floor is followed.  If chi^2 is still wrong there,
-    the covariance is, as the second number says.
+    the covariance is, as the second number says.  Chi^2 is that of the change of the motion.
     """
-    base = float(np.sum(problem.weighted(x[np.newaxis]) ** 2))
+    few = problem.thinned(_SHAPE_ROWS)
+    few = few.of(few.recording, few.sizes * math.sqrt(few.rows / problem.rows))
+    rows, at_x = np.linalg.pinv(spread), few.weighted(x[np.newaxis])
+
+    def change(at: Array) -> Array:
+        return few.weighted(at) - at_x
+
     ends = x + _CURVED * np.concatenate([spread.T, -spread.T])
-    grown = (np.sum(problem.weighted(ends) ** 2, axis=1) - base).reshape(2, -1)
-    rows = np.linalg.pinv(spread)
+    grown = np.sum(change(ends) ** 2, axis=1).reshape(2, -1)
     for side, axis in zip(*np.nonzero(grown > _BENT * _CURVED**2), strict=True):
         wanted, row = _CURVED * (1 - 2 * side), rows[axis]
 
         def held(at: Array, row: Array = row, wanted: float = wanted) -> Array:
-            return np.column_stack([problem.weighted(at), _STIFF * ((at - x) @ row - wanted)])
+            return np.column_stack([change(at), _STIFF * ((at - x) @ row - wanted)])
 
-        end, _ = problem.solve(x + wanted * spread[:, axis], STEPS // 3, held)
-        grown[side, axis] = float(np.sum(problem.weighted(end[np.newaxis]) ** 2)) - base
+        end, _ = few.solve(x + wanted * spread[:, axis], STEPS // 3, held)
+        grown[side, axis] = float(np.sum(change(end[np.newaxis]) ** 2))
     least = np.maximum(grown.min(axis=0, initial=math.inf), 0.04)
     factors = np.sqrt(np.clip(_CURVED**2 / least, 1.0, 100.0))
-    return np.asarray(factors), bool(np.any((grown > _BROKEN * _CURVED**2) | (grown < -1)))
+    return np.asarray(factors), bool(np.any(grown > _BROKEN * _CURVED**2))

@@ -68,8 +68,9 @@ class Recording:
     @property
     def present(self) -> Mask:
         """Whether a number is present, shape (channels, times)."""
-        names = [x if self.kind == "angles" else "theta" for x in self.channels]
-        return np.stack([np.isfinite(self.angles[name]) for name in names])
+        known = {name: np.isfinite(x) for name, x in self.angles.items()}
+        whole = np.all([*known.values()], axis=0)
+        return np.stack([known[x] if self.kind == "angles" else whole for x in self.channels])
 
     @property
     def frame(self) -> float:

@@ -12,17 +12,17 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import DataError
-from .checks import CHANCE, Residuals
-from .known import Known, estimates, scaled_known, time_power
+from .checks import CHANCE, LARGEST, Residuals
+from .known import Known, compared, estimates, scaled_known, time_power
 from .motions import STATE
 from .nutation import nutating_outcome
-from .outcome import FAILED, Number, Outcome
+from .outcome import FAILED, Outcome
 from .problem import STEPS, Minimum, Problem
 from .recording import Recording
 from .signals import (
@@ -37,16 +37,17 @@ from .signals import (
 from .starts import starts
 from .steady import steady_outcome
 
-_FEW_ROWS, _ROWS, _MANY_ROWS = 12, 50, 300
-"""Rows at which all starts are compared, then the best, and rows of the first steps."""
-_KEPT, _BLOCK = 1500, 2000
-_STARTS, _FIRST_STEPS, _FINISHED = 20, 12, 3
-"""Starts of the least squares, their first steps, and the number of those that converge."""
+_FEW_ROWS, _ROWS = 12, 50
+"""Rows at which all starts are compared, then the best."""
+_KEPT, _BLOCK, _STARTS = 1500, 2000, 20
+_ROUNDS = ((100, 6, 8), (300, 12, 3), (300, 30, 3))
+"""Rows and steps of the first least squares, and the number of ends that are kept, by round."""
 _ALIKE = 0.02
 """Relative difference of a and b below which two starts are the same."""
-_COMPARABLE, _LIKELY = 50.0, 16.0
-"""Factor of chi^2 above the least one, beyond which a start is dropped, and the difference of
--2 log(likelihood) below which two tops explain a recording equally well."""
+_HOPELESS, _COMPARABLE, _LIKELY = 50.0, 5.0, 16.0
+"""Mean square of weighted residuals that no top explains, the factor of chi^2 above the least one
+beyond which a start is dropped, and the difference of -2 log(likelihood) below which two tops
+explain a recording equally well."""
 _COARSE, _FINE, _LEAST_BINS, _MOST_ROWS = 20, 40, 600, 3000
 """Bins per nutation period for the starts and for the fit, their least number, and the number of
 rows up to which the fit uses all of them."""
@@ -54,10 +55,8 @@ _SURE = 2.0
 """Standard deviations from which b has a sign, and r0 with it."""
 _FASTER = 3.0
 """Ratio of spin rates from which the slower one tells the direction of psi."""
-_CONTRADICTS = 3.0
-"""Standard deviations from which a known input contradicts the recording."""
 _LEAST_SIGMA = 1e-12
-_Ways = Sequence[tuple[Recording, Mapping[str, Signal]]]
+_Noise = Mapping[str, tuple[float, float]]
 
 
 class Data(NamedTuple):
@@ -75,37 +74,19 @@ class Data(NamedTuple):
     """2 pi per frame if whole turns of the spin are invisible, else 0."""
 
     @classmethod
-    def of(cls, one: Recording, signals: Mapping[str, Signal], scale: float, floors: Array) -> Data:
-        """Return a recording in units of `scale`."""
-        recording = replace(one, t=one.t / scale)
-        signals = {x: y._replace(t=y.t / scale, rate=y.rate * scale) for x, y in signals.items()}
-        periods = float(recording.t[-1])
-        most = int(max(_COARSE * periods, _LEAST_BINS))
-        coarse, few = binned(recording, signals, most), int(max(_FINE * periods, _LEAST_BINS))
+    def of(cls, recording: Recording, floors: Array) -> Data:
+        """Return the data of a recording in units of its nutation period."""
+        signals, periods = signals_in(recording), float(recording.t[-1])
+        most, few = (int(max(x * periods, _LEAST_BINS)) for x in (_COARSE, _FINE))
+        coarse = binned(recording, signals, most)
         is_long = recording.t.size > max(_MOST_ROWS, 1.5 * few)
         fine = binned(recording, signals, few) if is_long else recording
         averaged = {x: y.averaged(most) for x, y in signals.items()}
-        sigma = recording.sigma or {
-            x: y * math.sqrt(coarse.rows_per_bin)
-            for x, y in noise_of(averaged, 1.0, coarse).items()
-        }
+        noise = noise_of(averaged, 1.0, coarse)
+        sigma = recording.sigma or {x: y * math.sqrt(coarse.rows_per_bin) for x, y in noise.items()}
         sizes = np.maximum([sigma[x] for x in recording.channels], floors)
         turn = 2 * math.pi / recording.frame if recording.is_even else 0.0
         return cls(recording, coarse, fine, averaged, sizes, floors, turn)
-
-    @property
-    def mirrored(self) -> Data:
-        """The same with psi counted in the other direction."""
-        signals = {
-            x: y._replace(y=-y.y, rate=-y.rate) if x == "psi" else y
-            for x, y in self.signals.items()
-        }
-        return self._replace(
-            recording=self.recording.mirrored,
-            coarse=self.coarse.mirrored,
-            fine=self.fine.mirrored,
-            signals=signals,
-        )
 
 
 def best_fit(
@@ -131,20 +112,16 @@ def best_fit(
     steady = steady_outcome(recording, known, signals, noise, frequency, radians=radians)
     steady.chance, outcome = chance, steady
     is_steady = not steady.failures()
-    if (
-        visible
-        and lasts
-        and not (is_steady and any(x.is_coarse for x in steady.residuals.values()))
-    ):
-        found = _nutation(recording, known, signals, frequency, noise, radians=radians)
+    is_coarse = any(x.is_coarse for x in steady.residuals.values())
+    if visible and lasts and not (is_steady and is_coarse):
+        found = _nutation(recording, known, frequency, noise, radians=radians)
         if found is not None:
             found.chance = chance
-            failed = found.faults or found.misfits
-            outcome = steady if failed and is_steady else found
-    low = outcome.chi2_bounds[0]
-    if outcome.chi2_dof is not None and outcome.chi2_dof < low:
-        shown = f"{outcome.chi2_dof:.3g} is below {low:.3g}"
-        outcome.notes.append(f"chi2/dof = {shown}: the noise is below sigma")
+            outcome = steady if is_steady and (found.faults or found.misfits) else found
+    low, chi2 = outcome.chi2_bounds[0], outcome.chi2_dof
+    if chi2 is not None and chi2 < low:
+        shown = f"chi2/dof = {chi2:.3g} is below {low:.3g}"
+        outcome.notes.append(f"{shown}: the noise is below sigma")
     widest = max(rest.widening(chance) for rest in outcome.residuals.values())
     if widest > 1 and outcome.verdict != FAILED:
         outcome.notes.append(
@@ -156,7 +133,7 @@ def best_fit(
     return outcome
 
 
-def _noise(recording: Recording, signals: Mapping[str, Signal]) -> dict[str, tuple[float, float]]:
+def _noise(recording: Recording, signals: Mapping[str, Signal]) -> _Noise:
     """Return the step between values, and the noise of neighbours, of each channel."""
     if recording.kind != "angles":
         return dict.fromkeys(recording.channels, (0.0, math.inf))
@@ -170,38 +147,32 @@ def _noise(recording: Recording, signals: Mapping[str, Signal]) -> dict[str, tup
 
 
 def _nutation(
-    recording: Recording,
-    known: Known,
-    signals: Mapping[str, Signal],
-    frequency: float,
-    noise: Mapping[str, tuple[float, float]],
-    *,
-    radians: bool,
+    recording: Recording, known: Known, frequency: float, noise: _Noise, *, radians: bool
 ) -> Outcome | None:
     """Return the best fit of a nutation; None without a start."""
     scale = 1 / frequency
     given, known = known, scaled_known(known, scale)
     floors = np.array([noise[x][0] / math.sqrt(12) + _LEAST_SIGMA for x in recording.channels])
-    data = Data.of(recording, signals, scale, floors)
+    scaled = replace(recording, t=recording.t / scale)
     both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
-    ways = [data, data.mirrored][: 1 + both]
-    minima = _minima(ways, known, frequency_free=True)
-    found, rival, other = _chosen(minima, data)
-    if known and (found is None or found.unknown):
-        minima = _minima(ways, known, frequency_free=False)
-        found, rival, other = _chosen(minima, data)
+    ways = [Data.of(x, floors) for x in (scaled, scaled.mirrored)[: 1 + both]]
+    turn = ways[0].turn
+    for is_free in (True, False)[: 1 + bool(known)]:
+        found, rival, image = _chosen(_minima(ways, known, free=is_free), turn)
+        if found is not None:
+            way = ways[found.problem.recording.is_mirrored]
+            factors = _widening(found, way)
+            found = Minimum.of(found.problem, found.x, floors, factors, is_final=True)
+            found = _slowest(found, turn)
+            if not found.unknown:
+                break
     if found is None:
         return None
-    way = data if not found.problem.recording.is_mirrored else ways[-1]
-    factors = _widening(found, way)
-    if np.any(factors > 1):
-        found = Minimum.of(found.problem, found.x, floors, factors)
-        found = _slowest(found, data.turn)
-    pairs, texts, distances = _compared(found, known, data.turn, scale)
+    notes, texts, distances = _against_known(found, known, turn, scale)
     if found.problem.free and known and not texts:
-        found = _constrained(found, known, data.turn, floors, factors)
+        found = _constrained(found, known, turn, floors, factors)
     is_sure = abs(found.values["b"]) > _SURE * found.std("b")
-    turns = abs(found.values["r0"]) / data.turn if data.turn and found.problem.spins else 0.0
+    turns = abs(found.values["r0"]) / turn if turn and found.problem.spins else 0.0
     seen = "phi" in recording.angles and not {"r0", "phidot0"} & found.problem.known.keys()
     result = nutating_outcome(
         found,
@@ -210,10 +181,10 @@ def _nutation(
         noise,
         radians=radians,
         is_spin_known=not seen or (is_sure and turns < 0.5),
-        is_even=bool(data.turn),
+        is_even=bool(turn),
     )
     result.known, result.contradictions, result.distances = given, texts, distances
-    result.notes += pairs
+    result.notes += notes
     if rival:
         shown = ", ".join(
             f"{x} = {rival.values[x] * scale ** time_power(x):.6g}"
@@ -222,22 +193,24 @@ def _nutation(
         )
         result.faults.insert(0, f"another top explains the recording as well: {shown}")
     result.is_spin_slow = not seen or turns < 1 / (1 + _FASTER)
-    result.notes[:0] = _assumed(found, other, turns if seen else 0.0, data.turn / scale, scale)
+    faster = abs(image.values["r0"]) / turn if image and turn else 0.0
+    result.notes[:0] = _assumed(found, faster, turns if seen else 0.0, turn / scale)
     return result
 
 
-def _assumed(
-    found: Minimum, other: Minimum | None, turns: float, turn: float, scale: float
-) -> list[str]:
-    """Return what was assumed of the spin and of the direction of psi."""
+def _assumed(found: Minimum, faster: float, turns: float, turn: float) -> list[str]:
+    """Return what was assumed of the spin and of the direction of psi.
+
+    The spin makes some turns per row, or `faster` ones if psi counts in the other direction.
+    """
     notes = []
-    faster = f"{abs(other.values['r0']) / (turn * scale):.2g}" if other and turn else ""
     if found.problem.recording.is_mirrored:
         note = "psi counts in the other direction: its sign was changed"
-        notes.append(note + f" (else the spin makes {faster} turns per row or more)" * bool(faster))
+        other = f" (else the spin makes {faster:.2g} turns per row or more)"
+        notes.append(note + other * bool(faster))
     elif faster and turns > 1 / (1 + _FASTER):
         notes.append(
-            f"psi may count in the other direction, if the spin makes {faster} turns per row"
+            f"psi may count in the other direction, if the spin makes {faster:.2g} turns per row"
         )
     if turns > 0.5:
         notes.append(
@@ -249,62 +222,52 @@ def _assumed(
 
 def _widening(found: Minimum, data: Data) -> Array:
     """Return the factors of standard deviations for noise that is correlated from row to row."""
-    problem = found.problem.of(data.recording)
-    rows = problem.residuals(found.x[np.newaxis])[0]
-    steps = data.floors * math.sqrt(12)
-    t, present = data.recording.t, data.recording.present
-    return np.array(
-        [
-            Residuals(t[is_in], y[is_in], step).widening()
-            for y, is_in, step in zip(rows, present, steps, strict=True)
-        ]
-    )
+    one = data.recording
+    rows = found.problem.of(one).residuals(found.x[np.newaxis])[0]
+    channels = zip(rows, one.present, data.floors * math.sqrt(12), strict=True)
+    return np.array([Residuals(one.t[x], y[x], step).widening() for y, x, step in channels])
 
 
-def _minima(ways: Sequence[Data], known: Known, *, frequency_free: bool) -> list[Minimum]:
-    """Return the best minima that differ."""
-    begun: dict[Any, tuple[float, Data, Problem, Array]] = {}
-    for data, problem, x in _best_starts(ways, known, free=frequency_free):
-        few = problem.thinned(_MANY_ROWS)
-        end, cost = few.solve(x, _FIRST_STEPS)
-        if (phased := few.rephased(end)) is not end:
-            end, cost = min((end, cost), few.solve(phased, _FIRST_STEPS), key=itemgetter(1))
-        key = problem.recording.is_mirrored, f"{cost:.6g}"
-        begun[key] = cost, data, problem, end  # each minimum once
-    ends = sorted(begun.values(), key=itemgetter(0))[:_FINISHED]
-    return [
-        Minimum.of(problem.of(data.fine), end, data.floors)
-        for cost, data, problem, end in ends
-        if cost <= _COMPARABLE * ends[0][0]
-    ]
+def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:
+    """Return the best minima that differ; none is refined if no motion of a top matches."""
+    ends = [(0.0, *x) for x in _best_starts(ways, known, free=free)]
+    for rows, steps, kept in _ROUNDS:
+        found = {}
+        for _, data, problem, x in ends:
+            few = problem.thinned(rows)
+            end, cost = few.solve(x, steps)
+            if (phased := few.rephased(end)) is not end:
+                end, cost = min((end, cost), few.solve(phased, steps), key=itemgetter(1))
+            found[problem.recording.is_mirrored, f"{cost:.6g}"] = cost, data, problem, end
+        ends = sorted(found.values(), key=itemgetter(0))[:kept]
+    minima: list[Minimum] = []
+    for cost, data, problem, end in ends:
+        few = problem.thinned(rows)
+        rms = np.sqrt(np.nanmean(few.residuals(end[np.newaxis]) ** 2, axis=2))
+        is_hopeless = rms.max() > LARGEST or 2 * cost > _HOPELESS * few.recording.present.sum()
+        if is_hopeless and not minima:
+            return [Minimum.of(few, end, data.floors)]
+        if cost <= _COMPARABLE * ends[0][0]:
+            minima.append(Minimum.of(problem.of(data.fine), end, data.floors))
+    return minima
 
 
 def _chosen(
-    minima: Sequence[Minimum], data: Data
+    minima: Sequence[Minimum], turn: float
 ) -> tuple[Minimum | None, Minimum | None, Minimum | None]:
     """Return the best minimum, a rival that is another top, and its mirror image.
 
     Minima that differ by whole turns of the spin per row are one.  Of two directions of psi that
     explain the recording as well, the recorded one is taken, unless its spin is much faster.
     """
-    if not minima:
-        return None, None, None
-    slow = sorted((_slowest(x, data.turn) for x in minima), key=lambda x: x.badness)
+    slow = sorted((_slowest(x, turn) for x in minima), key=lambda x: x.badness)
     likely = [x for x in slow if x.badness < slow[0].badness + _LIKELY]
-    best, image = likely[0], None
-    for one in likely[1:]:
-        if one.problem.recording.is_mirrored is not best.problem.recording.is_mirrored:
-            plain, turned = (one, best) if best.problem.recording.is_mirrored else (best, one)
-            is_turned = abs(turned.values["r0"]) * _FASTER < abs(plain.values["r0"])
-            best, image = (turned, plain) if is_turned else (plain, turned)
-            break
-    mirrored = best.problem.recording.is_mirrored
-    rivals = [
-        x
-        for x in likely
-        if x.problem.recording.is_mirrored is mirrored and x is not best and x.differs(best)
-    ]
-    return best, rivals[0] if rivals else None, image
+    ways = [[x for x in likely if x.problem.recording.is_mirrored is way] for way in (False, True)]
+    plain, turned = (abs(x[0].values["r0"]) if x else math.inf for x in ways)
+    if turned * _FASTER < plain:
+        ways.reverse()
+    best, image = (x[0] if x else None for x in ways)
+    return best, next((x for x in ways[0] if best and x.differs(best)), None), image
 
 
 def _slowest(found: Minimum, turn: float) -> Minimum:
@@ -320,62 +283,36 @@ def _slowest(found: Minimum, turn: float) -> Minimum:
     return found.turned(rate - v["r0"]) if rate != v["r0"] else found
 
 
-def _compared(
+def _against_known(
     found: Minimum, known: Known, turn: float, scale: float
 ) -> tuple[list[str], list[str], dict[str, float]]:
-    """Return notes on known inputs that agree, contradictions, and distances in sigmas."""
-    if not found.problem.free:
-        return [], _pulled(found, scale), {}
-    fixed = {x for x in found.problem.known if x in STATE}
-    seen = {x: y for x, y in known.items() if x not in fixed}
-    numbers = found.numbers(
-        lambda x: (
-            estimates(seen, found.problem.values(x), turn, spins="r0" in found.problem.names)
-            or {"": np.zeros(len(x))}
-        )
-    )
+    """Return notes on known inputs that agree, contradictions, and distances in sigmas.
+
+    A minimum that is not free has pulled uncertain inputs away from their values.
+    """
+    problem = found.problem
+    if problem.free:
+        seen = {x: y for x, y in known.items() if x not in STATE or x not in problem.known}
+        spins = "r0" in problem.names
+        numbers = found.numbers(lambda x: estimates(seen, problem.values(x), turn, spins=spins))
+    else:
+        numbers = {x: (found.values[x], 0.0, 0.0) for x in problem.stds}
     notes, texts, distances = [], [], {}
     for name, (value, std, _) in numbers.items():
-        if not name:
-            continue
-        given, spread = known[name]
-        size = scale ** time_power(name) * (180 / math.pi if name == "theta0" else 1)
-        far = abs(given - value) / max(math.hypot(std, spread), 1e-9 * abs(value))
-        distances[name] = far
-        unit = " deg" * (name == "theta0")
-        shown = f"known {name} = {_text(given * size, spread * size)}{unit}"
-        own = f"{_text(value * size, std * size)}{unit}"
-        if far > _CONTRADICTS:
-            others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
-            others = others if name in {"A", "A_cm", "C"} else []
-            check = f", or check {', '.join(others)}" * bool(others)
-            text = f"{shown} contradicts the recording, which gives {own}, {far:.3g} sigma apart"
-            texts.append(f"{text}: omit {name}{check}")
-        else:
-            notes.append(f"{shown} agrees with the recording, which gives {own}: {far:.1f} sigma")
-    if "steady" in known:
+        size = scale ** time_power(name)
+        given, own = ((x * size, y * size) for x, y in (known[name], (value, std)))
+        far, agrees, text = compared(name, given, own, known)
+        if problem.free:
+            distances[name] = far
+        if not agrees:
+            texts.append(text)
+        elif problem.free:
+            notes.append(text)
+    if problem.free and "steady" in known:
         texts.append(
             "known psidot0 = steady contradicts the recording, which nutates: omit psidot0"
         )
     return notes, texts, distances
-
-
-def _pulled(found: Minimum, scale: float) -> list[str]:
-    """Return contradictions of uncertain inputs that a fit has pulled away from their values."""
-    texts = []
-    for name, std in found.problem.stds.items():
-        given, value = found.problem.known[name], found.values[name]
-        if abs(value - given) > _CONTRADICTS * std:
-            size = scale ** time_power(name)
-            texts.append(
-                f"known {name} = {_text(given * size, std * size)} contradicts the recording, "
-                f"which gives {_text(value * size, found.std(name) * size)}: omit {name}"
-            )
-    return texts
-
-
-def _text(value: float, std: float) -> str:
-    return str(Number(value, std, "")) if std else f"{value:.6g}"
 
 
 def _constrained(
@@ -405,7 +342,8 @@ def _constrained(
         rest = np.stack([values[name] - v[name] for name in free], axis=-1)
         return np.column_stack([rest @ weights.T, *problem.priors(at)])
 
-    return Minimum.of(problem, problem.solve(x, STEPS, apart)[0], floors, factors)
+    x, _ = problem.solve(x, STEPS, apart)
+    return Minimum.of(problem, x, floors, factors, is_final=True)
 
 
 def _best_starts(
@@ -424,21 +362,14 @@ def _best_starts(
             states[:, STATE.index(name)] = fixed[name]
         if "r0" in fixed or problem.is_even:  # r0 has the sign of b
             states = states[states[:, STATE.index("b")] * fixed.get("r0", 1.0) >= 0]
-        spin, order = data.signals.get("phi"), np.arange(0)
         for count in (_FEW_ROWS, _ROWS) if len(states) > _KEPT else (_ROWS,):
             few = problem.thinned(count)
             blocks = np.array_split(states, len(states) // _BLOCK + 1)
-            x = np.concatenate([few.parameters_of(y, spin, 1.0) for y in blocks])
+            x = np.concatenate([few.parameters_of(y, data.signals.get("phi"), 1.0) for y in blocks])
             score = np.concatenate([few.noise(y) for y in np.array_split(x, len(blocks))])
             order = np.argsort(score)[:_KEPT]
             states = states[order]
-        tried += zip(
-            score[order].tolist(),
-            [data] * len(order),
-            [problem] * len(order),
-            x[order],
-            strict=True,
-        )
+        tried += [(float(score[i]), data, problem, x[i]) for i in order]
     kept: list[tuple[Data, Problem, Array]] = []
     for size, data, problem, x in sorted(tried, key=itemgetter(0)):
         near = _ALIKE * (np.abs(x[:2]) + 1e-300)

@@ -16,7 +16,7 @@ import numpy as np
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from .checks import CHANCE, Residuals
-from .known import WEIGHT, Known
+from .known import WEIGHT, Known, compared
 from .outcome import Number, Outcome
 from .recording import Recording
 from .signals import Signal
@@ -24,11 +24,11 @@ from .signals import Signal
 _MOST_TILT, _LEAST_ROWS = 0.04, 30
 """Largest scatter of the tilt in radians that counts as noise, and the least number of rows that
 shows a nutation, if sigma is not given."""
-_LEAST_RATIO, _MOST_RATIO, _MOST_BIAS = 0.05, 2.0, 0.8
+_RATIOS, _MOST_BIAS = (0.05, 2.0), 0.8
 """C/A in the bounds of the neglected term if it is not known, and the largest such term."""
-_SURE, _CONTRADICTS, _QUARTER = 4.0, 3.0, 0.25
-"""Standard deviations of a rate that is not 0, those of a contradiction, and turns per row below
-which the spin tells the direction of psi."""
+_SURE, _QUARTER = 4.0, 0.25
+"""Standard deviations of a rate that is not 0, and turns per row below which the spin shows the
+direction of psi."""
 _MEANINGS = {
     "mean_tilt": "mean tilt",
     "mean_precession_rate": "mean precession rate",
@@ -95,14 +95,12 @@ def steady_outcome(
     }
     tilt = means.get("theta") or (_Mean(*known["theta0"], 0.0) if "theta0" in known else None)
     notes = ["no nutation is visible: the numbers are means over the recording"]
-    turn, spin = means.get("psi", _NONE), means.get("phi", _NONE)
-    r0, is_sure = known.get("r0"), "r0" in known
+    is_sure, whole = "r0" in known, 0.0
     if "phi" in means and tilt:
-        recording, turn, rate, slow = _spin(recording, tilt, turn, spin, notes)
-        r0, is_sure = r0 or rate, is_sure or slow
+        recording, means, whole, is_slow = _direction(recording, means, tilt, notes)
+        is_sure |= is_slow
     elif "phi" in means:
         notes.append("without the tilt neither r0 nor C follows: give theta0")
-    means |= {"psi": turn} if "psi" in means else {}
     numbers: dict[str, Number] = {}
     for name, key, size in (
         ("theta", f"mean_tilt_{unit}", scale),
@@ -110,26 +108,25 @@ def steady_outcome(
         ("phi", "mean_spin_rate", 1.0),
     ):
         if name in means:
-            numbers[key] = _number(key.removesuffix(f"_{unit}"), means[name][:2], size)
-    if r0 and "r0" not in known:
-        numbers["r0"] = _number("r0", r0)
-    ratio, contradictions, distances = None, list[str](), dict[str, float]()
-    if turn.value and r0 and tilt and r0[0]:
-        ratio, text = _ratio(turn, tilt, r0, known, is_sure=is_sure)
-        notes += [text] * bool(text)
-    if ratio and r0:
-        numbers["b/a"] = _number("b/a", ratio)
-        key, body = _body(ratio, r0, known, is_sure=is_sure)
-        if key in known:
-            found, contradictions, distances = _compared(body, known)
-            notes += found
-        else:
-            numbers[key] = _number(key, body)
-    motion_tilt = (tilt or _Mean(math.pi / 2, 0.0, 0.0)).value
+            value, std = (x * size for x in means[name][:2])
+            numbers[key] = Number(value, std, _MEANINGS[key.removesuffix(f"_{unit}")], std)
+    turn, spin = (means.get(x, _NONE) for x in ("psi", "phi"))
+    derived = dict[str, _Pair]()
+    if tilt and ("phi" in means or "r0" in known):
+        given = {**known, **{x: y[:2] for x, y in means.items()}, "theta": tilt[:2]}
+        derived = _derived(given, whole, notes, is_sure=is_sure)
+    contradictions, distances = list[str](), dict[str, float]()
+    for key, pair in derived.items():
+        if key == "C" and key in known:
+            distances[key], agrees, text = compared(key, known[key], pair, known)
+            (notes if agrees else contradictions).append(text)
+        elif key not in known:
+            meaning = _MEANINGS.get(key, "from the mean rates")
+            numbers[key] = Number(*pair, meaning, pair[1])
 
     def motion(t: Array) -> Array:
         lines = [x.start + x.value * t for x in (spin, turn)]
-        return np.stack([np.full(t.shape, motion_tilt), *lines])
+        return np.stack([np.full(t.shape, tilt.value if tilt else math.pi / 2), *lines])
 
     result = Outcome(
         recording=recording,
@@ -144,119 +141,106 @@ def steady_outcome(
         notes=notes,
         distances=distances,
     )
+    r0 = derived.get("r0", _NONE[:2])[0]
     result.faults += _faults(recording, turn, r0, result, frequency)
     return result
 
 
-def _number(key: str, pair: _Pair, scale: float = 1.0) -> Number:
-    value, std = pair[0] * scale, pair[1] * scale
-    return Number(value, std, _MEANINGS.get(key, "from the mean rates"), std)
-
-
-def _spin(
-    recording: Recording, tilt: _Mean, turn: _Mean, spin: _Mean, notes: list[str]
-) -> tuple[Recording, _Mean, _Pair, bool]:
-    """Return the recording and psi' in the direction of the spin, r0, and if both are sure.
+def _direction(
+    recording: Recording, means: dict[str, _Mean], tilt: _Mean, notes: list[str]
+) -> tuple[Recording, dict[str, _Mean], float, bool]:
+    """Return recording and means with psi in the direction of the spin, the whole turns per row
+    that r0 exceeds its visible rate by, and if the direction is sure.
 
     Whole turns per row are invisible.  If psi' and r0 have opposite signs, either psi counts in the
     other direction, if the spin is slow, or the spin is faster.
     """
-    whole = 2 * math.pi / recording.frame if recording.is_even else 0.0
+    turn, spin = means.get("psi", _NONE), means["phi"]
+    whole, more = 2 * math.pi / recording.frame if recording.is_even else 0.0, 0.0
     along = turn.value * math.cos(tilt.value)
     rate, slow = spin.value + along, abs(spin.value - along) * recording.frame / (2 * math.pi)
     is_backwards = turn.value * rate < 0 < turn.value * (along - spin.value)  # C/A < 0
     if recording.kind == "angles" and is_backwards and (slow < _QUARTER or not whole):
         recording, rate = recording.mirrored, spin.value - along
         turn = _Mean(-turn.value, turn.std, -turn.start)
+        means = means | {"psi": turn}
         assumed = f" (else the spin makes {1 - slow:.2g} turns per row or more)" * bool(whole)
         notes.append(f"psi counts in the other direction: its sign was changed{assumed}")
     elif is_backwards and whole:
-        rate += math.copysign(whole, turn.value)
-    turns = abs(rate) * recording.frame / (2 * math.pi)
-    is_sure = not whole or (turns < _QUARTER and turn.value * rate > 0)
+        more = math.copysign(whole, turn.value)
+    turns = abs(rate + more) * recording.frame / (2 * math.pi)
+    is_sure = not whole or (turns < _QUARTER and turn.value * (rate + more) > 0)
     if whole:
         notes.append(
             f"r0 is known only up to whole turns per row, multiples of {whole:.6g}"
             + "; C and the sign of r0 do not follow" * (not is_sure)
         )
-    parts = turn.std * math.cos(tilt.value), turn.value * math.sin(tilt.value) * tilt.std
-    return recording, turn, (rate, math.hypot(spin.std, *parts)), is_sure
+    return recording, means, more, is_sure
 
 
-def _ratio(
-    turn: _Mean, tilt: _Mean, r0: _Pair, known: Known, *, is_sure: bool
-) -> tuple[_Pair | None, str]:
-    """Return b/a = C r0/2mgs with its standard deviation, and a note on the neglected term."""
-    half, rate = 1 / (2 * turn.value), turn.value
-    along = rate * math.cos(tilt.value)
-    moment = _moment(known)
-    spread = turn.std / abs(rate)
-    if moment and WEIGHT <= known.keys():
-        torque = 2 * math.prod(known[x][0] for x in WEIGHT) / moment[0]
-        value = half + along / torque
-        parts = [abs(half - along / torque) * spread, abs(along / torque) * _of_weight(known)]
-        parts += [abs(rate * math.sin(tilt.value) / torque) * tilt.std]
-        parts += [abs(along / torque) * moment[1] / moment[0]]
-        return (value, math.hypot(*parts)), ""
-    least, most = (
-        (x := known["C"][0] / moment[0], x)
-        if moment and "C" in known
-        else (_LEAST_RATIO, _MOST_RATIO)
-    )
-    ends = [along / (r0[0] * least), along / (r0[0] * most) if is_sure else 0.0]
-    if max(ends) > _MOST_BIAS:
-        return None, "b/a is not determined: A Omega cos(theta) may be as large as C r0"
-    values = [half / (1 - x) for x in ends]
-    value, bias = sum(values) / 2, abs(values[0] - values[1]) / 3.5
-    text = ""
-    if least != most:
-        text = (
+def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> dict[str, _Pair]:
+    """Return r0, b/a = C r0/2mgs, and C, or C r0 if it is not sure, over unknown ones of m, g, s.
+
+    Their standard deviations are propagated from those of means and known inputs.
+    """
+    least, most = _RATIOS
+    is_moment_known = "A" in given or "A_cm" in given
+    is_exact = is_moment_known and WEIGHT <= given.keys()
+    unknown = [x for x in ("m", "s", "g") if x not in given]
+    over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
+
+    def numbers(v: Mapping[str, float]) -> tuple[dict[str, float], list[float]]:
+        """Return the numbers, and the shares of the neglected term at both bounds of C/A."""
+        along, turn = v.get("psi", 0.0) * math.cos(v["theta"]), v.get("psi", 0.0)
+        found = {"r0": v["r0"] if "r0" in v else v["phi"] + along + whole}
+        if not turn or not found["r0"]:
+            return found, []
+        moment = v["A_cm"] + v["m"] * v["s"] ** 2 if "A_cm" in v else v.get("A", 1.0)
+        ratios = [v["C"] / moment] * 2 if "C" in v and is_moment_known else [least, most]
+        ends = [along / (found["r0"] * x) * (is_sure or x != most) for x in ratios]
+        if is_exact:
+            ends = []
+            found["b/a"] = 1 / (2 * turn) + along * moment / (2 * v["m"] * v["g"] * v["s"])
+        elif max(ends) > _MOST_BIAS:
+            return found, ends
+        else:
+            found["b/a"] = sum(1 / (1 - x) for x in ends) / (4 * turn)
+        product = 2 * found["b/a"] * math.prod(v[x] for x in "msg" if x in v)
+        found[f"C{over}" if is_sure else f"C*r0{over}"] = product / (found["r0"] if is_sure else 1)
+        return found, ends
+
+    values = {name: x for name, (x, _) in given.items()}
+    found, ends = numbers(values)
+    bias = 0.0
+    if ends and max(ends) > _MOST_BIAS:
+        notes.append("b/a is not determined: A Omega cos(theta) may be as large as C r0")
+    elif ends and ends[0] != ends[1]:
+        low, high = sorted(1 / (1 - x) for x in ends)
+        bias = (high - low) / (high + low) / 1.75
+        notes.append(
             f"b/a and C r0 include A Omega cos(theta) = {100 * min(ends):.2g} to "
             f"{100 * max(ends):.2g} % of C r0, for C/A from {most:g} to {least:g}: known A, m, g "
             "and s make them exact"
         )
-    return (value, math.hypot(abs(value) * spread, bias)), text
-
-
-def _moment(known: Known) -> _Pair | None:
-    """Return the known A, from A_cm if need be."""
-    if "A_cm" in known:
-        (m, m_std), (s, s_std), (own, std) = known["m"], known["s"], known["A_cm"]
-        return own + m * s * s, math.hypot(std, m_std * s * s, 2 * m * s * s_std)
-    return known.get("A")
-
-
-def _of_weight(known: Known) -> float:
-    """Return the relative standard deviation of the product of the known ones of m, g and s."""
-    return math.hypot(0.0, *(known[x][1] / known[x][0] for x in WEIGHT & known.keys()))
-
-
-def _body(ratio: _Pair, r0: _Pair, known: Known, *, is_sure: bool) -> tuple[str, _Pair]:
-    """Return C, or C r0 if whole turns may hide in r0, over the unknown ones of m, g and s."""
-    unknown = [x for x in ("m", "s", "g") if x not in known]
-    value = 2 * ratio[0] * math.prod(known[x][0] for x in "msg" if x in known)
-    spread = math.hypot(ratio[1] / ratio[0], _of_weight(known))
-    over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
-    if not is_sure:
-        return f"C*r0{over}", (value, abs(value) * spread)
-    spread = math.hypot(spread, r0[1] / r0[0])
-    return f"C{over}", (value / r0[0], abs(value / r0[0]) * spread)
-
-
-def _compared(body: _Pair, known: Known) -> tuple[list[str], list[str], dict[str, float]]:
-    """Return notes, contradictions and the distance of the known C from that of the recording."""
-    (given, std), (value, spread) = known["C"], body
-    far = abs(given - value) / max(math.hypot(std, spread), 1e-9 * abs(value))
-    shown = f"known C = {Number(given, std, '')}", f"which gives {Number(value, spread, '')}"
-    if far <= _CONTRADICTS:
-        note = f"{shown[0]} agrees with the recording, {shown[1]}: {far:.1f} sigma"
-        return [note], [], {"C": far}
-    text = f"{shown[0]} contradicts the recording, {shown[1]}, {far:.3g} sigma apart: omit C, or"
-    return [], [f"{text} check m, s, g and r0"], {"C": far}
+    moved = [
+        [numbers(values | {name: values[name] + sign * std})[0] for sign in (1, -1)]
+        for name, (_, std) in given.items()
+        if std
+    ]
+    return {
+        key: (
+            x,
+            math.hypot(
+                abs(x) * bias * (key != "r0"),
+                *((u.get(key, x) - w.get(key, x)) / 2 for u, w in moved),
+            ),
+        )
+        for key, x in found.items()
+    }
 
 
 def _faults(
-    recording: Recording, turn: _Mean, r0: _Pair | None, result: Outcome, frequency: float
+    recording: Recording, turn: _Mean, r0: float, result: Outcome, frequency: float
 ) -> list[str]:
     """Return why the motion is no steady precession, besides the residuals."""
     found = []
@@ -268,7 +252,7 @@ def _faults(
         found.append("no nutation is visible, and without psi no precession rate")
     elif not abs(turn.value) > _SURE * turn.std:
         found.append("no nutation is visible, and the precession rate is not determined")
-    elif r0 and turn.value * r0[0] < 0 and (recording.kind == "attitude" or "r0" in result.known):
+    elif turn.value * r0 < 0 and (recording.kind == "attitude" or "r0" in result.known):
         found.append("C/A < 0 is impossible: spin and precession have opposite signs")
     scatter = float(np.nanstd(recording.angles.get("theta", np.zeros(1))))
     if scatter > _MOST_TILT and not recording.sigma:

@@ -155,7 +155,7 @@ STEADY_BODY: dict[str, Any] = {"m": 1, "g": 9.81, "s": 0.2, "A": 2 / 3, "C": 1}
 @pytest.mark.parametrize("word", ["steady", "steady-fast"])
 def test_steady_tops(word: str) -> None:
     """The rate x solves A cos(theta) x^2 - C r0 x + m g s = 0, and Lz = A x sin^2 + C r0 cos."""
-    known: Any = {"r0": 1, "theta0_deg": (91, 179), "psidot0": word}
+    known: Any = {"r0": 1, "theta0_deg": (91, 179), "psidot0": word, "scan": 200}
     found = find({"Lz": 0.5}, **STEADY_BODY, **known)
     assert len(found) == (1 if word == "steady" else 0)
     for motion in found:
@@ -245,7 +245,11 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         ),
         ({"T_precession": None}, {"r0": (10, 200)}, "T_precession must be a finite number"),
         ({"T_precession": 2}, {"r0": (10, 20, 30)}, "no input is unknown"),
-        ({"T_precession": 2}, {"r0": (200, 10)}, "r0 must have its smaller end first"),
+        (
+            {"T_precession": 2},
+            {"r0": (200, 10)},
+            "r0 must be a range whose first end is the smaller one",
+        ),
     ],
 )
 def test_bad_searches(conditions: Any, unknowns: dict[str, Any], message: str) -> None:
