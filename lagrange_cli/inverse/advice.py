@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .checks import CHANCE
+from .decay import decay_of
 from .known import Known
 from .outcome import GOOD, Outcome
 from .recording import Recording, reoriented
@@ -25,8 +26,6 @@ _WINDOWS = (12, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
-_DECAYS = 4.0
-"""Standard deviations from which the spin has decayed from the first to the last window."""
 
 
 def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
@@ -64,20 +63,15 @@ def _frames(recording: Recording, known: Known) -> Iterator[str]:
     few = recording.rows(np.unique(np.linspace(0, recording.t.size - 1, _ROWS).astype(int)))
     tried = [("up", x) for x in _AXES]
     tried += [("axis", x) for x in _AXES] * (recording.kind == "attitude")
-    plain, best = _calmness(few), (math.inf, "", "")
-    for word, axis in tried:
-        best = min(best, (_calmness(reoriented(few, **{word: axis})), word, axis))
-    size, word, axis = best
-    is_upside_down = ("-z" in axis) or size < plain + len(few.angles) * math.log(_CALMER)
-    if is_upside_down and _is_good(reoriented(recording, **{word: axis}), known):
-        text = (
-            "the {} axis of the data points up"
-            if word == "up"
-            else "the {} axis is the figure axis"
-        )
-        yield f"{text.format(axis)}: use align {word}={axis}"
-    elif axis != "-z" and _is_good(reoriented(recording, up="-z"), known):
-        yield "the -z axis of the data points up: use align up=-z"
+    noise = {one: _calmness(reoriented(few, **dict([one]))) for one in tried}
+    best = min(noise, key=lambda one: noise[one])
+    is_calmer = noise[best] < _calmness(few) + len(few.angles) * math.log(_CALMER)
+    for word, axis in [*[best] * is_calmer, ("up", "-z")]:
+        if _is_good(reoriented(recording, **{word: axis}), known):
+            what = f"axis of the data points up: use align up={axis}"
+            if word == "axis":
+                what = f"axis is the figure axis: use align axis={axis}"
+            yield f"the {axis} {what}"
 
 
 def _calmness(recording: Recording) -> float:
@@ -108,16 +102,12 @@ def _decays(recording: Recording, known: Known, frequency: float) -> Iterator[st
         enough = count * _ROWS_PER_WINDOW < recording.t.size
         if not enough or frequency * recording.t[-1] < count * _PERIODS_PER_WINDOW:
             return
-        parts = recording.windows(count)
-        fits = []
+        parts, fits = recording.windows(count), list[Outcome]()
         for i in (0, count - 1, count // 2):
             fits.append(best_fit(parts[i], known, chance=CHANCE / count))
             if fits[-1].verdict != GOOD:
                 break
         else:
-            name = "r0" if all("r0" in x.numbers for x in fits) else "b"
-            first, last = fits[0].numbers[name], fits[1].numbers[name]
-            lost = abs(first.value) - abs(last.value)
-            if lost > _DECAYS * math.hypot(first.own_std, last.own_std):
+            if (decay := decay_of(fits)) and decay.time:
                 yield f"the spin decays: use window {count}"
             return

@@ -69,10 +69,10 @@ def fit_windows(
     ]
 
 
-def decay_of(outcomes: Sequence[Outcome], least: int = 3) -> Decay | None:
-    """Return the decay through windows, or None if fewer than `least` of them are good."""
+def decay_of(outcomes: Sequence[Outcome]) -> Decay | None:
+    """Return the decay through windows, or None if fewer than three of them are good."""
     good = [x for x in outcomes if x.verdict == GOOD]
-    if len(good) < max(least, 3):
+    if len(good) < 3:
         return None
     name = "r0" if all("r0" in x.numbers for x in good) else "b"
     values, stds = np.array([(x.numbers[name].value, x.numbers[name].own_std) for x in good]).T

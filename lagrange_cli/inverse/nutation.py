@@ -57,29 +57,25 @@ def nutating_outcome(
     Without `is_spin_known` nothing follows from r0.  The `noise` of the channels is that of
     `Outcome`.
     """
-    problem, names = found.problem, found.problem.names
+    problem, names, given = found.problem, found.problem.names, found.problem.stds
     stds = np.linalg.norm(found.spread, axis=1)
     pairs = found.numbers(
         lambda x: _computed(problem, x, radians=radians, is_spin_known=is_spin_known)
     )
-    for name, std in zip(names, stds, strict=True):
-        if std > _IMPROVED * problem.stds.get(name, math.inf):
-            pairs.pop(_named(name, radians=radians), None)
-    tilt = found.values["theta0"]
+    hidden = {x for x, y in zip(names, stds, strict=True) if y > _IMPROVED * given.get(x, math.inf)}
+    tilt, (factor, angle) = found.values["theta0"], angle_unit(radians=radians)
     if found.std("theta0") > _NEAR_POLE * min(tilt, math.pi - tilt):
-        for name in ("psidot0", "psi_zero", "phi_zero"):
-            pairs.pop(_named(name, radians=radians), None)
-    for key in [f"{x}_zero_{angle_unit(radians=radians)[1]}" for x in ("psi", "phi")]:
-        if key in pairs:
-            turn = 2 * math.pi * angle_unit(radians=radians)[0]
-            value = turn / 2 - (turn / 2 - pairs[key][0]) % turn  # in (-turn/2, turn/2]
-            pairs[key] = value, *pairs[key][1:]
+        hidden |= {"psidot0", "psi_zero", "phi_zero"}
     numbers = {}
-    for key, values in pairs.items():
-        value, std, own = (x * scale ** time_power(key) for x in values)
-        if std == 0:  # known inputs determine it
+    for name, (value, *spreads) in pairs.items():
+        if name in hidden or not spreads[0]:  # without a spread, known inputs determine it
             continue
-        numbers[key] = Number(value, std, _meaning(key, problem, pairs, radians=radians), own)
+        size = factor if name in _ANGLES else scale ** time_power(name)
+        std, own = (x * size for x in spreads)
+        key = f"{name}_{angle}" if name in _ANGLES else name
+        meaning = _meaning(name, problem, pairs, radians=radians)
+        turns = (math.pi - value) // (2 * math.pi) if name.endswith("_zero") else 0  # within a half
+        numbers[key] = Number((value + 2 * math.pi * turns) * size, std, meaning, own)
     unit = found.spread / (stds[:, np.newaxis] + 1e-300)
     body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
     products = [x for x in numbers if set(x) & set("*/") and is_spin_known]
@@ -125,21 +121,16 @@ def _faults(found: Minimum, *, is_even: bool) -> list[str]:
     return faults
 
 
-def _named(name: str, *, radians: bool) -> str:
-    """Return the key of a parameter, with the unit of an angle."""
-    return f"{name}_{angle_unit(radians=radians)[1]}" if name in _ANGLES else name
-
-
 def _computed(
     problem: Problem, x: Array, *, radians: bool, is_spin_known: bool
 ) -> dict[str, Array]:
-    """Return the numbers of the motion and of the body for many parameters."""
-    v, scale = problem.values(x), dict.fromkeys(_ANGLES, angle_unit(radians=radians)[0])
+    """Return the numbers of the motion and of the body for many parameters, start in radians."""
+    v = problem.values(x)
     free = {*problem.names, *["b"] * problem.is_tied, *["a"] * problem.has_torque}
     free |= {"r0"} if "phidot0" in problem.known else set()
     free -= {"a"} if problem.has_torque and not problem.stds else set()
     names = [name for name in (*_MEANINGS, *problem.stds) if name in free]
-    found = {_named(name, radians=radians): v[name] * scale.get(name, 1.0) for name in names}
+    found = {name: v[name] for name in names}
     has = {name: v[name] for name in problem.known}
     has |= {"r0": v["r0"]} if problem.spins and is_spin_known else {}
     has |= {"A": v["A"]} if "A_cm" in has else {}
@@ -157,19 +148,18 @@ def _computed(
 
 
 def _meaning(
-    key: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]], *, radians: bool
+    name: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]], *, radians: bool
 ) -> str:
-    name = key.removesuffix(f"_{angle_unit(radians=radians)[1]}")
     if name in problem.stds:
         return "known, improved by the fit"
-    if off := pairs.get(f"{key}{PERCENT}"):
+    if off := pairs.get(f"{name}{PERCENT}"):
         word, sigmas = ("small", "large")[off[0] > 0], off[0] / (off[1] or math.inf)
         sure = f"{sigmas:+.{int(abs(sigmas) < 10)}f} sigma"
         return f"of a fast top: {abs(off[0]):.2g} % too {word}, {sure}"
     declared = shown_keys(radians=radians, requested=True)
-    if name not in _MEANINGS and key in declared:
-        return declared[key].meaning
-    return _MEANINGS.get(name, "only this product is known" if set(key) & set("*/") else "")
+    if name in declared and name not in _MEANINGS:
+        return declared[name].meaning
+    return _MEANINGS.get(name, "only this product is known" if set(name) & set("*/") else "")
 
 
 def _inputs(
