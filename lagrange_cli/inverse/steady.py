@@ -55,8 +55,8 @@ def _mean(
 ) -> _Mean:
     """Return the mean tilt, or the slope of a straight line through spin or precession.
 
-    The noise is at least that of the steps between values; an angle that never leaves a step is
-    known to the size of the step.
+    The noise is at least that of the steps between values.  If steps explain the residuals, the
+    mean is known to a step, and the rate to a step over the duration.
     """
     is_tilt, middle = name == "theta", signal.t.mean()
     y = np.arccos(np.clip(signal.y, -1, 1)) if is_tilt else signal.y + signal.rate * signal.t
@@ -68,8 +68,8 @@ def _mean(
     noise = max(sigma or rest.rms * math.sqrt(y.size / (y.size - 2)), step / math.sqrt(12), 1e-12)
     size = math.sqrt(float(around @ around)) if not is_tilt else math.sqrt(y.size)
     std = noise * rest.widening() / size
-    if rest.rms < step / 5:
-        std = step / math.sqrt(12) * (1 if is_tilt else 1 / float(signal.t[-1]))
+    if rest.is_coarse:  # errors of steps may not average out
+        std = max(std, step / math.sqrt(12) / (1 if is_tilt else float(signal.t[-1])))
     return _Mean(float(factors[0]), std, float(np.polyval(factors, -middle)))
 
 
