@@ -36,6 +36,8 @@ _MEANINGS = {
     "r0": "total spin rate, from the means",
     "b/a": "C r0/2mgs",
 }
+_SMALL = 1e-3
+"""Steps of differences in standard deviations."""
 _Pair = tuple[float, float]
 
 
@@ -223,7 +225,7 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
             "and s make them exact"
         )
     moved = [
-        [numbers(values | {name: values[name] + sign * std})[0] for sign in (1, -1)]
+        [numbers(values | {name: values[name] + sign * std})[0] for sign in (_SMALL, -_SMALL)]
         for name, (_, std) in given.items()
         if std
     ]
@@ -232,7 +234,7 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
             x,
             math.hypot(
                 abs(x) * bias * (key != "r0"),
-                *((u.get(key, x) - w.get(key, x)) / 2 for u, w in moved),
+                *((u.get(key, x) - w.get(key, x)) / 2 / _SMALL for u, w in moved),
             ),
         )
         for key, x in found.items()
