@@ -44,6 +44,7 @@ MISTAKES = {
     "solve|--get|T_nutation,|T_spin": "must be names with commas and no blanks between",
     "solve|--get|Tnutation": "did you mean 'T_nutation'",
     "solve|looping": "did you mean 'looping-top'",
+    "solve|nosuch": "No such file or directory (the built-in scenes are chrapan-1952, ",
     "sweep|--r0|40-60": "--r0 must be a range start:stop:count, got '40-60'",
     "sweep|--r0|60rpm:80rpm:3": "must have its unit once, at the end, as in '60:80:3 rpm'",
     "table|--t-max|1e15": "--digits",
@@ -76,5 +77,5 @@ def test_a_mistake_gets_its_remedy(
     last = found.stderr.splitlines()[-1]
     assert last.startswith("Error: ")
     assert MISTAKES[words] in last
-    is_file = words.rsplit("|", maxsplit=1)[-1] in FILES
-    assert (found.stdout, found.exit_code) == ("", 65 if is_file or "looping" in words else 2)
+    is_file = words.rsplit("|", maxsplit=1)[-1] in {*FILES, "looping", "nosuch"}
+    assert (found.stdout, found.exit_code) == ("", 65 if is_file else 2)
