@@ -44,7 +44,7 @@ MISTAKES = {
     "solve|--get|T_nutation,|T_spin": "must be names with commas and no blanks between",
     "solve|--get|Tnutation": "did you mean 'T_nutation'",
     "solve|looping": "did you mean 'looping-top'",
-    "solve|nosuch": "No such file or directory (the built-in scenes are chrapan-1952, ",
+    "solve|nosuch": "No such file or directory (the built-in scenes are ",
     "sweep|--r0|40-60": "--r0 must be a range start:stop:count, got '40-60'",
     "sweep|--r0|60rpm:80rpm:3": "must have its unit once, at the end, as in '60:80:3 rpm'",
     "table|--t-max|1e15": "--digits",
