@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
-from .outcome import GOOD, Outcome
+from .outcome import GOOD, Number, Outcome
 from .recording import Recording, reoriented
 from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
@@ -26,6 +27,9 @@ _WINDOWS = (12, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
+_DECAYS, _STEADILY = 4.0, 0.3
+"""Standard deviations from which the spin has decayed from the first to the last window, and the
+least share of the loss in either half of the recording if windows are not good."""
 
 
 def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
@@ -33,23 +37,29 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
     if outcome.contradictions:
         return []
     if outcome.misfits:
-        return [next(_tried(recording, known, outcome), "check columns, units and axes")]
+        is_short = (
+            outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]
+        )
+        usual = "check columns, units and axes"
+        if is_short:
+            usual = "a recording must last for a period of the nutation"
+        return [next(_tried(recording, known), usual)]
     body = {name: x for name, x in known.items() if name in _BODY}
     return [*_frames(recording, body)] if recording.kind != "angles" else []
 
 
-def _tried(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
+def _tried(recording: Recording, known: Known) -> Iterator[str]:
     """Yield what makes the fit good, the likeliest mistakes first."""
     body = {name: x for name, x in known.items() if name in _BODY}
     if recording.kind != "angles":
         yield from _frames(recording, body)
-    if (row := _release(recording)) and _is_good(recording.part(slice(row, None)), body):
+    if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
     both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
-    if both and _is_good(recording.exchanged, known):
+    if both and _is_good(replace(recording, sigma={}).exchanged, known):
         yield "phi and psi are exchanged: here phi is the spin and psi the precession"
-    yield from _decays(recording, body, outcome.frequency)
+    yield from _decays(recording, body)
 
 
 def _is_good(recording: Recording, known: Known, chance: float = CHANCE) -> bool:
@@ -81,33 +91,55 @@ def _calmness(recording: Recording) -> float:
     return sum(math.log(x) for x in noise_of(signals, frequency, recording).values())
 
 
-def _release(recording: Recording) -> int:
+def release(recording: Recording) -> int:
     """Return the row in which a top that was held begins to move, or 0."""
     rows = []
     for name, values in recording.angles.items():
-        y = values if name == "theta" else np.unwrap(values)
-        if name == "phi" or not np.isfinite(y).all():
+        seen = np.flatnonzero(np.isfinite(values))
+        if name == "phi" or seen.size <= _HELD:
             continue
-        head = y[:_HELD]
-        noise = max(float(np.std(head)), 1e-9) * _RELEASED
-        moves = np.flatnonzero(np.abs(y - head.mean()) > noise)
-        rows.append(int(moves[0]) if moves.size else y.size)
+        y = values[seen] if name == "theta" else np.unwrap(values[seen])
+        noise = max(float(np.std(y[:_HELD])), 1e-9) * _RELEASED
+        moves = np.flatnonzero(np.abs(y - y[:_HELD].mean()) > noise)
+        rows.append(int(seen[moves[0]]) if moves.size else values.size)
     row = min(rows, default=0)
     return row if _HELD < row < recording.t.size - 2 * _HELD else 0
 
 
-def _decays(recording: Recording, known: Known, frequency: float) -> Iterator[str]:
-    """Yield the number of windows that are good and show a decay."""
+def _decays(recording: Recording, known: Known) -> Iterator[str]:
+    """Yield the number of windows that are good and show a decay, or a decay within windows."""
+    shown = ""
     for count in _WINDOWS:
-        enough = count * _ROWS_PER_WINDOW < recording.t.size
-        if not enough or frequency * recording.t[-1] < count * _PERIODS_PER_WINDOW:
-            return
-        parts, fits = recording.windows(count), list[Outcome]()
-        for i in (0, count - 1, count // 2):
-            fits.append(best_fit(parts[i], known, chance=CHANCE / count))
-            if fits[-1].verdict != GOOD:
+        if count * _ROWS_PER_WINDOW > recording.t.size:
+            break
+        parts = recording.windows(count)
+        frequency, _ = oscillation_in(signals_in(parts[0]))
+        if frequency * parts[0].t[-1] < _PERIODS_PER_WINDOW:
+            break
+        fits = []
+        for part in (parts[0], parts[count // 2], parts[-1]):
+            fits.append(best_fit(part, known, chance=CHANCE / count))
+            if shown and fits[-1].verdict != GOOD:
                 break
         else:
-            if (decay := decay_of(fits)) and decay.time:
-                yield f"the spin decays: use window {count}"
-            return
+            if all(x.verdict == GOOD for x in fits):
+                if (decay := decay_of(fits)) and decay.time:
+                    yield f"the spin decays: use window {count}"
+                return
+            lost, text = _loss(*fits)
+            shown = shown or text * (_STEADILY < lost < 1 - _STEADILY)
+    yield from [f"the spin decays: {shown}, and within each window"] * bool(shown)
+
+
+def _loss(first: Outcome, middle: Outcome, last: Outcome) -> tuple[float, str]:
+    """Return the share of the loss of spin in the first half, and the loss in words.
+
+    The share is 0 if no loss is significant.
+    """
+    name = "r0" if all("r0" in x.numbers for x in (first, middle, last)) else "b"
+    found = [x.numbers.get(name, Number(math.nan, math.nan, "")) for x in (first, middle, last)]
+    sizes = [abs(x.value) for x in found]
+    lost = sizes[0] - sizes[2]
+    if not lost > _DECAYS * math.hypot(found[0].own_std, found[2].own_std):
+        return 0.0, ""
+    return (sizes[0] - sizes[1]) / lost, f"{name} falls from {found[0]} to {found[2]}"

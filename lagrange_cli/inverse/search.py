@@ -128,8 +128,6 @@ def best_fit(
             "the residuals correlate from row to row (smoothed data, or an encoder): standard "
             f"deviations are {widest:.2g} times as large"
         )
-    if outcome.failures() and visible and not lasts:
-        outcome.hints.append("a recording must last for a period of the nutation")
     return outcome
 
 

@@ -19,6 +19,7 @@ from lagtop import LagtopError, Top, fit, read_scene, solve
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from lagrange_cli.inverse.advice import release
 from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.decay import decay_of, fit_windows
 from lagrange_cli.inverse.known import body_numbers, known_inputs
@@ -299,9 +300,29 @@ def slowed(time: float, t: Array) -> dict[str, Array]:
 @pytest.mark.slow
 def test_exchanged_spin_and_precession_are_noticed() -> None:
     t, seen = recorded("theta", "phi", "psi", seed=24)
-    outcome = fitted(t, seen | {"phi": seen["psi"], "psi": seen["phi"]})
+    sigma = {"theta": DEGREE, "phi": 3 * DEGREE, "psi": 0.1 * DEGREE}  # by the names of the paper
+    outcome = fitted(t, seen | {"phi": seen["psi"], "psi": seen["phi"]}, sigma=sigma)
     assert outcome.verdict == "failed"
     assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
+
+
+@pytest.mark.slow
+def test_a_decay_within_each_window_is_named() -> None:
+    rng, t = np.random.default_rng(12), np.linspace(0, 12, 961)
+    seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=t.size) for x, y in slowed(54, t).items()}
+    failure = fitted(t, seen).failure()
+    found = re.search(r"the spin decays: r0 falls from (\d+).* to (\d+).*within each", failure)
+    assert found, failure
+    assert [int(x) for x in found.groups()] == pytest.approx([52, 52 * math.exp(-12 / 54)], abs=2)
+
+
+def test_a_release_is_seen_beside_missing_cells() -> None:
+    rng = np.random.default_rng(13)
+    theta = np.concatenate([np.full(40, 1.0), 1 + 0.2 * np.sin(np.arange(1, 61) / 4) ** 2])
+    theta += rng.normal(scale=1e-3, size=100)
+    theta[[3, 20, 50]] = np.nan
+    recording = recording_from(np.arange(100.0), theta=theta)
+    assert 40 <= recording.t[release(recording)] <= 43
 
 
 @pytest.mark.slow
