@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
-from .outcome import GOOD, Number, Outcome
+from .outcome import GOOD, Outcome
 from .recording import Recording, reoriented
 from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
@@ -25,11 +25,11 @@ _HELD, _RELEASED = 12, 6.0
 """Least number of rows before a release, and the standard deviations that show it."""
 _WINDOWS = (12, 32)
 """Numbers of windows to try if the spin may decay."""
-_ROWS_PER_WINDOW, _PERIODS_PER_WINDOW = 24, 1.5
+_ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
-_DECAYS, _STEADILY = 4.0, 0.3
-"""Standard deviations from which the spin has decayed from the first to the last window, and the
-least share of the loss in either half of the recording if windows are not good."""
+_LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
+"""If windows are not good: standard deviations of a loss of spin, the least share of it in either
+half, and the residual of phi over that of the whole recording."""
 
 
 def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
@@ -43,12 +43,12 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
         usual = "check columns, units and axes"
         if is_short:
             usual = "a recording must last for a period of the nutation"
-        return [next(_tried(recording, known), usual)]
+        return [next(_tried(recording, known, outcome), usual)]
     body = {name: x for name, x in known.items() if name in _BODY}
     return [*_frames(recording, body)] if recording.kind != "angles" else []
 
 
-def _tried(recording: Recording, known: Known) -> Iterator[str]:
+def _tried(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
     """Yield what makes the fit good, the likeliest mistakes first."""
     body = {name: x for name, x in known.items() if name in _BODY}
     if recording.kind != "angles":
@@ -59,7 +59,7 @@ def _tried(recording: Recording, known: Known) -> Iterator[str]:
     both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
     if both and _is_good(replace(recording, sigma={}).exchanged, known):
         yield "phi and psi are exchanged: here phi is the spin and psi the precession"
-    yield from _decays(recording, body)
+    yield from _decays(recording, body, outcome)
 
 
 def _is_good(recording: Recording, known: Known, chance: float = CHANCE) -> bool:
@@ -106,40 +106,34 @@ def release(recording: Recording) -> int:
     return row if _HELD < row < recording.t.size - 2 * _HELD else 0
 
 
-def _decays(recording: Recording, known: Known) -> Iterator[str]:
+def _decays(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
     """Yield the number of windows that are good and show a decay, or a decay within windows."""
     shown = ""
     for count in _WINDOWS:
         if count * _ROWS_PER_WINDOW > recording.t.size:
             break
-        parts = recording.windows(count)
-        frequency, _ = oscillation_in(signals_in(parts[0]))
-        if frequency * parts[0].t[-1] < _PERIODS_PER_WINDOW:
-            break
-        fits = []
-        for part in (parts[0], parts[count // 2], parts[-1]):
-            fits.append(best_fit(part, known, chance=CHANCE / count))
-            if shown and fits[-1].verdict != GOOD:
+        parts, fits = recording.windows(count), list[Outcome]()
+        for i in (0, count // 2, -1):
+            fits.append(best_fit(parts[i], known, chance=CHANCE / count))
+            if fits[-1].verdict != GOOD and (shown or "phi" not in recording.angles):
                 break
         else:
             if all(x.verdict == GOOD for x in fits):
                 if (decay := decay_of(fits)) and decay.time:
                     yield f"the spin decays: use window {count}"
                 return
-            lost, text = _loss(*fits)
-            shown = shown or text * (_STEADILY < lost < 1 - _STEADILY)
+            shown = shown or _loss(outcome, fits)
     yield from [f"the spin decays: {shown}, and within each window"] * bool(shown)
 
 
-def _loss(first: Outcome, middle: Outcome, last: Outcome) -> tuple[float, str]:
-    """Return the share of the loss of spin in the first half, and the loss in words.
-
-    The share is 0 if no loss is significant.
-    """
-    name = "r0" if all("r0" in x.numbers for x in (first, middle, last)) else "b"
-    found = [x.numbers.get(name, Number(math.nan, math.nan, "")) for x in (first, middle, last)]
-    sizes = [abs(x.value) for x in found]
-    lost = sizes[0] - sizes[2]
-    if not lost > _DECAYS * math.hypot(found[0].own_std, found[2].own_std):
-        return 0.0, ""
-    return (sizes[0] - sizes[1]) / lost, f"{name} falls from {found[0]} to {found[2]}"
+def _loss(whole: Outcome, fits: Sequence[Outcome]) -> str:
+    """Return a steady loss of spin from window to window in words, if there is one."""
+    rms = whole.residuals["phi"].rms
+    if any("r0" not in x.numbers or x.residuals["phi"].rms > _CLOSER * rms for x in fits):
+        return ""
+    first, middle, last = (x.numbers["r0"] for x in fits)
+    lost = abs(first.value) - abs(last.value)
+    if lost < _LOST * math.hypot(first.own_std, last.own_std):
+        return ""
+    is_steady = _STEADILY < (abs(first.value) - abs(middle.value)) / lost < 1 - _STEADILY
+    return f"r0 falls from {first} to {last}" * is_steady

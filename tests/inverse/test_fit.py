@@ -308,12 +308,12 @@ def test_exchanged_spin_and_precession_are_noticed() -> None:
 
 @pytest.mark.slow
 def test_a_decay_within_each_window_is_named() -> None:
-    rng, t = np.random.default_rng(12), np.linspace(0, 12, 961)
-    seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=t.size) for x, y in slowed(54, t).items()}
+    rng, t = np.random.default_rng(12), np.linspace(0, 6, 1441)
+    seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=t.size) for x, y in slowed(27, t).items()}
     failure = fitted(t, seen).failure()
     found = re.search(r"the spin decays: r0 falls from (\d+).* to (\d+).*within each", failure)
     assert found, failure
-    assert [int(x) for x in found.groups()] == pytest.approx([52, 52 * math.exp(-12 / 54)], abs=2)
+    assert [int(x) for x in found.groups()] == pytest.approx([52, 52 * math.exp(-6 / 27)], abs=2)
 
 
 def test_a_release_is_seen_beside_missing_cells() -> None:
