@@ -32,7 +32,6 @@ from ..top.given import Given, gather
 from ..top.inputs import overridden, warn_of
 from ..top.top import INPUTS, Top
 from ..top.values import (
-    STEADY_WORDS,
     Span,
     Value,
     exact_number,
@@ -121,11 +120,8 @@ class Search(NamedTuple):
         return np.array([found[key] - x for key, x in self.targets.items()], float).T
 
     def sweep(self, values: Array, keys: Sequence[str]) -> Any:
-        """Return keys for each row of values; a steady rate is rounded first, which is fast."""
+        """Return keys for each row of values, as arrays by key."""
         inputs = overridden(dict(self.fixed), dict(zip(self.spans, values.T, strict=True)))
-        if isinstance(word := inputs.get("psidot0"), str):
-            key = "steady_rate_slow" if word == STEADY_WORDS[0] else "steady_rate_fast"
-            inputs["psidot0"] = sweep(keys=[key], **inputs | {"psidot0": 0.0})[key]
         return sweep(keys=keys, radians=self.radians, **inputs)
 
 

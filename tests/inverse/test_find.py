@@ -170,6 +170,15 @@ def test_steady_tops(word: str) -> None:
     assert bool(fast) == (word == "steady-fast")
 
 
+def test_steady_tops_with_a_spin_rate() -> None:
+    """The rate x solves (A - C) cos(theta) x^2 - C phi' x + m g s = 0."""
+    known: Any = {"phidot0": 3, "theta0_deg": (20, 160), "psidot0": "steady", "scan": 200}
+    (motion,) = find({"Lz": 2.5}, **STEADY_BODY, **known)
+    u, x = math.cos(math.radians(motion.top.theta0_deg or 0)), motion.mean_precession_rate
+    assert -u * x * x / 3 - 3 * x + 9.81 * 0.2 == pytest.approx(0, abs=1e-12)
+    assert 2 / 3 * x * (1 - u * u) + (3 + x * u) * u == pytest.approx(2.5)
+
+
 def test_flat_parts_of_a_condition_are_no_starts() -> None:
     """A top that rises has its start as greatest tilt, for half of all rates."""
     ranges: Any = {"theta0_deg": 45, "r0": (1, 20), "psidot0": (-5, 5)}
