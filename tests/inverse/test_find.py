@@ -127,13 +127,19 @@ def test_a_plateau_or_a_curve_is_refused(line: str, message: str, lagtop: Lagtop
             "--r0 10:60 T_nutation=0.46",
             "nearest to T_nutation = 0.46 is T_nutation = 0.45250944480905964, 0.0075 off,",
         ),
-        ("--A 1:2 T_nutation=1", "no top of the scan has T_nutation = 1 (C must be <= 2"),
+        (
+            "--A 1:2 T_nutation=1 --scan 200",
+            "no top of the scan has T_nutation = 1 (C must be <= 2",
+        ),
         ("--r0=-50:60 --theta0 60 mean_spin_rate=0", "nearest to mean_spin_rate = 0 is"),  # a leap
         (
             "--r0 10:60 T_nutation=0.45 theta_max<20",
             "theta_max_deg = 91.17499831115589, 71 off, at",
         ),
-        ("--theta0 10:80 --psidot0 steady --thetadot0 1 T_nutation=1", "thetadot0 must be 0 for"),
+        (
+            "--theta0 10:80 --psidot0 steady --thetadot0 1 T_nutation=1 --scan 200",
+            "thetadot0 must be 0 for",
+        ),
         ("--r0 10:60 path=looping", "no border of path = looping"),
         (
             "--r0 10:60 T_nutation=0.45 path=looping",
