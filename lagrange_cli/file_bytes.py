@@ -40,7 +40,8 @@ def read_bytes(path: str, most: int = LARGEST_FILE) -> bytes:
             except (EOFError, zlib.error, gzip.BadGzipFile) as error:
                 raise OSError(f"not a gzip file: {error}") from None
     except OSError as error:
-        raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
+        remedy = ": pass a file" if isinstance(error, IsADirectoryError) else ""
+        raise DataError(f"{shown_path(path)}: {error.strerror or error}{remedy}") from None
     return content
 
 

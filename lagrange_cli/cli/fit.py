@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import unit_in_radians
+from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError, SomeFailedError
 from ..names import split_names
 from ..output.destination import Output, opened
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
+    if ":" in text:
+        raise LagtopError(f"must be one number or theta=0.3,psi=0.5, got {quoted(text)}")
     if "=" not in text:
         return opt.parse_positive(text)
     parts = [part.partition("=") for part in split_names(text)]

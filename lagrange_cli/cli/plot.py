@@ -192,7 +192,8 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     page computes the motion.  It works offline, as a single file.
     """
     if not (output or opens):
-        raise LagtopError("nothing to do: give -o FILE.html or --open")
+        named = top.scene if (top.scene or "").lower().endswith((".html", ".htm")) else "FILE.html"
+        raise LagtopError(f"nothing to do: give -o {named} or --open")
     if output == "-" and (opens or is_screen("-")):
         raise LagtopError("a page on standard output needs a pipe: give -o FILE.html")
     if splitext(output or "")[1].lower() not in {"", ".html", ".htm"}:

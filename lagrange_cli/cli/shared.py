@@ -113,7 +113,7 @@ columns = option(
     "--columns",
     type=LIST,
     help="Names of all columns; axis, quaternion and matrix stand for all of their parts, _ skips "
-    "a column.",
+    "a column.  A name may have a unit: 't [ms]'.",
 )
 quaternion_order = option(
     "--quaternion-order",

@@ -13,11 +13,13 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files import rotations
-from .differences import Alignment, Exact, Run, angles_of, errors, sizes, start_of
+from .differences import Alignment, Exact, Run, angles_of, blocks, errors, sizes, start_of
 from .mistakes import BACKWARDS, Cause, Undo, mistakes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
+_PART = 0.3
+"""Largest error that may remain if a cause explains a part."""
 _AS_GOOD, _ROUNDING = 10.0, 1e-9
 """Factor between the remaining errors of two causes, and least error, that make no difference."""
 _FEW, _SOME, _LEAST = 12, 300, 3
@@ -41,7 +43,8 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
 
     A cause explains an error if it takes off nine tenths.  Of those that bring the error below the
     limit, return the simplest that leaves about as little as the best.  If there is none, try two
-    causes at once.  Otherwise return the best cause, which explains a part.
+    causes at once.  Otherwise return the best cause, which explains a part and
+    spoils nothing.
     """
     if np.isfinite(errors(exact, run.few(_SOME))).sum() < _LEAST:
         return []
@@ -49,7 +52,8 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
     found = next(filter(None, (search.best(x, limit) for x in search.groups())), [])
     if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
         found = search.best([*found, *search.pairs(in_other=False)], limit)
-    return found or search.best(next(search.groups()))
+    parts = next(search.groups())
+    return found or search.best((x for x in parts if not search.spoils(x, limit)), _PART)
 
 
 class _Search:
@@ -81,7 +85,18 @@ class _Search:
         worst = errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
         return float(np.fmax.reduce(worst)) if np.isfinite(worst).any() else math.inf
 
-    def best(self, causes: Iterable[Cause], limit: float = math.inf) -> list[Cause]:
+    def spoils(self, cause: Cause, limit: float) -> bool:
+        """Return whether the attitude, or the rates, are clearly worse without a cause."""
+
+        def greatest(cause: Cause) -> Array:
+            run = self.some(cause.undo).few(_FEW)._replace(align=cause.align or self.run.align)
+            found = next(blocks(cause.exact or self.given, run))
+            both = [found["error"], found.get("rates", found["error"])]
+            return np.asarray(np.fmax.reduce(both, axis=1))
+
+        return bool((greatest(cause) > np.fmax(2 * greatest(Cause("")), limit)).any())
+
+    def best(self, causes: Iterable[Cause], limit: float) -> list[Cause]:
         """Return the simplest cause that leaves about as little as the best, and another one."""
         enough = min(self.enough, limit)
         hopeful = [x for x in causes if self.error(x, _FEW) <= enough]

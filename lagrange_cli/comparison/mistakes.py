@@ -59,7 +59,7 @@ BACKWARDS = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
 
 def mistakes(top: Top, run: Run) -> list[Cause]:
     """Return all mistakes, the simplest first."""
-    return [*_of_time(run), *_of_inputs(top, run), *_of_writing(run)]
+    return [*_of_units(run), *_of_inputs(top, run), *_of_writing(run)]
 
 
 def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
@@ -67,7 +67,7 @@ def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
     return run._replace(given={x: changes.get(x, np.asarray)(y) for x, y in run.given.items()})
 
 
-def _of_time(run: Run) -> Iterator[Cause]:
+def _of_units(run: Run) -> Iterator[Cause]:
     if run.t[0] > run.t[-1]:
         yield BACKWARDS
     factors = {f"t is in {x}": y for x, y in _UNITS.items()}
@@ -75,15 +75,19 @@ def _of_time(run: Run) -> Iterator[Cause]:
         factors |= {f"t counts frames, {x} per second": 1 / x for x in _FRAME_RATES}
     for name, factor in factors.items():
         yield Cause(name, partial(Run.timed, factor=factor))
+    if {"rates", "angle_rates"} & run.given.keys():
+        undo = partial(_changed, dict.fromkeys(("rates", "angle_rates"), np.radians))
+        yield Cause("the rates are in degrees per unit of time", undo)
 
 
 def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
-    A, r0, steiner = Fraction(top.A), float(top.r0), Fraction(top.m) * Fraction(top.s) ** 2
+    A, C, r0 = Fraction(top.A), Fraction(top.C), float(top.r0)
+    steiner = Fraction(top.m) * Fraction(top.s) ** 2
     tilt, rate = float(top.inputs(radians=True)["theta0_rad"]), float(top.thetadot0)
     left = " (in a left-handed frame a positive turn is clockwise)" * run.align.left
     mirrored = top.psidot0 and run.observed(slice(1)).quaternion is not None
     mirror = " (or that of {}, if the frame is left-handed or has z down)" if mirrored else ""
-    folded, ratio = math.remainder(math.degrees(tilt), math.tau), A / Fraction(top.C)
+    folded, ratio = math.remainder(math.degrees(tilt), math.tau), A / C
     half = rotations.about_z(math.pi)
     both: dict[str, Any] = {"space": half, "body": half}
     over: dict[str, Any] = {"space": rotations.product(rotations.HALF_TURN_X, half), "body": half}
@@ -91,6 +95,8 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
     inputs: dict[str, dict[str, Any]] = {
         f"r0 has the wrong sign{left}{mirror.format('psidot0')}": {"r0": -top.r0},
         "the gyroscopic term is left out of Euler's equations (as if C = A)": {"C": top.A},
+        "the gyroscopic term has the wrong sign (as if C = 2A - C)": {"C": 2 * A - C},
+        "the gyroscopic term is halved (as if C = (A + C)/2)": {"C": (A + C) / 2},
         "A about the pivot was taken as A about the mass centre (A + m s^2)": {"A": A + steiner},
         "A about the mass centre was taken as A about the pivot (A - m s^2)": {"A": A - steiner},
         "r0 in radians was taken as degrees": {"r0": math.radians(r0)},

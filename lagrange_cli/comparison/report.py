@@ -11,6 +11,7 @@ from ..errors import DataError, LagtopError
 from ..file_bytes import shown_path
 from ..files.observed import Conventions, Quantities, observe, rows_of
 from ..files.trajectory import read_trajectory
+from ..inverse.recording import LEAST_ROWS
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import one_line
 from ..solver.solve import Motion
@@ -116,7 +117,11 @@ def _conclusions(
     elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (
         found and found.converges
     ):
-        hint = ": compare runs with other step sizes" if x.verdict == "drifts" and not found else ""
+        hints = ["compare runs with other step sizes"] * (x.verdict == "drifts" and not found)
+        can_fit = x.theta_error_max is not None and x.rows >= LEAST_ROWS
+        if x.verdict in {"drifts", "another top"} and can_fit and (x.error_max or 0.0) > LIMIT:
+            hints.append("see which top lagtop fit finds in the file")
+        hint = f": {', or '.join(hints)}" if hints else ""
         yield f"None of the known causes explains the error{hint}."
 
 

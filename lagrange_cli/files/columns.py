@@ -15,7 +15,7 @@ from ..arithmetic.text import quoted, shortened
 from ..errors import LagtopError
 from ..names import ANGLES, suggestion
 from ..top.inputs import declared
-from ..top.units import factor_of
+from ..top.units import factor_of, is_unit
 from .headings import name_and_unit
 
 if TYPE_CHECKING:
@@ -170,6 +170,18 @@ def plain_name(name: str) -> tuple[str, str | None]:
     if ending and unit in {"", ending[1]} and (rest := text[: ending.start()].rstrip(" _.")):
         text, unit = rest, ending[1]
     return re.sub(r"[^a-z0-9]", "", text), unit or None
+
+
+def with_units_of(headings: Sequence[str], names: Sequence[str]) -> list[str]:
+    """Return names of columns; those without a unit take that of the heading they replace."""
+    found = quantities_in(names).items()
+    may_have_unit = {i for key, x in found if QUANTITIES[key].unit for i in x.columns}
+    named = list(names)
+    for i in may_have_unit:
+        unit = name_and_unit(headings[i])[1]
+        if is_unit(unit) and not plain_name(names[i])[1]:
+            named[i] = f"{names[i]} [{unit}]"
+    return named
 
 
 def found_in(names: Sequence[str], asked: Sequence[str] = ()) -> dict[str, FoundQuantity]:

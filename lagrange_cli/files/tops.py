@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import quoted
+from ..arithmetic.text import quoted, shortened
 from ..errors import DataError, LagtopError
 from ..file_bytes import read_text, shown_path
 from ..names import repeated
@@ -22,6 +22,7 @@ from ..top.inputs import TILT, checked_double, one_of_each, overridden
 from ..top.ranges import MOST_POINTS, Points
 from ..top.top import INPUTS
 from ..top.values import STEADY_WORDS, Value, conversion, tilt_key
+from .columns import known_quantities
 from .headings import name_and_unit
 from .text_tables import Table, read_table
 
@@ -173,6 +174,10 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
             column = tilt_key(column, Value(factor, unit))
             units[column] = Value(factor, unit)
         columns.append(column)
+    if not units and known_quantities(headings) > 1:
+        wanted = "must hold tops, got a recording with the columns"
+        shown = shortened(", ".join(headings), 120)
+        raise DataError(f"{name} {wanted} {shown}: pass it to lagtop fit or lagtop compare")
     carried = [x for x in columns if x not in units and x not in computed]
     _check_spelling(carried, units.keys(), name)
     if (twice := repeated(columns)) is not None:

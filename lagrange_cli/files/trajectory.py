@@ -6,6 +6,7 @@ The first bytes of a file determine its format, not its name: Parquet, or else t
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -20,7 +21,7 @@ from ..errors import DataError, LagtopError, UnavailableError
 from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
 from ..names import repeated
 from ..top.ranges import ListedPoints
-from .columns import SKIPPED, converted, expanded, found_in, known_quantities
+from .columns import SKIPPED, converted, expanded, found_in, known_quantities, with_units_of
 from .text_tables import Table, read_table
 
 if TYPE_CHECKING:
@@ -133,8 +134,9 @@ def read_trajectory(
 ) -> Trajectory:
     """Return the trajectory in a file, or in standard input for `-`.
 
-    `columns` names all columns from the left and overrides the names in the file.  `decimal` is a
-    point or a comma, or empty if the file decides.  Raises DataError for a file that cannot be read
+    `columns` names all columns from the left and overrides the names in the file, but a heading's
+    unit stays unless the name has one.  `decimal` is a point or a comma, or empty if the file
+    decides.  Raises DataError for a file that cannot be read
     or holds no trajectory.
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
@@ -146,6 +148,10 @@ def read_trajectory(
     table = read_table(text, name, known_quantities, decimal, len(names or ()) or None)
     if table.headings is None and not table.width:
         raise DataError(f"{name} must hold a trajectory, got no row")
+    if names is not None:
+        with suppress(DataError):  # headings are of no use then
+            old = table.headings or read_table(text, name, known_quantities, decimal).headings
+            names = with_units_of(old, names) if old and len(old) == len(names) else names
     return Trajectory(table, names)
 
 

@@ -465,7 +465,8 @@ def draw_cells(ax: Axes, grid: Sequence[Array], values: Any, key: str, options: 
     bar.outline.set_visible(False)
     if shown.count() < shown.size:
         ax.plot([], [], "s", color=look.faint, mec=look.quiet, label="undefined")
-    return f"{declared.symbol}: {declared.meaning} {declared.equation}".rstrip()
+    ending = declared.equation if declared.equation[:1] in "(§" else f"= {declared.equation}"
+    return f"{declared.symbol}: {declared.meaning} {ending}".rstrip()
 
 
 # --- sheets

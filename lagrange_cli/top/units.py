@@ -56,7 +56,7 @@ UNITS: dict[str, Unit] = {
 }
 """The known units by name."""
 SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "°": "deg"}
-SPELLINGS |= dict.fromkeys(("degree", "degrees"), "deg") | dict.fromkeys(
+SPELLINGS |= dict.fromkeys(("degree", "degrees", "Grad"), "deg") | dict.fromkeys(
     ("radian", "radians"), "rad"
 )
 """Other spellings of units."""
@@ -71,6 +71,7 @@ _TICKS = re.compile(r"\d{1,9}(?:\.\d{1,9})?(?=\s*[^\W\d])")
 _FACTOR = re.compile(rf"\s*([*·/]?)\s*({_NAME})\s*(?:(?:\*\*|\^)?\s*(-?\d)(?!\d))?")
 """A factor of a product: a stroke, a name, and a power of one digit."""
 _ASKED = {
+    "U": "write rpm or turn/s",
     "Hz": "turns or radians per second? write rpm, turn/s or rad/s",
     "gr": "grain or gram? write g",
 }

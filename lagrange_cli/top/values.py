@@ -256,8 +256,8 @@ def parse_values(text: str, read: Read = parse_number) -> Points:
     _refuse_units_inside(text)
     if ":" in text:
         return parse_range(text, read)
-    if re.fullmatch(rf"\s*{_DECIMAL}\s*-\s*{_DECIMAL}\s*", text):
-        raise LagtopError(f"must be a range start:stop:count, got {quoted(text)}")
+    if ends := re.fullmatch(rf"\s*({_DECIMAL})\s*(?:-|\.\.+|…)\s*({_DECIMAL})\s*", text):
+        raise LagtopError(f"must be a range {ends[1]}:{ends[2]}:count, got {quoted(text)}")
     return ListedPoints([read(part) for part in text.split(",")])
 
 

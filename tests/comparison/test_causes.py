@@ -48,6 +48,8 @@ def bodies(top: Top) -> dict[str, Body]:
     return {
         "": body,
         "the gyroscopic term is left out": body._replace(C=body.A),
+        "the gyroscopic term has the wrong sign": body._replace(C=2 * body.A - body.C),
+        "the gyroscopic term is halved": body._replace(C=(body.A + body.C) / 2),
         "A and C are exchanged": body._replace(A=body.C, C=body.A),
         "(A + m s^2)": body._replace(A=body.A + steiner),
         "(A - m s^2)": body._replace(A=body.A - steiner),
@@ -100,6 +102,11 @@ READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
         "quaternion": wxyz(turn),
         "rates": turn.apply(rates),
     },
+    "the rates are in degrees": lambda turn, rates: {
+        "quaternion": wxyz(turn),
+        "rates": np.degrees(rates),
+    },
+    "degrees per unit of time": lambda _, rates: {"rates": np.degrees(rates)},
     "y is up and the figure axis is the body's y axis": lambda turn, _: framed(
         turn, [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
     ),
@@ -233,6 +240,17 @@ def test_mirrored_motions_have_two_names() -> None:
     assert first.verdict == "fine"
     turned = compare(top, T, quaternion=wxyz(turn * Rotation.from_euler("z", 1)), align="start")
     assert "r0 has the wrong sign" in (turned.cause or "")
+
+
+def test_no_part_is_explained_by_what_spoils_the_attitude() -> None:
+    """Rates that are forty times too large are like those of a top with r0 in degrees."""
+    turn, rates = run("toy")
+    names = "the rates are in degrees", "r0 in degrees was taken as radians"
+    alone = compare(TOPS["toy"], T, rates=45 * rates)
+    assert all(name in (alone.cause or "") for name in names)
+    found = compare(TOPS["toy"], T, rates=45 * rates, quaternion=wxyz(turn))
+    assert [name in (found.cause or "") for name in names] == [True, False]
+    assert compare(TOPS["toy"], T, rates=20 * rates).cause is None  # almost nothing remains
 
 
 def test_no_cause_is_named_for_few_rows() -> None:

@@ -48,6 +48,14 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert "rad off, its rates by 2.1e-07 (relative)." in strict.stdout
 
 
+def test_another_top_is_left_to_a_fit(lagtop: Lagtop, right: Path) -> None:
+    shown = lagtop("compare", right, *OPTIONS, "--m", 1800, "--C", 19e3).stdout
+    hint = "compare runs with other step sizes, or see which top lagtop fit finds in the file."
+    assert f"None of the known causes explains the error: {hint}" in shown
+    strict = lagtop("compare", right, *OPTIONS, "--max-error", "1e-9").stdout
+    assert "lagtop fit" not in strict
+
+
 def test_the_worked_example_is_not_assumed_in_silence(lagtop: Lagtop, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("t,theta\n0,30\n")
     done = lagtop("compare", tmp_path / "run.csv")

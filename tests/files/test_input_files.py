@@ -104,7 +104,7 @@ def test_a_file_that_cannot_be_read_ends_with_65(
     name = line.rsplit(maxsplit=1)[-1]
     assert_one_line(lagtop(*line.split()), 65, f"{name}: No such file or directory")
     Path(name).mkdir()
-    assert_one_line(lagtop(*line.split()), 65, f"{name}: Is a directory")
+    assert_one_line(lagtop(*line.split()), 65, f"{name}: Is a directory: pass a file")
 
 
 # Times

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import math
 import os
 import sys
@@ -213,6 +214,28 @@ def test_units_in_headings(text: str, found: dict[str, list[float]], tmp_path: P
     for key, exact in found.items():
         assert values[key][0] == pytest.approx(exact, rel=1e-15)
     assert float(next(iter(read_times(str(path)).exact))) == values["t"][0, 0]
+
+
+@pytest.mark.parametrize(
+    ("names", "found"),
+    [
+        (["t", "theta", "axis"], [0.5, PI / 2]),
+        (["t [s]", "theta_rad", "axis"], [500, 90]),
+        (["t [min]", "theta", "_", "_", "_"], [3e4, PI / 2]),
+    ],
+)
+def test_names_keep_the_units_of_headings(
+    names: list[str], found: list[float], tmp_path: Path
+) -> None:
+    """An axis has none."""
+    headings = "Zeit [ms],Neigung [Grad],x [m],y [m],z [m]".split(",")
+    text = ";".join(headings) + "\n0;1;0;0;1\n500;90;0;0;1\n"
+    objects = dict(zip(headings, (500, 90, 0, 0, 1), strict=True))
+    for content in (text, json.dumps([objects, objects | {"Zeit [ms]": 501}])):
+        (tmp_path / "file").write_text(content)
+        values = read_trajectory(str(tmp_path / "file"), names).values(radians=False)
+        row = -1 if content is text else 0
+        assert [values["t"][row, 0], values["theta"][row, 0]] == pytest.approx(found)
 
 
 def test_bad_names_of_columns(tmp_path: Path) -> None:

@@ -238,6 +238,17 @@ def test_a_map_shows_the_number_of_each_top() -> None:
     )
 
 
+def test_the_title_of_a_map_explains_its_key() -> None:
+    given: Any = {"x": ("r0", [20.0, 90.0]), "y": ("m", [1e3, 2e3])}
+    titles = {
+        "stability_factor": "λ: stability factor C²r0²/(4Amgs) = b²/2a",
+        "T_spin": "Tφ: mean spin period §8",
+    }
+    for key, title in titles.items():
+        axes = drawn("map", solve(Top()), key=key, **given).axes[0]
+        assert axes.get_title("left").endswith(title)
+
+
 def test_a_map_of_paths_shows_cusps_at_the_border() -> None:
     rates, spins = np.linspace(-4, 4, 10), np.linspace(2, 120, 12)
     given: Any = {"x": ("psidot0", rates), "y": ("r0", spins), "key": "path"}
