@@ -243,14 +243,17 @@ def test_mirrored_motions_have_two_names() -> None:
 
 
 def test_no_part_is_explained_by_what_spoils_the_attitude() -> None:
-    """Rates that are forty times too large are like those of a top with r0 in degrees."""
-    turn, rates = run("toy")
+    """Rates that are forty-five times too large are like those of a top with r0 in degrees."""
+    _, states = dop853(Body.of(TOPS["toy"]), T / 1e5, 1e-10)
+    given: Given = {"t": T / 1e5, "rates": 45 * states[:, 4:]}
     names = "the rates are in degrees", "r0 in degrees was taken as radians"
-    alone = compare(TOPS["toy"], T, rates=45 * rates)
+    alone = compare(TOPS["toy"], **given)
     assert all(name in (alone.cause or "") for name in names)
-    found = compare(TOPS["toy"], T, rates=45 * rates, quaternion=wxyz(turn))
+    found = compare(TOPS["toy"], **given, quaternion=states[:, :4])
     assert [name in (found.cause or "") for name in names] == [True, False]
-    assert compare(TOPS["toy"], T, rates=20 * rates).cause is None  # almost nothing remains
+    assert (found.attitude_error_max or 0.0) < 1e-9
+    few = compare(TOPS["toy"], given["t"], rates=20 * states[:, 4:])
+    assert few.cause is None  # what remains is as large as the rates
 
 
 def test_no_cause_is_named_for_few_rows() -> None:
