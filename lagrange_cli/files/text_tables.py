@@ -33,6 +33,10 @@ _NO_ROW = re.compile(r"\n[^\S\n]*(?:\n|\Z|[#%─]|//)")
 """A line end and an empty line, a comment, or a line that is drawn."""
 LARGEST_ARRAY = 1 << 26
 """Most characters of a JSON array, because it is held in memory as objects."""
+_MOST_VALUES = LARGEST_ARRAY // 8
+"""Most values of a JSON array."""
+_MOST_LINES = 1 << 24
+"""Most lines of a file: a small archive may hold more than can be read in a minute."""
 _AT_ONCE = 1 << 20
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
@@ -242,6 +246,8 @@ def read_table(
     first rows decide.  `width` is the number of columns if their names are given; headings in the
     file are then ignored.  Raises DataError.
     """
+    if text.count("\n") > _MOST_LINES:
+        raise DataError(f"{name}: a file must have at most {_MOST_LINES} lines: split it")
     sample = list(islice(Lines(text), _SAMPLE + _TITLES))
     if sample and sample[0][1].lstrip()[0] in "{[":
         return _json_table(text, name, sample[0])
@@ -406,8 +412,9 @@ def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
     table = Table(name, [], 0, Lines(text, number), "")
     if line.lstrip().startswith("["):
         whole = text.split("\n", number - 1)[-1]
-        if len(whole) > LARGEST_ARRAY:
+        if len(whole) > LARGEST_ARRAY or whole.count(",") > _MOST_VALUES:
             wanted = f"a JSON array must have at most {LARGEST_ARRAY} characters"
+            wanted += f" and {_MOST_VALUES} values"
             raise DataError(f"{name}: {wanted}: write one object per line")
         try:
             rows = [*enumerate(json_value(whole, number), 1)]

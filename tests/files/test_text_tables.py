@@ -11,6 +11,7 @@ import pytest
 from conftest import Lagtop, assert_one_line
 
 from lagrange_cli.errors import DataError
+from lagrange_cli.files import text_tables
 from lagrange_cli.files.headings import name_and_unit
 from lagrange_cli.files.tops import read_tops
 from lagrange_cli.files.trajectory import read_times, read_trajectory
@@ -142,6 +143,24 @@ def test_a_file_beyond_the_limit_is_refused(
         with pytest.raises(DataError, match="must have at most 14 bytes, has more"):
             read_times(str(each))
     monkeypatch.setattr("lagrange_cli.file_bytes.read_bytes.__defaults__", (15,))
+    assert times(path, "") == [0.5]
+
+
+def test_a_file_of_too_many_lines_or_values_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A small archive may hold hundreds of millions of comments, or of empty objects."""
+    path = tmp_path / "file"
+    monkeypatch.setattr(text_tables, "_MOST_LINES", 5)
+    monkeypatch.setattr(text_tables, "_MOST_VALUES", 3)
+    for text, wrong in {
+        "#\n" * 4 + "t\n0.5\n": "a file must have at most 5 lines: split it",
+        '[{"t":0.5},{},{},{},{}]': "characters and 3 values: write one object per line",
+    }.items():
+        path.write_text(text)
+        with pytest.raises(DataError, match=wrong):
+            read_times(str(path))
+    path.write_text("#\n" * 3 + "t\n0.5\n")
     assert times(path, "") == [0.5]
 
 
