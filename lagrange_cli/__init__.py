@@ -5,8 +5,6 @@ Examples in docstrings follow `from lagtop import *`, `import numpy as np` and `
 
 from __future__ import annotations
 
-from importlib import import_module
-
 TYPE_CHECKING = False  # start-up: Ctrl-C while `typing` is imported gives a traceback
 if TYPE_CHECKING:
     from typing import Any
@@ -51,6 +49,8 @@ def __getattr__(name: str) -> Any:
     """Return a public name; its module is imported on first use."""
     if name not in _MODULES:
         raise AttributeError(f"module 'lagtop' has no attribute {name!r}")
+    from importlib import import_module  # start-up, too
+
     value = globals()[name] = getattr(import_module(f".{_MODULES[name]}", __name__), name)
     return value
 

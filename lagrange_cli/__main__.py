@@ -1,11 +1,12 @@
 """The start of the command: `python -m lagrange_cli` and the script `lagtop`."""
 
 import _signal as signal  # type: ignore[import-not-found]  # `signal` itself takes long to import
-import gc
+import _thread
 import sys
 
 _ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
 """Signals that end the program; not every system has each."""
+_received: list[int] = []
 
 
 def main() -> None:
@@ -15,17 +16,25 @@ def main() -> None:
     other signals raise SystemExit, so that `finally` clauses run.  A second signal does not stop
     them.  Ignored signals stay ignored.
     """
-    gc.set_threshold(100_000)  # a start makes no garbage: collections take a tenth of its time
     is_interactive = signal.getsignal(signal.SIGINT) == signal.default_int_handler
     if is_interactive:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+    import gc
+
     from .cli.app import main as run
 
+    gc.set_threshold(100_000)  # a start makes no garbage: collections take a tenth of its time
     for number in _numbers():
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, _unwind)
+    sys.unraisablehook = _repeat
     try:
         run(prog_name="lagtop")
+    except (Exception, KeyboardInterrupt):
+        if not _received:
+            raise
+        signal.signal(_received[0], signal.SIG_DFL)  # C libraries raise errors of their own
+        signal.raise_signal(_received[0])
     finally:
         if is_interactive:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -36,11 +45,21 @@ def _numbers() -> list[int]:
 
 
 def _unwind(number: int, _: object) -> None:
+    _received.append(number)
     for each in _numbers():
         signal.signal(each, _pass)
     if number == signal.SIGINT:
         raise KeyboardInterrupt
     sys.exit(128 + number)
+
+
+def _repeat(lost: "sys.UnraisableHookArgs") -> None:
+    """Repeat a signal soon if its exception was lost, as in a callback of a weak reference."""
+    if _received and lost.exc_type in {KeyboardInterrupt, SystemExit}:
+        signal.signal(_received[0], _unwind)
+        _thread.start_new_thread(signal.raise_signal, (_received[0],))
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _pass(number: int, _: object) -> None:

@@ -221,6 +221,37 @@ def test_ctrl_c_while_modules_are_imported(module: str) -> None:
     assert (done.returncode, done.stderr, done.stdout) == (-signal.SIGINT, b"", b"")
 
 
+LOSING = [
+    # another error takes its place, as in flint if it cannot import zlib
+    "try: signal.raise_signal(number)\nexcept BaseException: raise ImportError",
+    # Python ignores the exceptions of callbacks
+    "it = set(); weak = weakref.ref(it, lambda _: signal.raise_signal(number)); del it\n"
+    "time.sleep(0.5)",
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lose", LOSING)
+@pytest.mark.parametrize(("name", "wanted"), [("INT", {-2}), ("TERM", {-15, 143})])
+def test_a_signal_whose_exception_is_lost(name: str, wanted: set[int], lose: str) -> None:
+    code = f"""if True:
+        import signal, sys, time, weakref
+        number = signal.SIG{name}
+
+        class Losing:
+            def find_spec(name, *_):
+                if name == "flint":
+                    exec({lose!r}, globals())
+
+        sys.meta_path.insert(0, Losing)
+        from lagrange_cli.__main__ import main
+        main()
+    """
+    done = subprocess.run([sys.executable, "-c", code, "solve"], capture_output=True, check=False)
+    assert (done.stderr, done.stdout) == (b"", b"")
+    assert done.returncode in wanted
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("settings", "line", "code", "said"),
