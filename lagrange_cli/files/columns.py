@@ -206,7 +206,8 @@ def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> No
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
         lacks_z = {"x", "y"} <= {*names} and "z" not in names
-        remedy = "z is missing" if lacks_z else "name them with columns=t,quaternion or the like"
+        example = "name them with columns=t,quaternion or the like ('t [ms]' has a unit)"
+        remedy = "z is missing" if lacks_z else example
         raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
     plain = [plain_name(name)[0] for name in names]
     for key, quantity in found.items():

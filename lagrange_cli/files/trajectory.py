@@ -53,7 +53,7 @@ class Trajectory:
         names = table.headings if columns is None else columns
         if names is None:
             remedy = f"name its {table.width} columns with columns=t,quaternion or the like"
-            raise DataError(f"{table.name} has no header: {remedy}")
+            raise DataError(f"{table.name} has no header: {remedy} ('t [ms]' has a unit)")
         self.names = names
         try:
             self.quantities = found_in(names)
