@@ -37,6 +37,8 @@ _MOST_VALUES = LARGEST_ARRAY // 8
 """Most values of a JSON array."""
 _MOST_LINES = 1 << 24
 """Most lines of a file: a small archive may hold more than can be read in a minute."""
+_LONGEST_LINE = 1 << 22
+"""Most characters of each of the first rows, which are searched for headings."""
 _AT_ONCE = 1 << 20
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
@@ -252,6 +254,9 @@ def read_table(
     if sample and sample[0][1].lstrip()[0] in "{[":
         return _json_table(text, name, sample[0])
     for number, line in sample:
+        if len(line) > _LONGEST_LINE:
+            wanted = f"a line must have at most {_LONGEST_LINE} characters"
+            raise DataError(f"{name}, line {number}: {wanted}")
         if max(map(line.count, '\t;, "')) > MOST_CELLS:
             raise DataError(f"{name}, line {number}: a row must have at most {MOST_CELLS} cells")
     texts = [line for _, line in sample[: _TITLES + 1]]
