@@ -59,6 +59,8 @@ _LEAST_DIGITS, _GUARD = 16, 22
 """Digits of a double, and the extra digits of the first enclosure."""
 _MARGIN = 32
 """Bits of a ball beyond the last place of the number that is rounded from it."""
+_TRIES = 5
+"""Attempts with the most digits, because the host may disturb any of them."""
 _INTERVALS = [0.005 * 2**i for i in range(8)]
 """Switch intervals in seconds of the repetitions if the host changes the precision."""
 
@@ -84,11 +86,11 @@ class _Precision:
 _lock = _Precision.lock
 
 
-def at_precision(digits: int, compute: Callable[[], T]) -> T:
+def at_precision(digits: int, compute: Callable[[], T], *, alone: bool = False) -> T:
     """Return `compute()`, evaluated with balls of `digits` digits.  Calls may be nested.
 
     If another thread has changed the precision, it is evaluated again, with fewer and fewer
-    switches of threads.
+    switches of threads, or with few ones from the start if it should be `alone`.
     """
     with _lock:
         outer = _Precision.own
@@ -96,6 +98,8 @@ def at_precision(digits: int, compute: Callable[[], T]) -> T:
             if not outer:
                 _Precision.host = ctx.prec
             _Precision.own = own = int(digits * BITS) + 2
+            if alone:
+                _switch_after(_INTERVALS[-1])
             for interval in _INTERVALS:
                 ctx.prec = own
                 try:
@@ -107,8 +111,7 @@ def at_precision(digits: int, compute: Callable[[], T]) -> T:
                     if ctx.prec == own:
                         return found
                 _Precision.host = ctx.prec
-                _Precision.interval = _Precision.interval or sys.getswitchinterval()
-                sys.setswitchinterval(max(interval, _Precision.interval))
+                _switch_after(interval)
             return compute()
         finally:
             if ctx.prec != _Precision.own:
@@ -118,6 +121,11 @@ def at_precision(digits: int, compute: Callable[[], T]) -> T:
             if _Precision.interval and not outer:
                 sys.setswitchinterval(_Precision.interval)
                 _Precision.interval = 0.0
+
+
+def _switch_after(interval: float) -> None:
+    _Precision.interval = _Precision.interval or sys.getswitchinterval()
+    sys.setswitchinterval(max(interval, _Precision.interval))
 
 
 if hasattr(os, "register_at_fork"):  # a child of another thread has the precision of the host
@@ -196,9 +204,10 @@ def decided(
     """
     least = max(digits or 0, _LEAST_DIGITS)
     growing = takewhile(lambda x: x < most, (least + _GUARD * 4**i for i in count()))
-    for working in chain(growing, range(most, most + 3)):
+    for working in chain(growing, range(most, most + _TRIES)):
         with suppress(TooFewDigitsError):
-            return at_precision(working + lost, partial(compute, working + lost))
+            again = partial(compute, working + lost)
+            return at_precision(working + lost, again, alone=working > most)
     raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
 
 

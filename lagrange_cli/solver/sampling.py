@@ -87,7 +87,7 @@ def period_of(length: arb) -> Period:
     long, low = pair_of(length)
     mantissa, exponent = math.frexp(long)
     high = math.ldexp(math.trunc(mantissa * _EXACT), exponent - 26)
-    return Period(float((1 / length).mid()), high, long - high, low)
+    return Period(near(1 / length), high, long - high, low)
 
 
 def pair_of(x: arb) -> tuple[float, float]:
@@ -126,10 +126,10 @@ class Growth:
 
         Raises TooFewDigitsError if one of them is not known to twice the precision of doubles.
         """
-        for x in (rate * unit, start):
+        cycle = 2 * turns * arb.pi()
+        for x in (rate * unit, start, cycle):
             if not (x.is_finite() and float(x.rad()) <= _SHARP * (1 + abs(float(x.mid())))):
                 raise TooFewDigitsError
-        cycle = 2 * turns * arb.pi()
         self.start, self.rate, self.cycle = map(pair_of, (start, rate, cycle))
         self.time = period_of(cycle / rate if not rate.contains(0) else arb("inf"))
         """The time of a cycle at the mean rate."""
