@@ -11,6 +11,7 @@ some hundreds of digits.  A sign that D digits leave open is 0 (`sign_to`).  A n
 cannot round is the simplest fraction in its ball: 0, or a tie between two roundings (`settled`).
 
     at_precision(40, lambda: arb(2).sqrt())          # a value computed in 40 digits
+    kept(lambda digits: ...)                         # the same for any digits, computed once
     sign_to(lambda digits: x(digits), most=D)        # a sign, 0 only if D digits leave it open
     settled("k", lambda digits: x(digits), None, D)  # the nearest double; 20 in place of None: text
     decided(lambda digits: ..., most=D)              # any other question, with `sign` and `nearest`
@@ -36,7 +37,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from decimal import ROUND_UP, Context, Decimal
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from itertools import chain, count, takewhile
 from threading import RLock
 from typing import Any, NamedTuple, TypeVar
@@ -123,7 +124,17 @@ def at_precision(digits: int, compute: Callable[[], T], *, alone: bool = False) 
                 _Precision.interval = 0.0
 
 
+def kept(compute: Callable[[int], T]) -> Callable[[int], T]:
+    """Return `compute(digits)` at a precision of so many digits, computed once for each.
+
+    A result is kept only after the precision was found unchanged: a wide one would be found again
+    at every attempt.
+    """
+    return cache(lambda digits: at_precision(digits, lambda: compute(digits)))
+
+
 def _switch_after(interval: float) -> None:
+    """Let threads switch less often, until the host's interval is restored."""
     _Precision.interval = _Precision.interval or sys.getswitchinterval()
     sys.setswitchinterval(max(interval, _Precision.interval))
 
@@ -335,10 +346,8 @@ def rounded(what: str, value: Exact, digits: int | None, remedy: str = "change t
     except OverflowError:  # of a fraction; a decimal becomes infinite
         found = math.inf
     if math.isinf(found) or (value and not found):
-        bound, shown = (
-            "within 1.8e308" if found else "0 or at least 5e-324",
-            _decimal(value, _SHORT),
-        )
+        bound = "within 1.8e308" if found else "0 or at least 5e-324"
+        shown = _decimal(value, _SHORT)
         raise OutOfRangeError(f"{what} must be {bound} in size, got {shown:.3e}: {remedy}")
     return found
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache
 from itertools import chain, islice
 from typing import Any, TypeVar
 
 from flint import arb
 
-from ..arithmetic.enclosures import at_precision, decided, equal_digits, exact, settled, sign
+from ..arithmetic.enclosures import decided, equal_digits, exact, kept, settled, sign
 from ..arithmetic.text import NumberText, value_text
 from ..errors import OutOfRangeError
 from .arguments import ExactComplex
@@ -38,7 +37,7 @@ def rows_of(
     is a number too large for a double if doubles are requested.
     """
 
-    known = cache(lambda digits: at_precision(digits, constants))  # checked before it is kept
+    known = kept(lambda _: constants())
 
     def row(x: ExactComplex) -> dict[str, Any]:
         of_x = [*x, *inputs]
@@ -63,8 +62,7 @@ def numbers(
     poles are None.  A number too small for a double is 0.  A number too large for a double raises
     OutOfRangeError or, unless `strict`, is None.
     """
-    row = cache(lambda working: at_precision(working, lambda: compute(working)))
-    most = equal_digits(inputs, digits or 0)
+    row, most = kept(compute), equal_digits(inputs, digits or 0)
 
     def number(name: str) -> Any:
         def ball(working: int) -> Any:  # None if `most` digits do not show that it is finite

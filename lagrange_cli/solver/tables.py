@@ -20,10 +20,10 @@ from ..arithmetic.arrays import doubles_of
 from ..arithmetic.enclosures import (
     Rounded,
     TooFewDigitsError,
-    at_precision,
     decided,
     equal_digits,
     exact,
+    kept,
     nearest,
     root,
     settled,
@@ -245,9 +245,7 @@ class ProvedTable:
         self.motion, self.digits, self.radians, self.wrap = motion, digits, radians, wrap
         self.chosen = chosen_columns(columns)
         self.header = headings(self.chosen, radians=radians)
-        self._constants = cache(
-            lambda digits: at_precision(digits, lambda: column_constants(motion.balls(digits)))
-        )
+        self._constants = kept(lambda digits: column_constants(motion.balls(digits)))
 
     def row(self, time: Fraction) -> list[Rounded]:
         """Return the numbers of the columns at an exact time.
@@ -256,11 +254,7 @@ class ProvedTable:
         """
         facts = self.motion.facts
 
-        @cache  # of what at_precision has checked
-        def columns(digits: int) -> Columns:
-            compute = partial(ball_columns, self.motion, time, self._constants, digits)
-            return at_precision(digits, compute)
-
+        columns = kept(partial(ball_columns, self.motion, time, self._constants))
         most = max(facts.equal, equal_digits([time], self.digits or 0))
 
         def ball(name: str, digits: int) -> arb:

@@ -28,6 +28,7 @@ from lagrange_cli.arithmetic.enclosures import (
     ends_of,
     equal_digits,
     exact,
+    kept,
     nearest,
     pi_to,
     root,
@@ -280,6 +281,22 @@ def test_the_precision_of_the_host_is_restored(error: type[BaseException]) -> No
         with pytest.raises(error):
             at_precision(20, lambda: at_precision(30, lambda: fails(error)))
         assert flint.ctx.prec == 77
+
+
+def test_a_disturbed_result_is_not_kept() -> None:
+    asked: list[int] = []
+
+    def disturbed(digits: int) -> arb:
+        asked.append(digits)
+        if len(asked) == 1:
+            flint.ctx.prec = 53
+        return arb(2).sqrt()
+
+    with flint.ctx.workprec(77):
+        known = kept(disturbed)
+        accuracies = [at_precision(100, lambda: known(100)).rel_accuracy_bits() for _ in range(2)]
+    assert min(accuracies) > 300
+    assert asked == [100, 100]
 
 
 def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept() -> None:
