@@ -22,6 +22,7 @@ from ..plot.style import (
     MOST_DPI,
     check_picture,
     figure_bytes,
+    require_matplotlib,
     styled,
 )
 from ..top.inputs import DECLARED
@@ -103,6 +104,7 @@ def plot_command(
     fmt = "svg" if output in (None, "-") else check_picture(output, FORMATS)
     film = check_picture(animate, FILMS) if animate else ""
     eye = _camera(camera, top.radians) if camera else None
+    require_matplotlib()  # also for standard output, which has no name to check
     from ..plot.film import SECONDS, film_bytes
     from ..plot.pictures import Options, figure_of
 

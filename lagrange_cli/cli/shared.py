@@ -349,7 +349,7 @@ def _check_parquet(path: str, others: Mapping[str, Any]) -> None:
     if others.get("digits") or others.get("certify"):
         raise LagtopError("--format parquet holds doubles: with --digits use csv, json or table")
     if find_spec("pyarrow") is None:
-        raise UnavailableError("--format parquet needs pyarrow: pip install 'lagtop[parquet]'")
+        raise UnavailableError("--format parquet needs pyarrow: pip install pyarrow")
 
 
 def write_report(

@@ -161,7 +161,7 @@ def _csv_of_parquet(content: bytes, name: str) -> bytes:
         import pyarrow as pa
         from pyarrow import compute, csv, parquet
     except ImportError:
-        remedy = "pip install 'lagtop[parquet]'"
+        remedy = "pip install pyarrow"
         raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
     try:
         file = parquet.ParquetFile(BytesIO(content))

@@ -87,7 +87,7 @@ def require_matplotlib() -> None:
         import matplotlib  # noqa: F401
     except (ImportError, ValueError, MemoryError) as error:  # such as a wrong MPLBACKEND
         if isinstance(error, ModuleNotFoundError) and error.name == "matplotlib":
-            raise UnavailableError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
+            raise UnavailableError("pictures need matplotlib: pip install matplotlib") from None
         why = str(error) or "out of memory"
         raise UnavailableError(f"cannot import matplotlib: {why}") from None
 

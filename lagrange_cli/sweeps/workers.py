@@ -157,7 +157,7 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
         import dask
         import distributed
     except ImportError:
-        why = "dask needs distributed: pip install 'lagtop[cluster]'"
+        why = "dask needs distributed: pip install distributed"
         raise UnavailableError(why, "dask") from None
     for name in ("distributed", "distributed.client", "asyncio", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # lagtop reports errors in one line

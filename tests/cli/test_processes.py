@@ -56,6 +56,27 @@ ECHOING = [
 ]
 
 
+@pytest.mark.parametrize(
+    ("package", "line"),
+    [
+        ("matplotlib", "plot cubic -o -"),
+        ("matplotlib", "bench --n 3 --methods lagtop --plot a.svg"),
+        ("pyarrow", "sweep --r0 1,2 -o a.parquet"),
+        ("pyarrow", "compare a.parquet"),
+        ("distributed", "sweep --r0 1,2 --dask tcp://127.0.0.1:9"),
+    ],
+)
+def test_a_package_that_is_not_installed(package: str, line: str, tmp_path: Path) -> None:
+    (tmp_path / "a.parquet").write_bytes(b"PAR1")
+    start = "from lagrange_cli.__main__ import main; main()"
+    code = f"import sys; sys.modules[{package!r}] = None; {start}"
+    command = [sys.executable, "-c", code, *line.split()]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (69, "")
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.endswith(f": pip install {package}\n")
+
+
 def test_solve_loads_no_heavy_package() -> None:
     code = "import sys; from lagrange_cli.cli.app import main; main(standalone_mode=False)"
     command = [sys.executable, "-X", "importtime", "-c", code, "solve", "--format", "json"]

@@ -51,7 +51,7 @@ def test_without_matplotlib_a_plot_names_the_remedy(monkeypatch: pytest.MonkeyPa
     for plot in (MOTION.plot, comparison.plot):
         with pytest.raises(UnavailableError) as refused:
             plot()
-        assert str(refused.value) == "pictures need matplotlib: pip install 'lagtop[plot]'"
+        assert str(refused.value) == "pictures need matplotlib: pip install matplotlib"
 
 
 def test_a_misspelt_key_gets_a_suggestion() -> None:
