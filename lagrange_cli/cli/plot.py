@@ -186,7 +186,7 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Valu
 )
 @opt.top()
 @opt.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
-@opt.option(*("-o", "--output"), metavar="FILE", help="FILE.html (replaced only on success).")
+@opt.option(*("-o", "--output"), metavar="FILE", help="FILE.html (replaced when all is written).")
 def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     """Write an interactive page for the browser.
 

@@ -334,7 +334,7 @@ def output(
                 _check_parquet(output, others)
             function(out=Output(output, chosen, fmt is not None), **others)
 
-        kind, help_ = click.Choice(formats), "Output file (replaced only on success)."
+        kind, help_ = click.Choice(formats), "Output file (replaced when all is written)."
         found: Any = option("--format", "fmt", metavar="FORMAT", type=kind, help=text)(run)
         found = option("-o", "--output", metavar="FILE", default="-", help=help_)(found)
         return cast(F, found)

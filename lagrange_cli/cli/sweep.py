@@ -181,7 +181,8 @@ def find_command(
     An input given as a range from:to (or log:from:to) is an unknown; up to three are allowed.  Give
     as many conditions KEY=NUMBER as unknowns.  If inputs have units, a condition may have a unit
     too (T_precession=500ms); without one, it is in SI.  Conditions such as regime=regular,
-    path=looping or 'theta_max<120' restrict the solutions.
+    path=looping or 'theta_max<120' restrict the solutions.  With one unknown, a word alone asks for
+    the borders of its class, such as the spin at which loops begin.
 
     With one unknown, find returns every solution that the scan brackets.  With several, it follows
     the best points of the scan and can miss solutions.  The exit code is 1 if no solution is found.
