@@ -6,8 +6,8 @@ A line of the table is
 
 and an indented line continues the line before.  A formula is in names of columns and keys.  If
 digits would be lost, as next to a pole, the form that is evaluated follows after `~`, in names that
-are defined below.  Arrays of doubles (`sampling`) and proved rows (`tables`) evaluate
-the same forms; both start from the attitude
+are defined below.  Arrays of doubles (`sampling`) and proved rows (`tables`) evaluate the same
+forms; both start from the attitude
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
@@ -24,6 +24,7 @@ from flint import arb
 
 from ..arithmetic.enclosures import exact
 from ..names import ANGLES, Key, check_names
+from ..top.inputs import declared
 from .numbers import Numbers, code_of
 
 GROUPS = {
@@ -85,8 +86,7 @@ FORMULAS = {
 """The form of each column that is evaluated, and of names in it; see `Columns` for the others."""
 SCALARS: dict[str, Key] = {}
 """The presentation of each column; its group is the name of several columns, or empty."""
-for _line in _TEXT.strip().replace("\n ", " ").splitlines():
-    _name, _symbol, _meaning, _unit, _equation, _formula = map(str.strip, _line.split("|"))
+for _name, _symbol, _meaning, _unit, _equation, _formula in declared(_TEXT):
     _printed, _, _evaluated = map(str.strip, _formula.partition("~"))
     _group = _name.partition("_")[0]
     _group = _group if _group in GROUPS else ""
@@ -100,7 +100,7 @@ for _name, _column in SCALARS.items():
 
 DEFAULT_COLUMNS = ("t", *ANGLES)
 REDUCED = {"phi": "spin_turn", "psi": "precession_turn"}
-"""The names of angles within a turn in formulas."""
+"""The names, in formulas, of phi and psi within a turn."""
 TIMELESS = frozenset({"t", "r"})
 """Columns that do not need the attitude."""
 WITHIN_A_TURN = frozenset(

@@ -14,8 +14,8 @@ which are finite without torque, and exactly 0 if two roots coincide:
 
     swing = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1)
 
-`where` names lines of the last group, which has numbers for remarks and `Motion.swing` too.
-Equation numbers are Chrapan's.
+`where` names lines of the last group.  That group also has the numbers that only remarks and
+`Motion.swing` need.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -211,7 +211,7 @@ def _read(table: str) -> Iterator[tuple[str, Key]]:
             group, _, common = text[2:].partition(" | ")
             continue
         name, symbol, meaning, unit, equation, formula, *only = map(str.strip, text.split("|", 6))
-        printed, _, evaluated = formula.partition(" ~ ")
+        printed, _, evaluated = map(str.strip, formula.partition("~"))
         evaluated = evaluated or printed.partition(" where ")[0]
         condition = only[0] if only else common
         yield name, Key(group, symbol, meaning, unit, equation, printed, condition, evaluated)
