@@ -192,7 +192,7 @@ class SingleSwing:
         """Return the attitude at a time."""
         h = self.h0 + self.rate * t
         turned = self.turn(h) - self.start[0]
-        x = root(self.x * self.x + (self.y * h.tanh()) * (self.y * h.tanh()))
+        x = abs(acb(self.x, self.y * h.tanh()))
         return Attitude(x, abs(self.y) * h.sech(), turned, turned, -h)
 
     def turn(self, h: arb) -> arb:

@@ -73,7 +73,7 @@ def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivitie
     rows = {
         key: {name: found.nearest(key, name) for name in found.inputs}
         for key in DIFFERENTIABLE
-        if key in chosen and found.has(key)
+        if key in chosen and found.motion.has(key)
     }
     return Sensitivities(top, found.inputs, rows)
 
@@ -84,10 +84,6 @@ class Derivatives:
     def __init__(self, motion: Motion) -> None:
         self.motion, self.inputs = motion, inputs_of(motion.top)
         self.of, self.neighbours = cache(self._of), cache(self._neighbours)
-
-    def has(self, key: str) -> bool:
-        """Return whether the motion has a number."""
-        return self.motion.has(key)
 
     def nearest(self, key: str, name: str) -> float:
         """Return the derivative of a number by an input as a double; NaN if there is none.

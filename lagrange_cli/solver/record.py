@@ -205,7 +205,7 @@ def _number(motion: Solution, name: str, digits: int | None) -> Rounded | None:
 
 
 FAST_WORDS = "pseudo-regular precession"
-"""The words of the remark on it, which numbers follow."""
+"""The remark on a fast top; in a record, numbers follow."""
 
 
 def remark_of(motion: Solution, *, radians: bool = False) -> str | None:
@@ -243,7 +243,7 @@ def _fast_remark(motion: Solution, radians: bool) -> str:
     parts, unit = decided(excess, motion.facts.equal), "rad" if radians else "deg"
     where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
     return (
-        f"pseudo-regular precession: nutates by {short(f'nutation_{unit}')} {unit} "
+        f"{FAST_WORDS}: nutates by {short(f'nutation_{unit}')} {unit} "
         f"in {short('T_nutation')} time; its mean is {where} mgs/(C r0) = "
         f"{short('precession_rate_elementary')} rad/time"
     )

@@ -134,17 +134,17 @@ class Growth:
         self.time = period_of(cycle / rate if not rate.contains(0) else arb("inf"))
         """The time of a cycle at the mean rate."""
 
-    def wave(self, periodic: Array, t: Array) -> Array:
+    def wave(self, periodic: Array) -> Array:
         """Return the periodic part of an angle less its value at t = 0."""
         return (periodic - self.start[0]) - self.start[1] if self.start[0] else periodic
 
     def angle(self, periodic: Array, t: Array) -> Array:
         """Return the angle from its periodic part."""
-        return (self.wave(periodic, t) + t * self.rate[1]) + t * self.rate[0]
+        return (self.wave(periodic) + t * self.rate[1]) + t * self.rate[0]
 
     def reduced(self, periodic: Array, t: Array) -> tuple[Array, Array]:
         """Return the angle less n cycles, in (-cycle/2, cycle/2], and n."""
-        wave, farthest = self.wave(periodic, t), float(np.abs(t).max(initial=0.0))
+        wave, farthest = self.wave(periodic), float(np.abs(t).max(initial=0.0))
         more = wave / self.cycle[0] if self.time.rate else 0.0
         n, rest, lost = whole_periods(t, self.time, farthest, more)
         angle = wave + rest * self.rate[0]
@@ -172,7 +172,10 @@ def _ratio(x: Array, y: Array, otherwise: Array | float = 0.0) -> Array:
 
 
 def _argument(real: Array, imag: Array) -> Array:
-    """Return the argument of a number whose real part is not negative, or the constant 0."""
+    """Return the argument of X or Y, whose real part is not negative.
+
+    If the real part is 0 at all times, the sign of the imaginary part decides, even if it is 0.
+    """
     return np.arctan(imag / real) if real.any() else np.copysign(np.pi / 2, imag)
 
 
@@ -190,10 +193,10 @@ _FORMULAS = FORMULAS | {
     "arg_X": "argument(re_X, im_X) + x*slope_X",
     "arg_Y": "argument(re_Y, im_Y) + x*slope_Y",
     "spin": "of_spin.angle(arg_X - arg_Y, t)",
-    "spin_wave": "of_spin.wave(arg_X - arg_Y, t)",
+    "spin_wave": "of_spin.wave(arg_X - arg_Y)",
     "spin_turn": "of_spin.reduced(arg_X - arg_Y, t)[0]",
     "precession": "of_precession.angle(arg_X + arg_Y, t)",
-    "precession_wave": "of_precession.wave(arg_X + arg_Y, t)",
+    "precession_wave": "of_precession.wave(arg_X + arg_Y)",
     "precession_turn": "of_precession.reduced(arg_X + arg_Y, t)[0]",
     "reduced_X": "of_X.reduced(arg_X, t)",
     "angle_X": "reduced_X[0]",

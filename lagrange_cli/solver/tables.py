@@ -264,11 +264,12 @@ class ProvedTable:
             in_degrees = self.chosen[name].unit == "angle" and not self.radians
             return value * 180 / arb.pi() if in_degrees else value
 
-        found = []
-        for name in self.chosen:
-            what = f"{name} at t = {float(time)}"
-            found.append(settled(what, partial(ball, name), self.digits, most))
-        return [number for number in found if number]
+        def number(name: str) -> Rounded:
+            found = settled(f"{name} at t = {float(time)}", partial(ball, name), self.digits, most)
+            assert found is not None
+            return found
+
+        return [number(name) for name in self.chosen]
 
     def rows(
         self, times: Points, *, radii: bool = False
