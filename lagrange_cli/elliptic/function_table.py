@@ -40,7 +40,7 @@ class FunctionRequest(NamedTuple):
 
     @property
     def is_real(self) -> bool:
-        """Whether each number has one column; the column of imaginary ones is `_imag`."""
+        """Whether each number has one column; the names of imaginary numbers end in `_imag`."""
         is_mixed = self.parameter.real and self.parameter.imag
         return self.modulus.kind is Kind.UNIT and self.u.imag is None and not is_mixed
 

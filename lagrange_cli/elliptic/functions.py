@@ -4,7 +4,7 @@ All functions reduce to a modulus k in [0, 1] (see `modulus`), with the argument
 and tau = iT, T = K'/K.  Jacobi's, theta and Zeta functions are quotients of Arb's theta functions.
 Omega and Pi are differences of logarithms of theta functions.
 
-Results have the precision of Arb in use.  TooFewDigitsError is raised if it decides no branch.
+Results have the precision of Arb in use.  Raises TooFewDigitsError if a branch needs more digits.
 """
 
 from __future__ import annotations
