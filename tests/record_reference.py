@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import mpmath as mp
@@ -41,8 +41,8 @@ def reference_record(
 
     `inputs` are those of `Top.as_dict`.
     """
+    of = _motion(tuple(inputs.items()), digits, root_digits)
     with mp.workdps(root_digits):
-        of = _Motion(inputs, digits)
         found = of.record()
 
     def shown(key: str, x: Many) -> Many:
@@ -113,7 +113,7 @@ def _half(angle: Many) -> tuple[Many, Many]:
     return mp.sin(angle / 2), mp.cos(angle / 2)
 
 
-@cache
+@lru_cache
 def _motion(inputs: tuple[tuple[str, Any], ...], digits: int, root_digits: int) -> _Motion:
     with mp.workdps(root_digits):
         return _Motion(dict(inputs), digits)
@@ -123,11 +123,8 @@ class _Motion:
     """The constants of a motion, in ROOT_DIGITS digits."""
 
     def __init__(self, inputs: Mapping[str, Any], digits: int) -> None:
-        self.digits, self.degrees, self.tiny = (
-            digits,
-            180 / mp.pi,
-            mp.mpf(10) ** (-3 * mp.mp.dps // 10),
-        )
+        self.digits, self.degrees = digits, 180 / mp.pi
+        self.tiny = mp.mpf(10) ** (-3 * mp.mp.dps // 10)
         given = {x: exact(y) for x, y in inputs.items() if y is not None and not isinstance(y, str)}
         self.m, self.C, self.s, self.g = (given[x] for x in ("m", "C", "s", "g"))
         self.A = given["A"] if "A" in given else given["A_cm"] + self.m * self.s**2
@@ -364,11 +361,7 @@ class _Motion:
         u0, u1, u2, narrow, wide = self.u0, self.u1, self.u2, self.narrow, self.wide
         sn2, cn2 = (u0 - u2) / (u1 - u2), (u1 - u0) / (u1 - u2)
         dn2 = self.kc2 + self.k2 * cn2
-        later = (
-            cn2 / dn2,
-            self.kc2 * sn2 / dn2,
-            self.kc2 / dn2,
-        )  # of w + K: cd^2, k'^2 sd^2, k'^2 nd^2
+        later = cn2 / dn2, self.kc2 * sn2 / dn2, self.kc2 / dn2  # sn^2, cn^2, dn^2 of w + K
         falls = self.fall > 0 or (not self.fall and self.at_u1)  # w < 0
         integrals = {}
         for pole in (1, -1):
