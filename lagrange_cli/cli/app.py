@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 import click
 
 from .. import __version__
-from ..errors import CannotWriteError, LagtopError, SceneError, UnavailableError
+from ..errors import CannotWriteError, LagtopError, UnavailableError
 from ..names import suggestion
 from ..output.terminal import one_line
 from ..top.inputs import DECLARED
@@ -33,8 +33,6 @@ _MODULES = {
     "stability": "bench",
 }
 """Commands that share the module of another command."""
-_NO_SCENE = "not a TOML file: |must have at most|save it as CSV"
-"""Parts of the errors of a file that is perhaps a table."""
 _COMPLETION = "_LAGTOP_COMPLETE"
 
 
@@ -135,9 +133,6 @@ def _check_epoch() -> None:
 def _naming_option(error: LagtopError, params: Sequence[click.Parameter]) -> str:
     """Return a message with the option in place of the key of the error, which it begins with."""
     text, key = str(error), error.key or ""
-    is_toml = re.match(r"[^:]*\.toml\b", text)
-    if isinstance(error, SceneError) and not is_toml and re.search(_NO_SCENE, text):
-        text += ": a recording goes to lagtop fit or compare, a table of tops to lagtop sweep"
     if text.startswith(f"{key} ") and (option := _options(params).get(key)):
         text = option + text.removeprefix(key)
     return with_options(text, params)

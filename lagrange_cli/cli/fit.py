@@ -22,11 +22,12 @@ if TYPE_CHECKING:
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
-    if ":" in text:
-        raise LagtopError(f"must be one number or theta=0.3,psi=0.5, got {quoted(text)}")
-    if "=" not in text:
+    """Return a number, or the numbers of `theta=0.3,psi=0.5` by name."""
+    if not text[:1].isalpha():
         return opt.parse_positive(text)
     parts = [part.partition("=") for part in split_names(text)]
+    if not all(value for *_, value in parts):
+        raise LagtopError(f"must be one number or theta=0.3,psi=0.5, got {quoted(text)}")
     return {name.strip(): opt.parse_positive(value) for name, _, value in parts}
 
 

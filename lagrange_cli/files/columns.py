@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 SKIPPED = "_"
 """The name of an ignored column."""
+EXAMPLE = "columns=t,quaternion or the like ('t [ms]' for times in ms)"
+"""An example of names of columns, for messages."""
 
 
 class Quantity(NamedTuple):
@@ -179,7 +181,7 @@ def with_units_of(headings: Sequence[str], names: Sequence[str]) -> list[str]:
     named = list(names)
     for i in may_have_unit:
         unit = name_and_unit(headings[i])[1]
-        if is_unit(unit) and not plain_name(names[i])[1]:
+        if unit and is_unit(unit) and not plain_name(names[i])[1]:
             named[i] = f"{names[i]} [{unit}]"
     return named
 
@@ -206,8 +208,7 @@ def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> No
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
         lacks_z = {"x", "y"} <= {*names} and "z" not in names
-        example = "name them with columns=t,quaternion or the like ('t [ms]' has a unit)"
-        remedy = "z is missing" if lacks_z else example
+        remedy = "z is missing" if lacks_z else f"name them with {EXAMPLE}"
         raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
     plain = [plain_name(name)[0] for name in names]
     for key, quantity in found.items():

@@ -246,7 +246,7 @@ def read_table(
 
     `known` distinguishes headings from titles.  `decimal` is a point, a comma, or empty if the
     first rows decide.  `width` is the number of columns if their names are given; headings in the
-    file are then ignored.  Raises DataError.
+    file then do not count for its layout.  Raises DataError.
     """
     if text.count("\n") > _MOST_LINES:
         raise DataError(f"{name}: a file must have at most {_MOST_LINES} lines: split it")
@@ -254,15 +254,19 @@ def read_table(
     if sample and sample[0][1].lstrip()[0] in "{[":
         return _json_table(text, name, sample[0])
     for number, line in sample:
+        wanted = ""
         if len(line) > _LONGEST_LINE:
             wanted = f"a line must have at most {_LONGEST_LINE} characters"
+        elif max(map(line.count, '\t;, "')) > MOST_CELLS:
+            wanted = f"a row must have at most {MOST_CELLS} cells or quotes"
+        if wanted:
             raise DataError(f"{name}, line {number}: {wanted}")
-        if max(map(line.count, '\t;, "')) > MOST_CELLS:
-            raise DataError(f"{name}, line {number}: a row must have at most {MOST_CELLS} cells")
     texts = [line for _, line in sample[: _TITLES + 1]]
-    layout = _layout_of(texts, width, decimal) if width else _layout(texts, known, decimal)
+    layout = _layout(texts, known, decimal)
     headings = layout.headings
-    if headings is not None and layout.delimiter != " ":
+    if width:
+        layout = _layout_of(texts, width, decimal)
+    elif headings is not None and layout.delimiter != " ":
         number, line = sample[layout.first - 1]
         try:
             split_row(line, layout.delimiter)
@@ -270,8 +274,8 @@ def read_table(
             raise DataError(f"{name}, line {number}: {error}") from None
     rows = sample[layout.first :]
     cells = _split(rows[0][1], layout.delimiter) if rows else []
-    count = len(headings or cells)
-    if headings is None and not width:  # perhaps in a comment, as numpy.savetxt writes them
+    count = len(cells if width else headings or cells)
+    if headings is None:  # perhaps in a comment, as numpy.savetxt writes them
         above = text[: max(text.find(f"\n{sample[0][1]}"), 0)].rstrip() if sample else ""
         headings = _heading_in_comments(above[-_AT_ONCE:], count, known, layout.delimiter)
     first = rows[0][0] if rows else text.count("\n") + 2

@@ -177,7 +177,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     if not units and known_quantities(headings) > 1:
         wanted = "must hold tops, got a recording with the columns"
         shown = shortened(", ".join(headings), 120)
-        raise DataError(f"{name} {wanted} {shown}: pass it to lagtop fit or lagtop compare")
+        raise DataError(f"{name} {wanted} {shown}: pass it to fit or compare")
     carried = [x for x in columns if x not in units and x not in computed]
     _check_spelling(carried, units.keys(), name)
     if (twice := repeated(columns)) is not None:

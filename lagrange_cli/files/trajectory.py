@@ -6,7 +6,6 @@ The first bytes of a file determine its format, not its name: Parquet, or else t
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -21,7 +20,15 @@ from ..errors import DataError, LagtopError, UnavailableError
 from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
 from ..names import repeated
 from ..top.ranges import ListedPoints
-from .columns import SKIPPED, converted, expanded, found_in, known_quantities, with_units_of
+from .columns import (
+    EXAMPLE,
+    SKIPPED,
+    converted,
+    expanded,
+    found_in,
+    known_quantities,
+    with_units_of,
+)
 from .text_tables import Table, read_table
 
 if TYPE_CHECKING:
@@ -52,8 +59,8 @@ class Trajectory:
             raise LagtopError(wrong, "columns")
         names = table.headings if columns is None else columns
         if names is None:
-            remedy = f"name its {table.width} columns with columns=t,quaternion or the like"
-            raise DataError(f"{table.name} has no header: {remedy} ('t [ms]' has a unit)")
+            remedy = f"name its {table.width} columns with {EXAMPLE}"
+            raise DataError(f"{table.name} has no header: {remedy}")
         self.names = names
         try:
             self.quantities = found_in(names)
@@ -136,8 +143,7 @@ def read_trajectory(
 
     `columns` names all columns from the left and overrides the names in the file, but a heading's
     unit stays unless the name has one.  `decimal` is a point or a comma, or empty if the file
-    decides.  Raises DataError for a file that cannot be read
-    or holds no trajectory.
+    decides.  Raises DataError for a file that cannot be read or holds no trajectory.
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
     content = read_bytes(path)
@@ -146,12 +152,10 @@ def read_trajectory(
     text = decoded(content, name)
     del content  # one copy of a large file is enough
     table = read_table(text, name, known_quantities, decimal, len(names or ()) or None)
-    if table.headings is None and not table.width:
-        raise DataError(f"{name} must hold a trajectory, got no row")
-    if names is not None:
-        with suppress(DataError):  # headings are of no use then
-            old = table.headings or read_table(text, name, known_quantities, decimal).headings
-            names = with_units_of(old, names) if old and len(old) == len(names) else names
+    if not table.width:
+        raise DataError(f"{name} must hold a trajectory, got no cells")
+    if names and table.headings and len(table.headings) == len(names):
+        names = with_units_of(table.headings, names)
     return Trajectory(table, names)
 
 

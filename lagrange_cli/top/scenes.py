@@ -17,6 +17,7 @@ _MOST_BYTES = 1 << 14
 """Most bytes of a scene file, because the run time of `tomllib` may grow with their square."""
 SCENE_KEYS = (*INPUTS, TILT)
 _ENDING = ".toml"
+_NO_SCENE = ": pass a recording to fit or compare, a table of tops to sweep"
 
 
 def _shipped() -> str:
@@ -60,11 +61,12 @@ class SceneFile:
         self.name, self._text = shown_path(path), ""
         self.hides = os.path.isfile(path) and path in scene_names()
         """Whether it is a file with the name of a shipped scene."""
+        remedy = "" if path.endswith(_ENDING) else _NO_SCENE
         try:
             self._text = decoded(read_bytes(scene_path(path), _MOST_BYTES), self.name)
             table = tomllib.loads(self._text, parse_float=NumberText)
         except DataError as error:
-            hint = suggestion(path, scene_names())
+            hint = remedy if os.path.isfile(path) else suggestion(path, scene_names())
             if not hint and path.replace("-", "").isalnum():
                 hint = f" (the built-in scenes are {', '.join(scene_names())})"
             raise SceneError(f"{error}{hint}") from None
@@ -74,7 +76,7 @@ class SceneFile:
             hint = " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
             if bare := re.match(r"\s*(\w+)\s*=\s*([-+\d.(][^#\"']*[^\W\d_][^#\"']*)", line):
                 hint = f' (write {bare[1]} = "{bare[2].strip()}")'
-            raise SceneError(f"{self.name}: not a TOML file: {error}{hint}") from None
+            raise SceneError(f"{self.name}: not a TOML file: {error}{hint}{remedy}") from None
         self.inputs: dict[str, Value] = {}
         for key, value in table.items():
             try:

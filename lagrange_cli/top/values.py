@@ -218,9 +218,9 @@ def parse_number_or_span(text: str, read: Read = parse_number) -> Fraction | Spa
 
     Raises LagtopError for anything else.
     """
+    _check_marks(text, "")
     if ":" not in text:
         return read(text)
-    _refuse_units_inside(text)
     ends = text.removeprefix(LOG).split(":")
     if len(ends) != 2:
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
@@ -253,16 +253,19 @@ def parse_range(text: str, read: Read = parse_number) -> Points:
 
 def parse_values(text: str, read: Read = parse_number) -> Points:
     """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
-    _refuse_units_inside(text)
+    _check_marks(text, ":count")
     if ":" in text:
         return parse_range(text, read)
-    if ends := re.fullmatch(rf"\s*({_DECIMAL})\s*(?:-|\.\.+|…)\s*({_DECIMAL})\s*", text):
-        raise LagtopError(f"must be a range {ends[1]}:{ends[2]}:count, got {quoted(text)}")
     return ListedPoints([read(part) for part in text.split(",")])
 
 
-def _refuse_units_inside(text: str) -> None:
-    """Raise LagtopError for a range or a list with a unit in front of its last number."""
+def _check_marks(text: str, count: str) -> None:
+    """Raise LagtopError for a range without colons, or with a unit in front of its last number.
+
+    `count` is what a range has after its two ends.
+    """
+    if ends := re.fullmatch(rf"\s*({_DECIMAL})\s*(?:-|\.\.+|…)\s*({_DECIMAL})\s*", text):
+        raise LagtopError(f"must be a range {ends[1]}:{ends[2]}{count}, got {quoted(text)}")
     if re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
-        wanted = "must have its unit once, at the end, as in '60:80:3 rpm'"
+        wanted = f"must have its unit once, at the end, as in '60:80{count and ':3'} rpm'"
         raise LagtopError(f"{wanted}, got {quoted(text)}")

@@ -222,7 +222,8 @@ NAMED = {
 def test_columns_that_are_named(text: str, tmp_path: Path) -> None:
     """Titles in words do not count; a run that ends before the other one has no more rows."""
     (tmp_path / "file").write_text(text)
-    file = read_trajectory(str(tmp_path / "file"), NAMED[text].split())
+    file = read_trajectory(str(tmp_path / "file"), names := NAMED[text].split())
+    assert file.used == [x for x in names if x != "_"]
     assert file.values(radians=True)["t"][:, 0].tolist() == [0.5, 1.5]
     assert file.elapsed.tolist() == [0, 1]
 

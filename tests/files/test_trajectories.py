@@ -123,7 +123,7 @@ def twice() -> bytes:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "must hold a trajectory, got no row"),
+        (b"", "must hold a trajectory, got no cells"),
         (
             b"t,theta\n0,1\n\n# c\n1,1_0\n",
             "line 5, column 2: theta must be a finite decimal number, got '1_0' (leave",
