@@ -88,7 +88,8 @@ def plot_command(
         if hint and not (opt.is_scene(word) or exists(word)):
             raise LagtopError(f"{word!r} is no kind of picture and no scene{hint}")
     if not (output or animate):
-        raise LagtopError("nothing to do: give -o FILE.png or --animate FILE.gif")
+        example = _file_among(scenes, *FORMATS)
+        raise LagtopError(f"nothing to do: give -o {example} or --animate FILE.gif")
     if duration is not None and animate is None:
         raise LagtopError("--duration needs --animate FILE.gif")
     if (key or x or y) and "map" not in kinds:
@@ -144,6 +145,11 @@ def plot_command(
     warn_if_misleading(stds, ["theta", "dphi", "psi"])
 
 
+def _file_among(words: Sequence[str], *extensions: str) -> str:
+    """Return the word that is probably meant as the output file, or an example of one."""
+    return next((x for x in words if opt.extension(x) in extensions), f"FILE.{extensions[0]}")
+
+
 def _kinds(names: Sequence[str]) -> list[str]:
     """Return the kinds of picture, each once; `all` stands for several, and is the default."""
     sheet = [kind for kind in KINDS if kind != "map"]
@@ -194,8 +200,8 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     page computes the motion.  It works offline, as a single file.
     """
     if not (output or opens):
-        named = top.scene if (top.scene or "").lower().endswith((".html", ".htm")) else "FILE.html"
-        raise LagtopError(f"nothing to do: give -o {named} or --open")
+        example = _file_among([top.scene or ""], "html", "htm")
+        raise LagtopError(f"nothing to do: give -o {example} or --open")
     if output == "-" and (opens or is_screen("-")):
         raise LagtopError("a page on standard output needs a pipe: give -o FILE.html")
     if splitext(output or "")[1].lower() not in {"", ".html", ".htm"}:

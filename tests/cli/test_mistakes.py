@@ -53,6 +53,7 @@ MISTAKES = {
     "solve|recording.csv": ": pass a recording to fit or compare, a table of tops to sweep",
     "solve|long.csv": ": pass a recording to fit or compare, a table of tops to sweep",
     "view|top.html": "nothing to do: give -o top.html or --open",
+    "plot|sphere|top.svg": "nothing to do: give -o top.svg or --animate FILE.gif",
     "fit|rec.csv|--sigma|theta:0.2": "--sigma must be one number or theta=0.3,psi=0.5, got 'theta",
     "fit|rec.csv|--sigma|theta=1,psi:2": "must be one number or theta=0.3,psi=0.5, got 'theta=1,ps",
     "solve|--r0|50 U/min": "(write rpm or turn/s)",
