@@ -40,8 +40,8 @@ def test_the_angles_are_intrinsic_zxz(motion: Motion) -> None:
 
 
 def test_at_the_start_both_x_axes_are_the_line_of_nodes(motion: Motion) -> None:
-    start = attitude(motion, np.zeros(1))[0]
     """Worst seen: 3.4e-16, by the product of scipy."""
+    start = attitude(motion, np.zeros(1))[0]
     assert start.apply(SPACE[0]) == pytest.approx(SPACE[0], rel=0, abs=4e-16)
     tilt = np.radians(motion.top.inputs()["theta0_deg"])
     assert start.apply(SPACE[2]) == pytest.approx(
