@@ -158,18 +158,20 @@ def compare(
     if not given:
         raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
     check_names("arrays", [*given], [x for x in QUANTITIES if x != "t"])
+    if not max_error > 0:
+        raise LagtopError(f"max_error must be > 0, got {max_error}", "max_error")
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
     masks = [x.mask for x in given.values() if isinstance(x, np.ma.MaskedArray)]
     run = Run(quantities_of(t, given), conventions, Alignment.of(align))
-    if masks:
-        each = [np.resize(x, (np.size(t), x.size // np.size(t) or 1)) for x in masks]
-        run = run._replace(missing=np.any(np.hstack(each), axis=1))
     times = run.given["t"][:, 0]
     if not len(times):
         raise LagtopError("t must have at least one row, got none", "t")
     steps = np.diff(times)
     if not np.isfinite(times).all() or not ((steps >= 0).all() or (steps <= 0).all()):
         raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
+    if masks:
+        each = [np.resize(x, (times.size, x.size // times.size or 1)) for x in masks]
+        run = run._replace(missing=np.any(np.hstack(each), axis=1))
     motion = top if isinstance(top, Motion) else solve(top)
     return compared(motion, [run], max_error)[0][0]
 
@@ -232,7 +234,8 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
         if (ends := _extremes(values)).size:
             first = ends[0] if name in CONSERVED else 0.0
             greatest = abs(ends - first).max() / (first if name == "pivot_slip" else 1.0)
-            known[next(x for x in names if x in COMPARISON_KEYS)] = float(greatest)
+            key = next(x for x in names if x in COMPARISON_KEYS)
+            known[key] = float(greatest) if np.isfinite(greatest) else None
         if name in ANGLES:
             known[f"{name}_drift"] = _slope(t, values)
     lost = np.isnan(error) & (True if run.missing is None else np.logical_not(run.missing))

@@ -116,6 +116,8 @@ def test_drift_of_energy_momentum_and_norm_of_an_integrator() -> None:
     slips = compare(TOP, T, position=far * (1 + T[:, np.newaxis] / 4))
     assert (slips.verdict, slips.cause) == ("drifts", None)
     assert slips.pivot_slip == pytest.approx(0.5)
+    at_pivot = compare(TOP, T, position=far * T[:, np.newaxis])
+    assert (at_pivot.pivot_slip, at_pivot.verdict) == (None, "lost")
 
 
 @pytest.mark.parametrize(("tilt", "off"), [(0, 0.15), (180, 0.35)])
@@ -305,7 +307,8 @@ def test_starts_on_the_vertical() -> None:
         ({"theta": THETA, "align": "axis=y"}, "align axis needs the whole attitude: omit it"),
         ({"theta": THETA, "align": ["up=y", "start"]}, "align up needs the axis or the"),
         ({"t": [0, 1, 0.5], "theta": [0.1] * 3}, "t must be finite, and increase or decrease"),
-        ({"t": [], "theta": []}, "t must have at least one row"),
+        ({"t": [], "theta": np.ma.masked_array([])}, "t must have at least one row"),
+        ({"theta": THETA, "max_error": math.nan}, "max_error must be > 0, got nan"),
     ],
 )
 def test_bad_arguments(arguments: dict[str, Any], message: str) -> None:
