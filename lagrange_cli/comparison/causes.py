@@ -52,8 +52,8 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
     found = next(filter(None, (search.best(x, limit) for x in search.groups())), [])
     if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
         found = search.best([*found, *search.pairs(in_other=False)], limit)
-    parts = next(search.groups())
-    return found or search.best((x for x in parts if not search.spoils(x, limit)), _PART)
+    parts = (x for x in next(search.groups()) if not search.spoils(x, limit))
+    return found or search.best(parts, _PART)
 
 
 class _Search:
