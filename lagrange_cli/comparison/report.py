@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 
 import numpy as np
 
+from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from ..file_bytes import shown_path
-from ..files.observed import Conventions, Quantities, observe, rows_of
+from ..files.observed import Conventions, Quantities, observe
 from ..files.trajectory import read_trajectory
 from ..inverse.recording import LEAST_ROWS
 from ..output.report import Field, Report, fields_of, short
@@ -63,17 +63,14 @@ def read(
 
 
 def _used(rows: Quantities, conventions: Conventions) -> set[str]:
-    """Return the quantities without which the first row has another motion."""
-    first = rows_of(rows, slice(1))
+    """Return the quantities that the motion depends on, whatever their numbers."""
+    unit = [1.0, 0.0, 0.0, 0.0]  # repeated it is a quaternion, a vector, or the identity matrix
+    first = {key: np.resize(unit, (1, x.shape[1])) for key, x in rows.items()}
 
-    def motion(without: str) -> str:
-        with suppress(LagtopError):
-            return repr(
-                observe({key: x for key, x in first.items() if key != without}, conventions)
-            )
-        return ""
+    def motion(**changed: Array) -> str:
+        return repr(observe(first | changed, conventions))
 
-    return {"t", *(key for key in rows.keys() - {"t"} if motion(key) != motion(""))}
+    return {key for key, x in first.items() if motion(**{key: np.nan * x}) != motion()}
 
 
 def comparison_report(

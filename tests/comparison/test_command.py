@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -90,6 +91,22 @@ def test_conventions_by_options(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert result.exit_code == 0
     wrong = lagtop("compare", right, *OPTIONS, "--rates-frame", "space")
     assert "the rates are in the frame of body (--rates-frame body)" in wrong.stdout
+
+
+def test_quantities_that_agree_at_first_are_compared(lagtop: Lagtop, tmp_path: Path) -> None:
+    """The first quantity counts, even if the first row gives the same motion without it."""
+    t, states = (x[[0, -1]] for x in rk4(Body.of(TOP), 2e-3, 0.5))
+    angle_rates = [0, 50 - 3 * math.cos(math.radians(30)), 3]
+    constant = np.tile([*states[0, 4:], *angle_rates], (2, 1))
+    names = "t,qw,qx,qy,qz,p,q,r,thetadot,phidot,psidot"
+    twice = write(tmp_path / "twice.csv", (t, np.hstack([states[:, :4], constant])), names)
+    found = lagtop("compare", twice, *OPTIONS)
+    used = "Columns: t, qw, qx, qy, qz, p, q, r. Not used: thetadot, phidot, psidot."
+    assert (found.exit_code, used in found.stdout) == (1, True)
+    row = f"t,theta,phi,psi,rv0,rv1,rv2\n0,30,0,0,{math.pi / 6},0,0\n"
+    found = lagtop("compare", "-", *OPTIONS, input=row)
+    used = "Columns: t, theta, phi, psi. Not used: rv0, rv1, rv2."
+    assert (found.exit_code, used in found.stdout) == (0, True)
 
 
 ROW = "t,theta\n0,30\n"
