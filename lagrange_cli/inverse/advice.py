@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
@@ -21,8 +22,9 @@ _ROWS = 250
 """Rows at which axes are compared."""
 _CALMER = 0.7
 """Noise of harmonics in another frame, over that in the given one, from which a fit is tried."""
-_HELD, _RELEASED = 12, 6.0
-"""Least number of rows before a release, and the standard deviations that show it."""
+_HELD, _RELEASED, _STILL = 12, 6.0, 3.5
+"""Least number of rows before a release, the standard deviations that show it, and the standard
+deviation of the rows before it, over the noise of neighbours, from which these move too."""
 _WINDOWS = (12, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
@@ -36,23 +38,18 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
     """Return what to try after a failed fit, if another fit confirms it."""
     if outcome.contradictions:
         return []
-    if outcome.misfits:
-        is_short = (
-            outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]
-        )
-        usual = "check columns, units and axes"
-        if is_short:
-            usual = "a recording must last for a period of the nutation"
-        return [next(_tried(recording, known, outcome), usual)]
     body = {name: x for name, x in known.items() if name in _BODY}
-    return [*_frames(recording, body)] if recording.kind != "angles" else []
+    if not outcome.misfits:
+        return [*islice(_frames(recording, body), 1)]
+    usual = "check columns, units and axes"
+    if outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]:
+        usual = "a recording must last for a period of the nutation"
+    return [next(_tried(recording, known, body, outcome), usual)]
 
 
-def _tried(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
+def _tried(recording: Recording, known: Known, body: Known, outcome: Outcome) -> Iterator[str]:
     """Yield what makes the fit good, the likeliest mistakes first."""
-    body = {name: x for name, x in known.items() if name in _BODY}
-    if recording.kind != "angles":
-        yield from _frames(recording, body)
+    yield from _frames(recording, body)
     if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
@@ -70,7 +67,9 @@ def _is_good(recording: Recording, known: Known, chance: float = CHANCE) -> bool
 
 def _frames(recording: Recording, known: Known) -> Iterator[str]:
     """Yield the axis of space or of the body in whose frame the motion is that of a top."""
-    few = recording.rows(np.unique(np.linspace(0, recording.t.size - 1, _ROWS).astype(int)))
+    if recording.kind == "angles":
+        return
+    few = recording.thinned(_ROWS)
     tried = [("up", x) for x in _AXES]
     tried += [("axis", x) for x in _AXES] * (recording.kind == "attitude")
     noise = {one: _calmness(reoriented(few, **dict([one]))) for one in tried}
@@ -92,7 +91,10 @@ def _calmness(recording: Recording) -> float:
 
 
 def release(recording: Recording) -> int:
-    """Return the row in which a top that was held begins to move, or 0."""
+    """Return the row in which a top that was held begins to move, or 0.
+
+    The first rows of a top that is held differ only by noise.
+    """
     rows = []
     for name, values in recording.angles.items():
         seen = np.flatnonzero(np.isfinite(values))
@@ -101,6 +103,9 @@ def release(recording: Recording) -> int:
         y = values[seen] if name == "theta" else np.unwrap(values[seen])
         noise = max(float(np.std(y[:_HELD])), 1e-9) * _RELEASED
         moves = np.flatnonzero(np.abs(y - y[:_HELD].mean()) > noise)
+        held = y[: moves[0]] if moves.size else y
+        if np.std(held) > _STILL * math.sqrt(np.mean(np.diff(held) ** 2) / 2) + 1e-9:
+            return 0
         rows.append(int(seen[moves[0]]) if moves.size else values.size)
     row = min(rows, default=0)
     return row if _HELD < row < recording.t.size - 2 * _HELD else 0

@@ -98,9 +98,7 @@ class Problem:
 
     def thinned(self, count: int) -> Problem:
         """Return the same problem for at most `count` rows of the recording."""
-        rows = np.linspace(0, self.recording.t.size - 1, count).astype(int)
-        part = self.recording.rows(np.unique(rows)) if count < self.recording.t.size else None
-        return self.of(part) if part else self
+        return self.of(self.recording.thinned(count)) if count < self.rows else self
 
     def values(self, x: Array) -> dict[str, Array]:
         """Return the quantities of the motion from parameters, shape (tops, parameters)."""

@@ -28,6 +28,13 @@ about the axis."""
 LEAST_ROWS = 12
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
+_UNEVEN = 0.05
+"""Mean deviation of times from whole frames from which rows are not evenly spaced."""
+
+
+def are_whole(frames: Array) -> bool:
+    """Return whether times in units of a frame are whole numbers, but for jitter."""
+    return bool(np.mean(np.abs(frames - np.round(frames))) < _UNEVEN)
 
 
 @dataclass(frozen=True)
@@ -96,8 +103,7 @@ class Recording:
     @property
     def is_even(self) -> bool:
         """Whether the rows are whole frames apart, so that whole turns per frame are invisible."""
-        frames = self.t / self.frame
-        return bool(np.mean(np.abs(frames - np.round(frames))) < 0.05)
+        return are_whole(self.t / self.frame)
 
     @property
     def exchanged(self) -> Recording:
@@ -122,6 +128,12 @@ class Recording:
         if self.kind == "attitude":
             found.append(within_half_turn(self.angles["phi"] - phi + off["psi"] * np.cos(theta)))
         return np.stack(found, axis=-2)
+
+    def thinned(self, count: int) -> Recording:
+        """Return at most `count` rows, evenly from the first to the last."""
+        if count >= self.t.size:
+            return self
+        return self.rows(np.linspace(0, self.t.size - 1, count).astype(int))
 
     def rows(self, rows: Any) -> Recording:
         """Return some rows, in this order, with the same zero of time."""

@@ -15,15 +15,12 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..arithmetic.types import Array
-from .recording import Recording
+from .recording import Recording, are_whole
 
 _MOST_ROWS, _STEP, _ROWS_PER_PERIOD = 700, 0.12, 2.2
 """Rows of the search for a frequency, its step over the inverse duration, and its end."""
 _CELLS, _MOST_CELLS = 8, 1 << 20
 """Cells per frame, and their greatest number, for the spectrum of an angle at uneven times."""
-_UNEVEN = 0.05
-"""Mean deviation of steps in time from whole frames, from which frequencies beyond half a period
-per frame are visible."""
 _CLEAR = (9.0, 5.5)
 """Gain of the log-likelihood by harmonics, and more per angle, from which a nutation is visible.
 
@@ -93,11 +90,9 @@ def signals_in(recording: Recording) -> dict[str, Signal]:
 
 def mean_rate(t: Array, y: Array, frame: float) -> float:
     """Return the rate, below half a turn per frame, at the peak of the spectrum of exp(i y)."""
-    cell = max(frame / _CELLS, float(t[-1]) / _MOST_CELLS)
+    finest = frame if are_whole(t / frame) else frame / _CELLS
+    cell = max(finest, float(t[-1]) / _MOST_CELLS)
     at = np.round(t / cell).astype(int)
-    if np.mean(np.abs(t / frame - np.round(t / frame))) < _UNEVEN:
-        cell = max(frame, float(t[-1]) / _MOST_CELLS)
-        at = np.round(t / cell).astype(int)
     sums = np.bincount(at, np.cos(y)) + 1j * np.bincount(at, np.sin(y))
     size = 1 << int(4 * sums.size - 1).bit_length()
     spectrum, rates = np.abs(np.fft.fft(sums, size)), 2 * np.pi * np.fft.fftfreq(size, cell)
@@ -162,8 +157,7 @@ def _best_frequency(used: list[Signal]) -> tuple[float, float, float]:
     span, count = max(x.t[-1] for x in used), min(x.t.size for x in used)
     steps = np.diff(used[0].t)
     frames = steps / np.median(steps[steps > 0])
-    even = np.mean(np.abs(frames - np.round(frames))) < _UNEVEN
-    most = frames.sum() / _ROWS_PER_PERIOD if even else count * 1.0
+    most = frames.sum() / _ROWS_PER_PERIOD if are_whole(frames) else count * 1.0
     orders = min(4, max((count - 3) // 4, 1))
 
     def noise(frequencies: Array | float, order: int) -> Array:

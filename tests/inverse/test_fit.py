@@ -323,6 +323,8 @@ def test_a_release_is_seen_beside_missing_cells() -> None:
     theta[[3, 20, 50]] = np.nan
     recording = recording_from(np.arange(100.0), theta=theta)
     assert 40 <= recording.t[release(recording)] <= 43
+    t, seen = recorded("theta", "psi", rows=180, seconds=3, seed=13)
+    assert release(recording_from(t, **seen)) == 0  # psi' is 0 in the first row
 
 
 @pytest.mark.slow
