@@ -31,7 +31,7 @@ _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
 _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
 """If windows are not good: standard deviations of a loss of spin, the least share of it in either
-half, and the residual of phi over that of the whole recording."""
+half, and the residual of the spin over that of the whole recording."""
 
 
 def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
@@ -133,8 +133,9 @@ def _decays(recording: Recording, known: Known, outcome: Outcome) -> Iterator[st
 
 def _loss(whole: Outcome, fits: Sequence[Outcome]) -> str:
     """Return a steady loss of spin from window to window in words, if there is one."""
-    rms = whole.residuals["phi"].rms
-    if any("r0" not in x.numbers or x.residuals["phi"].rms > _CLOSER * rms for x in fits):
+    spin = whole.recording.spin_channel
+    most = _CLOSER * whole.residuals[spin].rms
+    if any("r0" not in x.numbers or x.residuals[spin].rms > most for x in fits):
         return ""
     first, middle, last = (x.numbers["r0"] for x in fits)
     lost = abs(first.value) - abs(last.value)

@@ -190,15 +190,15 @@ class Problem:
 
     def rephased(self, x: Array) -> Array:
         """Return parameters whose r0 is right to a turn over the recording, if it is free."""
-        names, channels = self.names, self.recording.channels
+        names, recording = self.names, self.recording
         if not {"r0", "phi_zero"} <= {*names}:
             return x
-        channel = channels.index("phi" if "phi" in channels else "along")
+        channel = recording.channels.index(recording.spin_channel)
         rest = self.residuals(x[np.newaxis])[0, channel]
-        t, rest = self.recording.t[np.isfinite(rest)], rest[np.isfinite(rest)]
+        t, rest = recording.t[np.isfinite(rest)], rest[np.isfinite(rest)]
         if float(np.mean(rest**2)) < _IN_PHASE**2:
             return x
-        rate, x = mean_rate(t, rest, self.recording.frame), x.copy()
+        rate, x = mean_rate(t, rest, recording.frame), x.copy()
         x[names.index("r0")] += rate
         x[names.index("phi_zero")] += float(np.angle(np.sum(np.exp(1j * (rest - rate * t)))))
         return x

@@ -73,6 +73,11 @@ class Recording:
         return [x for x in CHANNELS[self.kind] if x in self.angles or self.kind != "angles"]
 
     @property
+    def spin_channel(self) -> str:
+        """The channel of the spin, if it is recorded."""
+        return "along" if self.kind == "attitude" else "phi"
+
+    @property
     def present(self) -> Mask:
         """Whether a number is present, shape (channels, times)."""
         known = {name: np.isfinite(x) for name, x in self.angles.items()}

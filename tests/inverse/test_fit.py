@@ -307,9 +307,13 @@ def test_exchanged_spin_and_precession_are_noticed() -> None:
 
 
 @pytest.mark.slow
-def test_a_decay_within_each_window_is_named() -> None:
+@pytest.mark.parametrize("kind", ["angles", "quaternion"])
+def test_a_decay_within_each_window_is_named(kind: str) -> None:
     rng, t = np.random.default_rng(12), np.linspace(0, 6, 1441)
     seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=t.size) for x, y in slowed(27, t).items()}
+    if kind == "quaternion":
+        turns = Rotation.from_euler("ZXZ", np.stack([seen[x] for x in ("psi", "theta", "phi")], 1))
+        seen = {kind: turns.as_quat(scalar_first=True)}
     failure = fitted(t, seen).failure()
     found = re.search(r"the spin decays: r0 falls from (\d+).* to (\d+).*within each", failure)
     assert found, failure
@@ -324,7 +328,8 @@ def test_a_release_is_seen_beside_missing_cells() -> None:
     recording = recording_from(np.arange(100.0), theta=theta)
     assert 40 <= recording.t[release(recording)] <= 43
     t, seen = recorded("theta", "psi", rows=180, seconds=3, seed=13)
-    assert release(recording_from(t, **seen)) == 0  # psi' is 0 in the first row
+    moving = recording_from(t, theta=seen["theta"], psi=seen["psi"])
+    assert release(moving) == 0  # psi' is 0 in the first row
 
 
 @pytest.mark.slow
