@@ -186,20 +186,15 @@ def with_units_of(headings: Sequence[str], names: Sequence[str]) -> list[str]:
     return named
 
 
-def found_in(names: Sequence[str], asked: Sequence[str] = ()) -> dict[str, FoundQuantity]:
-    """Return the quantities of a trajectory with the factors that convert them, if any.
+def found_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
+    """Return the quantities of a trajectory, a time among them (see `in_known_unit`).
 
-    The factors lead to s, m, rad/s and rad.  Only the quantities that are `asked` for are returned,
-    or all, then with a time among them.  Raises LagtopError for columns without a time or a
-    quantity besides, for a unit that a quantity cannot have, and for parts in different units; the
-    key of the error is `columns` if the names themselves are at fault.
+    Raises LagtopError for columns without a time or a quantity besides; the key of the error is
+    `columns` if a quantity is named twice.
     """
     found = quantities_in(names)
-    if not asked:
-        _check_names(names, found)
-    return {
-        key: _in_known_unit(key, x, names) for key, x in found.items() if key in (asked or found)
-    }
+    _check_names(names, found)
+    return {key: in_known_unit(key, x, names) for key, x in found.items()}
 
 
 def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> None:
@@ -221,8 +216,11 @@ def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> No
                     raise LagtopError(f"columns {wrong}: {remedy}", "columns")
 
 
-def _in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
-    """Return a quantity with the factor that converts it, to s, m, rad/s or rad, if any."""
+def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
+    """Return a quantity with the factor that converts it to s, m, rad/s or rad, if any.
+
+    Raises LagtopError for a unit that it cannot have, and for parts in different units.
+    """
     named = [names[i] for i in found.columns]
     if len({plain_name(part)[1] for part in named}) > 1:
         shown = " and ".join(map(repr, named[:2]))

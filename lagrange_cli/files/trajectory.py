@@ -26,7 +26,9 @@ from .columns import (
     converted,
     expanded,
     found_in,
+    in_known_unit,
     known_quantities,
+    quantities_in,
     with_units_of,
 )
 from .text_tables import Table, read_table
@@ -199,15 +201,16 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     """
     table = read_table(read_text(path), shown_path(path), known_quantities, decimal)
     names = ["t"] * (table.width < 2) if table.headings is None else table.headings
-    try:
-        found = found_in(names, ["t"]).get("t")
-    except LagtopError as error:
-        raise DataError(f"{table.name}: {error}") from None
+    found = quantities_in(names).get("t")
     if found is None:
         shown = shortened(", ".join(map(repr, names))) or f"{table.width} columns without headings"
         wanted = "the time must be a number below the heading t or time"
         raise DataError(f"{table.name}: {wanted}, got {shown}")
-    times = ListedPoints(_Times(table, found.columns[0], Fraction(found.factor or 1)))
+    try:
+        factor = in_known_unit("t", found, names).factor or Fraction(1)
+    except LagtopError as error:
+        raise DataError(f"{table.name}: {error}") from None
+    times = ListedPoints(_Times(table, found.columns[0], factor))
     if not times.count:
         raise DataError(f"{table.name} must hold at least one time, got none")
     return times

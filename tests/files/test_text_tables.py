@@ -215,6 +215,7 @@ NAMED = {
     "Start time: unknown\nClock,Tilt,Azimuth\n0.5,30,1\n1.5,40,2\n": "t theta psi",
     "run 1 of 2, tilt\nt1;tilt1;t2;tilt2\n0,5;30;0,5;7\n1,5;40;1,5;8\n2,5;50;;\n": "_ _ t theta",
     "a,b\n0.5,30\n1.5,40\n": "t theta",
+    "a,b,c\n0.5,30\n1.5,40\n": "t theta",
 }
 
 

@@ -238,6 +238,12 @@ def test_names_keep_the_units_of_headings(
         assert [values["t"][row, 0], values["theta"][row, 0]] == pytest.approx(found)
 
 
+def test_names_keep_the_units_of_headings_in_a_comment(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("# t [ms],theta [rad]\n500,1\n")
+    values = read_trajectory(str(tmp_path / "file"), ["t", "theta"]).values(radians=False)
+    assert [*values["t"][0], *values["theta"][0]] == [0.5, 1]
+
+
 def test_bad_names_of_columns(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("0 1\n")
     with pytest.raises(LagtopError, match=r"columns must name all 2 columns of .* got 5 names"):
