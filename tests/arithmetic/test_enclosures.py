@@ -7,10 +7,13 @@ import math
 import os
 import random
 import re
+import signal
 import sys
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from decimal import Decimal, getcontext, localcontext
 from fractions import Fraction
 
@@ -19,6 +22,7 @@ import mpmath
 import pytest
 from conftest import ROOT
 from flint import arb
+from lagtop import Top, solve
 
 from lagrange_cli.arithmetic.enclosures import (
     Rounded,
@@ -362,6 +366,64 @@ def test_a_child_process_has_the_precision_of_the_host() -> None:
             os._exit(0 if flint.ctx.prec == 77 and at_precision(9, lambda: 5) == 5 else 1)
         assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
         done.set()
+        running.result()
+        assert flint.ctx.prec == 77
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="the system has no such timer")
+def test_an_exception_of_a_signal_handler_leaves_the_precision_as_it_was() -> None:
+    """3,000 at random moments: the lock is free, and the precision is that of the host."""
+
+    def interrupt(*_: object) -> None:
+        raise TimeoutError
+
+    def solved() -> object:
+        return solve(Top(r0=40.25)).T_nutation
+
+    rng, alone, before = random.Random(3), solved(), signal.signal(signal.SIGALRM, interrupt)
+    interrupted = 0
+    try:
+        with ThreadPoolExecutor(1) as pool, flint.ctx.workprec(77):
+            while interrupted < 3000:
+                try:
+                    signal.setitimer(signal.ITIMER_REAL, rng.uniform(1e-6, 1e-3))
+                    solved()
+                    signal.setitimer(signal.ITIMER_REAL, 0)
+                except TimeoutError:
+                    interrupted += 1
+                assert flint.ctx.prec == 77
+                if interrupted % 100 == 1:
+                    assert pool.submit(solved).result(timeout=10) == alone
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*fork")
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+def test_children_forked_while_a_thread_solves() -> None:
+    """50 children have the precision of the host, and solve."""
+    stop, alone = threading.Event(), solve(Top()).T_nutation
+
+    def solve_on() -> None:
+        while not stop.is_set():
+            assert solve(Top()).T_nutation == alone
+
+    with ThreadPoolExecutor(1) as pool, flint.ctx.workprec(77):
+        running = pool.submit(solve_on)
+        try:
+            for _ in range(50):
+                time.sleep(0.003)
+                if not (child := os.fork()):
+                    signal.alarm(20)  # a child that hangs dies
+                    with suppress(Exception):
+                        os._exit((flint.ctx.prec, solve(Top()).T_nutation) != (77, alone))
+                    os._exit(1)
+                assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+        finally:
+            stop.set()
         running.result()
         assert flint.ctx.prec == 77
 
