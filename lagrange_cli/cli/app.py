@@ -175,7 +175,8 @@ def _option_meant(error: click.NoSuchOption) -> str:
     named = [f"--{key}" for key, x in DECLARED.items() if word in x.name.split()]
     if found := same or (begun if len(name) > 1 else []) or [x for x in named if x in known]:
         return f" (did you mean {' or '.join(map(repr, found))}?)"
-    alike = [x for x in known if x.startswith(error.option_name[:3])]  # --rad is not --format
+    begin, least = error.option_name[:3], 4  # --rad is not --format, nor --sigma --s
+    alike = [x for x in known if x.startswith(begin) and len(x) >= least]
     return suggestion(error.option_name, alike)
 
 

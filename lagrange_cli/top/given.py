@@ -168,7 +168,7 @@ def have_units(values: Mapping[str, Value], *, asked: bool = False) -> bool:
         if name in DECLARED and not (x.unit or _is_zero(x.number)):
             from .units import EXAMPLES  # start-up
 
-            why = f"as {united[0]} has" if united else "as a time or a condition has"
+            why = f"as the input {united[0]} has" if united else "as a time or a condition has"
             example = EXAMPLES[DECLARED[name].unit]
             raise LagtopError(f"{name} must have a unit such as {example}, {why}, got none", name)
     return bool(united) or asked

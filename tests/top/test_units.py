@@ -126,7 +126,7 @@ def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
     assert lagtop("solve", path, "--s", "1in", "--get", "s").stdout == "0.0254\n"
     assert lagtop("solve", path, "--psidot0", "0", "--theta0", "20", "--get", "m").exit_code == 0
     bare = lagtop("solve", path, "--r0", "50")
-    assert_one_line(bare, 2, "--r0 must have a unit such as rad/s or rpm, as m has")
+    assert_one_line(bare, 2, "--r0 must have a unit such as rad/s or rpm, as the input m has")
     other = lagtop("solve", "sample_inputs/fast-gyroscope.toml", "--r0", "50rpm")
     assert_one_line(other, 65, "sample_inputs/fast-gyroscope.toml, line 2: m must have a unit")
     path.write_text('theta0_deg = "0.5 rad"\n')
