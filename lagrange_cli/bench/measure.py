@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..output.report import Field, Report, short
+from ..output.report import Field, Report, fields_of, short
 from ..plot.style import LIGHT, plain
 from ..solver.solve import Motion
 from .methods import METHODS, SlowError, attitudes
@@ -29,7 +29,6 @@ CHECKED = 51
 RUNS, SECONDS_OF_RUNS, LIMIT = 9, 0.3, 3.0
 """Most warm runs, the CPU seconds after which they end, and the limit of one run."""
 ERROR = "greatest error (rad)"
-LEAST_DRAWN = 1e-17
 
 
 class Row(NamedTuple):
@@ -56,28 +55,19 @@ class Row(NamedTuple):
     """The inputs of the scene, if `scene` is a kind."""
     remark: str | None = None
 
-    @property
-    def drawn_error(self) -> float:
-        """The error, or the least error that is drawn."""
-        return max(self.error_rad or 0.0, LEAST_DRAWN)
 
-
-FIELDS = {
-    field.key: field
-    for field in (
-        *(Field(x, x, is_text=True) for x in ("scene", "method", "verdict", "remark")),
-        Field("setting", "setting"),
-        Field("periods", "periods", "{:g}".format),
-        Field("error_rad", "error", short),
-        Field("ns_per_sample", "ns/sample", "{:.0f}".format),
-        Field("setup_ms", "set-up ms", "{:.1f}".format),
-        Field("evaluations", "evaluations"),
-        Field("front", "front", lambda front: "*" if front else ""),
-        Field("input_rounding", "input rounding", short),
-        Field("inputs"),
-    )
-}
-"""The columns of both reports."""
+COLUMNS = (
+    *(Field(x, x, is_text=True) for x in ("scene", "method", "verdict", "remark")),
+    Field("setting", "setting"),
+    Field("periods", "periods", "{:g}".format),
+    Field("error_rad", "error", short),
+    Field("ns_per_sample", "ns/sample", "{:.0f}".format),
+    Field("setup_ms", "set-up ms", "{:.1f}".format),
+    Field("evaluations", "evaluations"),
+    Field("front", "front", lambda front: "*" if front else ""),
+    Field("input_rounding", "input rounding", short),
+)
+"""The columns of both tables; other keys are in CSV and JSON only."""
 
 
 def report_of(
@@ -89,7 +79,7 @@ def report_of(
         "times; the reference is Legendre's third integral in 50 digits of mpmath"
     )
     about = machine() | conditions | {"error": error}
-    return Report(about, [FIELDS[key] for key in keys.split()], rows, [*said])
+    return Report(about, fields_of(keys.split(), *COLUMNS), rows, [*said])
 
 
 class Task(NamedTuple):

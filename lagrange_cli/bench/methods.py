@@ -116,12 +116,9 @@ def scipy_special(motion: Motion, _: Any) -> Sample:
     """
     from ..inverse.motions import angles
 
-    inputs, names = motion.top.inputs(radians=True), ("theta0_rad", "thetadot0", "psidot0")
-    (a, b), r0, start = (
-        constants(motion.top),
-        float(motion.top.r0),
-        [float(inputs[x]) for x in names],
-    )
+    (a, b), r0 = constants(motion.top), float(motion.top.r0)
+    inputs = motion.top.inputs(radians=True)
+    start = [float(inputs[x]) for x in ("theta0_rad", "thetadot0", "psidot0")]
 
     def sample(t: Array, _: float) -> Run:
         theta, phi, psi = angles(np.array([[a, b, *start]]), t)[:, 0]
@@ -138,9 +135,8 @@ def scipy_method(name: str, motion: Motion, tolerance: float) -> Sample:
 
     def sample(t: Array, limit: float) -> Run:
         slope, calls = counted(equations, limit)
-        options = {"method": name, "rtol": tolerance, "atol": tolerance}
         with warnings.catch_warnings(action="ignore"):  # a failure is in the message
-            flow = solve_ivp(slope, (0.0, float(t[-1])), start, t_eval=t, **options)
+            flow = solve_ivp(slope, (0.0, t[-1]), start, name, t, rtol=tolerance, atol=tolerance)
         if not flow.success:
             raise ArithmeticError(flow.message)
         return flow.y[2:], calls[0]

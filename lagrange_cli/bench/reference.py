@@ -11,7 +11,7 @@ dn counted from the lowest point, and Legendre's third integral by Carlson's R_F
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import mpmath
@@ -46,16 +46,6 @@ def rotation_angle(computed: Sequence[Any], exact: Attitude) -> float:
     return angle if math.isfinite(angle) else math.inf
 
 
-def inputs_of(top: Top) -> dict[str, Many]:
-    """Return the inputs of a top as numbers of mpmath, with the tilt `theta` in radians."""
-    with mpmath.workdps(ROOT_DIGITS):
-        names = ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0")
-        found = {name: mpmath.mpf(getattr(top, name)) for name in names}
-        if top.theta0_deg is None:
-            return {**found, "theta": mpmath.mpf(top.theta0_rad)}
-        return {**found, "theta": mpmath.mpf(top.theta0_deg) * mpmath.pi / 180}
-
-
 def viete_roots(c2: Many, c1: Many, c0: Many) -> list[Many]:
     """Return the three real roots of u^3 + c2 u^2 + c1 u + c0 = 0, in increasing order."""
     shift, p = c2 / 3, c1 - c2**2 / 3
@@ -68,12 +58,14 @@ def viete_roots(c2: Many, c1: Many, c0: Many) -> list[Many]:
 class Reference:
     """The exact motion of a top that nutates under a torque."""
 
-    def __init__(self, inputs: Mapping[str, Many]) -> None:
-        """Compute roots and start from the result of `inputs_of`; raise LagtopError if g s = 0."""
-        m, A, C, s, g, r0, theta_rate, psi_rate, theta = inputs.values()
-        if not m * g * s:
-            raise LagtopError("the reference needs a torque: g and s must not be 0")
+    def __init__(self, top: Top) -> None:
+        """Compute the roots and the start of a top, from its exact inputs."""
         with mpmath.workdps(ROOT_DIGITS):  # differences of roots may cancel
+            names = ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0")
+            m, A, C, s, g, r0, theta_rate, psi_rate = (mpmath.mpf(top.exact(x)) for x in names)
+            in_degrees = top.theta0_deg is not None
+            theta = mpmath.mpf(top.exact("theta0_deg" if in_degrees else "theta0_rad"))
+            theta *= mpmath.pi / 180 if in_degrees else 1
             a, b, u0 = 2 * m * g * s / A, C * r0 / A, mpmath.cos(theta)
             around = psi_rate * mpmath.sin(theta) ** 2
             beta, alpha = around + b * u0, theta_rate**2 + around * psi_rate + a * u0
@@ -94,35 +86,31 @@ class Reference:
             if theta_rate > 0:  # the tilt grows towards u2, where w = 0
                 self.w0 = -self.w0
             self.wholes = [self._third(x1 / x2, 1, 0, self.k2_prime) for x1, x2 in self.gaps]
-            self.start = self._halves(mpmath.mpf(0))
-
-    def _jacobi(self, t: Many) -> tuple[Many, ...]:
-        """Return the whole half periods until a time, and sn, cn, dn of the rest."""
-        w = self.w0 + self.speed * t
-        turns = mpmath.nint(w / (2 * self.K))
-        rest = w - 2 * turns * self.K
-        return turns, *(mpmath.ellipfun(f, rest, m=self.k2) for f in ("sn", "cn", "dn"))
+            self.start = self._state(mpmath.mpf(0))[2:]
 
     def _third(self, rest: Many, sn: Many, cn2: Many, dn2: Many) -> Many:
         """Return Legendre's third integral of dw/(1 - n sn^2 w) from 0, with rest = 1 - n."""
         part = (1 - rest) / 3 * sn**2 * mpmath.elliprj(cn2, dn2, 1, cn2 + rest * sn**2)
         return sn * (mpmath.elliprf(cn2, dn2, 1) + part)
 
-    def _halves(self, t: Many) -> list[Many]:
-        """Return (psi + phi)/2 and (psi - phi)/2, up to their values at t = 0."""
-        (turns, sn, cn, dn), drift = self._jacobi(t), self.drift * t
+    def _state(self, t: Many) -> tuple[Many, ...]:
+        """Return sn and cn, and (psi + phi)/2 and (psi - phi)/2 up to their values at t = 0."""
+        w, drift = self.w0 + self.speed * t, self.drift * t
+        turns = mpmath.nint(w / (2 * self.K))
+        rest = w - 2 * turns * self.K
+        sn, cn, dn = (mpmath.ellipfun(f, rest, m=self.k2) for f in ("sn", "cn", "dn"))
         halves = []
         for momentum, (x1, x2), whole in zip(self.momenta, self.gaps, self.wholes, strict=True):
             integral = 2 * turns * whole + self._third(x1 / x2, sn, cn**2, dn**2)
             halves.append(momentum / 2 * integral / (x2 * self.speed))
-        return [drift + halves[0], -drift + halves[1]]
+        return sn, cn, halves[0] + drift, halves[1] - drift
 
     def attitude(self, t: Many) -> Attitude:
         """Return the attitude at a time, which is on the line of nodes at t = 0."""
         with mpmath.workdps(DIGITS):
-            _, sn, cn, _ = self._jacobi(mpmath.mpf(t))
+            sn, cn, *halves = self._state(mpmath.mpf(t))
             cos, sin = (mpmath.sqrt((x1 * sn**2 + x2 * cn**2) / 2) for x1, x2 in self.gaps)
-            plus, minus = map(mpmath.fsub, self._halves(mpmath.mpf(t)), self.start)
+            plus, minus = map(mpmath.fsub, halves, self.start)
             upright = cos * mpmath.cos(plus), cos * mpmath.sin(plus)
             return upright[0], sin * mpmath.cos(minus), sin * mpmath.sin(minus), upright[1]
 
@@ -132,6 +120,6 @@ def exact_motion(motion: Motion) -> Reference:
     if motion.regime not in (Regime.REGULAR, Regime.NO_SPIN):
         raise LagtopError(f"the scene must nutate, got {motion.regime.value}")
     try:
-        return Reference(inputs_of(motion.top))
+        return Reference(motion.top)
     except ZeroDivisionError:
         raise LagtopError("the axis must not pass exactly through the vertical") from None

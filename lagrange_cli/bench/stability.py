@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 from itertools import chain, islice, product, repeat
 from random import Random
 from typing import TYPE_CHECKING
-
-import mpmath
 
 from ..names import check_names
 from ..output.report import Report
@@ -20,9 +19,9 @@ from ..plot.style import LIGHT
 from ..solver.facts import Regime
 from ..solver.solve import Motion, solve
 from ..top.top import Top
-from .measure import ERROR, LEAST_DRAWN, Row, looks, measure, panels_of, report_of, task_of
+from .measure import ERROR, Row, looks, measure, panels_of, report_of, task_of
 from .methods import METHODS
-from .reference import ROOT_DIGITS, Reference, inputs_of, rotation_angle
+from .reference import Reference, rotation_angle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -123,8 +122,6 @@ KINDS: dict[str, Callable[[Random], Scene]] = {
     "extreme-sizes": extreme_sizes,
 }
 """The function that returns a random scene of each kind."""
-
-
 KEYS = "scene method setting periods error_rad input_rounding verdict inputs remark"
 
 
@@ -141,10 +138,10 @@ def stability(
     names = list(KINDS) if kinds is None else check_names("kinds", kinds, KINDS)
     scenes = [(kind, x) for kind in names for x in motions(kind, samples, seed)]
     rows = [row for kind, motion in progress(scenes, "scenes") for row in compared(kind, motion)]
-    worst: dict[tuple[str, float, str], Row] = {}
-    for row in sorted(rows, key=badness, reverse=True):
-        worst.setdefault((row.scene, row.periods, row.method), row)
-    found = [worst[x] for x in product(names, SPANS, COMPARED)]
+    found = [
+        max((x for x in rows if (x.scene, x.periods, x.method) == case), key=badness)
+        for case in product(names, SPANS, COMPARED)
+    ]
     return report_of(conditions(samples, seed), KEYS, TIMES + 1, found, conclusions(found))
 
 
@@ -173,18 +170,11 @@ def compared(kind: str, motion: Motion) -> Iterator[Row]:
 
 
 def neighbours(top: Top) -> Iterator[Reference]:
-    """Yield the exact motions after each input in turn has grown by half an ulp.
-
-    The tilt grows by half an ulp of its degrees, if these are the input.
-    """
-    exact = inputs_of(top)
-    for name, value in exact.items():
+    """Yield the exact motions after each input in turn has grown by half an ulp."""
+    for name, value in top.as_dict().items():
         if value:
-            with mpmath.workdps(ROOT_DIGITS):
-                in_degrees = name == "theta" and top.theta0_deg is not None
-                unit = mpmath.pi / 180 if in_degrees else mpmath.mpf(1)
-                moved = value + math.ulp(float(value / unit)) / 2 * unit
-            yield Reference({**exact, name: moved})
+            moved = Fraction(value) + Fraction(math.ulp(value)) / 2
+            yield Reference(top.replace(**{name: moved}))
 
 
 def verdict_of(error: float | None, rounding: float, remark: str | None = None) -> str:
@@ -245,8 +235,8 @@ def stability_figure(report: Report) -> Figure:
         for i, name in enumerate(COMPARED):
             mine = [x for x in rows if x.method == name and x.error_rad is not None]
             places = [kinds.index(x.scene) + 0.12 * (i - 2) for x in mine]
-            axes.plot(places, [x.drawn_error for x in mine], ls="none", **looks()[name])
-        axes.set(yscale="log", ylim=(LEAST_DRAWN, 10), ylabel=ERROR)
+            axes.plot(places, [x.error_rad for x in mine], ls="none", **looks()[name])
+        axes.set(yscale="log", ylim=(1e-17, 10), ylabel=ERROR)
         axes.set_title(f"over {periods_of(span)}")
         axes.set_xticks(range(len(kinds)), kinds, rotation=40, ha="right")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")

@@ -121,6 +121,7 @@ def methods_figure(report: Report) -> Figure:
     """
     scenes = list(dict.fromkeys(row.scene for row in report.rows))
     is_long = len({row.periods for row in report.rows}) > 1
+    pair = ("periods", "error_rad") if is_long else ("error_rad", "ns_per_sample")
     wide = min(2, len(scenes))
     figure, panels = panels_of(-(-len(scenes) // wide), wide, 5 * wide + 2, 4)
     for axes, scene in zip(panels, scenes, strict=False):
@@ -130,12 +131,10 @@ def methods_figure(report: Report) -> Figure:
             steps: dict[str, object] = {"color": LIGHT.faint, "lw": 7, "zorder": 0}
             axes.step(*zip(*front, strict=True), where="post", label="front", **steps)
         for name in dict.fromkeys(x.method for x in rows):
-            points, joined = [], "-"
-            for x in (x for x in rows if x.method == name):
-                error, ns = x.drawn_error, x.ns_per_sample
-                points.append((x.periods, error) if is_long else (error, ns))
-                joined = "-" if is_long or not isinstance(x.setting, str) else ""
-            axes.plot(*zip(*sorted(points), strict=True), ls=joined, **looks()[name])
+            mine = [x for x in rows if x.method == name]
+            points = sorted(map(operator.attrgetter(*pair), mine))
+            joined = is_long or not isinstance(mine[0].setting, str)
+            axes.plot(*zip(*points, strict=True), ls="-" if joined else "", **looks()[name])
         labels = ("span (nutation periods)", ERROR) if is_long else (ERROR, "time per sample (ns)")
         axes.set(xscale="log", yscale="log", xlabel=labels[0], ylabel=labels[1])
         axes.set_title(plain(scene))

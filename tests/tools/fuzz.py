@@ -38,7 +38,7 @@ from hard_scenes import KINDS, Scene, as_decimals, size_in_sweeps
 from lagtop import LagtopError, Motion, Top, solve, sweep
 from record_reference import reference_record
 
-from lagrange_cli.bench.reference import Reference, inputs_of, rotation_angle
+from lagrange_cli.bench.reference import Reference, rotation_angle
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS
 
@@ -149,7 +149,7 @@ def _in_last_places(value: Any, true: Any, digits: int) -> float:
 def check_attitudes(tally: Tally, motion: Motion, exact: Numbers, times: list[float]) -> None:
     """Check attitudes by Legendre's third integral, except next to the vertical."""
     try:
-        reference = Reference(inputs_of(motion.top))
+        reference = Reference(motion.top)
         far = all(at_u1 < 10**40 * at_u2 for at_u1, at_u2 in reference.gaps)
     except ZeroDivisionError:
         far = False
