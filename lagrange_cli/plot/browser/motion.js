@@ -1,37 +1,8 @@
-// The motion of one top in plain doubles: one nutation by Runge-Kutta, all other times by its period.
-// Equation numbers are Chrapan's.
+// The motion of one top in closed form, in plain doubles.  Equation numbers are Chrapan's.
+// The two halves of the quaternion are quotients of theta functions (Klein and Sommerfeld).
 
-const STEPS = 2500;  // steps of half a nutation, at least
 const DEGREE = 180 / Math.PI;
-
-/** Slope of p, q (rates in the frame that does not spin) and of its quaternion w, x, y, z. */
-function slope([p, q, w, x, y, z], a, b) {
-  const [dp, dq] = [a * (y * z + w * x) - b * q, b * p - a * (x * z - w * y)];
-  return [dp, dq, (-x * p - y * q) / 2, (w * p - z * q) / 2, (w * q + z * p) / 2, (x * q - y * p) / 2];
-}
-
-/** The state after one step of the classical Runge-Kutta method. */
-function step(state, h, a, b) {
-  const after = (part, k) => slope(state.map((value, i) => value + part * k[i]), a, b);
-  const k1 = slope(state, a, b);
-  const k2 = after(h / 2, k1);
-  const k3 = after(h / 2, k2);
-  const k4 = after(h, k3);
-  return state.map((value, i) => value + (h / 6) * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]));
-}
-
-/** An angle plus the whole turns that bring it nearest to another angle. */
-const near = (angle, other) => angle + 2 * Math.PI * Math.round((other - angle) / (2 * Math.PI));
-
-/** Tilt, and plus, minus = (psi ± phi)/2 without the spin, next to those of the state before. */
-function halves([, , w, x, y, z], last) {
-  const [up, side] = [Math.hypot(w, z), Math.hypot(x, y)];
-  return {
-    theta: 2 * Math.atan2(side, up),
-    plus: up > 1e-9 ? near(Math.atan2(z, w), last.plus) : last.plus,
-    minus: side > 1e-9 ? near(Math.atan2(y, x), last.minus) : last.minus,
-  };
-}
+const clamped = (x, least, most) => Math.min(Math.max(x, least), most);
 
 /** Carlson's integral R_F by duplication. */
 function carlsonF(x, y, z) {
@@ -43,148 +14,131 @@ function carlsonF(x, y, z) {
   return carlsonF((x + shift) / 4, (y + shift) / 4, (z + shift) / 4);
 }
 
-/** The cubic (4,9) about the start: u1 - u0, u0 - u2, 1 - u1, u3 - u1 and a (u3 - u2), without cancellation. */
-function cubicOf({ a, b, u0, above, sin, swing, along, rise }) {
-  const c1 = 2 * (b * along - u0 * swing) - a * sin * sin;
-  const isTop = !rise && c1 <= 0;  // the start is the highest point
-  let leading = swing + b * b;  // a (u3 - u0)
-  const [p, q, r] = [2 * u0 - leading / a, c1 / a, rise / a];
+/** Legendre's integral F of the first kind, from the squares of sn, cn and dn. */
+const legendreF = (sn2, cn2, dn2) => Math.sqrt(sn2) * carlsonF(cn2, dn2, 1);
+
+/** The two numbers x, y >= 0 with x - y = 2 half and this product. */
+function pairOf(half, product) {
+  const greater = Math.abs(half) + Math.sqrt(half * half + product);
+  const pair = [greater, product / greater || 0];
+  return half < 0 ? pair.reverse() : pair;
+}
+
+/** The roots of (4,9) by distances without cancellation: u1 - u0, u0 - u2, 1 - u1, 1 - u2, u3 - 1, u3 - u1. */
+function rootsOf({ a, b, u0, above, sin, swing, along, rise, N }) {
+  const [p, q, r] = [2 * u0 - (swing + b * b) / a, (2 * (b * along - u0 * swing)) / a - sin * sin, rise / a];
   const radius = Math.sqrt(Math.max(p * p - 3 * q, 0)) / 3;
   const ratio = ((p * q) / 6 - (p / 3) ** 3 - r / 2) / radius ** 3 || 0;
-  const third = Math.acos(Math.max(-1, Math.min(1, ratio))) / 3;
-  function root(turn) {  // Viète's, polished by Newton's method
-    let x = 2 * radius * Math.cos(third + turn) - p / 3;
-    for (let i = 0; i < 3; i += 1) x -= (((x + p) * x + q) * x + r) / ((3 * x + 2 * p) * x + q) || 0;
-    return x;
+  const isNear = ratio < 0;  // u1 is next to u3, so that only u2 has all digits
+  const angle = Math.acos(clamped(ratio, -1, 1)) / 3 + (isNear ? (2 * Math.PI) / 3 : 0);
+  let root = 2 * radius * Math.cos(angle) - p / 3;  // Viète's, polished by Newton's method
+  for (let i = 0; i < 3; i += 1) root -= (((root + p) * root + q) * root + r) / ((3 * root + 2 * p) * root + q) || 0;
+  let [toTop, fromLow] = isNear ? [0, Math.max(-root, 0)] : pairOf((q + r / root) / (2 * root), r / root);
+  const low = above + fromLow;
+  const [beyond, top] = pairOf((fromLow - p) / 2 - above, N ** 2 / (a * low) || 0);
+  const gap = beyond + top;
+  if (isNear) {
+    toTop = Math.max(above - top, 0);
+    if (toTop < fromLow) toTop = rise / (a * fromLow * (gap + toTop));
   }
-  const isNear = a && ratio < 0;  // u1 is next to u3, so that only u2 has all digits
-  let [toTop, fromLow] = [0, isNear ? Math.max(-root((2 * Math.PI) / 3), 0) : 0];
-  if (!isNear) {
-    if (a) leading = a * root(0);
-    const product = rise / leading || 0;  // (u1 - u0)(u0 - u2)
-    const half = (c1 + a * product) / (2 * leading) || 0;  // half their difference
-    const larger = Math.abs(half) + Math.sqrt(half * half + product);
-    const smaller = product / larger || 0;
-    [toTop, fromLow] = half > 0 ? [larger, smaller] : [smaller, larger];
+  return { toTop, fromLow, top, low, beyond, gap };
+}
+
+/** The half of the quaternion with a zero at these sn^2, cn^2, dn^2: its size and its angle without the mean rate. */
+function halfOf(squares, quarter, nome) {
+  const [p, terms] = [Math.exp((-Math.PI * legendreF(...squares)) / quarter), []];
+  for (let [n, up, down] = [0, p, 1]; down > 1e-18; n += 1) {
+    terms.push([n, up, down]);
+    [up, down] = [up * p * nome ** (2 * n + 2), (down / p) * nome ** (2 * n + 2)];
   }
-  if (!a) return { toTop, fromLow, gap: Math.max(above - toTop, 0), wide: leading };
-  // (1 - u1)(u3 - 1) and (u3 - 1) - (1 - u1) keep their digits next to the separatrix
-  const [beside, excess] = [(along - b * above) ** 2 / (a * (above + fromLow)) || 0, fromLow - p - 2 * above];
-  let far = Math.sqrt(excess * excess + 4 * beside);
-  let gap = excess > 0 ? (2 * beside) / (excess + far) || 0 : (far - excess) / 2;
-  if (isTop) [gap, far] = [above, Math.max(above + excess, 0) + above];
-  else if (isNear) {
-    toTop = Math.max(above - gap, 0);
-    if (rise && toTop < fromLow) toTop = rise / (a * fromLow * (far + toTop)) || 0;
+  const total = (term) => terms.reduce((sum, each) => sum + term(...each), 0);
+  const whole = total((n, up, down) => up + down);
+  function at(x) {
+    const real = total((n, up, down) => up * Math.cos((2 * n + 2) * x) + down * Math.cos(2 * n * x));
+    const other = total((n, up, down) => up * Math.sin((2 * n + 2) * x) - down * Math.sin(2 * n * x));
+    return [Math.hypot(real, other) / whole, Math.atan2(other, real)];
   }
-  return { toTop, fromLow, gap, far, wide: a * (far + toTop + fromLow) };
+  return { at, slope: 1 - total((n, up, down) => (2 * n + 1) * (down - up)) / whole };
 }
 
 /** The motion of a scene: its numbers, `angles(t)` in radians, and whether it is only a sketch. */
 export function motionOf(scene) {
   const { m, A, C, s, g, r0, theta0_deg: tilt, thetadot0, psidot0 } = scene;
-  const [a, b, half] = [(2 * m * g * s) / A, (C * r0) / A, (tilt * Math.PI) / 360];
-  const sin = tilt === 180 ? 0 : Math.sin(2 * half);
-  const u0 = Math.cos(2 * half);
-  const swing = thetadot0 ** 2 + (psidot0 * sin) ** 2;
+  const [torque, b, half] = [(2 * m * g * s) / A, (C * r0) / A, (tilt * Math.PI) / 360];
+  const [u0, sin] = [Math.cos(2 * half), tilt === 180 ? 0 : Math.sin(2 * half)];
+  const [above, up] = [2 * Math.sin(half) ** 2, tilt === 180 ? 0 : 2 * Math.cos(half) ** 2];  // 1 -+ u0
   const along = psidot0 * sin * sin;
-  const [alpha, beta] = [swing + a * u0, along + b * u0];
+  const swing = thetadot0 ** 2 + psidot0 * along;
   const rise = (thetadot0 * sin) ** 2;
   const isVertical = !sin && !thetadot0;
-  const above = 2 * Math.sin(half) ** 2;
-  const { toTop, fromLow, gap, far, wide } = cubicOf({ a, b, u0, above, sin, swing, along, rise });
-  const [u1, u2, band] = [1 - gap, u0 - fromLow, toTop + fromLow];
-  const usual = (2 * Math.PI) / (Math.sqrt(a) + Math.abs(b) + Math.sqrt(swing) || Math.abs(r0) || 1);
-  const kPrime = a ? Math.sqrt((a * far) / wide) : 1;
-  const isPeriodic = !isVertical && wide > 0 && kPrime > 1e-8;
-  const period = isPeriodic ? (4 * carlsonF(0, kPrime ** 2, 1)) / Math.sqrt(wide) : null;
-  const span = period ?? 20 * usual;
-  const count = Math.min(Math.max(STEPS, Math.ceil((100 * span) / usual)), 100000);
-  const h = span / 2 / count;
+  const isStill = isVertical || !(torque || b || swing);
+  const a = torque || 1e-16 * (swing + b * b) || 1;  // hardly any torque instead of none
+  const [N, S] = [along - b * above, along + b * up];  // beta - b, beta + b
+  const { toTop, fromLow, top, low, beyond, gap } = rootsOf({ a, b, u0, above, sin, swing, along, rise, N });
+  const [high, most] = [up + toTop, up + toTop + gap];  // 1 + u1, 1 + u3
+  const foot = S ** 2 / (a * high * most);  // 1 + u2
+  const band = Math.max(toTop + fromLow, 1e-30);
+  const width = gap + band;
+  const [m0, m1] = [band / width, Math.max(gap / width, 1e-30)];  // k^2, k'^2
+  const quarter = carlsonF(0, m1, 1);
+  const cycle = (4 * quarter) / Math.sqrt(a * width);  // (5,1)
 
-  // From the highest point down, where errors do not grow; it rises as it falls.
-  const [across, sinTop] = [beta - b * u1, Math.sqrt(gap * (2 - gap))];
-  let first = Math.sqrt(Math.max(alpha - a * u1, 0)) * (Math.sign(across) || 1);
-  if (sinTop > 1e-6) first = toTop ? across / sinTop : psidot0 * sin;
-  const top = [0, first, Math.sqrt(1 - gap / 2), Math.sqrt(gap / 2), 0, 0];
-  const start = [thetadot0, psidot0 * sin, Math.cos(half), Math.sin(half), 0, 0];
-  const states = [period ? top : start];
-  const places = [halves(states[0], { plus: 0, minus: 0 })];
-  function grow() {
-    for (let i = 0; i <= count; i += 1) {
-      states.push(step(states.at(-1), h, a, b));
-      places.push(halves(states.at(-1), places.at(-1)));
-    }
-  }
-  grow();
-  function fromTop(time) {
-    while (time > h * (states.length - 1) && states.length < 1e6) grow();
-    const i = Math.min(Math.floor(time / h), states.length - 1);
-    return halves(step(states[i], time - i * h, a, b), places[i]);
-  }
-  const [before, after] = [0.4, 0.6].map((part) => fromTop(part * span));  // not at the vertical
-  const gain = { plus: before.plus + after.plus, minus: before.minus + after.minus };
-  let since = 0;
-  if (period && rise) {
-    const [x, y] = a ? [far, far + toTop] : [1, 1];
-    since = (2 * Math.sqrt(toTop) * carlsonF(fromLow * x, band * y, band * x)) / Math.sqrt(a || wide);
-    since = Math.min(since || 0, period / 2);
-  } else if (period && toTop > band / 2) since = period / 2;
-  if (thetadot0 < 0) since = -since;
+  // The north counts from the lowest point and the south from the highest, where they are greatest.
+  const nome = Math.exp((-Math.PI * carlsonF(0, m0, 1)) / quarter);
+  const north = halfOf([(top * width) / (low * gap), (beyond * band) / (low * gap), band / low], quarter, nome);
+  const south = halfOf([foot / high, band / high, (most * band) / (high * width)], quarter, nome);
+  const [signN, signS] = [N < 0 ? -1 : 1, S < 0 ? -1 : 1];
+  const minusRate = N / (2 * low) + (signN * north.slope * Math.PI) / cycle;
+  const plusRate = S / (2 * high) + (signS * south.slope * Math.PI) / cycle;
+  const start = legendreF(fromLow / band, toTop / band, (gap + toTop) / width) * (thetadot0 > 0 ? -1 : 1);
   function place(t) {
-    if (!period) return isVertical ? places[0] : fromTop(t);
-    const turns = Math.round((t + since) / period);
-    const rest = t + since - turns * period;
-    const { theta, plus, minus } = fromTop(Math.abs(rest));
-    const sign = rest < 0 ? -1 : 1;
-    return { theta, plus: sign * plus + turns * gain.plus, minus: sign * minus + turns * gain.minus };
+    const x = Math.PI * (start / (2 * quarter) + t / cycle);
+    return [north.at(x), south.at(x - Math.PI / 2)];
   }
-  const zero = period ? place(0) : places[0];
-  if (period && tilt === 0) zero.minus = (Math.sign(first) * Math.PI) / 2;  // limits after the start
-  if (period && tilt === 180) {
-    const [, , w, , , z] = slope(states[count], a, b);
-    zero.plus = gain.plus - Math.atan2(-z, -w);
+  // Angles at a pole are their limits, before it if the axis leaves 0 to 180 degrees through it.
+  const [[, minus0], [, plus0]] = place((thetadot0 < 0 === tilt < 90 ? -1e-14 : 1e-14) * cycle);
+  function angles(time) {
+    const t = Math.max(time, 0);
+    if (isStill || !t) return { theta: 2 * half, phi: r0 * t, psi: 0 };
+    const [[side, minus], [upright, plus]] = place(t);
+    const p = plusRate * t - signS * (plus - plus0);
+    const q = minusRate * t - signN * (minus - minus0);
+    const theta = 2 * Math.atan2(Math.sqrt(low * Math.sqrt(m1)) * side, Math.sqrt(high) * upright);
+    return { theta, phi: p - q + (r0 - b) * t, psi: p + q };
   }
-  function angles(t) {
-    const { theta, plus, minus } = place(Math.max(t, 0));
-    const [p, q] = [plus - zero.plus, minus - zero.minus];
-    return { theta, phi: p - q + r0 * t, psi: p + q };
-  }
-  const degrees = (u) => DEGREE * Math.acos(Math.max(-1, Math.min(1, u)));
-  const spin = isVertical ? r0 : period && (gain.plus - gain.minus) / span + r0;
-  const turn = period && (gain.plus + gain.minus) / span;
+
+  const period = !isStill && m1 > 1e-16 ? cycle : null;
+  const spin = isVertical ? r0 : period && plusRate - minusRate + r0 - b;
+  const turn = period && plusRate + minusRate;
   const turnTime = (rate) => (rate ? (2 * Math.PI) / Math.abs(rate) : null);
-  const away = (degree) => Math.min(degree, 180 - degree);
-  const most = Math.max(away(degrees(u1)), away(degrees(u2)), away(tilt));
-  const k = Math.sqrt(1 - kPrime ** 2);
-  const isNear = (tilt && away(tilt) < 0.03) || most < 0.05;
-  const [high, low, isSwinging] = isVertical ? [u0, u0, false] : [u1, u2, Boolean(a)];
-  const constant = isVertical || band < 1e-7;  // a double root has half of the digits
-  function factsOf() {
-    const [atTop, atLow] = [beta - b * u1, beta - b * u2];  // as the precession there
-    const plane = !r0 && !beta;
-    const curved = atTop * atLow < 0 ? "looping" : "wavy";
-    let regime = period || constant ? "regular" : "separatrix";
-    if (isVertical) regime = tilt ? "hanging" : "sleeping";
-    return {
-      regime, constant, plane, spin: r0, spins: r0 !== 0, stable: b * b >= 2 * a,
-      turns_over: plane && gap === 0 && toTop > 0,
-      precesses: Math.abs(turn) > 1e-9 * Math.sqrt(wide),
-      path: constant || plane ? null : Math.abs(atTop) < 1e-9 * Math.abs(atLow) ? "cusped" : curved,
-    };
-  }
+  const tiltOf = (down, upward) => (isVertical ? tilt : 2 * DEGREE * Math.atan2(Math.sqrt(down), Math.sqrt(upward)));
+  const fromVertical = Math.min(tilt, 180 - tilt);
+  const isSwinging = !isVertical && torque > 0;
+  const k = Math.sqrt(m0);
+  const [atTop, atLow] = [N + b * top, N + b * low];  // beta - b u, as the precession
+  const curved = atTop * atLow < 0 ? "looping" : "wavy";
+  const constant = isStill || band < 1e-7;  // a double root has half of the digits
+  const plane = !r0 && !along;
+  const usual = (2 * Math.PI) / (Math.sqrt(torque) + Math.abs(b) + Math.sqrt(swing) || 1);
+  let regime = period || constant ? "regular" : "separatrix";
+  if (isVertical) regime = tilt ? "hanging" : "sleeping";
   return {
     scene,
     angles,
-    span,
-    isSketch: Boolean(!isVertical && (isNear || (a && 1 - k < 5e-8))),
-    f: (u) => (alpha - a * u) * (1 - u * u) - (beta - b * u) ** 2,
-    facts: factsOf(),
+    span: period ?? 20 * usual,
+    isSketch: !isVertical && ((fromVertical > 0 && fromVertical < 1e-3) || (torque > 0 && 1 - k < 5e-8)),
+    f: (u) => (swing + torque * (u0 - u)) * (1 - u * u) - (along + b * (u0 - u)) ** 2,
+    facts: {
+      regime, constant, plane, spin: r0, spins: r0 !== 0, stable: b * b >= 2 * torque,
+      turns_over: plane && top === 0 && toTop > 0,
+      precesses: Math.abs(turn) > 1e-9 * Math.sqrt(a * width),
+      path: constant || plane ? null : Math.abs(atTop) < 1e-9 * Math.abs(atLow) ? "cusped" : curved,
+    },
     record: {
-      a, b, u1: high, u2: low, u3: isSwinging ? u1 + far : null, k: isSwinging ? k : null,
+      a: torque, b, u1: isVertical ? u0 : 1 - top, u2: isVertical ? u0 : u0 - fromLow,
+      u3: isSwinging ? 1 + beyond : null, k: isSwinging ? k : null,
       T_nutation: period, T_spin: turnTime(spin), T_precession: turnTime(turn),
-      theta_min_deg: isVertical ? tilt : 2 * DEGREE * Math.asin(Math.sqrt(gap / 2)),
-      theta_max_deg: isVertical ? tilt : degrees(u2),
+      theta_min_deg: tiltOf(top, high), theta_max_deg: tiltOf(low, foot),
       mean_spin_rate: spin, mean_precession_rate: turn,
     },
   };

@@ -9,11 +9,15 @@ const CURVES = {
 };
 const text = (x, digits = 7) => String(Number(x.toPrecision(digits))).replace(/-/g, "−");
 const number = (word) => (word.trim() ? Number(word.replace("−", "-").replace(",", ".")) : NaN);
-const clamped = (x, least, most) => Math.min(Math.max(x, least), most);
 const even = (from, to, n) => Array.from({ length: n + 1 }, (_, i) => from + ((to - from) * i) / (n || 1));
 const circle = even(0, 2 * Math.PI, 120);
 /** The name of a unit; a shipped scene has none of its own. */
 const unitOf = (unit) => (unit === "angle" ? "°" : at.scenes.value in DATA.scenes ? unit : DATA.units[unit]);
+/** The meaning of an input or a key, with its unit if that is known. */
+function titleOf({ meaning, unit }) {
+  const shown = unitOf(unit);
+  return !shown || /mass|len/.test(shown) ? meaning : `${meaning} (${shown})`;
+}
 const style = getComputedStyle(document.documentElement);  // follows the dark mode
 const colour = (name) => style.getPropertyValue(`--${name}`) || name;
 const camera = { azimuth: -62, elevation: 20, zoom: 1 };
@@ -166,19 +170,17 @@ function drawSpace() {
   }
   if (depth(frame.axis) >= 0) line(pen, axle, "ink", { width: 1.6 });
   half(true);
-  if (at.arcs.checked) {
-    line(pen, [[0, 0, 0], frame.nodes].map(place), "green", { dash: [6, 3] });
-    const points = {
-      psi: (x) => [0.8 * Math.cos(x), 0.8 * Math.sin(x), 0],
-      theta: (x) => sum([0.95, frameOf(x, psi).axis]),
-      phi: (x) => around(frame, 0.45, x, 0.5),
-    };
-    for (const [name, point] of Object.entries(points)) {
-      const [symbol, , tint] = CURVES[name];
-      const shown = angles[name] % (2 * Math.PI);
-      line(pen, even(0, shown, 40).map((x) => place(point(x))), tint, { width: 2 });
-      word(pen, symbol, place(sum([1.14, point(shown / 2)])), tint);
-    }
+  line(pen, [[0, 0, 0], frame.nodes].map(place), "green", { dash: [6, 3] });
+  const points = {
+    psi: (x) => [0.8 * Math.cos(x), 0.8 * Math.sin(x), 0],
+    theta: (x) => sum([0.95, frameOf(x, psi).axis]),
+    phi: (x) => around(frame, 0.45, x, 0.5),
+  };
+  for (const [name, point] of Object.entries(points)) {
+    const [symbol, , tint] = CURVES[name];
+    const shown = angles[name] % (2 * Math.PI);
+    line(pen, even(0, shown, 40).map((x) => place(point(x))), tint, { width: 2 });
+    word(pen, symbol, place(sum([1.14, point(shown / 2)])), tint);
   }
   at.now.textContent = Object.entries(angles).map(([x, y]) => `${CURVES[x][0]} = ${text(y * DEGREE)}°`).join("\n");
 }
@@ -255,7 +257,7 @@ function drawCubic() {
 function sample() {
   const span = 4 * motion.span;
   const from = Math.floor(t / span) * span;
-  const times = even(from, from + span, 1200);
+  const times = even(from, from + span, 800);
   const angles = times.map(motion.angles);
   const axes = angles.map(({ theta, psi }) => frameOf(theta, psi).axis);
   const { theta_min_deg: low, theta_max_deg: high, mean_precession_rate: turn } = motion.record;
@@ -271,7 +273,6 @@ function draw() {
     drawCubic();
   }
   if (document.activeElement !== at.time && !at.time.classList.contains("wrong")) at.time.value = text(t, 6);
-  if (document.activeElement !== at.scrub) at.scrub.value = (t / motion.span) * 10;
 }
 
 const make = (tag, parts) => Object.assign(document.createElement(tag), parts);
@@ -302,7 +303,7 @@ function rangeOf(name, x) {
   return [-most, most];
 }
 
-/** The input that makes a scene impossible, and why; or nothing. */
+/** The input that makes a scene impossible, why, and a change that mends it; or nothing. */
 function complaint(given) {
   const { m, A, C, s, g, theta0_deg: tilt, psidot0 } = given;
   const outside = {
@@ -312,32 +313,26 @@ function complaint(given) {
     if (!Number.isFinite(given[name])) return [name, `${symbol} must be a number`];
     if (outside[name]) return [name, `${symbol} must be ${bound}`];
   }
-  return tilt % 180 === 0 && psidot0 ? ["psidot0", "ψ'0 must be 0 if the axis is vertical."] : [];
+  return tilt % 180 === 0 && psidot0 ? ["psidot0", "ψ'0 must be 0 if the axis is vertical.", { psidot0: 0 }] : [];
 }
 
-/** Say what is wrong with a field, or nothing; `remedy` is what the button beside it does. */
+/** Say what is wrong with a field, or nothing; the button beside it makes the changes of `remedy`. */
 function say(field, words = "", remedy = null) {
   document.querySelectorAll(".wrong").forEach((each) => each.classList.remove("wrong"));
   if (words) field.classList.add("wrong");
-  [at.error.textContent, at.fix.hidden, at.fix.onclick] = [words, !remedy, remedy];
+  [at.error.textContent, at.fix.hidden, at.fix.onclick] = [words, !remedy, () => change(remedy, true)];
 }
 
 /** Change some inputs, unless they are impossible; `anew` sets the ends of the sliders. */
 function change(changes, anew = false) {
   const given = { ...scene, ...changes };
-  const [wrong, words] = complaint(given);
-  if (document.body.classList.toggle("bad", Boolean(wrong))) {
-    const remedy = words.includes("must be 0 if") ? () => change({ ...changes, psidot0: 0 }, true) : null;
-    say(fields[wrong].field, words, remedy);
-    return;
-  }
-  say();
+  const [wrong, words, remedy] = complaint(given);
+  say(fields[wrong]?.field, words, remedy && { ...changes, ...remedy });
+  if (document.body.classList.toggle("bad", Boolean(wrong))) return;
   scene = given;
   motion = motionOf(scene);
   for (const [name, { label, field, slider }] of Object.entries(fields)) {
-    const { symbol, meaning, unit } = DATA.inputs[name];
-    const shown = unitOf(unit);
-    label.textContent = `${symbol}  ${meaning}${/mass|len/.test(shown) ? "" : ` (${shown})`}`;
+    label.textContent = `${DATA.inputs[name].symbol}  ${titleOf(DATA.inputs[name])}`;
     if (anew || name === "C") [slider.min, slider.max] = rangeOf(name, scene[name]);
     if (name === "A") slider.min = Math.max(slider.min, scene.C / 2);
     [field.value, slider.value] = [Number(scene[name].toPrecision(7)), scene[name]];
@@ -345,13 +340,11 @@ function change(changes, anew = false) {
   if (anew) pace = motion.span / 2.5;
   at.words.textContent = sentence(motion, DATA.phrases, unitOf("time"));
   at.sketch.hidden = !motion.isSketch;
-  at.record.replaceChildren(...Object.entries(motion.record).filter(([, x]) => x !== null).map(([name, x]) => {
-    const { symbol, meaning, unit, formula } = DATA.keys[name];
-    const row = make("tr", {});
-    for (const words of [symbol, meaning, `${text(x)} ${unitOf(unit)}`]) row.insertCell().textContent = words;
-    row.cells[1].append(make("small", { textContent: formula }));
-    return row;
-  }));
+  at.record.replaceChildren();
+  for (const [name, x] of Object.entries(motion.record).filter(([, value]) => value !== null)) {
+    const row = at.record.insertRow();
+    for (const words of [DATA.keys[name].symbol, titleOf(DATA.keys[name]), text(x)]) row.insertCell().textContent = words;
+  }
   stale();
 }
 
@@ -376,7 +369,7 @@ function play(isOn) {
 
 /** Write everything that is shown into the address. */
 function link() {
-  const view = { t, speed: at.speed.value, ...camera, arcs: Number(at.arcs.checked), scene: at.scenes.value };
+  const view = { t, speed: at.speed.value, ...camera, scene: at.scenes.value };
   history.replaceState(null, "", `#${new URLSearchParams({ ...scene, ...view })}`);
 }
 
@@ -389,7 +382,6 @@ function restore() {
   change(Object.fromEntries(Object.entries(known).filter(([name]) => name in DATA.inputs)), true);
   for (const name of Object.keys(camera)) if (Number.isFinite(known[name])) camera[name] = known[name];
   if (Number.isFinite(known.speed)) at.speed.value = known.speed;
-  at.arcs.checked = known.arcs !== 0;
   setTime(known.t ?? 0);
   return words.size > 0;
 }
@@ -402,18 +394,13 @@ const KEYS = {
   ArrowRight: () => setTime(t + motion.span / 50),
   ArrowLeft: () => setTime(Math.max(t - motion.span / 50, 0)),
   Home: () => setTime(0),
-  "+": () => zoom(1.1),
-  "-": () => zoom(1 / 1.1),
-  0: resetView,
   f: fullScreen,
 };
 const on = (part, kinds, act, options) => kinds.split(" ").forEach((kind) => part.addEventListener(kind, act, options));
 on(at.play, "click", () => play(!playing));
 on(at.restart, "click", () => setTime(0));
-on(at.reset, "click", resetView);
 on(at.full, "click", fullScreen);
 on(at.time, "change", () => setTime(number(at.time.value)));
-on(at.scrub, "input", () => setTime((Number(at.scrub.value) * motion.span) / 10));
 on(at.plots, "pointermove", (event) => event.buttons && setTime(Math.max(curves.timeAt(event.offsetX), 0)));
 on(at.space, "pointerdown", (event) => at.space.setPointerCapture(event.pointerId));
 on(at.space, "pointermove", ({ buttons, movementX, movementY }) => {
@@ -421,6 +408,7 @@ on(at.space, "pointermove", ({ buttons, movementX, movementY }) => {
   camera.azimuth -= movementX * 0.5;
   camera.elevation = clamped(camera.elevation + movementY * 0.5, -90, 90);
 });
+on(at.space, "dblclick", resetView);
 on(at.space, "wheel", (event) => {
   event.preventDefault();
   zoom(event.deltaY < 0 ? 1.1 : 1 / 1.1);

@@ -14,7 +14,6 @@ from typing import Any
 
 from ...errors import LagtopError, check_type
 from ...output.notebook import Document
-from ...solver.explanation import listed
 from ...solver.keys import KEYS
 from ...solver.solve import Motion, solve
 from ...solver.summary import PHRASES
@@ -33,7 +32,7 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     """Return the interactive page for the browser: the top in space, its curves and its numbers.
 
     `unit` names mass, len and time in the units of the inputs.  The page computes in doubles, to
-    1e-6 rad over 20 nutations, and says where it is only a sketch.  Raises LagtopError for inputs
+    1e-7 rad over 20 nutations, and says where it is only a sketch.  Raises LagtopError for inputs
     outside 1e-30 to 1e30.
 
     >>> view(solve(Top()))[:15]
@@ -55,7 +54,6 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
 
 def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
     """Return the constant DATA of the page."""
-    formulas = {row.name: row.formula for row in listed()}
     scene = page_scene(motion)
     inputs = {name: DECLARED[name.removesuffix("_deg")] for name in scene}
     units = {x.unit for x in inputs.values()} | {x.unit for x in KEYS.values()}
@@ -69,10 +67,7 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
         "units": {x: unit(x) for x in sorted(units)},
         "phrases": PHRASES,
         "inputs": {name: described(x, meaning=x.name, bound=x.bound) for name, x in inputs.items()},
-        "keys": {
-            x: described(KEYS[x], meaning=KEYS[x].meaning, formula=formulas.get(x, ""))
-            for x in SHOWN
-        },
+        "keys": {x: described(KEYS[x], meaning=KEYS[x].meaning) for x in SHOWN},
     }
 
 
