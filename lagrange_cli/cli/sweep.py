@@ -197,7 +197,7 @@ def find_command(
         known = [*all_keys(radians=top.radians)]
         named = {x: unit_name(f"{x}_deg", radians=top.radians) for x in keys}
         chosen = check_names("keys", [y if y in known else x for x, y in named.items()], known)
-    search, given = search_of(top.inputs, words, scene=top.scene, radians=top.radians)
+    search, given = search_of(top.inputs, words, top.scene, radians=top.radians)
     motions, looked = find_tops(search, scan)
     opt.warn(given)
     complain(f"{len(motions)} found; {looked}")

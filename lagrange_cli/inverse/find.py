@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from itertools import product
 from numbers import Integral
 from operator import eq, ge, gt, le, lt
 from types import NoneType
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.ndimage import minimum_filter
+from scipy.ndimage import maximum_filter, minimum_filter
 from scipy.optimize import brentq, least_squares
 
 from ..arithmetic.text import double_text, quoted, shortened
@@ -28,20 +27,13 @@ from ..solver.keys import all_keys, shown_keys, unit_name
 from ..solver.solve import Motion, solve
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import sweep
+from ..sweeps.results import Results
 from ..top.given import Given, gather
 from ..top.inputs import overridden, warn_of
 from ..top.top import INPUTS, Top
-from ..top.values import (
-    Span,
-    Value,
-    exact_number,
-    parse_number_or_span,
-    parse_value,
-    value_of,
-    values_of,
-)
+from ..top.values import Span, exact_number, parse_number_or_span, parse_value, value_of, values_of
 
-COUNTS = {1: 4000, 2: 60, 3: 20}
+_COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
 _WORDS = {"regime": [x.value for x in Regime], "path": ["cusped", "looping", "wavy"]}
 """Keys that hold a word, and the words."""
@@ -52,11 +44,10 @@ _EXTREMA, _FINER = 12, 100
 """Number of extrema nearest to the target around which the scan is refined, and how much."""
 _LEAP = 1e-6
 """Residual at a root, over the residuals at the ends of its bracket, that only a leap exceeds."""
-_STARTS, _CLOSE, _APART = 16, 1e-10, 1e-7
+_STARTS, _CLOSE, _APART, _SINGULAR = 16, 1e-10, 1e-7, 1e7
 """Starts for several unknowns; the largest residual of a solution, over the spread of the scanned
-numbers; the difference, over the range, below which two solutions count as one."""
-_FLAT = 1e-7
-"""Ratio of singular values of the slopes below which a solution is not isolated."""
+numbers; the difference, over the range, below which two solutions count as one; the condition
+number of the slopes from which a solution is not isolated."""
 
 
 class Condition(NamedTuple):
@@ -64,42 +55,31 @@ class Condition(NamedTuple):
 
     key: str
     relation: str
-    value: float | str
+    value: Any
     has_unit: bool = False
     """Whether the value has a unit other than that of an angle, so that inputs need units too."""
 
-    def holds(self, found: Any) -> bool:
-        """Return whether a number or word meets the condition; None does not."""
-        return found is not None and bool(_RELATIONS[self.relation](found, self.value))
-
     def __str__(self) -> str:
-        value = self.value if isinstance(self.value, str) else double_text(self.value)
+        value = self.value if self.key in _WORDS else double_text(self.value)
         return f"{self.key} {self.relation} {value.removesuffix('.0')}"
 
 
 class Search(NamedTuple):
-    """Known inputs, ranges of unknown inputs, target values by key, and other conditions.
-
-    If there is no target value, the first of the other conditions has a word: its border is sought.
-    """
+    """Known inputs, ranges of unknown inputs, and conditions."""
 
     fixed: Mapping[str, Any]
     """Numbers; psidot0 may be a word."""
     spans: Mapping[str, Span]
-    targets: Mapping[str, float]
-    others: Sequence[Condition]
+    goals: Sequence[Condition]
+    """A target value for each unknown input, or one word, whose border is sought."""
+    bounds: Sequence[Condition]
+    """The conditions that solutions must meet besides."""
     radians: bool
 
     @property
-    def target_text(self) -> str:
-        """The conditions on numbers as text."""
-        shown = [Condition(key, "=", x) for key, x in self.targets.items()] or self.others[:1]
-        return ", ".join(map(str, shown))
-
-    @property
-    def bounds(self) -> Sequence[Condition]:
-        """The conditions that solutions must meet besides."""
-        return self.others[0 if self.targets else 1 :]
+    def targets(self) -> dict[str, float]:
+        """The target values by key."""
+        return {x.key: x.value for x in self.goals}
 
     def top(self, values: Sequence[float] | Array) -> Top:
         """Return the top with these values of the unknowns.  Raises LagtopError."""
@@ -109,28 +89,24 @@ class Search(NamedTuple):
     def residuals(self, values: Sequence[float] | Array) -> Array:
         """Return numbers of `solve` minus their targets; NaN where a key has no number."""
         try:
-            record = solve(self.top(values)).record(radians=self.radians, keys=list(self.targets))
+            record = solve(self.top(values)).record(radians=self.radians, keys=[*self.targets])
         except LagtopError:
-            return np.full(len(self.targets), np.nan)
-        return np.array([record[key] for key in self.targets], float) - [*self.targets.values()]
+            return np.full(len(self.goals), np.nan)
+        return np.array([record[x] for x in self.targets], float) - [*self.targets.values()]
 
     def swept(self, values: Array) -> Array:
         """Return the same by `sweep`: a row for each row of values, shape (tops, unknowns)."""
-        found = self.sweep(values, list(self.targets))
-        return np.array([found[key] - x for key, x in self.targets.items()], float).T
+        found = self.sweep(values)
+        return np.stack([np.asarray(found[x], float) - y for x, y in self.targets.items()], axis=-1)
 
-    def sweep(self, values: Array, keys: Sequence[str]) -> Any:
-        """Return keys for each row of values, as arrays by key."""
+    def sweep(self, values: Array) -> Results:
+        """Return the numbers or words of the goals for each row of values of the unknowns."""
         inputs = overridden(dict(self.fixed), dict(zip(self.spans, values.T, strict=True)))
-        return sweep(keys=keys, radians=self.radians, **inputs)
+        return sweep(keys=[*self.targets], radians=self.radians, **inputs)
 
 
 def search_of(
-    inputs: Mapping[str, Any],
-    conditions: Sequence[str],
-    *,
-    scene: str | None = None,
-    radians: bool = False,
+    inputs: Mapping[str, Any], conditions: Sequence[str], scene: str | None, *, radians: bool
 ) -> tuple[Search, Given]:
     """Return a search from inputs, conditions and a scene file, and the inputs that were given.
 
@@ -141,27 +117,24 @@ def search_of(
     given = gather(values_of(inputs), scene, units=any(x.has_unit for x in found))
     if key := repeated(x.key for x in found if x.relation == "="):
         raise LagtopError(f"a condition must name each key once, got {key} twice")
-    targets = {x.key: x.value for x in found if x.relation == "=" and not isinstance(x.value, str)}
-    others = [x for x in found if x.relation != "=" or isinstance(x.value, str)]
     spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
-    if not spans:
-        raise LagtopError("no input is unknown: give a range, such as r0=10:200")
-    if len(spans) > max(COUNTS):
-        raise LagtopError(f"find takes 1 to {max(COUNTS)} unknown inputs, got {len(spans)}")
-    words = [x for x in others if isinstance(x.value, str)]
-    if "psidot0" in spans and (
-        targets.get("k") == 0 or any(x.value == Regime.STEADY for x in words)
-    ):
+    if len(spans) not in _COUNTS:
+        wanted = f"1 to {max(_COUNTS)} unknown inputs as ranges, such as r0=10:200"
+        raise LagtopError(f"find takes {wanted}, got {len(spans)}")
+    steady = {("k", 0), ("regime", Regime.STEADY.value)}
+    if "psidot0" in spans and steady & {(x.key, x.value) for x in found if x.relation == "="}:
         raise LagtopError("a steady precession is not found by a scan: use psidot0=steady")
-    if len(targets) != len(spans) and not (len(spans) == 1 and words and not targets):
+    goals = [x for x in found if x.relation == "=" and x.key not in _WORDS]
+    if not goals and len(spans) == 1:
+        goals = [x for x in found if x.key in _WORDS][:1]
+    if len(goals) != len(spans):
         raise LagtopError(
-            f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(targets)} for "
+            f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(goals)} for "
             f"{len(spans)}: {', '.join(spans)}"
         )
-    others.sort(key=lambda x: isinstance(x.value, float))
     known = {name: x for name, x in given.values.items() if name not in spans}
     fixed = shared_inputs(given._replace(values=known), varying=spans)
-    return Search(fixed, spans, targets, others, radians), given
+    return Search(fixed, spans, goals, [x for x in found if x not in goals], radians), given
 
 
 def _read_condition(text: str, *, radians: bool) -> Condition:
@@ -176,7 +149,7 @@ def _read_condition(text: str, *, radians: bool) -> Condition:
     if key in _WORDS:
         word = Regime.STEADY.value if (key, word) == ("regime", "steady") else word
         if relation != "=" or word not in _WORDS[key]:
-            wanted, got = ", ".join(_WORDS[key]), f"{'' if relation == '=' else relation}{word}"
+            wanted, got = ", ".join(_WORDS[key]), f"{relation}{word}".removeprefix("=")
             raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
         return Condition(key, relation, word)
     unit = shown_keys(radians=radians, requested=True)[key].unit
@@ -190,7 +163,7 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
 
     Raises AbsentError if there is none; its message has the nearest point of the scan.
     """
-    each = COUNTS[len(search.spans)] if count is None else count
+    each = _COUNTS[len(search.spans)] if count is None else count
     if each < 3 or each ** len(search.spans) > 1e7:
         text = f"scan must be 3 or more values of each unknown, and at most 1e7 tops, got {each}"
         raise LagtopError(text, "scan")
@@ -199,73 +172,57 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
         for x in search.spans.values()
     ]
     values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
-    if search.targets:
+    nearest: list[Any] = []
+    if search.goals[0].key in _WORDS:
+        points = _borders(search, values)
+    else:
         off = search.swept(values)
         points = (_roots if len(axes) == 1 else _minima)(search, values, off)
-    else:
-        points = _borders(search, values)
+        nearest = [values[np.argmin(_distances(search, off)[1])]]
     ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
     looked = f"scanned {ranges} at {each} values: solutions closer together may be missed"
     if len(axes) > 1:
         looked = f"scanned {ranges} at {each} values each: only the best points were followed"
     motions = [solve(search.top(point)) for point in points]
-    missed = [
-        [(x, y) for x in search.bounds if not x.holds(y := _number(m, x.key))] for m in motions
-    ]
-    kept = [motion for motion, wrong in zip(motions, missed, strict=True) if not wrong]
+    kept = [x for x in motions if not _misses(search, x, search.bounds)]
     if not kept:
-        why = f"of {len(motions)} with {search.target_text} none has "
-        why += f"{', '.join(map(str, search.bounds))}: the nearest has"
-        misses = [_miss(search, *x) for x in zip(missed, points, strict=True)]
-        why = f"{why} {min(misses)[1]}" if motions else _nearest(search, values)
-        raise AbsentError(f"no top found: {why}; {looked}")
+        near = _nearest(search, points or nearest, search.bounds if points else search.goals)
+        raise AbsentError(f"no top found: {near}; {looked}")
     return kept, looked
 
 
-def _miss(
-    search: Search, wrong: Sequence[tuple[Condition, Any]], point: Sequence[float] | Array
-) -> tuple[float, str]:
-    """Return how far numbers are from their conditions, and a text with the unknown inputs."""
-    sizes, texts = [0.0], []
-    for condition, y in wrong:
-        if y is None or isinstance(y, str):
-            texts.append(f"{condition.key} = {y}")
-        else:
-            sizes.append(abs(y - float(condition.value)))
-            texts.append(f"{condition.key} = {double_text(y)}, {sizes[-1]:.2g} off,")
-    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, point, strict=True))
-    return sum(sizes), f"{' '.join(texts)} at {where}"
+def _misses(search: Search, motion: Motion, conditions: Sequence[Condition]) -> dict[str, float]:
+    """Return the values of a motion that miss conditions, as texts, and by how much."""
+    missed = {}
+    for x in conditions:
+        found = motion.record(radians=search.radians, keys=[x.key])[x.key]
+        if found is None or not _RELATIONS[x.relation](found, x.value):
+            off = abs(found - x.value) if isinstance(found, float) else 0.0
+            shown = f"{double_text(found)}, {off:.2g} off," if off else found
+            missed[f"{x.key} = {shown}"] = off
+    return missed
 
 
-def _number(motion: Motion, key: str) -> Any:
-    return motion.record(radians=key.endswith("_rad"), keys=[key])[key]
-
-
-def _distances(search: Search, residuals: Array) -> tuple[Array, Array]:
-    """Return the spread of each number in the scan, and the distance of each top from the targets.
-
-    The distance is the norm of the residuals over the spreads, infinite where a number is missing.
-    """
-    known = np.isfinite(residuals).all(axis=1)
-    sizes = np.maximum(np.abs([*search.targets.values()]), 1e-300)
-    spread = np.std(residuals[known], axis=0) if known.any() else sizes
-    scale = np.where(spread > 0, spread, sizes)
-    return scale, np.where(known, np.linalg.norm(residuals / scale, axis=1), np.inf)
-
-
-def _nearest(search: Search, values: Array) -> str:
-    """Return where the scan comes nearest to the targets, or why it has no numbers."""
-    if not search.targets:
-        return f"no border of {search.target_text}"
-    at = values[int(np.argmin(_distances(search, search.swept(values))[1]))]
+def _nearest(search: Search, points: Sequence[Any], conditions: Sequence[Condition]) -> str:
+    """Return which of some points comes nearest to conditions, or why none does."""
+    wanted = ", ".join(map(str, [*search.goals, *search.bounds]))
     try:
-        record = solve(search.top(at)).record(radians=search.radians, keys=list(search.targets))
+        misses = [_misses(search, solve(search.top(x)), conditions) for x in points]
     except LagtopError as error:
-        return f"no top of the scan has {search.target_text} ({error})"
-    if None in record.values():
-        return f"no top of the scan has {search.target_text}"
-    wrong = [(Condition(key, "=", x), record[key]) for key, x in search.targets.items()]
-    return f"nearest to {search.target_text} is {_miss(search, wrong, at)[1]}"
+        return f"no top of the scan has {wanted} ({error})"
+    if not points:
+        return f"no border of {wanted}"
+    missed, at = min(zip(misses, points, strict=True), key=lambda x: sum(x[0].values()))
+    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, at, strict=True))
+    return f"nearest to {wanted} is {' '.join(missed)} at {where}"
+
+
+def _distances(search: Search, off: Array) -> tuple[Array, Array]:
+    """Return the spread of each number in a scan, and the distances of tops in these spreads."""
+    size = np.maximum(np.abs([*search.targets.values()]), 1e-300)
+    spread = np.ma.masked_invalid(off).std(axis=0).filled(0.0)
+    scale = np.where(spread > _SWEPT * size, spread, size)
+    return scale, np.nan_to_num(np.linalg.norm(off / scale, axis=1), nan=np.inf)
 
 
 def _borders(search: Search, values: Array) -> list[list[float]]:
@@ -274,12 +231,10 @@ def _borders(search: Search, values: Array) -> list[list[float]]:
     A class without width, such as that of cusps, is the border of two others: then neighbouring
     doubles may have these.  Raises LagtopError if the whole scan has the word.
     """
-    (name, span), (wanted, *_) = next(iter(search.spans.items())), search.others
-    words = np.array(search.sweep(values, [wanted.key])[wanted.key], object)
+    (wanted,) = search.goals
+    words = np.array(search.sweep(values)[wanted.key], object)
     if (words == wanted.value).all():
-        sleeps = wanted.value == Regime.SLEEPING
-        hint = "stability_factor=1" if sleeps else "another condition, or another unknown"
-        raise LagtopError(f"every {name} from {span} has {wanted}: use {hint}")
+        raise _undetermined(search, values[:, 0])
     borders = set()
     for i in np.flatnonzero(words[:-1] != words[1:]).tolist():
         ends = [words[i], words[i + 1]]
@@ -287,7 +242,7 @@ def _borders(search: Search, values: Array) -> list[list[float]]:
             continue
         low, high = values[i : i + 2, 0].tolist()
         while low < (middle := low + (high - low) / 2) < high:
-            found = _number(solve(search.top([middle])), wanted.key)
+            found = solve(search.top([middle])).record(keys=[wanted.key])[wanted.key]
             low, high = (middle, high) if found == ends[0] else (low, middle)
             if found == wanted.value not in ends:
                 break
@@ -295,66 +250,50 @@ def _borders(search: Search, values: Array) -> list[list[float]]:
     return [[x] for x in sorted(borders)]
 
 
-def _roots(search: Search, values: Array, residuals: Array) -> list[list[float]]:
+def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
     """Return where the number passes its target, in ascending order.
 
     Raises LagtopError if a whole range of the unknown has the target value.
     """
-    ((name, _),), (target,) = search.spans.items(), search.targets.values()
+    x, size = values[:, 0], np.abs(off[:, 0])
+    least = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
+    least = least[np.argsort(size[least])][:_EXTREMA]  # may hide two roots: scanned more finely
+    finer = np.linspace(x[least - 1], x[least + 1], 2 * _FINER + 1)
+    x = np.unique([*x, *finer.ravel()])
+    y, (target,) = search.swept(x[:, np.newaxis])[:, 0], search.targets.values()
+    near = np.abs(y) <= _SWEPT * abs(target)
+    if (near[:-2] & near[1:-1] & near[2:]).any():
+        raise _undetermined(search, x[near])
 
-    def off(at: float) -> float:
+    def residual(at: float) -> float:
         return float(search.residuals([at])[0])
 
-    x, y = _refined(search, values[:, 0], residuals[:, 0])
-    near = np.abs(y) <= _SWEPT * abs(target)
-    flat = near[:-2] & near[1:-1] & near[2:]
-    if flat.any():
-        first = int(np.argmax(flat))
-        last = first + int(np.argmin([*near[first:], False])) - 1
-        raise LagtopError(
-            f"every {name} from {x[first]:g} to {x[last]:g} has {search.target_text}, which does "
-            f"not determine {name}: use another condition, or another unknown"
-        )
     roots = set()
     for i in np.flatnonzero((y[:-1] * y[1:] <= 0) | near[:-1] | near[1:]).tolist():
-        low, high = float(x[i]), float(x[i + 1])
-        ends = off(low), off(high)
-        if not ends[0] * ends[1] <= 0:
-            continue
-        precision = {"xtol": 2e-16 * max(abs(low), abs(high)), "rtol": 8.9e-16, "maxiter": 200}
+        low, high = x[i : i + 2].tolist()
+        precision = {"xtol": 2e-16 * max(abs(low), abs(high)), "maxiter": 200, "disp": False}
         try:
-            root = float(brentq(off, low, high, **precision, disp=False))
-        except ValueError:  # no number between the ends
+            root = float(brentq(residual, low, high, **precision))
+        except ValueError:  # no change of sign, or no number between the ends
             continue
-        if abs(off(root)) <= _LEAP * max(map(abs, ends)) + 4 * np.spacing(abs(target)):
+        ends = np.fmax(*np.abs(y[i : i + 2]))
+        if abs(residual(root)) <= _LEAP * ends + 4 * np.spacing(abs(target)):
             roots.add(root)
     return [[x] for x in sorted(roots)]
 
 
-def _refined(search: Search, x: Array, y: Array) -> tuple[Array, Array]:
-    """Return a scan with more points around its extrema, which may hide two solutions."""
-    size = np.abs(y)
-    least = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
-    inner = np.flatnonzero(least & (y[:-2] * y[1:-1] > 0) & (y[1:-1] * y[2:] > 0)) + 1
-    inner = inner[np.argsort(size[inner])][:_EXTREMA]
-    finer = np.linspace(x[inner - 1], x[inner + 1], 2 * _FINER + 1).ravel()
-    x, order = np.unique([*x, *finer], return_index=True)
-    return x, np.concatenate([y, search.swept(finer[:, np.newaxis])[:, 0]])[order]
-
-
-def _minima(search: Search, values: Array, residuals: Array) -> list[list[float]]:
+def _minima(search: Search, values: Array, off: Array) -> list[list[float]]:
     """Return where all numbers have their targets, by least squares from minima of the scan.
 
     Raises LagtopError if solutions are not single points.
     """
     low, high = values.min(axis=0), values.max(axis=0)
-    scale, distance = _distances(search, residuals)
+    scale, distance = _distances(search, off)
     cube = distance.reshape((round(len(distance) ** (1 / len(low))),) * len(low))
-    neighbours = [x for x in product((-1, 0, 1), repeat=cube.ndim) if any(x)]
-    for off in residuals.T.reshape(-1, *cube.shape):  # flat parts lead nowhere
-        moved = (np.roll(off, x, range(cube.ndim)) for x in neighbours)
-        same = sum((abs(x - off) <= _SWEPT * abs(off)).astype(int) for x in moved)
-        cube = np.where((3 * same > len(neighbours)) & (off != 0), np.inf, cube)
+    for y, target in zip(off.T.reshape(-1, *cube.shape), search.targets.values(), strict=True):
+        flat = maximum_filter(y, 3) - minimum_filter(y, 3) <= _SWEPT * np.abs(y)
+        is_off = np.abs(y) > _SWEPT * abs(target)
+        cube = np.where(maximum_filter(flat, 3) & is_off, np.inf, cube)  # leads nowhere
     least = cube == minimum_filter(cube, 3, mode="constant", cval=np.inf)
     starts = np.flatnonzero(least.ravel() & np.isfinite(cube.ravel()))
 
@@ -367,16 +306,21 @@ def _minima(search: Search, values: Array, residuals: Array) -> list[list[float]
         exact: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
         ended = least_squares(residual, inside, "3-point", (0, 1), **exact, max_nfev=40)
         is_new = all(np.max(np.abs(ended.x - x)) > _APART for x in found)
-        if not is_new or np.max(np.abs(ended.fun)) > _CLOSE:
-            continue
-        found.append(ended.x)
-        sizes = np.linalg.svd(ended.jac)[1]
-        if sizes[-1] <= _FLAT * sizes[0]:
-            raise LagtopError(
-                f"the conditions do not determine {' and '.join(search.spans)}: many values give "
-                f"{search.target_text}; use another condition, or another unknown"
-            )
+        if is_new and np.max(np.abs(ended.fun)) <= _CLOSE:
+            found.append(ended.x)
+            if np.linalg.cond(ended.jac) >= _SINGULAR:
+                raise _undetermined(search)
     return sorted(np.clip(low + x * (high - low), low, high).tolist() for x in found)
+
+
+def _undetermined(search: Search, values: Array | None = None) -> LagtopError:
+    """Return the error of conditions that many values of the unknowns meet, such as these."""
+    names, goals = " and ".join(search.spans), ", ".join(map(str, search.goals))
+    where = "" if values is None else f" from {values[0]:g} to {values[-1]:g}"
+    sleeps = search.goals[0].value == Regime.SLEEPING
+    remedy = "stability_factor=1" if sleeps else "another condition, or another unknown"
+    text = f"do not determine {names}: many values{where} give {goals}; use {remedy}"
+    return LagtopError(f"the conditions {text}")
 
 
 def find(
@@ -399,11 +343,17 @@ def find(
     """
     check_type("scan", scan, Integral, NoneType)
     check_names("inputs", list(inputs) or ["m"], INPUTS)
-    given = {name: _input(name, x) for name, x in inputs.items() if x is not None}
+    given = {
+        name: parse_value(
+            name, _text(name, x), parse_number_or_span, uncertain=True, steady=name == "psidot0"
+        )
+        for name, x in inputs.items()
+        if x is not None
+    }
     texts = conditions
     if isinstance(conditions, Mapping):
-        texts = [f"{key}={_text(key, value_of(key, x).number)}" for key, x in conditions.items()]
-    search, found = search_of(given, list(texts), radians=radians)
+        texts = [f"{key}={_text(key, x)}" for key, x in conditions.items()]
+    search, found = search_of(given, list(texts), None, radians=radians)
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     try:
@@ -412,16 +362,9 @@ def find(
         return []
 
 
-def _text(key: str, number: Any) -> str:
-    return number if isinstance(number, str) else repr(float(exact_number(key, number)))
-
-
-def _input(name: str, given: Any) -> Value:
-    """Return a number, or a pair as a range.  Raises LagtopError."""
+def _text(name: str, given: Any) -> str:
+    """Return a text, a number or a pair of numbers as a text.  Raises LagtopError."""
     if isinstance(given, str):
-        steady = name == "psidot0"
-        return parse_value(name, given, parse_number_or_span, uncertain=True, steady=steady)
-    if np.shape(given) != (2,):
-        return value_of(name, given)
-    first, last = (float(exact_number(name, x)) for x in given)
-    return parse_value(name, f"{first!r}:{last!r}", parse_number_or_span)
+        return given
+    numbers = [value_of(name, x).number for x in (given if np.shape(given) == (2,) else [given])]
+    return ":".join(repr(float(exact_number(name, x))) for x in numbers)

@@ -60,7 +60,7 @@ MISTAKES = {
     "solve|--r0|50 U/min": "(write rpm or turn/s)",
     "sweep|--r0|60rpm:80rpm:3": "must have its unit once, at the end, as in '60:80:3 rpm'",
     "table|--t-max|1e15": "--digits",
-    "find|T_nutation=1": "no input is unknown: give a range, such as --r0 10:200",
+    "find|T_nutation=1": "unknown inputs as ranges, such as --r0 10:200, got 0",
     "compare|book.xlsx": "an archive, Parquet or an array of NumPy is no text: save it as CSV",
     "compare|bare.csv": "has no header: name its 2 columns with --columns t,quaternion or the like",
     "compare|empty.csv": "psi is empty (psi): remove its columns",
