@@ -61,12 +61,14 @@ class Reference:
     def __init__(self, top: Top) -> None:
         """Compute the roots and the start of a top, from its exact inputs."""
         with mpmath.workdps(ROOT_DIGITS):  # differences of roots may cancel
-            names = ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0")
-            m, A, C, s, g, r0, theta_rate, psi_rate = (mpmath.mpf(top.exact(x)) for x in names)
-            in_degrees = top.theta0_deg is not None
-            theta = mpmath.mpf(top.exact("theta0_deg" if in_degrees else "theta0_rad"))
-            theta *= mpmath.pi / 180 if in_degrees else 1
-            a, b, u0 = 2 * m * g * s / A, C * r0 / A, mpmath.cos(theta)
+            tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
+            spin = "r0" if top.phidot0 is None else "phidot0"
+            names = ("m", "A", "C", "s", "g", spin, "thetadot0", "psidot0", tilt)
+            m, A, C, s, g, r0, theta_rate, psi_rate, theta = map(mpmath.mpf, map(top.exact, names))
+            theta *= mpmath.pi / 180 if tilt == "theta0_deg" else 1
+            u0 = mpmath.cos(theta)
+            r0 += psi_rate * u0 if spin == "phidot0" else 0
+            a, b = 2 * m * g * s / A, C * r0 / A
             around = psi_rate * mpmath.sin(theta) ** 2
             beta, alpha = around + b * u0, theta_rate**2 + around * psi_rate + a * u0
             cubic = -(alpha + b**2) / a, 2 * b * beta / a - 1, (alpha - beta**2) / a
@@ -75,16 +77,14 @@ class Reference:
                 u1, u2 = (u0, u2) if abs(u0 - u1) < abs(u0 - u2) else (u1, u0)
             band, u3_u2 = u1 - u2, u3 - u2
             self.k2, self.k2_prime = band / u3_u2, (u3 - u1) / u3_u2
-            self.u1, self.u2, self.u3 = u1, u2, u3
             self.gaps = (1 + u1, 1 + u2), (1 - u1, 1 - u2)
             self.momenta, self.drift = (beta + b, beta - b), (r0 - b) / 2
             sn2, cn2, dn2 = (u0 - u2) / band, (u1 - u0) / band, (u3 - u0) / u3_u2
         with mpmath.workdps(DIGITS):
             self.speed, self.K = mpmath.sqrt(a * u3_u2) / 2, mpmath.ellipk(self.k2)
             self.T = 2 * self.K / self.speed
-            self.w0 = mpmath.sqrt(sn2) * mpmath.elliprf(max(cn2, 0), dn2, 1)
-            if theta_rate > 0:  # the tilt grows towards u2, where w = 0
-                self.w0 = -self.w0
+            sign = -1 if theta_rate > 0 else 1  # the tilt grows towards u2, where w = 0
+            self.w0 = sign * mpmath.sqrt(sn2) * mpmath.elliprf(max(cn2, 0), dn2, 1)
             self.wholes = [self._third(x1 / x2, 1, 0, self.k2_prime) for x1, x2 in self.gaps]
             self.start = self._state(mpmath.mpf(0))[2:]
 

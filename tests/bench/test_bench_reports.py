@@ -94,8 +94,8 @@ def test_input_rounding_is_the_effect_of_half_an_ulp() -> None:
     def attitude(moved: Top) -> Any:
         return dop853(Body.of(moved), np.array([0.0, 5.0]), 1e-13)[1][-1, :4]
 
-    names = [name for name, value in top.as_dict().items() if value]
-    moved = dict(zip(names, hard.neighbours(top), strict=True))
+    given = (name for name, value in top.as_dict().items() if value)
+    moved = dict(zip(given, hard.neighbours(top), strict=True))
     h, exact = 1e-5, tuple(attitude(top))
     for name, value in (("r0", 6.0), ("theta0_deg", 60.0)):  # an ulp of the degrees
         found = rotation_angle(moved[name].attitude(5.0), exact_motion(solve(top)).attitude(5.0))
