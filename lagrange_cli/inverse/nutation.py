@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -79,7 +80,7 @@ def nutating_outcome(
     unit = found.spread / (stds[:, np.newaxis] + 1e-300)
     body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
     products = [x for x in numbers if set(x) & set("*/") and is_spin_known]
-    notes = [f"only {' and '.join(products)} can be determined: give known inputs"] * bool(products)
+    notes = [_wish(products)] * bool(products)
     if problem.is_even:
         notes.append("the sign of b is not determined: theta alone does not show the direction")
     inputs = _inputs(found, {x: y[0] for x, y in pairs.items()}, is_spin_known=is_spin_known)
@@ -99,6 +100,13 @@ def nutating_outcome(
             f"{x} and {y}": float(unit[i] @ unit[j]) for i, x in body for j, y in body if x < y
         },
     )
+
+
+def _wish(products: Sequence[str]) -> str:
+    """Return which products of inputs are determined, and which inputs would separate them."""
+    names = sorted({x for product in products for x in re.findall(r"\w+", product)})
+    some = " or ".join(names) + " is" if len(names) == 2 else f"some of {', '.join(names)} are"
+    return f"only {' and '.join(products)} can be determined, unless {some} given"
 
 
 def _faults(found: Minimum, *, is_even: bool) -> list[str]:

@@ -237,6 +237,8 @@ def test_known_inputs_determine_others(known: dict[str, float], truth: dict[str,
     outcome = fitted(t, seen, known=known)
     assert_true(outcome, truth)
     assert not known.keys() & outcome.numbers.keys()
+    product = "only C*r0 can be determined, unless C or r0 is given"
+    assert (product in outcome.notes) == ("C*r0" in outcome.numbers)
 
 
 def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
