@@ -105,7 +105,7 @@ def sweep_command(
     repeat the command to resume a run that was killed.
     """
     from ..sweeps.parts import Parts, digest_of
-    from ..sweeps.plan import ErrorCount, plan
+    from ..sweeps.plan import Part, check, noted, plan
     from ..sweeps.workers import in_order
 
     opt.exclude(jobs=jobs, dask=dask)
@@ -124,23 +124,23 @@ def sweep_command(
     if not (out.is_named or 0 < size <= FEW) and out.fmt == "table":
         sweep, out = sweep._replace(fmt="csv"), out._replace(fmt="csv")
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
-    count, (first, every) = ErrorCount(hidden), shard or (1, 1)
+    done, (first, every) = list[Part](), shard or (1, 1)
     blocks: Iterable[NumberedBlock] = islice(every_block, first - 1, None, every)
     folder = None if parts is None else Parts(parts, sweep, digest)
     if folder:
-        blocks = folder.missing(blocks, count)
+        blocks = folder.missing(blocks, done)
     with closing(in_order(sweep.part, blocks, jobs or 1, dask, _warn)) as computed:
         total = size // every or None
-        done = with_progress(count.passing(computed), "tops", total, lambda part: part.size)
+        shown = with_progress(noted(computed, done), "tops", total, lambda part: part.size)
         if folder:
-            folder.write(done)
+            folder.write(shown)
         else:
             names = _headings(sweep.header, given, out.fmt, radians=top.radians)
-            out.blocks(names, (part.text for part in done))
+            out.blocks(names, (part.text for part in shown))
     if folder and folder.found:
         complain(f"Resumed: {folder.found} parts were already in {parts}")
-    count.check()
-    if path is not None and shard is None and not count.tops:
+    check(done, hidden)
+    if path is not None and shard is None and not any(part.size for part in done):
         complain(f"Warning: {shown_path(path)} holds no tops")
 
 

@@ -8,19 +8,20 @@ wherever the printed one subtracts nearly equal numbers.  Equation numbers are C
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipe, ellipkm1, elliprf
 
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..solver.keys import degree_name
+from .tops import Numbers, Start, TopArrays
 
-Numbers = Any
-"""An array of doubles, or pairs of doubles."""
+_LEAST, _MOST = 1e-280, 1e280
+"""Sizes between which pairs of doubles keep all of their digits."""
 
 
 def sqrt(x: Numbers) -> Numbers:
@@ -32,47 +33,6 @@ def where(condition: Mask, yes: Numbers, no: Numbers) -> Numbers:
     """Choose between two numbers, element by element."""
     choose: Any = DoubleDouble.choose if isinstance(yes, DoubleDouble) else np.where
     return choose(condition, yes, no)
-
-
-def texts(condition: Mask, yes: str | None, no: str | None) -> NDArray[np.object_]:
-    """Choose between two texts, element by element."""
-    return np.array([no, yes], dtype=object)[condition.astype(np.intp)]
-
-
-class Start(NamedTuple):
-    """The constants of the motions and their states at t = 0."""
-
-    a: Numbers  # 2mgs/A (4,4)
-    b: Numbers  # C r0/A (4,5)
-    r0: Numbers
-    sleep: Numbers  # b^2/2 - a, from the inputs: it cancels near the threshold of sleeping
-    spin_drift: Numbers  # r0 - b/2 = r0 (2A - C)/2A, the spin rate without the nutation (6,1)
-    sin: Numbers
-    cos: Numbers  # u0
-    below: Numbers  # 1 + u0 = 2 cos^2(theta0/2)
-    above: Numbers  # 1 - u0 = 2 sin^2(theta0/2)
-    theta_rate: Numbers
-    psi_rate: Numbers
-
-    def in_doubles(self) -> Start:
-        """Return each number rounded to a double."""
-        return Start(*(x.high for x in self))
-
-    @property
-    def energy(self) -> Numbers:
-        """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4)."""
-        around = self.psi_rate * self.sin
-        return self.theta_rate * self.theta_rate + around * around
-
-    @property
-    def momentum(self) -> Numbers:
-        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
-        return self.psi_rate * self.sin * self.sin
-
-    @property
-    def spin_rate(self) -> Numbers:
-        """The spin rate phi' at the start (4,8)."""
-        return self.r0 - self.psi_rate * self.cos
 
 
 class Gaps(NamedTuple):
@@ -263,27 +223,33 @@ def turn_time(rate: Array) -> Numbers:
 class Motions(dict[str, Any]):
     """The numbers and texts of many tops by key; None if the tops lack one.
 
-    Each is computed once, by a formula that takes the motions.  Angles are in degrees or radians.
+    Each is computed once, by a formula that takes the motions.  `known` tells for which tops no
+    formula so far has lost digits.  Angles are in degrees or radians.
     """
 
-    known: Any = True
-
-    def __init__(self, formulas: Formulas, start: Start, gaps: Gaps | None = None) -> None:
+    def __init__(self, formulas: Formulas, tops: TopArrays, start: Start) -> None:
+        """Take some tops with their start in pairs of doubles."""
         super().__init__()
-        self.formulas, self.start, self.gaps = formulas, start, gaps
+        self.formulas, self.tops = formulas, tops
+        self.pairs, self.start = start, start.in_doubles()
+        self.known: Mask = np.ones(tops.m.shape, dtype=np.bool_)
+
+    @cached_property
+    def gaps(self) -> Gaps:
+        """The gaps of the motions, here after release from rest."""
+        return gaps_from_rest(self.start)
 
     def __missing__(self, key: str) -> Any:
-        name = degree_name(key)
-        if name != key:
-            value = None if self[name] is None else np.radians(self[name])
-        else:
-            value = self.formulas[key](self) if key in self.formulas else None
+        value: Any = None
+        if key in self.formulas:
+            value = self.formulas[key](self)
+        elif (name := degree_name(key)) != key and self[name] is not None:
+            value = np.radians(self[name])
+        if isinstance(value, DoubleDouble):
+            value, size = value.high, abs(value.high)
+            self.known &= ~((size > 0) & (size < _LEAST) | (size > _MOST))
         self[key] = value
         return value
-
-    def trusted(self, _: Collection[str]) -> Any:
-        """Return which tops can be trusted for some keys."""
-        return self.known
 
 
 Formulas = dict[str, Callable[[Any], Any]]
@@ -312,6 +278,10 @@ def spin_at_rest(of: Any) -> Numbers:
     return of.start.spin_drift + np.where(of.start.r0 < 0, -turn, turn) / 2
 
 
+_START_TILT: Formulas = {  # with all of its digits in both units
+    "theta_min_deg": lambda of: of.tops.tilt_in(radians=False),
+    "theta_min_rad": lambda of: of.tops.tilt_in(radians=True),
+}
 _OF_ALL: Formulas = {
     "a": lambda of: of.start.a,  # (4,4)
     "b": lambda of: of.start.b,  # (4,5)
@@ -319,10 +289,11 @@ _OF_ALL: Formulas = {
     "spin_rate_start": lambda of: of.start.spin_rate,
 }
 OF_VERTICAL: Formulas = _OF_ALL | {
-    "u1": lambda of: of.start.cos,
-    "u2": lambda of: of.start.cos,
-    "mean_spin_rate": lambda of: of.start.r0,
-    "spin_rate_start": lambda of: of.start.r0,
+    **_START_TILT,
+    "theta_max_deg": lambda of: of["theta_min_deg"],
+    "theta_max_rad": lambda of: of["theta_min_rad"],
+    **dict.fromkeys(("u1", "u2"), lambda of: of.start.cos),
+    **dict.fromkeys(("mean_spin_rate", "spin_rate_start"), lambda of: of.start.r0),
 }
 """Formulas of tops released on the vertical."""
 OF_TORQUE_FREE: Formulas = OF_VERTICAL | {
@@ -357,6 +328,7 @@ OF_NUTATION: Formulas = _OF_ALL | {
 }
 """Formulas of all nutations."""
 OF_PENDULUMS: Formulas = OF_NUTATION | {
+    **_START_TILT,
     "k_squared": lambda of: of["m"],
     "comodular_angle_deg": lambda of: np.degrees(np.arctan2(of["k_prime"], of["k"])),
     "amplitude_deg": lambda of: np.degrees(  # (7,2), from its tangent

@@ -20,7 +20,7 @@ from ..errors import CannotWriteError, LagtopError
 from ..file_bytes import read_bytes
 from ..output.destination import opened
 from ..output.formats import part_file
-from .plan import ErrorCount, NumberedBlock, Part, Sweep
+from .plan import NumberedBlock, Part, Sweep
 
 
 def digest_of(path: str) -> str:
@@ -63,16 +63,14 @@ class Parts:
         part = self.path / f"part-{number:06}.{self.sweep.fmt}"
         return part, self.path / f"errors-{number:06}.json"
 
-    def missing(
-        self, blocks: Iterable[NumberedBlock], count: ErrorCount
-    ) -> Iterator[NumberedBlock]:
-        """Yield the blocks whose parts are missing; `count` the errors of the others."""
+    def missing(self, blocks: Iterable[NumberedBlock], done: list[Part]) -> Iterator[NumberedBlock]:
+        """Yield the blocks whose parts are missing, and add the other parts to `done`."""
         for number, block in blocks:
             part, errors = self._files(number)
             counted = _counted(errors)
             if counted and part.is_file() and part.stat().st_size:
                 self.found += 1
-                count.add(Part(number, b"", block.size, *counted))
+                done.append(Part(number, b"", block.size, *counted))
             else:
                 yield number, block
 

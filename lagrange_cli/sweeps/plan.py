@@ -15,13 +15,12 @@ import numpy as np
 
 from ..errors import LagtopError, SomeFailedError
 from ..files.tops import Product, TopsFile, read_tops
-from ..output.formats import BlockColumns, block_text
+from ..output.formats import block_text
 from ..top.given import Given, gather
 from ..top.inputs import EXAMPLE, checked_double, overridden
 from ..top.ranges import Points
 from ..top.values import STEADY_WORDS, Value
 from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records
-from .results import ResultColumn
 from .tops import top_arrays
 
 NumberedBlock = tuple[int, Product | TopsFile]
@@ -69,7 +68,11 @@ class Sweep(NamedTuple):
         failed = np.flatnonzero(found).tolist()
         if given.lines is not None:
             found[failed] = [f"line {given.lines[row]}: {found[row]}" for row in failed]
-        computed = runs_of([columns[key] for key in self.keys])
+        computed: list[Any] = []  # neighbouring columns of numbers as one array of rows
+        every = (columns[key] for key in self.keys)
+        for are_numbers, run in groupby(every, lambda column: column.dtype == np.float64):
+            some = [*run]
+            computed += [np.stack(some, axis=1)] if are_numbers else [x.tolist() for x in some]
         text = block_text([*given.carried, *computed], self.header, self.fmt)
         return Part(number, text, given.size, len(failed), found[failed[0]] if failed else "")
 
@@ -134,41 +137,16 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, A
     return overridden(defaults, doubles) | words
 
 
-def runs_of(columns: Iterable[ResultColumn]) -> BlockColumns:
-    """Return neighbouring columns of numbers as one array of rows, and texts as lists."""
-    runs: list[Any] = []
-    for are_numbers, run in groupby(columns, lambda column: column.dtype == np.float64):
-        if are_numbers:
-            runs.append(np.stack([*run], axis=1))
-        else:
-            runs += [column.tolist() for column in run]
-    return runs
+def noted(parts: Iterable[Part], done: list[Part]) -> Iterator[Part]:
+    """Yield the parts, and add them to `done` without their texts."""
+    for part in parts:
+        done.append(part._replace(text=b""))
+        yield part
 
 
-class ErrorCount:
-    """A count of the tops that have an error."""
-
-    def __init__(self, remedy: str = "") -> None:
-        self.remedy = remedy
-        self.tops = self.failed = 0
-        self.first: tuple[int, str] | None = None
-        """The number of the part with the first error, and the error."""
-
-    def add(self, part: Part) -> None:
-        """Count one part."""
-        self.tops, self.failed = self.tops + part.size, self.failed + part.failed
-        if part.failed:
-            found = part.number, part.first_error
-            self.first = min(self.first, found) if self.first else found
-
-    def passing(self, parts: Iterable[Part]) -> Iterator[Part]:
-        """Yield the parts, counted."""
-        for part in parts:
-            self.add(part)
-            yield part
-
-    def check(self) -> None:
-        """Raise SomeFailedError if there was any error."""
-        if self.first:
-            found = f"{self.failed} of {self.tops} tops have an error"
-            raise SomeFailedError(f"{found}; the first: {self.first[1]}{self.remedy}")
+def check(done: Sequence[Part], remedy: str = "") -> None:
+    """Raise SomeFailedError if a top has an error; `remedy` ends the message."""
+    if failed := [part for part in done if part.failed]:
+        count, tops = sum(x.failed for x in failed), sum(x.size for x in done)
+        found = f"{count} of {tops} tops have an error; the first: {min(failed).first_error}"
+        raise SomeFailedError(f"{found}{remedy}")

@@ -7,6 +7,7 @@ a key is not among FAST_KEYS.  An invalid top gets an `error` and no numbers.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -21,35 +22,49 @@ from ..solver.facts import FAST, Regime
 from ..solver.keys import degree_name, unit_name
 from ..solver.record import FAST_WORDS, record_in_range, vertical_remark
 from ..solver.solve import solve
-from .elementary import ELEMENTARY, Elementary, Steady
+from .elementary import ELEMENTARY, OF_STEADY
 from .formulas import (
     OF_PENDULUMS,
     OF_RELEASED,
     OF_TORQUE_FREE,
     OF_VERTICAL,
+    Formulas,
     Motions,
-    Start,
-    gaps_from_rest,
-    texts,
 )
-from .results import ResultColumn, Results, SweepInputs
-from .tops import TopArrays
-from .trust import AnyStart
+from .results import ResultColumn, Results, read_inputs
+from .tops import TopArrays, top_arrays
+from .trust import OF_ANY_START, AnyStart
 
 TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
-OF_MODULI = ("k_squared", "comodular_angle_deg")
-"""Further keys that are formulas of the moduli."""
-FAST_KEYS = frozenset({*motion_record.record_keys(), *OF_MODULI, *ELEMENTARY})
+FAST_KEYS = frozenset(
+    {*motion_record.record_keys(), *ELEMENTARY, "k_squared", "comodular_angle_deg"}
+)
 """Keys that are formulas of the inputs or of the motion, in degrees."""
-FORMULAS = {
-    Regime.SLEEPING: OF_VERTICAL,
-    Regime.HANGING: OF_VERTICAL,
+
+
+def _remarks_on_upright(of: Motions) -> Any:
+    """Return the remarks on upright tops, stable or not."""
+    stable, unstable = (vertical_remark(Regime.SLEEPING, x) for x in (True, False))
+    return np.where(of.start.sleep >= 0, stable, unstable)
+
+
+def _remarks_on_released(of: Motions) -> Any:
+    """Return the remarks on fast tops: the words of `solve`, without its numbers."""
+    excess = of.pairs.b * of.pairs.b - of.pairs.a * float(FAST)
+    return np.array([None, FAST_WORDS])[(excess.high >= 0).astype(int)]
+
+
+_FORMULAS: dict[Regime | None, Formulas] = {
+    Regime.SLEEPING: OF_VERTICAL | {"remark": _remarks_on_upright},
+    Regime.HANGING: OF_VERTICAL | {"remark": lambda _: vertical_remark(Regime.HANGING, True)},
     Regime.TORQUE_FREE: OF_TORQUE_FREE,
     Regime.NO_SPIN: OF_PENDULUMS,
-    Regime.REGULAR: OF_RELEASED,
+    Regime.REGULAR: OF_RELEASED | {"remark": _remarks_on_released, "path": lambda _: "cusped"},
+    Regime.STEADY: OF_STEADY,
+    None: OF_ANY_START,
 }
-"""The formulas of tops of a regime that are released from rest."""
+"""The formulas of each group of `TopArrays.groups`, except those of ELEMENTARY."""
 BLOCK_ROWS = 1 << 12
 """Number of tops computed together, so that their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
@@ -71,13 +86,13 @@ def sweep(
     """Return the records of many tops: arrays by key, in the shape to which the inputs broadcast.
 
     Inputs are those of `Top`, as numbers, arrays or pandas Series: pass a DataFrame of inputs as
-    `sweep(**df)`.  Only `keys` are computed; angles are in
-    degrees or `radians`.  A further key costs as much as a key of the record if it is a formula
-    of the inputs (such as `stability_factor` or `Lz`), and about a millisecond per top otherwise.
-    If a regime has no value for a key, its number is NaN and its text None.  An invalid top has an
-    `error` and no values.  If a number is beyond the range of doubles, it is NaN, and `error` says
-    so.  If `keys` lacks `error`, the results have it only if a top has an error.  Raises
-    LagtopError for an unknown input or key, for uncertain inputs, or if shapes do not broadcast.
+    `sweep(**df)`.  Only `keys` are computed; angles are in degrees or `radians`.  A further key
+    costs as much as a key of the record if it is a formula of the inputs (such as
+    `stability_factor` or `Lz`), and about a millisecond per top otherwise.  If a regime has no
+    value for a key, its number is NaN and its text None.  An invalid top has an `error` and no
+    values.  If a number is beyond the range of doubles, it is NaN, and `error` says so.  If `keys`
+    lacks `error`, the results have it only if a top has an error.  Raises LagtopError for an
+    unknown input or key, for uncertain inputs, or if shapes do not broadcast.
 
     >>> sweep(r0=[[50.0], [60.0]], theta0_deg=[30.0, 90.0], keys=["T_nutation"]).to_xarray().sizes
     Frozen({'r0': 2, 'theta0_deg': 2})
@@ -85,19 +100,19 @@ def sweep(
     if tops:
         raise LagtopError("sweep takes inputs by name: pass columns by name: sweep(**df)")
     chosen = check_keys(keys, radians=radians)
-    given = SweepInputs(inputs)
-    size, found = given.size, empty_columns(chosen, given.size)
+    flat, results = read_inputs(inputs)
+    size = math.prod(results.shape)
+    columns = empty_columns(chosen, size)
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
-        rows = slice(first, first + step)
-        part = {key: x[rows] for key, x in found.items()}
-        part = records(given.part(rows), part, {}, radians=radians)
+        rows = slice(first, min(first + step, size))
+        given = {name: x if isinstance(x, str) else x[rows] for name, x in flat.items()}
+        part = {key: x[rows] for key, x in columns.items()}
+        part = records(top_arrays(given, rows.stop - first), part, {}, radians=radians)
         if part["error"].any():
-            found.setdefault("error", np.full(size, None))[rows] = part["error"]
-    columns = {key: found[key] for key in chosen}
-    if "error" in found and found["error"].any():
-        columns["error"] = found["error"]
-    return given.results(columns)
+            columns.setdefault("error", np.full(size, None))[rows] = part["error"]
+    results |= {key: x.reshape(results.shape) for key, x in columns.items()}
+    return results
 
 
 def empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
@@ -128,7 +143,9 @@ def records(
     of the caller.
     """
     columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
-    inputs = tops._asdict() | {unit_name("theta0_deg", radians=radians): tops.tilt_in(radians)}
+    inputs = tops._asdict() | {
+        unit_name("theta0_deg", radians=radians): tops.tilt_in(radians=radians)
+    }
     for key, column in columns.items():
         column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
     columns["error"][[*errors]] = [*errors.values()]
@@ -139,7 +156,7 @@ def records(
         for regime, group in tops.groups().items():
             rows = group & missing
             if {degree_name(key) for key in keys} <= FAST_KEYS and rows.any():
-                missing &= ~_filled(tops, rows, regime, columns, keys, radians=radians)
+                missing &= ~_filled(tops, rows, regime, columns, keys)
     for row in np.flatnonzero(missing).tolist():
         try:
             motion = solve(tops.one(row))
@@ -165,52 +182,23 @@ def _filled(
     regime: Regime | None,
     columns: Mapping[str, ResultColumn],
     keys: Sequence[str],
-    *,
-    radians: bool,
 ) -> Mask:
     """Fill the keys of those tops of a group whose numbers can all be trusted; return these."""
     some = tops if rows.all() else tops.part(rows)
-    start = some.start(rough=regime in FORMULAS and not ELEMENTARY.keys() & {*keys})
-    motions, elementary = _motions(some, start, regime, radians), Elementary(some, start)
-    known, found = motions.trusted(keys), dict[str, Any]()
-    for key in [*keys, *({"psidot0"} & motions.keys() & columns.keys())]:
-        if key in ELEMENTARY:
-            found[key], lost = elementary.number(key)
-            known = known & ~lost
-        else:
-            found[key] = motions[key]
+    at_rest = regime not in {Regime.STEADY, None}
+    start = some.start(rough=at_rest and not ELEMENTARY.keys() & {*keys})
+    kind = AnyStart if regime is None else Motions
+    motions = kind(_FORMULAS[regime] | ELEMENTARY, some, start)
+    if regime is not None:
+        motions["regime"] = regime.value
+    found = {key: motions[key] for key in keys}
+    if regime == Regime.STEADY and "psidot0" in columns:
+        found["psidot0"] = motions["psidot0"]
+    known = motions.known
     rows[rows] = known
     target: Any = slice(None) if rows.all() else rows  # which is faster than a mask
-    source: Any = slice(None) if np.all(known) else known
+    source: Any = slice(None) if known.all() else known
     for key, value in found.items():
         if value is not None:
             columns[key][target] = value[source] if isinstance(value, np.ndarray) else value
     return rows
-
-
-def _motions(tops: TopArrays, start: Start, regime: Regime | None, radians: bool) -> Motions:
-    """Return the motions of a group of `TopArrays.groups`."""
-    if regime is None:
-        return AnyStart(start)
-    nutates = regime in {Regime.REGULAR, Regime.NO_SPIN}
-    if regime == Regime.STEADY:
-        motions: Motions = Steady(tops, start)
-    else:
-        rough = start.in_doubles()
-        motions = Motions(FORMULAS[regime], rough, gaps_from_rest(rough) if nutates else None)
-    motions["regime"] = regime.value
-    motions["path"] = "cusped" if regime == Regime.REGULAR else None
-    motions.formulas = motions.formulas | {"remark": lambda _: _remarks(regime, start)}
-    for key in ["theta_min_deg"] if nutates else ["theta_min_deg", "theta_max_deg"]:
-        motions[unit_name(key, radians=radians)] = tops.tilt_in(radians)
-    return motions
-
-
-def _remarks(regime: Regime, start: Start) -> Any:
-    """Return the remarks on tops released from rest: the words of `solve`, without its numbers."""
-    if regime in {Regime.HANGING, Regime.SLEEPING}:
-        stable, unstable = (vertical_remark(regime, x) for x in (True, False))
-        return texts(start.sleep.high >= 0, stable, unstable)
-    if regime == Regime.REGULAR:
-        return texts((start.b * start.b - start.a * float(FAST)).high >= 0, FAST_WORDS, None)
-    return None

@@ -18,7 +18,6 @@ from ..top.given import gather
 from ..top.inputs import EXAMPLE, overridden, warn_of
 from ..top.top import INPUTS
 from ..top.values import STEADY_WORDS, values_of
-from .tops import TopArrays, top_arrays
 
 ResultColumn = Array | NDArray[np.object_]
 """A column: numbers (NaN if a regime has none) or texts (None if there is none)."""
@@ -105,45 +104,35 @@ def _library(name: str) -> Any:
         raise UnavailableError(f"{name} is not installed: pip install {name}") from None
 
 
-class SweepInputs:
-    """Inputs of `Top`, numbers or arrays, broadcast to one shape, from which blocks are taken."""
+def read_inputs(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], Results]:
+    """Return inputs of `Top` as flat arrays of one size, and results that have no columns yet.
 
-    def __init__(self, inputs: Mapping[str, Any]) -> None:
-        """Raise LagtopError for an unknown input, and for inputs that do not fit together."""
-        check_names("inputs", list(inputs) or ["m"], INPUTS)
-        rate = inputs.get("psidot0")
-        self._words = {"psidot0": rate} if isinstance(rate, str) and rate in STEADY_WORDS else {}
-        for name, x in inputs.items():
-            if getattr(x, "dims", ()):
-                raise LagtopError(f"{name} has named dimensions: pass {name}.to_numpy()", name)
-        read = gather(values_of({x: y for x, y in inputs.items() if x not in self._words}))
-        for name in read.stds:
-            why = "is uncertain: a sweep does not propagate uncertainties; loop over solve"
-            raise LagtopError(f"{name} {why}", name)
-        if read.missing:
-            warn_of(read.missing, stacklevel=4)
-        own = {name: doubles_of(name, x) for name, x in read.inputs.items()}
-        given = overridden(EXAMPLE | dict(read.body), own)
-        try:
-            arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in given.values()))
-        except ValueError:
-            shapes = ", ".join(f"{name} {x.shape}" for name, x in own.items() if x.ndim)
-            raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
-        self.shape, self.size = arrays[0].shape, arrays[0].size
-        self._varying = {name: x for name, x in own.items() if x.size > 1}
-        self._index = _index_of(inputs, self.shape)
-        flat = (x if x.ndim == 1 else x.flat for x in arrays)
-        self._flat: dict[str, Any] = dict(zip(given, flat, strict=True))
-
-    def part(self, rows: slice) -> TopArrays:
-        """Return some of the tops; only these rows are copied."""
-        count = len(range(*rows.indices(self.size)))
-        return top_arrays({name: x[rows] for name, x in self._flat.items()} | self._words, count)
-
-    def results(self, columns: Mapping[str, ResultColumn]) -> Results:
-        """Return flat columns in the shape of the inputs."""
-        shaped = {key: x.reshape(self.shape) for key, x in columns.items()}
-        return Results(shaped, self._varying, self.shape, self._index)
+    Arrays broadcast without a copy, and a word for psidot0 stays one.  Raises LagtopError for an
+    unknown input, and for inputs that do not fit together.
+    """
+    check_names("inputs", list(inputs) or ["m"], INPUTS)
+    for name, x in inputs.items():
+        if getattr(x, "dims", ()):
+            raise LagtopError(f"{name} has named dimensions: pass {name}.to_numpy()", name)
+    rate = inputs.get("psidot0")
+    words = {"psidot0": rate} if isinstance(rate, str) and rate in STEADY_WORDS else {}
+    read = gather(values_of({x: y for x, y in inputs.items() if x not in words}))
+    for name in read.stds:
+        why = "is uncertain: a sweep does not propagate uncertainties; loop over solve"
+        raise LagtopError(f"{name} {why}", name)
+    if read.missing:
+        warn_of(read.missing, stacklevel=4)
+    own = {name: doubles_of(name, x) for name, x in read.inputs.items()}
+    given = overridden(EXAMPLE | dict(read.body), own)
+    try:
+        arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in given.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {x.shape}" for name, x in own.items() if x.ndim)
+        raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
+    flat = (x if x.ndim == 1 else x.flat for x in arrays)
+    shape, varying = arrays[0].shape, {name: x for name, x in own.items() if x.size > 1}
+    results = Results({}, varying, shape, _index_of(inputs, shape))
+    return dict(zip(given, flat, strict=True)) | words, results
 
 
 def _index_of(inputs: Mapping[str, Any], shape: tuple[int, ...]) -> Any:
@@ -152,12 +141,9 @@ def _index_of(inputs: Mapping[str, Any], shape: tuple[int, ...]) -> Any:
     Raises LagtopError if their indices differ: rows would be paired by position.
     """
     series = {name: x for name, x in inputs.items() if hasattr(x, "index") and hasattr(x, "iloc")}
-    if not series:
-        return None
-    first, *others = series
-    index = series[first].index
-    for name in others:
-        if not index.equals(series[name].index):
+    first = next(iter(series), "")
+    for name, x in series.items():
+        if not x.index.equals(series[first].index):
             why = f"{first} and {name} are Series with different indices"
             raise LagtopError(f"{why}: align them, or pass {name}.to_numpy()", name)
-    return index if shape == (len(index),) else None
+    return series[first].index if series and shape == series[first].shape else None

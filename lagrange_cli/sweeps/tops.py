@@ -18,8 +18,9 @@ from ..arithmetic.types import Array, Mask
 from ..solver.facts import Regime
 from ..top.top import Top
 from ..top.values import STEADY_WORDS
-from .formulas import Start, where
 
+Numbers = Any
+"""An array of doubles, or pairs of doubles."""
 _SMALL, _LARGE = 1e-30, 1e30
 """Sizes between which no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
@@ -29,6 +30,42 @@ _LITTLE_LEFT = 1e-10
 """Ratio of a sum to its parts below which the sum has lost digits of its pairs."""
 _MOST_SPIN = 1e150
 """Size of a rate up to which sums and products of pairs cannot overflow."""
+
+
+class Start(NamedTuple):
+    """The constants of the motions and their states at t = 0."""
+
+    a: Numbers  # 2mgs/A (4,4)
+    b: Numbers  # C r0/A (4,5)
+    r0: Numbers
+    sleep: Numbers  # b^2/2 - a, from the inputs: it cancels near the threshold of sleeping
+    spin_drift: Numbers  # r0 - b/2 = r0 (2A - C)/2A, the spin rate without the nutation (6,1)
+    sin: Numbers
+    cos: Numbers  # u0
+    below: Numbers  # 1 + u0 = 2 cos^2(theta0/2)
+    above: Numbers  # 1 - u0 = 2 sin^2(theta0/2)
+    theta_rate: Numbers
+    psi_rate: Numbers
+
+    def in_doubles(self) -> Start:
+        """Return each number rounded to a double."""
+        return Start(*(x.high for x in self))
+
+    @property
+    def energy(self) -> Numbers:
+        """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4)."""
+        around = self.psi_rate * self.sin
+        return self.theta_rate * self.theta_rate + around * around
+
+    @property
+    def momentum(self) -> Numbers:
+        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
+        return self.psi_rate * self.sin * self.sin
+
+    @property
+    def spin_rate(self) -> Numbers:
+        """The spin rate phi' at the start (4,8)."""
+        return self.r0 - self.psi_rate * self.cos
 
 
 class TopArrays(NamedTuple):
@@ -58,16 +95,14 @@ class TopArrays(NamedTuple):
 
     def one(self, row: int) -> Top:
         """Return one top.  Raises LagtopError if it is invalid."""
-        inputs: dict[str, Any] = {
-            name: float(x[row]) for name, x in zip(self._fields, self, strict=True)
-        }
-        unused = "r0" if not np.isnan(inputs["phidot0"]) else "phidot0"
-        tilt = "theta0_rad" if np.isnan(inputs["theta0_rad"]) else "theta0_deg"
-        word = int(inputs.pop("steady"))
-        given = {x: y for x, y in inputs.items() if x != unused and not (x == tilt and np.isnan(y))}
-        return Top(**given | ({"psidot0": STEADY_WORDS[word - 1]} if word else {}))
+        inputs: dict[str, Any] = {x: float(y[row]) for x, y in self._asdict().items()}
+        del inputs["phidot0" if np.isnan(inputs["phidot0"]) else "r0"]
+        del inputs["theta0_rad" if np.isnan(inputs["theta0_rad"]) else "theta0_deg"]
+        if word := int(inputs.pop("steady")):
+            inputs["psidot0"] = STEADY_WORDS[word - 1]
+        return Top(**inputs)
 
-    def tilt_in(self, radians: bool) -> Array:
+    def tilt_in(self, *, radians: bool) -> Array:
         """Return theta0 in degrees or in radians."""
         if radians:
             return np.where(np.isnan(self.theta0_rad), np.radians(self.theta0_deg), self.theta0_rad)
@@ -120,6 +155,7 @@ class TopArrays(NamedTuple):
 
         If `rough`, the functions of the tilt are good to a double, which is faster.
         """
+        choose = DoubleDouble.choose
         m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
         a, b = (m * g * s / A).scaled(2), C * r0 / A
         drift = r0 * DoubleDouble(*two_sum(2 * self.A, -self.C)) / A
@@ -130,7 +166,7 @@ class TopArrays(NamedTuple):
         if given.any():
             own = DoubleDouble(rad)
             other = DoubleDouble(np.full_like(rad, 180.0)) * _DEGREE - own
-            arc = where(given, where(down, other, own), arc)
+            arc = choose(given, choose(down, other, own), arc)
         half = arc.scaled(0.5)
         if rough:
             near, far = np.sin(half.high), np.cos(half.high)
@@ -138,7 +174,7 @@ class TopArrays(NamedTuple):
         else:
             sine = _sine(half)
             cosine = (1.0 - sine * sine).sqrt()
-        sine, cosine = where(down, cosine, sine), where(down, sine, cosine)
+        sine, cosine = choose(down, cosine, sine), choose(down, sine, cosine)
         return Start(
             a=a,
             b=b,
@@ -176,15 +212,20 @@ def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
     A missing input is NaN.  psidot0 may be a word of a steady precession, or an array of objects
     with such words among its numbers.
     """
-    numbers, steady = _steady_words(inputs)
+    rate, (slow, fast) = inputs.get("psidot0"), STEADY_WORDS
+    steady = np.float64(rate == slow) + 2 * np.float64(rate == fast)
+    if steady.any():
+        rate = np.where(steady > 0, np.nan, np.array(rate, dtype=object)).astype(float)
+    numbers = {**inputs, "psidot0": rate}
 
     def filled(name: str) -> Array:
         value = numbers.get(name)
         return np.broadcast_to(np.float64(np.nan if value is None else value), (size,))
 
     A_cm, no_rate = filled("A_cm"), np.broadcast_to(np.nan, (size,))
-    words = np.broadcast_to(np.float64(steady), (size,))
-    tops = TopArrays(*[*map(filled, TopArrays._fields[:-2]), no_rate, words])
+    tops = TopArrays(
+        *[*map(filled, TopArrays._fields[:-2]), no_rate, np.broadcast_to(steady, (size,))]
+    )
     if not np.isnan(A_cm).all():  # Steiner's theorem; `Top` refuses a negative A_cm
         with np.errstate(all="ignore"):
             s = DoubleDouble(tops.s)
@@ -194,18 +235,6 @@ def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
     if not np.isnan(phi_rate := filled("phidot0")).all():
         tops = _with_spins(tops, phi_rate)
     return tops
-
-
-def _steady_words(inputs: Mapping[str, Any]) -> tuple[Mapping[str, Any], Any]:
-    """Return inputs with NaN in place of words of psidot0, and numbers of these words, or 0."""
-    given = inputs.get("psidot0")
-    if not isinstance(given, str) and getattr(given, "dtype", np.float64) == np.float64:
-        return inputs, 0.0
-    words = np.atleast_1d(np.asarray(given, dtype=object))
-    is_word = np.array([isinstance(x, str) for x in words])
-    numbers = np.where(is_word, np.nan, words).astype(float)
-    steady = [STEADY_WORDS.index(x) + 1.0 if isinstance(x, str) else 0.0 for x in words]
-    return {**inputs, "psidot0": numbers}, steady
 
 
 def _with_spins(tops: TopArrays, phi_rate: Array) -> TopArrays:

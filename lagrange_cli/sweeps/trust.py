@@ -23,27 +23,25 @@ of the sizes of the terms.
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from functools import reduce
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arithmetic.pairs import DoubleDouble
-from ..arithmetic.types import Array, Mask
+from ..arithmetic.types import Array
 from .formulas import (
     OF_NUTATION,
+    Formulas,
     Gaps,
     Motions,
-    Start,
     cubic_of,
     gaps_from_start,
     mean_parts,
     rates_half,
-    texts,
     u2,
 )
+from .tops import Start, TopArrays
 
 PAIR_EPS = 2.0**-100
 """Relative error of a dozen operations on pairs."""
@@ -59,7 +57,6 @@ _MOST_SIZE = 2.0
 
 In 245,000 random tops the error was at most 5.2 eps of that size.
 """
-_RATES = {"mean_spin_rate", "mean_precession_rate", "T_spin", "T_precession", "spin_rate_start"}
 
 
 class AnyStart(Motions):
@@ -69,19 +66,13 @@ class AnyStart(Motions):
     doubles.
     """
 
-    gaps: Gaps
-
-    def __init__(self, start: Start) -> None:
+    def __init__(self, formulas: Formulas, tops: TopArrays, start: Start) -> None:
+        super().__init__(formulas, tops, start)
         cubic = cubic_of(start)
         D, self._of_D = largest_root(start, cubic)
-        self.pairs = start, gaps_from_start(start, cubic, D)
-        doubles = Gaps(*(x.high for x in self.pairs[1]))
-        super().__init__(_FORMULAS, start.in_doubles(), doubles)
+        self.gap_pairs = gaps_from_start(start, cubic, D)
+        self.gaps = Gaps(*(x.high for x in self.gap_pairs))
         self._bound_gaps()
-
-    def trusted(self, keys: Collection[str]) -> Any:
-        """Return which tops can be trusted for some keys."""
-        return self.known & self._rates_are_known() if _RATES & {*keys} else self.known
 
     def _bound_gaps(self) -> None:
         """Bound the errors of the gaps and of beta - b u at u1 and u2.
@@ -91,7 +82,7 @@ class AnyStart(Motions):
         """
         start, gaps, of_D = self.start, self.gaps, self._of_D
         a, b, D, momentum = start.a, abs(start.b), gaps.a_u3_u0, abs(start.momentum)
-        c0, parts = (start.sin * start.theta_rate) ** 2, sum(_parts(start)[1])
+        c0, parts = (start.sin * start.theta_rate) ** 2, _sizes(start)[1]
         of_sum = (PAIR_EPS * parts + 2 * of_D * (parts + a * c0 / D)) / D
         x1, x2 = gaps.u1_u0, gaps.u0_u2
         larger, smaller = np.maximum(x1, x2), np.minimum(x1, x2)
@@ -116,8 +107,8 @@ class AnyStart(Motions):
         for size, (value, of_x) in zip(self._sizes, ends, strict=True):
             self.known &= PAIR_EPS * size + b * of_x < _SURE * abs(value)
 
-    def _rates_are_known(self) -> Mask:
-        """Return for which tops the mean rates, and the spin rate at the start, can be trusted.
+    def check_means(self, spin: Array, precession: Array) -> None:
+        """Note for which tops the mean rates cannot be trusted.
 
         As dn^2 lies between k'^2 and 1, the mean of (x cn^2 + y sn^2)/(cn^2 + p sn^2) is at most
         x + y/sqrt(p) for p <= 1.
@@ -132,20 +123,15 @@ class AnyStart(Motions):
 
         south = size_of(gaps.below_u1, gaps.below_u2)
         size = south + size_of(gaps.above_u1, gaps.above_u2)
-        spin, precession = self["means"]
-        r0 = abs(self.start.r0)
-        known: Mask = self.noise * size < 8 * GOOD * abs(precession)
-        known &= self.noise * (size + r0) < 8 * GOOD * abs(spin)
-        parts = r0 + abs(self.start.psi_rate)
-        known &= PAIR_EPS * parts < 8 * GOOD * abs(self["spin_rate_start"])
-        return known
+        self.known &= self.noise * size < 8 * GOOD * abs(precession)
+        self.known &= self.noise * (size + abs(self.start.r0)) < 8 * GOOD * abs(spin)
 
 
-def paths(of: AnyStart) -> NDArray[np.object_]:
+def paths(of: AnyStart) -> Any:
     """Return the paths of the axis: looping if the precession turns back at u1."""
     sign = np.sign(of.start.b)
     looping = (sign * of.gaps.momentum_u1 < 0) & (sign * of.gaps.momentum_u2 > 0)
-    return texts(looping, "looping", "wavy")
+    return np.where(looping, "looping", "wavy")
 
 
 def mean_rates(of: AnyStart) -> tuple[Array, Array]:
@@ -164,34 +150,43 @@ def mean_rates(of: AnyStart) -> tuple[Array, Array]:
     cancels = size > _MOST_SIZE * abs(precession)
     rows = np.flatnonzero(cancels | (size + abs(r0) > _MOST_SIZE * abs(spin)))
     if rows.size:
-        few = Gaps(*(x[rows] for x in of.pairs[1]))
+        few = Gaps(*(x[rows] for x in of.gap_pairs))
         south, north = mean_parts((few.a_u3_u1 / few.a_u3_u2).sqrt(), few)
         precession[rows] = (south + north).high
         spin[rows] = (DoubleDouble(r0[rows]) + south - north).high
+    of.check_means(spin, precession)
     return spin, precession
 
 
-_FORMULAS = OF_NUTATION | {
-    "regime": lambda of: texts(of.start.r0 == 0, "no spin", "regular"),
+def spin_rate_start(of: AnyStart) -> DoubleDouble:
+    """Return the spin rate at the start (4,8)."""
+    rate: DoubleDouble = of.pairs.spin_rate
+    parts = abs(of.start.r0) + abs(of.start.psi_rate)
+    of.known &= PAIR_EPS * parts < 8 * GOOD * abs(rate.high)
+    return rate
+
+
+OF_ANY_START: Formulas = OF_NUTATION | {
+    "regime": lambda of: np.where(of.start.r0 == 0, "no spin", "regular"),
     "path": paths,
-    "u1": lambda of: (of.pairs[0].cos + of.pairs[1].u1_u0).high,
-    "u2": lambda of: u2(of.pairs[1]).high,
-    "spin_rate_start": lambda of: of.pairs[0].spin_rate.high,
-    "half": lambda of: rates_half(*of.pairs),
-    "spin_rate_half": lambda of: of["half"][0].high,
-    "precession_rate_half": lambda of: of["half"][1].high,
+    "u1": lambda of: of.pairs.cos + of.gap_pairs.u1_u0,
+    "u2": lambda of: u2(of.gap_pairs),
+    "spin_rate_start": spin_rate_start,
+    "half": lambda of: rates_half(of.pairs, of.gap_pairs),
+    "spin_rate_half": lambda of: of["half"][0],
+    "precession_rate_half": lambda of: of["half"][1],
     "means": mean_rates,
     "mean_spin_rate": lambda of: of["means"][0],
     "mean_precession_rate": lambda of: of["means"][1],
 }
-"""The formula of each key, in pairs where larger numbers may cancel."""
+"""Formulas of tops with any initial rates, in pairs where larger numbers may cancel."""
 
 
-def _parts(start: Start) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+def _sizes(start: Start) -> tuple[Array, Array]:
     """Return the sizes of the terms of c2 and of c1 of `cubic_of`, in doubles."""
     a, b, energy, cos = start.a, abs(start.b), start.energy, abs(start.cos)
-    of_c2 = 2 * a * cos, energy, b * b
-    return of_c2, (2 * b * abs(start.momentum), a * start.sin**2, 2 * cos * energy)
+    of_c1 = 2 * b * abs(start.momentum) + a * start.sin**2 + 2 * cos * energy
+    return 2 * a * cos + energy + b * b, of_c1
 
 
 def largest_root(
@@ -205,8 +200,8 @@ def largest_root(
     c2, c1, c0 = cubic
     c1, c0 = start.a * c1, start.a * (start.a * c0)
     rough = start.in_doubles()
-    of_c2, of_c1 = (sum(parts) for parts in _parts(rough))
-    size2, size1, size0 = of_c2, rough.a * of_c1, c0.high
+    size2, of_c1 = _sizes(rough)
+    size1, size0 = rough.a * of_c1, c0.high
     b2, b1, b0 = c2.high, c1.high, c0.high
     x = rough.energy + rough.b * rough.b + 2 * rough.a
     for _ in range(_NEWTON_STEPS):

@@ -42,11 +42,9 @@ def in_order(
 ) -> Generator[P, None, None]:
     """Yield `work(item)` for each item, in order, from `jobs` processes or a Dask cluster.
 
-    `warn` shows a warning about the cluster.
-
-    With other processes, work, items and results must be picklable.  Raises UnavailableError if a
-    process or the cluster cannot be started or is lost, and LagtopError for a bad address.  Errors
-    of the work are raised again.
+    With other processes, work, items and results must be picklable.  `warn` shows a warning about
+    the cluster.  Raises UnavailableError if a process or the cluster cannot be started or is lost,
+    and LagtopError for a bad address.  Errors of the work are raised again.
     """
     if jobs == 1 and address is None:
         yield from map(work, items)
@@ -151,7 +149,8 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
     """Yield a function that hands work to a Dask cluster, and the number of its threads.
 
     dask itself waits without end for a stopped process, and for work whose workers are gone.
-    Raises UnavailableError, and LagtopError for an invalid address.
+    Raises LagtopError for an invalid address, and UnavailableError if the cluster does not answer
+    or if a worker lacks lagtop or has another version.
     """
     try:
         import dask
@@ -163,17 +162,16 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
         logging.getLogger(name).setLevel(logging.CRITICAL)  # lagtop reports errors in one line
     dask.config.set({"distributed.comm.timeouts.connect": _PATIENCE / 3})
     with waiting(f"waiting for the cluster at {address}"):
-        try:
-            with warnings.catch_warnings(record=True, action="always") as found:
-                client = _answer(
-                    address, lambda: distributed.Client(address, timeout=_PATIENCE / 3)
-                )
-        except UnavailableError:
-            raise
-        except (TypeError, ValueError) as error:
-            why = f"dask must be the address of a scheduler, got {address!r}: {error}"
-            raise LagtopError(why, "dask") from None
-        threads = _threads(client, address)
+        with warnings.catch_warnings(record=True, action="always") as found:
+            client = _answer(address, lambda: distributed.Client(address, timeout=_PATIENCE / 3))
+        _answer(address, lambda: client.wait_for_workers(1, timeout=_PATIENCE))
+        ask, name = pkgutil.resolve_name, "lagrange_cli:__version__"  # any worker can unpickle it
+        versions = _answer(address, lambda: client.run(ask, name, on_error="return"))
+        threads = sum(_answer(address, client.nthreads).values())
+    for worker, version in versions.items():
+        if version != __version__:
+            has = f"no lagtop: {version}" if isinstance(version, Exception) else version
+            raise UnavailableError(f"the worker {worker} needs lagtop {__version__}, has {has}")
     if any(x.category.__name__ == "VersionMismatchWarning" for x in found):
         warn("the cluster has other versions of Python packages: last digits may differ")
 
@@ -188,38 +186,19 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
             _answer(address, lambda: client.close(timeout=1), 2.0)
 
 
-def _threads(client: Any, address: str) -> int:
-    """Return the number of threads of a cluster.
-
-    Raises UnavailableError if it has no worker, or one that does not answer, that lacks lagtop or
-    that has another version.
-    """
-    _answer(address, lambda: client.wait_for_workers(1, timeout=_PATIENCE))
-    ask, name = pkgutil.resolve_name, "lagrange_cli:__version__"  # which every worker can unpickle
-    versions = _answer(address, lambda: client.run(ask, name, on_error="return"))
-    for worker, version in versions.items():
-        if version != __version__:
-            has = f"no lagtop: {version}" if isinstance(version, Exception) else version
-            raise UnavailableError(f"the worker {worker} needs lagtop {__version__}, has {has}")
-    return sum(_answer(address, client.nthreads).values())
-
-
 def _result(future: Any, client: Any, address: str) -> Any:
     """Return the result of some work.  Raises UnavailableError if workers no longer answer."""
-    heard = time.monotonic()
     while True:
         with suppress(TimeoutError):
             return future.result(_PATIENCE / 10)
-        if _answer(address, lambda: client.run(int)):
-            heard = time.monotonic()
-        elif time.monotonic() - heard > _PATIENCE:
-            raise UnavailableError(f"all workers of the cluster at {address} were lost")
+        _answer(address, lambda: client.wait_for_workers(1, timeout=_PATIENCE))
+        _answer(address, lambda: client.run(int))
 
 
 def _answer(address: str, ask: Callable[[], _T], seconds: float | None = None) -> _T:
     """Return an answer of a cluster.
 
-    Raises UnavailableError if there is none in time, and the errors of a bad argument.
+    Raises UnavailableError if there is none in time, and LagtopError for a bad address.
     """
     future = Future[_T]()
 
@@ -232,8 +211,9 @@ def _answer(address: str, ask: Callable[[], _T], seconds: float | None = None) -
     Thread(target=run, daemon=True).start()
     try:
         return future.result(seconds or _PATIENCE)
-    except (TypeError, ValueError):
-        raise
+    except (TypeError, ValueError) as error:
+        why = f"dask must be the address of a scheduler, got {address!r}: {error}"
+        raise LagtopError(why, "dask") from None
     except Exception as error:  # of any kind: it may be no scheduler
         why = str(error) or "its scheduler or a worker was lost or stopped"
         raise UnavailableError(f"the cluster at {address} does not answer: {why}") from None
