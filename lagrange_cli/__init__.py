@@ -28,7 +28,7 @@ _MODULES = {
     "UnavailableError": "errors",
     "compare": "comparison.compare",
     "draw": "plot",
-    "draw_outcome": "plot.reports",
+    "draw_outcome": "plot",
     "find": "inverse.find",
     "fit": "inverse.fit",
     "read_scene": "top.given",

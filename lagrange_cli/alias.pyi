@@ -15,8 +15,8 @@ from lagrange_cli.inverse.find import find as find
 from lagrange_cli.inverse.fit import fit as fit
 from lagrange_cli.inverse.outcome import Outcome as Outcome
 from lagrange_cli.plot import draw as draw
+from lagrange_cli.plot import draw_outcome as draw_outcome
 from lagrange_cli.plot.browser.view import view as view
-from lagrange_cli.plot.reports import draw_outcome as draw_outcome
 from lagrange_cli.solver.derivatives import sensitivities as sensitivities
 from lagrange_cli.solver.facts import Regime as Regime
 from lagrange_cli.solver.solve import Motion as Motion

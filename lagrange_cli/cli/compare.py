@@ -87,7 +87,6 @@ def compare_command(
     from ..comparison.differences import Alignment
     from ..comparison.report import comparison_report, read
     from ..files.observed import Conventions
-    from ..plot.reports import draw_errors
 
     if not words:
         raise LagtopError("no trajectory: give a file, or - for standard input")
@@ -107,6 +106,8 @@ def compare_command(
         return comparison_report(motion, results, found, max_error, as_options)
 
     def draw(report: Report) -> Figure:
+        from ..plot.reports import draw_errors
+
         return draw_errors(report.rows, max_error, found.errors if found else ())
 
     report = opt.write_report(out, find, plot, draw)

@@ -109,8 +109,6 @@ def fit_command(
     from ..inverse.fit import fit_recording
     from ..inverse.known import known_inputs
     from ..inverse.recording import read_recording
-    from ..plot.reports import draw_decay, draw_fit
-    from ..plot.style import report_bytes
 
     if len(words) != 1:
         remedy = "fit each file alone" if words else "give a file, or - for standard input"
@@ -149,6 +147,9 @@ def fit_command(
             scene = found[0].scene(source, si=given.si)
             stack.enter_context(opened(scene_path)).write(scene.encode())
         if plot:
+            from ..plot.reports import draw_decay, draw_fit
+            from ..plot.style import report_bytes
+
             drawn = (draw_fit, found[0]) if window is None else (draw_decay, found)
             picture = report_bytes(plot, *drawn)
             stack.enter_context(opened(plot)).write(picture)

@@ -107,9 +107,12 @@ class Comparison(HasRecord):
 
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw the error over time, on a figure of matplotlib or a new one, and return it."""
-        from ..plot.reports import draw_errors, new_figure  # start-up: matplotlib
+        from ..plot import new_figure  # start-up: matplotlib
 
-        return draw_errors([self], LIMIT, figure=figure or new_figure())
+        figure = figure or new_figure()
+        from ..plot.reports import draw_errors
+
+        return draw_errors([self], LIMIT, figure=figure)
 
     def __repr__(self) -> str:
         return f"<Comparison: {self.verdict}, error_max = {self.error_max}, {self.rows} rows>"

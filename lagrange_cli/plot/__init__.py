@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
+    from ..inverse.outcome import Outcome
     from ..solver.solve import Motion
 
 KINDS = "sphere", "angles", "cubic", "phase", "map"
@@ -56,7 +58,6 @@ def draw(
     from matplotlib.axes import Axes
 
     from .pictures import PICTURES, Options, add_time_bar
-    from .reports import new_figure
 
     picture, count, _ = PICTURES[kind]
     if ax is None:
@@ -70,3 +71,30 @@ def draw(
     if kind == "sphere":
         add_time_bar(axes, options.time_label)
     return axes
+
+
+def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
+    """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure.
+
+    Angles are in degrees, or in radians if the fit was made so.  Raises UnavailableError without
+    matplotlib.
+
+    >>> t = np.linspace(0, 2, 100)
+    >>> theta, phi, psi = solve(Top()).angles(t)
+    >>> len(draw_outcome(fit(t, theta=theta, psi=psi)).axes)
+    4
+    """
+    figure = figure or new_figure()
+    from .reports import draw_fit
+
+    return draw_fit(outcome, figure)
+
+
+def new_figure() -> Figure:
+    """Return a new figure of pyplot, which a notebook shows.  Raises UnavailableError."""
+    from .style import require_matplotlib  # start-up
+
+    require_matplotlib()
+    from matplotlib import pyplot
+
+    return pyplot.figure(layout="constrained")

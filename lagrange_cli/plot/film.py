@@ -1,4 +1,4 @@
-"""The film of the spinning top: a cone on its pivot, in front of the trace of its axis."""
+"""The film of the spinning top: a wheel on its axle, and the trace of the axis."""
 
 from __future__ import annotations
 
@@ -10,20 +10,18 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib import animation
-from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..files.rotations import rotated
 from ..solver.solve import Motion
-from .pictures import Options, camera_of, draw_globe, last_time, project, sampled, usual_span
-from .style import Look, scale, styled
+from .pictures import Options, camera_of, draw_globe, last_time, project, sampled, scale
+from .style import styled
 
 PER_SECOND, SECONDS, MOST_SECONDS = 25, 6.0, 120.0
-HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 36
-"""Height and radius (in radii of the globe) and number of wedges of the cone."""
+HEIGHT, RADIUS, SECTORS = 0.62, 0.34, 72
+"""Height and radius (in radii of the globe) of the wheel, and its number of sectors."""
 
 
 def film_bytes(motion: Motion, suffix: str, options: Options, seconds: float, dpi: float) -> bytes:
@@ -54,7 +52,7 @@ def film_figure(
     motion: Motion, options: Options, frames: int
 ) -> tuple[Figure, Callable[[int], None]]:
     """Return the figure and the function that shows the frame with a number."""
-    look, t_max = options.look, last_time(motion, options, usual_span(motion, 3, 6))
+    look, t_max = options.look, last_time(motion, options.t_max, 3, 6)
     t, *columns = sampled(motion, t_max, ["axis"])
     path, times = np.stack(columns, axis=1), np.linspace(0.0, t_max, frames)
     axis = motion.axis(times)
@@ -64,11 +62,12 @@ def film_figure(
     ax = figure.subplots()
     draw_globe(ax, motion, camera, options)
     sides, colour = project(camera, path), scale(look)(0.35)
-    body = ax.add_collection(PolyCollection([], zorder=2.5, linewidths=0.4))
     (near,) = ax.plot([], [], color=colour, lw=2.2, zorder=3)
     (far,) = ax.plot([], [], color=colour, lw=1.2, zorder=2.3, alpha=0.45)
-    (rim,) = ax.plot([], [], color=look.ink, lw=0.9, zorder=2.6)
-    (axle,) = ax.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
+    (wheel,) = ax.fill([], [], fc=look.paper, ec=look.ink, lw=0.9, zorder=2.5)
+    (sector,) = ax.fill([], [], fc=look.lines[1], zorder=2.6)
+    (shaft,) = ax.plot([], [], color=look.ink, lw=1.4)
+    (tip,) = ax.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
     clock = ax.text(0.02, 0.97, "", transform=ax.transAxes)
     unit = options.unit("time").replace("time", "")
     decimals = max(0, 2 - math.floor(math.log10(t_max)))
@@ -78,17 +77,25 @@ def film_figure(
     ax.text(0.02, 0.0, foot, size="small", transform=ax.transAxes)
 
     def show(i: int) -> None:
-        triangles, shades, edge = cone(attitude[i], camera, look)
-        body.set(verts=triangles, facecolors=shades, edgecolors=shades)
-        rim.set_data(*edge.T)
-        right, up, toward = camera @ axis[i]
-        axle.set_data([HEIGHT * right, right], [HEIGHT * up, up])
-        axle.set_zorder(4 if toward > 0 else 2.1)
+        (right, up, toward), rim = camera @ axis[i], rim_of(attitude[i], camera)
+        wheel.set_xy(rim)
+        sector.set_xy([[HEIGHT * right, HEIGHT * up], *rim[: SECTORS // 6 + 1]])
+        shaft.set_data([0, HEIGHT * right], [0, HEIGHT * up])
+        tip.set_data([HEIGHT * right, right], [HEIGHT * up, up])
+        for part, is_in_front in ((shaft, toward <= 0), (tip, toward > 0)):
+            part.set_zorder(4 if is_in_front else 2.4)
         for line, side in ((near, sides[0]), (far, sides[1])):
             line.set_data(*side[t <= times[i]].T)
         clock.set_text(f"t = {times[i]:.{decimals}f} {unit}")
 
     return figure, show
+
+
+def rim_of(quaternion: Array, camera: Array) -> Array:
+    """Return x and y of the rim of the wheel in the picture, from the body's x axis around."""
+    around = np.linspace(0.0, 2 * math.pi, SECTORS + 1)
+    circle = np.stack([RADIUS * np.cos(around), RADIUS * np.sin(around), 0 * around + HEIGHT], 1)
+    return rotated(np.broadcast_to(quaternion, (SECTORS + 1, 4)), circle) @ camera[:2].T
 
 
 def pace_of(pace: float, unit: str) -> str:
@@ -97,27 +104,3 @@ def pace_of(pace: float, unit: str) -> str:
         return f"1 second shows t = {pace:.2g}"
     factor, word = (pace, "faster") if pace > 1 else (1 / pace, "slower")
     return "as fast as in life" if factor < 1.05 else f"{factor:.2g} times {word} than life"
-
-
-def cone(quaternion: Array, camera: Array, look: Look) -> tuple[list[Array], list[Array], Array]:
-    """Return the visible triangles of the top, their colours, and its rim.
-
-    A third of the wedges is light, so that the spin is visible.  The lamp is at the camera: the
-    more a triangle is turned away, the smaller it looks, and the darker it is.
-    """
-    step = 2 * math.pi / WEDGES
-    around = step * np.arange(WEDGES + 1)
-    circle = np.stack([RADIUS * np.cos(around), RADIUS * np.sin(around), 0 * around + HEIGHT], 1)
-    rim = rotated(np.broadcast_to(quaternion, (WEDGES + 1, 4)), circle) @ camera[:2].T
-    side = 0 * rim[0], -step * RADIUS * math.hypot(RADIUS, HEIGHT)
-    lid = rim[1:].mean(axis=0), step * RADIUS**2
-    triangles, shades = [], []
-    for apex, area in (side, lid):
-        for k in range(WEDGES):
-            paint = np.array(to_rgb("#f4f4f4" if 3 * k < WEDGES else look.lines[1]))
-            corners = np.stack([apex, rim[k], rim[k + 1]])
-            facing = np.linalg.det(corners[1:] - apex) / area
-            if facing > 0:
-                triangles.append(corners)
-                shades.append((0.5 + 0.5 * min(facing, 1.0)) * paint)
-    return triangles, shades, rim

@@ -12,6 +12,7 @@ from pathlib import PurePath
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap
@@ -30,40 +31,33 @@ from ..solver.solve import Motion
 from ..sweeps.records import sweep
 from ..top.inputs import DECLARED, NINE
 from ..top.top import Top
-from .style import LIGHT, Look, plain, scale
+from .style import LIGHT, Look, plain
 
-MOST_PERIODS = 1000
-"""Most nutation periods in one picture; more would be a blot and not a curve."""
-SAMPLES = 200
-"""Samples per nutation period."""
-ARROWS = np.array([0.1, 0.28, 0.46, 0.64, 0.82])
-"""Places of the arrowheads that show the direction of a path, as shares of its samples."""
+MOST_PERIODS, SAMPLES_PER_PERIOD = 1000, 200
+"""Of the nutation; more periods would be a blot and not a curve."""
 WORDS = {"regime": "Regime of the motion", "path": "Path of the axis"}
 """Keys of a map whose values are words, with their titles."""
-CLASSES = "#9cc9ec #f3c69a #a9dcc3 #d9c3ea #f0e08c #e8a9a4 #c9ced4 #c8e6a0".split()
-"""Colours of words."""
-MOST_VALUES = 1000
-"""Most values along one axis of a map."""
+COLOURS_OF_WORDS = "#9cc9ec #f3c69a #a9dcc3 #d9c3ea #f0e08c #e8a9a4 #c9ced4 #c8e6a0".split()
+MOST_MAP_VALUES = 1000
+WINDOW = np.array([1.35, 1.0])
+"""Proportions of the part of a sphere that is shown."""
 
 
 class Options(NamedTuple):
-    """What a picture shows, and how."""
+    """What a picture shows, and how; by default a picture chooses its own times, camera and map."""
 
     t_max: Number | None = None
-    """Last time of the pictures over time; by default each picture chooses its own."""
     radians: bool = False
-    """Whether angles are in radians instead of degrees."""
     camera: tuple[float, float] | None = None
-    """Azimuth and elevation (radians) of the camera; by default it faces the path."""
+    """Azimuth and elevation (radians)."""
     look: Look = LIGHT
     stds: Callable[[Array], Any] | None = None
     """Standard deviations (radians) of `STD_COLUMNS` at given times: bands."""
     key: str | None = None
-    """Key of a map; by default the mean precession rate."""
+    """Key of the record that a map shows."""
     x: tuple[str, ArrayLike] | None = None
-    """Input along the horizontal axis of a map, and its values; by default the spin."""
+    """Input along the horizontal axis of a map, and its values."""
     y: tuple[str, ArrayLike] | None = None
-    """The same for the vertical axis; by default the tilt."""
     progress: Progress = silent
     unit: Callable[[str], str] = str
     """Returns the name of a unit such as `rad/time` in the units of the inputs."""
@@ -79,6 +73,11 @@ class Options(NamedTuple):
         return f"t ({self.unit('time').replace('time', 'input units')})"
 
 
+def scale(look: Look) -> ListedColormap:
+    """Return the colour scale for the size of a quantity."""
+    return ListedColormap(colormaps["viridis"](np.linspace(*look.scale, 256)), name="lagtop")
+
+
 # --- times
 
 
@@ -87,29 +86,24 @@ def tilt_period(motion: Motion) -> float | None:
     return None if motion.theta_min_deg == motion.theta_max_deg else motion.T_nutation
 
 
-def usual_span(motion: Motion, least: float, most: float) -> float:
-    """Return the time of one turn of the precession, but `least` to `most` nutation periods.
+def last_time(motion: Motion, t_max: Number | None, least: float, most: float) -> float:
+    """Return the last time of a picture: t_max, or else one turn of the precession.
 
-    On the separatrix it is the time of the swing.  For a constant tilt it is one turn of the
-    precession or of the spin.
+    The turn counts as `least` to `most` nutation periods.  On the separatrix it is the time of the
+    swing.  Raises LagtopError unless t_max is above 0 and the curve up to it is legible.
     """
-    if swing := motion.swing:
+    nutation, swing = tilt_period(motion), motion.swing
+    longest = MOST_PERIODS * (nutation or math.inf)
+    if t_max is not None and not 0 < t_max <= longest:
+        bounds = f"> 0 and at most {MOST_PERIODS} nutation periods = {longest:.6g}"
+        raise LagtopError(f"t_max must be {bounds}, got {float(t_max):g}", "t_max")
+    if t_max is not None:
+        return float(t_max)
+    if swing:
         return max(6.0 / swing.rate, 2.0 * swing.lowest)
-    if nutation := tilt_period(motion):
+    if nutation:
         return min(max(motion.T_precession or 0.0, least * nutation), most * nutation)
     return motion.T_precession or motion.T_spin or 1.0
-
-
-def last_time(motion: Motion, options: Options, usual: float) -> float:
-    """Return the last time of the options, by default the usual one.
-
-    Raises LagtopError unless it is above 0 and the curve up to it is legible.
-    """
-    most = MOST_PERIODS * (tilt_period(motion) or math.inf)
-    if options.t_max is not None and not 0 < options.t_max <= most:
-        bounds = f"> 0 and at most {MOST_PERIODS} nutation periods = {most:.6g}"
-        raise LagtopError(f"t_max must be {bounds}, got {float(options.t_max):g}", "t_max")
-    return usual if options.t_max is None else float(options.t_max)
 
 
 def sampled(motion: Motion, t_max: float, names: Sequence[str]) -> list[Array]:
@@ -118,7 +112,7 @@ def sampled(motion: Motion, t_max: float, names: Sequence[str]) -> list[Array]:
     The samples are even in the sum of time and length of the curve, each as a share of the whole:
     so they are dense where the curve is steep.
     """
-    count = round(SAMPLES * max(t_max / (tilt_period(motion) or t_max), 2.0))
+    count = round(SAMPLES_PER_PERIOD * max(t_max / (tilt_period(motion) or t_max), 2.0))
     t = np.linspace(0.0, t_max, count + 1)
     for _ in range(2):
         points = np.stack([*motion.table(t, names).values()])
@@ -165,7 +159,7 @@ def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     finer.  `add_time_bar` draws the scale of the colours.
     """
     (ax,), look = axes, options.look
-    t, *columns = sampled(motion, last_time(motion, options, usual_span(motion, 3, 40)), ["axis"])
+    t, *columns = sampled(motion, last_time(motion, options.t_max, 3, 40), ["axis"])
     path = np.stack(columns, axis=1)
     camera = camera_of(path, options)
     moves = np.ptp(path, axis=0).max() > 1e-12
@@ -180,12 +174,10 @@ def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
             lines = LineCollection(pieces, array=t[cuts[:-1]], clim=(0, t[-1]), cmap=scale(look))
             lines.set(lw=width * max(fine, 0.35), capstyle="round", alpha=alpha, zorder=order)
             ax.add_collection(lines, autolim=False)
-        heads = ((ARROWS if fine > 0.5 else ARROWS[-1:]) * t.size).astype(int)
-        steps = near[heads + 1] - near[heads]
-        steps /= np.linalg.norm(steps, axis=1, keepdims=True)
-        shape: dict[str, Any] = {"headlength": 6, "headaxislength": 6, "headwidth": 5}
-        shape |= {"units": "inches", "width": 0.02, "scale_units": "inches", "scale": 8.0}
-        ax.quiver(*near[heads].T, *steps.T, color=look.ink, pivot="mid", zorder=5, **shape)
+        for share in (0.1, 0.28, 0.46, 0.64, 0.82) if fine > 0.5 else (0.82,):
+            (x, y), step = near[(i := int(share * t.size))], near[i + 1] - near[i]
+            turn = math.degrees(math.atan2(step[1], step[0])) - 90.0
+            ax.plot(x, y, marker=(3, 0, turn), ms=8.0, color=look.ink, mew=0.0, zorder=5)
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3)
     if motion.regime is Regime.SLEEPING:
         return f"sleeping, {'stable' if motion.facts.stable else 'unstable'}"
@@ -213,10 +205,10 @@ def draw_globe(
         low, high = ends.min(axis=1), ends.max(axis=1)
         if tips[1, 2] - low[1] < 1.3 * max(high - low):
             high[1] = max(high[1], tips[1, 2])
-        room = 0.07 * max(high - low) + 0.005
-        low, high = low - room, high + room
+        size = 1.14 * max((high - low) / WINDOW) * WINDOW + 0.01
+        low, high = (low + high - size) / 2, (low + high + size) / 2
     ax.set_axis_off()
-    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_aspect("equal")
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     ax.add_patch(Circle((0, 0), 1, fc=look.faint, ec=look.quiet, alpha=0.6, zorder=0))
     draw_circle(ax, camera, math.pi / 2, color=look.quiet, lw=0.6)
@@ -245,15 +237,12 @@ def draw_circle(ax: Axes, camera: Array, tilt: float, **line: Any) -> None:
 
 
 def add_time_bar(axes: Sequence[Axes], label: str) -> None:
-    """Draw one colour bar for the times of spheres side by side, or more if they differ much."""
+    """Draw one colour bar for the times of spheres side by side."""
     lines = [x for ax in axes for x in ax.collections if isinstance(x, LineCollection)]
-    ends = [x.get_clim()[1] for x in lines]
-    if len(axes) > 1 and lines and max(ends) > 3 * min(ends):
-        for ax in axes:
-            add_time_bar([ax], label)
-    elif lines:
+    if lines:
+        last = max(x.get_clim()[1] for x in lines)
         for x in lines:
-            x.set_clim(0, max(ends))
+            x.set_clim(0, last)
         bar = axes[0].figure.colorbar(lines[-1], ax=axes, shrink=0.7, pad=0.02, aspect=28)
         bar.set_label(label)
         bar.outline.set_visible(False)
@@ -265,7 +254,7 @@ def add_time_bar(axes: Sequence[Axes], label: str) -> None:
 def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """Draw tilt, precession, and the deviation of the spin from its mean rate, over time."""
     look, (factor, unit) = options.look, options.angle_unit
-    t_max = last_time(motion, options, usual_span(motion, 3, 3))
+    t_max = last_time(motion, options.t_max, 3, 3)
     t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
     spin, turn = motion.mean_spin_rate, motion.mean_precession_rate
     order, name, about, note = [0, 1, 2], "φ", "", ""
@@ -345,7 +334,7 @@ def cubic(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
 def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """Draw the tilt rate against the tilt, and the separatrix."""
     (ax,), look, (factor, unit) = axes, options.look, options.angle_unit
-    _, theta, rate = sampled(motion, usual_span(motion, 1, 1), ["theta", "thetadot"])
+    _, theta, rate = sampled(motion, last_time(motion, None, 1, 1), ["theta", "thetadot"])
     ax.axhline(0.0, color=look.quiet, lw=0.9)
     ax.plot(theta * factor, rate, color=look.lines[0], label="this motion")
     mark_start(ax, (theta[0] * factor, float(motion.top.thetadot0)), look)
@@ -386,7 +375,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     inputs["psidot0"] = motion.top.as_dict()["psidot0"]  # it may be a word
     inputs |= {x: xs[np.newaxis, :], y: ys[:, np.newaxis]}
     found = sweep(keys=list(dict.fromkeys([key, "stability_factor", "b", "u1"])), **inputs)
-    title = draw_cells(ax, (xs, ys), found[key], key, options)
+    title = (draw_words if key in WORDS else draw_numbers)(ax, (xs, ys), found[key], key, options)
     borders = {"border of stability (upright top)": (found["stability_factor"] - 1, look.ink, "--")}
     if key == "path":  # beta - b u, and with it the precession, is 0 at u1, at u = 1 or at u = -1
         size = np.nanmax(np.abs(found["b"]), initial=0.0) or 1.0
@@ -420,41 +409,40 @@ def grid_of(top: Top, options: Options) -> dict[str, Array]:
     """
     threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
     most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
-    tilts = np.radians(np.linspace(1.0, 179.0, 100)) * options.angle_unit[0]
     x = options.x or ("r0", (np.arange(200) + 0.5) * most / 200)
-    y = options.y or ("theta0", tilts)
+    y = options.y or ("theta0", np.radians(np.linspace(1.0, 179.0, 100)) * options.angle_unit[0])
     if x[0] == y[0]:
         raise LagtopError(f"x and y must be two inputs, got {x[0]} twice")
     grid = {name: np.asarray(values, float) for name, values in (x, y)}
     for option, (name, values) in zip("xy", grid.items(), strict=True):
         check_names(option, [name], NINE)
-        if not 2 <= values.size <= MOST_VALUES:
-            bounds = f"2 to {MOST_VALUES} values"
-            raise LagtopError(f"{option} must have {bounds}, got {values.size}", option)
-        if not np.all(np.diff(values) > 0):
-            ends = f"{name}={values[0]:g}:{values[-1]:g}"
-            raise LagtopError(f"{option} must have start < stop, got {ends}", option)
+        wanted, found = f"2 to {MOST_MAP_VALUES} values", str(values.size)
+        if is_long := 2 <= values.size <= MOST_MAP_VALUES:
+            wanted, found = "start < stop", f"{name}={values[0]:g}:{values[-1]:g}"
+        if not (is_long and np.all(np.diff(values) > 0)):
+            raise LagtopError(f"{option} must have {wanted}, got {found}", option)
     return grid
 
 
-def draw_cells(ax: Axes, grid: Sequence[Array], values: Any, key: str, options: Options) -> str:
-    """Draw numbers in colours, or words as classes with a legend, and return a title.
+def draw_words(ax: Axes, grid: Any, values: Any, key: str, _: Options) -> str:
+    """Draw words as coloured regions with a legend, and return a title."""
+    names, classes = np.unique(values.astype(str), return_inverse=True)
+    colours = ListedColormap(COLOURS_OF_WORDS[: names.size])
+    ax.pcolormesh(*grid, classes.reshape(values.shape), cmap=colours, rasterized=True)
+    for colour, name in zip(COLOURS_OF_WORDS, names, strict=False):
+        ax.plot([], [], "s", color=colour, label=name.replace("None", "undefined"))
+    return WORDS[key]
+
+
+def draw_numbers(ax: Axes, grid: Any, values: Any, key: str, options: Options) -> str:
+    """Draw numbers in colours with a bar, and return a title.
 
     The colours span the numbers without the lowest and the highest 1 %, which may be a peak.
     """
-    look = options.look
-    if key in WORDS:
-        names, classes = np.unique(values.astype(str), return_inverse=True)
-        colours = ListedColormap(CLASSES[: names.size])
-        ax.pcolormesh(*grid, classes.reshape(values.shape), cmap=colours, rasterized=True)
-        for colour, name in zip(CLASSES, names, strict=False):
-            ax.plot([], [], "s", color=colour, label=name.replace("None", "undefined"))
-        return WORDS[key]
-    declared = NUMBERS[key]
+    look, declared = options.look, NUMBERS[key]
     unit = options.unit(declared.unit)
     if declared.unit == "angle":  # keys of angles are in degrees
         values, unit = np.radians(values) * options.angle_unit[0], options.angle_unit[1]
-    ax.set_facecolor(look.faint)
     shown = np.ma.masked_invalid(values)
     if not shown.count():
         raise LagtopError(f"no map: {key} is undefined for all of these tops")
@@ -464,9 +452,9 @@ def draw_cells(ax: Axes, grid: Sequence[Array], values: Any, key: str, options: 
     bar = ax.figure.colorbar(mesh, ax=ax, aspect=28, extend="both", label=label)
     bar.outline.set_visible(False)
     if shown.count() < shown.size:
+        ax.set_facecolor(look.faint)
         ax.plot([], [], "s", color=look.faint, mec=look.quiet, label="undefined")
-    ending = declared.equation if declared.equation[:1] in "(§" else f"= {declared.equation}"
-    return f"{declared.symbol}: {declared.meaning} {ending}".rstrip()
+    return f"{declared.symbol}: {declared.meaning}"
 
 
 # --- sheets
@@ -503,8 +491,7 @@ def figure_of(
     places = figure.add_gridspec(rows, columns)
     for i, (name, motion, kind) in enumerate(panels):
         draw, count, _ = PICTURES[kind]
-        grid = places[i].subgridspec(count, 1)
-        several: Any = grid.subplots(sharex=True) if count > 1 else ()
+        several: Any = places[i].subgridspec(count, 1).subplots(sharex=True) if count > 1 else []
         axes = [*several] or [figure.add_subplot(places[i])]
         shown = draw(motion, axes, options)
         stem = PurePath(name).stem if len(scenes) > 1 else ""
@@ -512,14 +499,10 @@ def figure_of(
             both = f"{stem}: {shown}" if stem and shown not in stem else stem or shown
             axes[0].set_title(plain(both), pad=18)
         spheres += axes * (kind == "sphere")
-    if spheres:
-        add_time_bar(spheres, options.time_label)
+    add_time_bar(spheres, options.time_label)
     if title:
         figure.suptitle(plain(title), x=0.012, ha="left")
-    windows = [(ax.get_xlim(), ax.get_ylim()) for ax in spheres]
-    if engine := figure.get_layout_engine():  # each round of it widens a picture of equal scales
-        engine.execute(figure)
-        figure.set_layout_engine("none")
-    for ax, (wide, tall) in zip(spheres, windows, strict=True):
-        ax.set(xlim=wide, ylim=tall)
+    if engine := figure.get_layout_engine():  # for pictures of equal scales, two rounds do not do
+        for _ in range(2):
+            engine.execute(figure)
     return figure

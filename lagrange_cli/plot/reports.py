@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from .style import LIGHT, plain, require_matplotlib, scale
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..inverse.outcome import Outcome
-
-
-def new_figure() -> Figure:
-    """Return a new figure of pyplot, which a notebook shows.  Raises UnavailableError."""
-    require_matplotlib()
-    from matplotlib import pyplot  # only here: files need no pyplot
-
-    return pyplot.figure(layout="constrained")
+from ..inverse.decay import decay_of, decay_text
+from ..inverse.outcome import Outcome
+from .pictures import scale
+from .style import LIGHT, plain
 
 
 def draw_errors(
@@ -33,9 +26,6 @@ def draw_errors(
 
     If the comparisons have steps, a second panel shows the `errors` over them.
     """
-    import numpy as np
-    from matplotlib.figure import Figure
-
     pairs = zip(results, errors, strict=False)
     steps = [(x.step, error) for x, error in pairs if x.step and error and error < np.inf]
     figure = figure or Figure(figsize=(10.0 if steps else 7.5, 4.6))
@@ -70,24 +60,8 @@ def draw_convergence(axes: Axes, points: Sequence[tuple[float, float]]) -> None:
     axes.set_xticks([], minor=True)
 
 
-def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
-    """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure.
-
-    Angles are in degrees, or in radians if the fit was made so.  Raises UnavailableError without
-    matplotlib.
-
-    >>> t = np.linspace(0, 2, 100)
-    >>> theta, phi, psi = solve(Top()).angles(t)
-    >>> len(draw_outcome(fit(t, theta=theta, psi=psi)).axes)
-    4
-    """
-    return draw_fit(outcome, figure or new_figure())
-
-
 def draw_fit(outcome: Outcome, figure: Figure | None = None) -> Figure:
     """Draw each channel of a recording with the fit, and its residuals below."""
-    from matplotlib.figure import Figure
-
     curves = [*outcome.curves()]
     rows, unit = len(curves), outcome.angle
     figure = figure or Figure(figsize=(8.0, 1.0 + 2.8 * rows))
@@ -107,14 +81,10 @@ def draw_fit(outcome: Outcome, figure: Figure | None = None) -> Figure:
     return figure
 
 
-def draw_decay(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Figure:
+def draw_decay(outcomes: Sequence[Outcome]) -> Figure:
     """Draw the spin of each window that is good, and the exponential through them."""
-    from matplotlib.figure import Figure
-
-    from ..inverse.decay import decay_of, decay_text
-
-    figure = figure or Figure(figsize=(7.5, 4.6))
-    axes, decay = figure.subplots(), decay_of(outcomes)
+    figure, decay = Figure(figsize=(7.5, 4.6)), decay_of(outcomes)
+    axes = figure.subplots()
     name = decay.quantity if decay else "b"
     found = [(x.recording.middle, *x.numbers[name][:2]) for x in outcomes if name in x.numbers]
     t, values, stds = zip(*found, strict=True) if found else ((), (), ())
@@ -122,9 +92,8 @@ def draw_decay(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Fig
     if decay:
         curve = [decay.value(x) for x in t]
         axes.plot(t, curve, lw=1.2, color=LIGHT.lines[1], label="exponential")
-    axes.set(
-        xlabel=f"t ({outcomes[0].recording.time_unit})", ylabel=f"{name} (rad per unit of time)"
-    )
+    axes.set_xlabel(f"t ({outcomes[0].recording.time_unit})")
+    axes.set_ylabel(f"{name} (rad per unit of time)")
     axes.set_title(plain(decay_text(outcomes)), loc="left", size=9)
     axes.legend()
     return figure

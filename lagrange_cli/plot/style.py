@@ -18,7 +18,6 @@ from ..errors import CannotWriteError, LagtopError, UnavailableError
 from ..output.terminal import one_line
 
 if TYPE_CHECKING:
-    from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
 FORMATS = "png", "svg", "pdf"
@@ -64,15 +63,6 @@ def styled(look: Look) -> Iterator[None]:
         warnings.filterwarnings("ignore", "Glyph .* missing")  # a font of the user has it or not
         style.use(["default", Path(__file__).with_name("lagtop.mplstyle"), colours])
         yield
-
-
-def scale(look: Look) -> Colormap:
-    """Return the colour scale for the size of a quantity."""
-    import numpy as np
-    from matplotlib import colormaps
-    from matplotlib.colors import ListedColormap
-
-    return ListedColormap(colormaps["viridis"](np.linspace(*look.scale, 256)), name="lagtop")
 
 
 def plain(text: str) -> str:

@@ -127,7 +127,6 @@ export function motionOf(scene) {
     angles,
     span: period ?? 20 * usual,
     isSketch: !isVertical && ((fromVertical > 0 && fromVertical < 1e-3) || (torque > 0 && 1 - k < 5e-8)),
-    f: (u) => (swing + torque * (u0 - u)) * (1 - u * u) - (along + b * (u0 - u)) ** 2,
     facts: {
       regime, constant, plane, spin: r0, spins: r0 !== 0, stable: b * b >= 2 * torque,
       turns_over: plane && top === 0 && toTop > 0,

@@ -1,4 +1,4 @@
-// The page: the top in space, its curves, the cubic, the inputs and the numbers.
+// The page: the top in space, its curves, the inputs and the numbers.
 // DATA holds the scene, the shipped scenes, the inputs and the keys; `motionOf` computes.
 
 const at = Object.fromEntries([...document.querySelectorAll("[id]")].map((part) => [part.id, part]));
@@ -20,7 +20,8 @@ function titleOf({ meaning, unit }) {
 }
 const style = getComputedStyle(document.documentElement);  // follows the dark mode
 const colour = (name) => style.getPropertyValue(`--${name}`) || name;
-const camera = { azimuth: -62, elevation: 20, zoom: 1 };
+const FRONT = { azimuth: -62, elevation: 20, zoom: 1 };
+const camera = { ...FRONT };
 
 let scene = {};
 let motion = null;
@@ -98,15 +99,11 @@ function frameOf(theta, psi) {
 const around = ({ nodes, axis, across }, radius, angle, height) =>
   sum([radius * Math.cos(angle), nodes], [radius * Math.sin(angle), across], [height, axis]);
 
-/** The camera; zoomed in, it follows the mean motion of the axis. */
+/** What the camera shows. */
 function viewOf(width, height) {
   const { nodes, axis, across } = frameOf((90 - camera.elevation) / DEGREE, (camera.azimuth + 90) / DEGREE);
   const scale = (camera.zoom * Math.min(width, height)) / 2.5;
-  const middle = sum([clamped(camera.zoom - 1.5, 0, 1), frameOf(curves.tilt, curves.turn * t).axis]);
-  const place = (p) => {
-    const off = sum([1, p], [-1, middle]);
-    return [width / 2 + scale * dot(off, nodes), height / 2 - scale * dot(off, across)];
-  };
+  const place = (p) => [width / 2 + scale * dot(p, nodes), height / 2 - scale * dot(p, across)];
   return { scale, place, depth: (p) => dot(p, axis), lamp: sum([0.55, axis], [-0.45, nodes], [0.5, across]) };
 }
 
@@ -185,70 +182,31 @@ function drawSpace() {
   at.now.textContent = Object.entries(angles).map(([x, y]) => `${CURVES[x][0]} = ${text(y * DEGREE)}°`).join("\n");
 }
 
-// --- curves and cubic
-
-/** Draw the scales of a panel, with about so many ticks; return the function that places a point in it. */
-function panel(pen, [left, right, top, bottom], [x0, x1], [y0, y1], [across, up]) {
-  const place = ([x, y]) => [
-    left + ((x - x0) / (x1 - x0)) * (right - left),
-    bottom - ((y - y0) / (y1 - y0)) * (bottom - top),
-  ];
-  const letters = parseInt(pen.font, 10);
-  const most = clamped(Math.floor((bottom - top) / (2 * letters)), 1, up);
-  for (const x of across ? ticks(x0, x1, across) : []) {
-    word(pen, text(x), [place([x, y0])[0], bottom + 0.8 * letters], "ink");
-  }
-  for (const y of ticks(y0, y1, most)) {
-    const [x, height] = place([x0, y]);
-    word(pen, text(y), [x - 6, height], "ink", "right");
-    line(pen, [[x - 3, height], [x, height]], "quiet");
-  }
-  return place;
-}
+// --- curves
 
 function drawCurves() {
   const { pen, width, height, letters } = prepared(at.plots);
   const [left, right, foot] = [4.8 * letters, width - 8, height - 2.2 * letters];
   const { from, span, times } = curves;
-  const mean = { theta: 0, phi: motion.record.mean_spin_rate ?? 0, psi: 0 };
-  const now = left + ((t - from) / span) * (right - left);
+  const across = (time) => left + ((time - from) / span) * (right - left);
+  const spin = motion.record.mean_spin_rate ?? 0;
   Object.entries(CURVES).forEach(([name, [, title, tint]], i) => {
-    const values = curves.angles.map((angles, j) => (angles[name] - mean[name] * times[j]) * DEGREE);
-    const [low, high] = [Math.min(...values), Math.max(...values)];
-    const range = high - low > 1e-7 ? [low, high] : [low - 1, high + 1];
-    const box = [left, right, (foot * i) / 3 + 1.3 * letters, (foot * (i + 1)) / 3 - 6];
-    const place = panel(pen, box, [from, from + span], range, [i === 2 ? 5 : 0, 4]);
-    line(pen, values.map((value, j) => place([times[j], value])), tint, { width: 1.8 });
-    line(pen, [box[2], box[3]].map((height) => [now, height]), "trace", { width: 1.5 });
-    word(pen, title, [left + 4, box[2] - 0.7 * letters], tint, "left");
+    const values = curves.angles.map((angles, j) => (angles[name] - (name === "phi" ? spin * times[j] : 0)) * DEGREE);
+    let [low, high] = [Math.min(...values), Math.max(...values)];
+    if (high - low < 1e-7) [low, high] = [low - 1, high + 1];
+    const [top, bottom] = [(foot * i) / 3 + 1.3 * letters, (foot * (i + 1)) / 3 - 6];
+    const down = (value) => bottom - ((value - low) / (high - low)) * (bottom - top);
+    for (const value of ticks(low, high, clamped(Math.floor((bottom - top) / (2 * letters)), 1, 4))) {
+      word(pen, text(value), [left - 6, down(value)], "ink", "right");
+      line(pen, [[left - 3, down(value)], [left, down(value)]], "quiet");
+    }
+    line(pen, values.map((value, j) => [across(times[j]), down(value)]), tint, { width: 1.8 });
+    line(pen, [[across(t), top], [across(t), bottom]], "trace", { width: 1.5 });
+    word(pen, title, [left + 4, top - 0.7 * letters], tint, "left");
   });
+  for (const time of ticks(from, from + span, 5)) word(pen, text(time), [across(time), foot + 0.2 * letters], "ink");
   word(pen, `t (${unitOf("time").replace("time", "time units")})`, [(left + right) / 2, foot + 1.5 * letters], "ink");
   curves.timeAt = (place) => from + ((place - left) / (right - left)) * span;
-}
-
-function drawCubic() {
-  const { pen, width, height, letters } = prepared(at.cubic);
-  const { u1, u2, u3 } = motion.record;
-  const box = [4.8 * letters, width - 8, 1.6 * letters, height - 2.6 * letters];
-  const last = u3 !== null && u3 - u1 < 1.5 * (u1 - u2) ? u3 : u1;
-  const room = 0.35 * (last - u2) || 0.2;
-  const points = even(u2 - room, last + room, 200).map((u) => [u, motion.f(u)]);
-  const hump = points.filter(([u]) => u >= u2 && u <= u1);
-  const most = Math.max(...hump.map(([, f]) => f), 0) || Math.max(...points.map(([, f]) => Math.abs(f))) || 1;
-  const place = panel(pen, box, [u2 - room, last + room], [-1.3 * most, 1.3 * most], [4, 3]);
-  area(pen, [[u2, 0], ...hump, [u1, 0]].map(place), "faint");
-  line(pen, points.map((point) => (Math.abs(point[1]) < 1.4 * most ? place(point) : null)), "blue", { width: 1.8 });
-  line(pen, [[u2 - room, 0], [last + room, 0]].map(place), "quiet");
-  const roots = u1 === u2 ? { "u₁ = u₂": u2 } : { "u₂": u2, "u₁": u1 };
-  for (const [name, u] of Object.entries(last === u3 ? { ...roots, "u₃": u3 } : roots)) {
-    const [x, y] = place([u, 0]);
-    disc(pen, [x, y], 3, "ink");
-    word(pen, name, [x + ({ "u₁": 11, "u₁ = u₂": 0 }[name] ?? -11), y - 12], "ink");
-  }
-  const u = Math.cos(motion.angles(t).theta);
-  disc(pen, place([u, motion.f(u)]), 6, "trace");
-  word(pen, "f(u) = u̇²", [box[0] + 4, 0.8 * letters], "blue", "left");
-  word(pen, "u = cos ϑ", [(box[0] + width) / 2, height - 0.7 * letters], "ink");
 }
 
 // --- scene, time and camera
@@ -260,18 +218,14 @@ function sample() {
   const times = even(from, from + span, 800);
   const angles = times.map(motion.angles);
   const axes = angles.map(({ theta, psi }) => frameOf(theta, psi).axis);
-  const { theta_min_deg: low, theta_max_deg: high, mean_precession_rate: turn } = motion.record;
-  curves = { from, span, times, angles, axes, tilt: (low + high) / 2 / DEGREE, turn: turn ?? 0 };
+  curves = { from, span, times, angles, axes };
 }
 
 function draw() {
   fresh = true;
   if (!curves || t < curves.from || t >= curves.from + curves.span) sample();
   drawSpace();
-  if (!document.fullscreenElement) {
-    drawCurves();
-    drawCubic();
-  }
+  if (!document.fullscreenElement) drawCurves();
   if (document.activeElement !== at.time && !at.time.classList.contains("wrong")) at.time.value = text(t, 6);
 }
 
@@ -386,8 +340,6 @@ function restore() {
   return words.size > 0;
 }
 
-const zoom = (factor) => Object.assign(camera, { zoom: clamped(camera.zoom * factor, 0.5, 400) });
-const resetView = () => Object.assign(camera, { azimuth: -62, elevation: 20, zoom: 1 });
 const fullScreen = () => (document.fullscreenElement ? document.exitFullscreen() : at.stage.requestFullscreen());
 const KEYS = {
   " ": () => play(!playing),
@@ -408,10 +360,10 @@ on(at.space, "pointermove", ({ buttons, movementX, movementY }) => {
   camera.azimuth -= movementX * 0.5;
   camera.elevation = clamped(camera.elevation + movementY * 0.5, -90, 90);
 });
-on(at.space, "dblclick", resetView);
+on(at.space, "dblclick", () => Object.assign(camera, FRONT));
 on(at.space, "wheel", (event) => {
   event.preventDefault();
-  zoom(event.deltaY < 0 ? 1.1 : 1 / 1.1);
+  camera.zoom = clamped(camera.zoom * (event.deltaY < 0 ? 1.1 : 1 / 1.1), 0.5, 4);
 }, { passive: false });
 on(document, "keydown", (event) => {
   if (event.target.closest("input, select, button") || !(event.key in KEYS)) return;
