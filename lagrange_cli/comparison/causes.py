@@ -13,7 +13,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files import rotations
-from .differences import Alignment, Exact, Run, angles_of, blocks, errors, sizes, start_of
+from .differences import Alignment, Exact, Run, angles_of, errors, sizes, start_of
 from .mistakes import BACKWARDS, Cause, Undo, mistakes
 
 EXPLAINS = 0.1
@@ -25,6 +25,7 @@ _AS_GOOD, _ROUNDING = 10.0, 1e-9
 _FEW, _SOME, _LEAST = 12, 300, 3
 """Rows on which causes are tried first and then, and the least number of rows."""
 _MOST_SHIFTS = 500
+_NONE = Cause("")
 _AXES = "z", "y", "x", "-z", "-y", "-x"
 _FRAMES = [
     *(Alignment(x, x) for x in _AXES[:3]),
@@ -46,12 +47,13 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
     causes at once.  Otherwise return the best cause, which explains a part and
     spoils nothing.
     """
-    if np.isfinite(errors(exact, run.few(_SOME))).sum() < _LEAST:
-        return []
     search = _Search(exact, run)
+    if np.isfinite(search.errors(_NONE, _SOME)[0]).sum() < _LEAST:
+        return []
     found = next(filter(None, (search.best(x, limit) for x in search.groups())), [])
     if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
-        found = search.best([*found, *search.pairs(in_other=False)], limit)
+        mirrored = search.aligned(search.mistakes, in_other=False)
+        found = search.best([*found, *mirrored], limit)
     parts = (x for x in next(search.groups()) if not search.spoils(x, limit))
     return found or search.best(parts, _PART)
 
@@ -61,9 +63,9 @@ class _Search:
 
     def __init__(self, exact: Exact, run: Run) -> None:
         self.run, self.given = run, exact
-        self.mistakes = mistakes(exact.top, run)
+        self.mistakes = mistakes(exact.motion.top, run)
         self.some, self.tilt = cache(self._some), cache(self._tilt)
-        self.enough = EXPLAINS * self.error(Cause(""), _SOME)
+        self.enough = EXPLAINS * self.error(_NONE, _SOME)
 
     def _some(self, undo: Undo | None) -> Run:
         """Return some rows of the trajectory as it was meant."""
@@ -76,25 +78,20 @@ class _Search:
             return float(seen.get("theta", [math.nan])[0])
         return math.inf
 
-    def error(self, cause: Cause, most: int = 0) -> float:
-        """Return the greatest error without a cause, on so many rows or on all.
-
-        It is infinite if no row is finite.
-        """
+    def errors(self, cause: Cause, most: int = 0) -> Array:
+        """Return the errors without a cause, on so many rows or on all."""
         run = self.some(cause.undo).few(most) if most else cause.undone(self.run)
-        worst = errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
-        return float(np.fmax.reduce(worst)) if np.isfinite(worst).any() else math.inf
+        return errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
+
+    def error(self, cause: Cause, most: int = 0) -> float:
+        """Return the greatest error without a cause, infinite if no row is finite."""
+        worst = np.fmax.reduce(self.errors(cause, most), axis=None)
+        return float(worst) if np.isfinite(worst) else math.inf
 
     def spoils(self, cause: Cause, limit: float) -> bool:
         """Return whether the attitude, or the rates, are clearly worse without a cause."""
-
-        def greatest(cause: Cause) -> Array:
-            run = self.some(cause.undo).few(_FEW)._replace(align=cause.align or self.run.align)
-            found = next(blocks(cause.exact or self.given, run))
-            both = [found["error"], found.get("rates", found["error"])]
-            return np.asarray(np.fmax.reduce(both, axis=1))
-
-        return bool((greatest(cause) > np.fmax(2 * greatest(Cause("")), limit)).any())
+        after, before = (np.fmax.reduce(self.errors(x, _FEW), axis=1) for x in (cause, _NONE))
+        return bool((after > np.fmax(2 * before, limit)).any())
 
     def best(self, causes: Iterable[Cause], limit: float) -> list[Cause]:
         """Return the simplest cause that leaves about as little as the best, and another one."""
@@ -117,62 +114,56 @@ class _Search:
         They are single causes, a shift of the clock, a mistake with other zeros of the angles and
         the clock, a mistake in another frame, two mistakes, and the reverse of time.
         """
-        early = 1 + next(i for i, x in enumerate(self.mistakes) if x.exact)
-        same, other = (self.alignments(Cause(""), in_other) for in_other in (False, True))
+        tops = [x for x in self.mistakes if x.exact]
+        early = 1 + self.mistakes.index(tops[0])
+        same, other = (self.aligned([_NONE], in_other) for in_other in (False, True))
         yield [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
         yield self.shifts()
-        yield self.pairs(in_other=False)
-        yield self.pairs(in_other=True)
-        tops = [x for x in self.mistakes if x.exact]
+        yield self.aligned(self.mistakes, in_other=False)
+        yield self.aligned(self.mistakes, in_other=True)
         yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops]
         yield [BACKWARDS]
 
-    def pairs(self, *, in_other: bool) -> list[Cause]:
-        """Return each mistake with other zeros of the angles and the clock, or in other frames."""
-        return [x.with_other(y) for y in self.mistakes for x in self.alignments(y, in_other)]
+    def aligned(self, causes: Iterable[Cause], in_other: bool) -> list[Cause]:
+        """Return each cause with other zeros of the angles and the clock, or in other frames.
 
-    def alignments(self, mistake: Cause, in_other: bool) -> Iterator[Cause]:
-        """Yield other alignments in the given frame, or in other frames.
-
-        Under each, the first row has the tilt of the exact motion.
+        Under each alignment, the first row has the tilt of the exact motion.
         """
-        exact, undo, given = mistake.exact or self.given, mistake.undo, self.run.align
-        run, t = self.some(undo).few(_FEW), self.some(undo).t[:1]
-        times, starts = {given.time, given.time or bool(t[0])}, {given.start, True}
-        frames = dict.fromkeys([Alignment(*given[:3]), *_FRAMES])
-        for time, start, frame in product(sorted(times), sorted(starts), frames):
-            align = frame._replace(start=start, time=time)
-            twice = in_other and start and _is_reversed(align)  # the same as a left-handed one
-            if (frame[:3] != given[:3]) == in_other and align != given and not twice:
-                tilt = exact.at(t - t * time)["theta"][0]
-                if not abs(self.tilt(undo, frame) - tilt) > self.enough:
-                    yield _named(align, exact, run)
+        found, given = [], self.run.align
+        for cause in causes:
+            run, exact = self.some(cause.undo).few(_FEW), cause.exact or self.given
+            times = sorted({given.time, given.time or bool(run.t[0])})
+            frames = dict.fromkeys([Alignment(*given[:3]), *_FRAMES])
+            for time, start, frame in product(times, sorted({given.start, True}), frames):
+                align = frame._replace(start=start, time=time)
+                twice = in_other and start and _is_reversed(align)  # the same as a left-handed one
+                if (frame[:3] != given[:3]) == in_other and align != given and not twice:
+                    tilt = exact.at(run.t[:1] * (not time))["theta"][0]
+                    if not abs(self.tilt(cause.undo, frame) - tilt) > self.enough:
+                        found.append(_named(align, exact, run).with_other(cause))
+        return found
 
     def shifts(self) -> list[Cause]:
         """Return the shift of the clock that explains most."""
-        from scipy.optimize import minimize_scalar  # start-up
-
-        exact, few = self.given, self.run.few(20)
+        few = self.run.few(20)
         if self.run.align.start:
             return []
 
         def error(shifts: Array) -> Array:
             rows = {key: np.tile(x, (shifts.size, 1)) for key, x in few.given.items()}
             rows["t"] -= np.repeat(shifts, few.t.size)[:, np.newaxis]
-            found = errors(exact, few._replace(given=rows, missing=None))
+            found = np.fmax.reduce(errors(self.given, few._replace(given=rows)))
             return np.asarray(np.fmax.reduce(found.reshape(shifts.size, -1), axis=1))
 
-        step = 0.3 / sizes(exact.top)[2]
-        reach = max(exact.motion.T_nutation or 0.0, 10 * np.ptp(self.run.t) / self.run.t.size)
-        count = math.ceil(min(reach / step, _MOST_SHIFTS))
-        shifts = step * np.arange(-count, count + 1.0)
-        best = float(shifts[np.argmin(np.nan_to_num(error(shifts), nan=np.inf))])
-        ends, options = (best - step, best + step), {"xatol": 1e-9 * step}
-        found = minimize_scalar(
-            lambda x: float(error(np.array([x]))[0]), bounds=ends, method="bounded", options=options
-        )
-        shift = float(found.x)
-        return [Cause(f"the clock is shifted by {shift:.5g}", partial(Run.timed, shift=shift))]
+        motion, best = self.given.motion, 0.0
+        longest = 0.3 / sizes(motion.top)[2]
+        reach = max(motion.T_nutation or 0.0, 10 * np.ptp(self.run.t) / self.run.t.size)
+        count = math.ceil(min(reach / longest, _MOST_SHIFTS))
+        for step in longest / 10.0 ** np.arange(10):
+            shifts = best + step * np.arange(-count, count + 1.0)
+            best = float(shifts[np.argmin(np.nan_to_num(error(shifts), nan=np.inf))])
+            count = 10
+        return [Cause(f"the clock is shifted by {best:.5g}", partial(Run.timed, shift=best))]
 
 
 def _is_reversed(align: Alignment) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
-from ..file_bytes import shown_path, utf8_path
+from ..file_bytes import shown_path
 from ..files.columns import QUANTITIES
 from ..files.observed import Conventions, quantities_of
 from ..names import ANGLES, check_names
@@ -164,19 +164,18 @@ def compare(
     if not max_error > 0:
         raise LagtopError(f"max_error must be > 0, got {max_error}", "max_error")
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
-    masks = [x.mask for x in given.values() if isinstance(x, np.ma.MaskedArray)]
-    run = Run(quantities_of(t, given), conventions, Alignment.of(align))
-    times = run.given["t"][:, 0]
+    rows = quantities_of(t, given)
+    times, rows["missing"] = rows["t"][:, 0], 0 * rows["t"]
     if not len(times):
         raise LagtopError("t must have at least one row, got none", "t")
     steps = np.diff(times)
     if not np.isfinite(times).all() or not ((steps >= 0).all() or (steps <= 0).all()):
         raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
-    if masks:
-        each = [np.resize(x, (times.size, x.size // times.size or 1)) for x in masks]
-        run = run._replace(missing=np.any(np.hstack(each), axis=1))
+    for key, x in given.items():
+        if isinstance(x, np.ma.MaskedArray):
+            rows["missing"] += np.ma.getmaskarray(x).reshape(rows[key].shape).any(1, keepdims=True)
     motion = top if isinstance(top, Motion) else solve(top)
-    return compared(motion, [run], max_error)[0][0]
+    return compared(motion, [Run(rows, conventions, Alignment.of(align))], max_error)[0][0]
 
 
 @np.errstate(all="ignore")  # rows that are not finite raise no warnings
@@ -227,9 +226,9 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
             for x in blocks(exact, run)
         ]
     except LagtopError as wrong:
-        if run.file is None or wrong.key != "t":
+        if "file" not in run.about or wrong.key != "t":
             raise
-        raise DataError(f"{shown_path(run.file)}: {wrong}") from None
+        raise DataError(f"{shown_path(run.about['file'])}: {wrong}") from None
     found = {name: np.concatenate([x.pop(name) for x in parts]) for name in [*parts[0]]}
     t, error, known = found.pop("t"), found["error"], dict[str, Any]()
     for name, values in found.items():
@@ -241,14 +240,13 @@ def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
             known[key] = float(greatest) if np.isfinite(greatest) else None
         if name in ANGLES:
             known[f"{name}_drift"] = _slope(t, values)
-    lost = np.isnan(error) & (True if run.missing is None else np.logical_not(run.missing))
+    missing = run.given["missing"][:, 0] > 0
+    lost = np.isnan(error) & ~missing
     return Comparison(
-        file=run.file and utf8_path(run.file),
-        columns=run.columns[0] or None,
-        unused=run.columns[1] or None,
+        **run.about,
         step=step,
         rows=t.size,
-        rows_missing=0 if run.missing is None else int(run.missing.sum()),
+        rows_missing=int(missing.sum()),
         compared=next((x for x in ("attitude", "axis") if x in found), None)
         or ("angles" if found.keys() & {*ANGLES} else "rates"),
         error_final=None if np.isnan(error[-1]) else float(error[-1]),

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.text import quoted
-from ..arithmetic.types import Array
+from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..files import rotations
 from ..files.observed import Conventions, Observed, Quantities, observe, rows_of
@@ -102,16 +102,16 @@ class Run(NamedTuple):
     """A trajectory as it is given, and how it is read."""
 
     given: Quantities
-    """Arrays of quantities, with all angles in radians."""
+    """Arrays of quantities, with all angles in radians.
+
+    The array `missing` is 1 in rows with empty cells, which count as far as they have numbers.
+    """
     conventions: Conventions
     align: Alignment = Alignment()
-    file: str | None = None
-    missing: Array | None = None
-    """Whether each row has empty cells; such a row counts as far as it has numbers."""
     begins: float = 0.0
     """The time of the first row, if the times are counted from there."""
-    columns: tuple[str, str] = ("", "")
-    """The names of the columns that are read, and of those that are not."""
+    about: Mapping[str, Any] = {}
+    """The keys of a comparison that describe the file."""
 
     @property
     def t(self) -> Array:
@@ -125,9 +125,8 @@ class Run(NamedTuple):
 
     def few(self, most: int) -> Run:
         """Return at most so many rows, evenly spread."""
-        rows = slice(None, None, -(-len(self.given["t"]) // most))
-        missing = self.missing if self.missing is None else self.missing[rows]
-        return self._replace(given=rows_of(self.given, rows), missing=missing)
+        every = -(-len(self.given["t"]) // most)
+        return self._replace(given=rows_of(self.given, slice(None, None, every)))
 
     def observed(self, rows: slice = slice(None)) -> Observed:
         """Return the motion of some rows, in the frames of lagtop and with its clock."""
@@ -139,8 +138,7 @@ class Run(NamedTuple):
 class Exact:
     """The exact motion of a top, or one that follows from it by symmetry.
 
-    `space` turns the motion, `body` is a turn before it, and `spin` is more rate of spin.  The
-    states at few times are kept.
+    `space` turns the motion, `body` is a turn before it, and `spin` is more rate of spin.
     """
 
     def __init__(
@@ -150,25 +148,24 @@ class Exact:
         body: Array = rotations.IDENTITY,
         spin: float = 0.0,
     ) -> None:
-        self.motion, self.top = motion, motion.top
-        self._turns = space, body, spin
+        self.motion, self.turns = motion, (space, body, spin)
+        self.is_turned = bool(spin) or not (space[0] == 1 == body[0])
         self._kept: dict[bytes, dict[str, Array]] = {}
 
     def at(self, t: Array) -> dict[str, Array]:
         """Return the angles, and the `quaternion` and `rates` as arrays of shape (n, parts)."""
         if (key := t.tobytes()) in self._kept:
             return self._kept[key]
-        found = self.motion.table(t, [*ANGLES, "quaternion", *"pqr"], wrap=True)
-        (*parts, p, q, r), (space, body, spin) = found.values(), self._turns
-        states = dict(zip(ANGLES, parts, strict=False))
-        states["quaternion"], states["rates"] = (
-            np.stack(x, axis=1) for x in (parts[3:], (p, q, r))
-        )
-        if spin or not np.array_equal([space, body], [rotations.IDENTITY] * 2):
+        found = [*self.motion.table(t, [*ANGLES, "quaternion", *"pqr"], wrap=True).values()]
+        states = dict(zip(ANGLES, found[:3], strict=True))
+        turn, rates = np.stack(found[3:7], axis=1), np.stack(found[7:], axis=1)
+        if self.is_turned:
+            space, body, spin = self.turns
             body = rotations.product(rotations.about_z(spin * t), body)
-            turn = rotations.product(rotations.product(space, states["quaternion"]), body)
-            rates = rotations.rotated(rotations.conjugate(body), states["rates"])
-            states = rotations.angles_of(turn) | {"quaternion": turn, "rates": rates + _Z * spin}
+            turn = rotations.product(rotations.product(space, turn), body)
+            rates = rotations.rotated(rotations.conjugate(body), rates) + _Z * spin
+            states = rotations.angles_of(turn)
+        states |= {"quaternion": turn, "rates": rates}
         if t.size <= _KEPT:
             self._kept[key] = states
         return states
@@ -220,18 +217,18 @@ def blocks(exact: Exact, run: Run) -> Iterator[dict[str, Array]]:
             angles = {key: x - shifts[key] for key, x in seen.angles.items()}
             seen = seen.turned(rotations.about_z(-start[1]), rotations.about_z(start[0]))
             seen = replace(seen, angles=angles)
-        missing = False if run.missing is None else run.missing[rows]
+        missing = run.given["missing"][rows, 0] > 0
         yield {"t": seen.t} | _differences(exact.motion, seen, states, missing)
 
 
 def errors(exact: Exact, run: Run) -> Array:
-    """Return the error of each row, or that of its rates if it is greater."""
-    found = (np.fmax(x["error"], x.get("rates", x["error"])) for x in blocks(exact, run))
-    return np.concatenate([*found])
+    """Return the error of each row and that of its rates, if they are given; shape (2, n)."""
+    found = ([x["error"], x.get("rates", x["error"])] for x in blocks(exact, run))
+    return np.concatenate([*found], axis=1)
 
 
 def _differences(
-    motion: Motion, run: Observed, states: dict[str, Array], missing: Array | bool
+    motion: Motion, run: Observed, states: dict[str, Array], missing: Mask
 ) -> dict[str, Array]:
     """Return the differences of some rows."""
     q, exact = states["quaternion"], {x: states[x] for x in ANGLES}
@@ -254,7 +251,7 @@ def _differences(
     parts = [min(compared)] if compared else [*angles] or ["rates"]
     error = np.max([abs(found[x]) for x in parts], axis=0)
     lost = ~np.all([np.isfinite(x) for x in found.values()], axis=0)
-    error[lost & np.logical_not(missing)] = np.nan
+    error[lost & ~missing] = np.nan
     return found | {"error": error}
 
 

@@ -23,8 +23,6 @@ from .differences import Alignment, Exact, Run
 _GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
 _UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0}
 _FRAME_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 250, 480, 500, 960)
-
-
 Undo = Callable[[Run], Run]
 """Returns a trajectory as it was meant."""
 
@@ -49,9 +47,10 @@ class Cause(NamedTuple):
 
     def with_other(self, other: Cause) -> Cause:
         """Return this cause and another one of another kind at once."""
-        name, remedies = f"{self.name}; {other.name}", filter(None, (self.remedy, other.remedy))
+        name = "; ".join(filter(None, (self.name, other.name)))
+        remedy = " and ".join(filter(None, (self.remedy, other.remedy)))
         undo, exact, align = self.undo or other.undo, self.exact or other.exact, self.align
-        return Cause(name, undo, exact, align or other.align, " and ".join(remedies))
+        return Cause(name, undo, exact, align or other.align, remedy)
 
 
 BACKWARDS = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
@@ -131,16 +130,15 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
 
 def _of_writing(run: Run) -> Iterator[Cause]:
     how, order = run.conventions, run.conventions.quaternion or ORDERS[0]
-    if "quaternion" in run.given:
-        other = ORDERS[order == ORDERS[0]]
-        undo = partial(Run._replace, conventions=how._replace(quaternion=other))
-        remedy = f"quaternion_order={other}"
-        yield Cause(f"the quaternion is {other} and was read as {order}", undo, remedy=remedy)
-    if "rates" in run.given:
-        frame = "body" if how.rates == "space" else "space"
-        undo = partial(Run._replace, conventions=how._replace(rates=frame))
-        remedy = f"rates_frame={frame}"
-        yield Cause(f"the rates are in the frame of {frame}", undo, remedy=remedy)
+    other = dict(zip([*ORDERS, "body", "space"], [*ORDERS[::-1], "space", "body"], strict=True))
+    for key, given, name, now in (
+        ("quaternion", "quaternion_order", "the quaternion is {} and was read as {}", order),
+        ("rates", "rates_frame", "the rates are in the frame of {}", how.rates),
+    ):
+        if key in run.given:
+            meant: dict[str, Any] = {key: other[now]}
+            undo = partial(Run._replace, conventions=how._replace(**meant))
+            yield Cause(name.format(other[now], now), undo, remedy=f"{given}={other[now]}")
     flipped = np.array([1.0 if x == "w" else -1.0 for x in order])
     unit = np.radians if how.radians else np.degrees
     changes: dict[str, dict[str, Callable[[Array], Array]]] = {
@@ -160,8 +158,8 @@ def _of_writing(run: Run) -> Iterator[Cause]:
             yield Cause(name, partial(_changed, changed))
     if {"phi", "psi"} <= run.given.keys():
         yield Cause("phi and psi are exchanged", _exchanged)
-    for word, times, states in (("next", (1, None), (0, -1)), ("previous", (0, -1), (1, None))):
-        moved = partial(_moved, times=slice(*times), states=slice(*states))
+    for word, later in (("next", slice(1, None)), ("previous", slice(0, -1))):
+        moved = partial(_moved, times=later)
         yield Cause(f"rows are off by one: each holds the state of the {word} time", moved)
 
 
@@ -169,7 +167,7 @@ def _exchanged(run: Run) -> Run:
     return run._replace(given={**run.given, "phi": run.given["psi"], "psi": run.given["phi"]})
 
 
-def _moved(run: Run, times: slice, states: slice) -> Run:
-    given = {x: y[times if x == "t" else states] for x, y in run.given.items()}
-    missing = run.missing if run.missing is None else run.missing[states]
-    return run._replace(given=given, missing=missing)
+def _moved(run: Run, times: slice) -> Run:
+    """Return a trajectory with the states of other times: the first, or the last, is left out."""
+    states = slice(0, -1) if times.start else slice(1, None)
+    return run._replace(given={x: y[times if x == "t" else states] for x, y in run.given.items()})

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
-from ..file_bytes import shown_path
+from ..file_bytes import shown_path, utf8_path
 from ..files.observed import Conventions, Quantities, observe
 from ..files.trajectory import read_trajectory
 from ..inverse.recording import LEAST_ROWS
@@ -55,11 +55,13 @@ def read(
         used = _used(rows, conventions)
     except LagtopError as error:
         raise DataError(f"{file.name}: {error}") from None
-    missing = np.any([x for key, x in file.missing().items() if key in used], axis=0)
-    idle = [file.names[i] for key in rows.keys() - used for i in file.quantities[key].columns]
-    columns = ", ".join(x for x in file.used if x not in idle), ", ".join([*file.unused, *idle])
     given = {key: rows[key] for key in used}
-    return Run(given, conventions, align, path, missing, begins, columns)
+    missing = [x for key, x in file.missing().items() if key in used]
+    given["missing"] = np.any(missing, axis=0).reshape(-1, 1).astype(float)
+    idle = [file.names[i] for key in rows.keys() - used for i in file.quantities[key].columns]
+    about = {"file": utf8_path(path), "columns": ", ".join(x for x in file.used if x not in idle)}
+    about["unused"] = ", ".join([*file.unused, *idle])
+    return Run(given, conventions, align, begins, {x: y for x, y in about.items() if y})
 
 
 def _used(rows: Quantities, conventions: Conventions) -> set[str]:

@@ -194,7 +194,9 @@ def test_zeros_that_count_from_the_first_row() -> None:
 def with_steps(
     runs: list[tuple[Array, Array]], steps: list[float], limit: float = 1e-3
 ) -> tuple[list[Comparison], Convergence]:
-    given = [{"t": t[:, np.newaxis], "quaternion": states[:, :4]} for t, states in runs]
+    given = [
+        {"t": t[:, np.newaxis], "quaternion": y[:, :4], "missing": 0 * y[:, :1]} for t, y in runs
+    ]
     conventions = Conventions("wxyz", radians=True)
     rows, found = compared(solve(TOP), [Run(x, conventions) for x in given], limit, steps)
     assert found
