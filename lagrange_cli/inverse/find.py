@@ -31,7 +31,15 @@ from ..sweeps.results import Results
 from ..top.given import Given, gather
 from ..top.inputs import overridden, warn_of
 from ..top.top import INPUTS, Top
-from ..top.values import Span, exact_number, parse_number_or_span, parse_value, value_of, values_of
+from ..top.values import (
+    STEADY_WORDS,
+    Span,
+    exact_number,
+    parse_number_or_span,
+    parse_value,
+    value_of,
+    values_of,
+)
 
 _COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
@@ -122,7 +130,8 @@ def search_of(
         wanted = f"1 to {max(_COUNTS)} unknown inputs as ranges, such as r0=10:200"
         raise LagtopError(f"find takes {wanted}, got {len(spans)}")
     steady = {("k", 0), ("regime", Regime.STEADY.value)}
-    if "psidot0" in spans and steady & {(x.key, x.value) for x in found if x.relation == "="}:
+    is_steady = given.inputs.get("psidot0") in STEADY_WORDS
+    if not is_steady and steady & {(x.key, x.value) for x in found if x.relation == "="}:
         raise LagtopError("a steady precession is not found by a scan: use psidot0=steady")
     goals = [x for x in found if x.relation == "=" and x.key not in _WORDS]
     if not goals and len(spans) == 1:

@@ -268,6 +268,7 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         (["T_nutation=1"], {"r0": "1:2", "psidot0": "stead"}, "psidot0 must be"),
         (["Lz=1", "k=0"], {"r0": "1:2", "psidot0": "1:2"}, "a steady precession is not found by"),
         (["regime=steady"], {"psidot0": "1:2"}, "a scan: use psidot0=steady"),
+        (["k=0"], {"r0": "1:200", "psidot0": 3}, "a scan: use psidot0=steady"),
         (
             ["regime=sleeping"],
             {"r0": "1:9", "theta0_deg": 0},
