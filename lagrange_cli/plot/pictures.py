@@ -186,8 +186,7 @@ def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
 
 def mark_start(ax: Axes, point: Iterable[float], look: Look, label: str = "start") -> None:
     """Draw a ring with a label at one point."""
-    ring: dict[str, Any] = {"mfc": look.paper, "mec": look.ink, "mew": 1.6, "ms": 7, "zorder": 6}
-    ax.plot(*point, "o", ls="none", label=label, **ring)
+    ax.plot(*point, "o", label=label, mfc=look.paper, mec=look.ink, mew=1.6, ms=7, zorder=6)
 
 
 def draw_globe(
@@ -243,8 +242,8 @@ def add_time_bar(axes: Sequence[Axes], label: str) -> None:
         last = max(x.get_clim()[1] for x in lines)
         for x in lines:
             x.set_clim(0, last)
-        bar = axes[0].figure.colorbar(lines[-1], ax=axes, shrink=0.7, pad=0.02, aspect=28)
-        bar.set_label(label)
+        form: dict[str, Any] = {"shrink": 0.7, "pad": 0.02, "aspect": 28}
+        bar = axes[0].figure.colorbar(lines[-1], ax=axes, label=label, **form)
         bar.outline.set_visible(False)
 
 

@@ -135,7 +135,7 @@ export function motionOf(scene) {
     },
     record: {
       a: torque, b, u1: isVertical ? u0 : 1 - top, u2: isVertical ? u0 : u0 - fromLow,
-      u3: isSwinging ? 1 + beyond : null, k: isSwinging ? k : null,
+      u3: isSwinging ? 1 + beyond : null, k: isSwinging && !constant ? k : null,
       T_nutation: period, T_spin: turnTime(spin), T_precession: turnTime(turn),
       theta_min_deg: tiltOf(top, high), theta_max_deg: tiltOf(low, foot),
       mean_spin_rate: spin, mean_precession_rate: turn,

@@ -13,10 +13,10 @@ const even = (from, to, n) => Array.from({ length: n + 1 }, (_, i) => from + ((t
 const circle = even(0, 2 * Math.PI, 120);
 /** The name of a unit; a shipped scene has none of its own. */
 const unitOf = (unit) => (unit === "angle" ? "°" : at.scenes.value in DATA.scenes ? unit : DATA.units[unit]);
-/** The meaning of an input or a key, with its unit if that is known. */
-function titleOf({ meaning, unit }) {
+/** The name of an input, or the meaning of a key, with its unit if that is known. */
+function titleOf({ name, meaning, unit }) {
   const shown = unitOf(unit);
-  return !shown || /mass|len/.test(shown) ? meaning : `${meaning} (${shown})`;
+  return (name ?? meaning) + (!shown || /mass|len/.test(shown) ? "" : ` (${shown})`);
 }
 const style = getComputedStyle(document.documentElement);  // follows the dark mode
 const colour = (name) => style.getPropertyValue(`--${name}`) || name;
@@ -62,10 +62,6 @@ function area(pen, points, tint) {
   pen.beginPath();
   points.forEach((point) => pen.lineTo(...point));
   pen.fill();
-}
-
-function disc(pen, [x, y], radius, tint) {
-  area(pen, circle.map((k) => [x + radius * Math.cos(k), y + radius * Math.sin(k)]), tint);
 }
 
 /** Write on a rim of paper, which keeps the letters clear of curves. */
@@ -134,11 +130,11 @@ function facesOf(frame, phi, { place, depth, lamp }, blur) {
 function drawSpace() {
   const { pen, width, height } = prepared(at.space);
   const view = viewOf(width, height);
-  const { place, depth } = view;
+  const { scale, place, depth } = view;
   const angles = motion.angles(t);
   const { theta, phi, psi } = angles;
   const frame = frameOf(theta, psi);
-  disc(pen, place([0, 0, 0]), view.scale, "faint");
+  area(pen, circle.map((x) => [width / 2 + scale * Math.cos(x), height / 2 + scale * Math.sin(x)]), "faint");
   const passed = curves.times.findIndex((time) => time > t);
   const path = curves.axes.slice(0, passed < 0 ? undefined : passed);
   const axle = [sum([0.86, frame.axis]), frame.axis].map(place);
@@ -231,10 +227,10 @@ function draw() {
 
 const make = (tag, parts) => Object.assign(document.createElement(tag), parts);
 const fields = {};
-for (const [name, { meaning }] of Object.entries(DATA.inputs)) {
+for (const [name, input] of Object.entries(DATA.inputs)) {
   const label = make("label", { htmlFor: `field-${name}` });
   const field = make("input", { type: "text", id: `field-${name}`, inputMode: "decimal" });
-  const slider = make("input", { type: "range", step: "any", ariaLabel: `${meaning}, slider` });
+  const slider = make("input", { type: "range", step: "any", ariaLabel: `${input.name}, slider` });
   const row = make("div", { className: "input" });
   row.append(label, field, slider);
   at.inputs.append(row);
@@ -299,15 +295,11 @@ function change(changes, anew = false) {
     const row = at.record.insertRow();
     for (const words of [DATA.keys[name].symbol, titleOf(DATA.keys[name]), text(x)]) row.insertCell().textContent = words;
   }
-  stale();
-}
-
-const speed = () => pace * 10 ** Number(at.speed.value);
-
-function stale() {
   curves = null;
-  fresh = false;
 }
+
+const redraw = () => { fresh = false; };
+const speed = () => pace * 10 ** Number(at.speed.value);
 
 function setTime(time) {
   const isTime = Number.isFinite(time) && time >= 0;
@@ -376,18 +368,17 @@ on(at.scenes, "change", () => {
   setTime(0);
 });
 on(document, "change pointerup wheel", link);
-on(document, "change input click pointermove wheel keydown", () => { fresh = false; });
-on(document, "fullscreenchange", stale);
-on(matchMedia("(prefers-color-scheme: dark)"), "change", stale);
 on(window, "hashchange", () => restore());
-new ResizeObserver(stale).observe(document.body);
+on(document, "change input click pointermove wheel keydown fullscreenchange", redraw);
+on(matchMedia("(prefers-color-scheme: dark)"), "change", redraw);
+new ResizeObserver(redraw).observe(document.body);
 
 const isLinked = restore();
 play(!isLinked && !matchMedia("(prefers-reduced-motion: reduce)").matches);
 let last = performance.now();
 requestAnimationFrame(function frame(now) {
   if (playing) t += speed() * Math.min((now - last) / 1000, 0.1);
-  if (playing || !fresh) draw();
+  if (playing || !fresh || !curves) draw();
   last = now;
   requestAnimationFrame(frame);
 });

@@ -56,18 +56,14 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
     """Return the constant DATA of the page."""
     scene = page_scene(motion)
     inputs = {name: DECLARED[name.removesuffix("_deg")] for name in scene}
-    units = {x.unit for x in inputs.values()} | {x.unit for x in KEYS.values()}
-
-    def described(key: Any, **more: str) -> dict[str, str]:
-        return more | {"symbol": key.symbol, "unit": key.unit}
-
+    units = {x.unit for x in inputs.values()} | {KEYS[x].unit for x in SHOWN}
     return {
         "scene": scene,
         "scenes": {name: page_scene(solve(read_scene(name))) for name in scene_names()},
         "units": {x: unit(x) for x in sorted(units)},
         "phrases": PHRASES,
-        "inputs": {name: described(x, meaning=x.name, bound=x.bound) for name, x in inputs.items()},
-        "keys": {x: described(KEYS[x], meaning=KEYS[x].meaning) for x in SHOWN},
+        "inputs": {name: x._asdict() for name, x in inputs.items()},
+        "keys": {x: KEYS[x]._asdict() for x in SHOWN},
     }
 
 
