@@ -46,11 +46,10 @@ class Cause(NamedTuple):
         return self.undo(run) if self.undo else run
 
     def with_other(self, other: Cause) -> Cause:
-        """Return this cause and another one of another kind at once."""
+        """Return an alignment or a way of writing, and a cause of another kind, at once."""
         name = "; ".join(filter(None, (self.name, other.name)))
         remedy = " and ".join(filter(None, (self.remedy, other.remedy)))
-        undo, exact, align = self.undo or other.undo, self.exact or other.exact, self.align
-        return Cause(name, undo, exact, align or other.align, remedy)
+        return Cause(name, self.undo or other.undo, other.exact, self.align, remedy)
 
 
 BACKWARDS = Cause("time runs backwards", partial(Run.timed, factor=-1.0))

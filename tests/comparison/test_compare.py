@@ -283,6 +283,7 @@ def test_missing_numbers_and_repeated_times() -> None:
     rates[0, 1] = np.ma.masked
     found = compare(TOP, np.sort([*T, *T[5:7]]), quaternion=wxyz(TURN[ROWS]), rates=rates[ROWS])
     assert (found.verdict, found.rows_missing) == ("fine", 1)
+    assert np.isfinite(found.error).all()  # the attitude counts in the row without a rate
     assert (found.energy_drift or 1) < 1e-12
     assert compare(TOP, T * 1e-310, theta=THETA[0] + 0 * T).verdict == "fine"
 
