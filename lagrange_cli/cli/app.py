@@ -139,9 +139,13 @@ def _naming_option(error: LagtopError, params: Sequence[click.Parameter]) -> str
 
 
 def with_options(text: str, params: Sequence[click.Parameter]) -> str:
-    """Return a text of the library with options for arguments, as `--columns t` for `columns=t`."""
+    """Return a text of the library with options for arguments.
+
+    They replace `columns` in `columns=t`, and in `give columns` or `omit columns`.
+    """
     for name, option in _options(params).items():
         text = re.sub(rf"\b{name}=(?=[-\w(.])", f"{option} ", text)
+        text = re.sub(rf"\b(give|omit) {name}\b(?! =)", rf"\1 {option}", text)
     return text
 
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import re
 from contextlib import ExitStack
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import quoted
-from ..errors import DataError, LagtopError, SomeFailedError
+from ..errors import LagtopError, SomeFailedError
 from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import one_line
 from ..output.text import json_text
-from ..top.inputs import DECLARED
 from . import shared as opt
 from .app import complain
 
@@ -33,24 +31,11 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
 
 def _parse_align(text: str) -> dict[str, str]:
     """Return the axes of `up=AXIS,axis=AXIS`."""
-    found = {}
-    for word in split_names(text):
-        if not re.fullmatch("(up|axis)=-?[xyz]", word):
-            axes = "up=x, up=-x and so on, or axis=x, axis=-x and so on"
-            raise LagtopError(f"must be among {axes}, got {word}")
-        key, _, axis = word.partition("=")
-        found[key] = axis
-    return found
-
-
-_REMEDY = re.compile(
-    rf"\b(use|omit|give|know) ({'|'.join([*DECLARED, 'align', 'sigma', 'window'])})\b"
-)
-
-
-def _with_options(text: str) -> str:
-    """Return a message of the library with options in place of arguments."""
-    return _REMEDY.sub(lambda found: f"{found[1]} --{found[2].replace('_', '-')}", text)
+    words = split_names(text)
+    if wrong := [word for word in words if not re.fullmatch("(up|axis)=-?[xyz]", word)]:
+        axes = "up=x, up=-x and so on, or axis=x, axis=-x and so on"
+        raise LagtopError(f"must be among {axes}, got {wrong[0]}")
+    return dict(word.split("=") for word in words)
 
 
 @opt.command(
@@ -119,28 +104,15 @@ def fit_command(
     opt.check_plot(plot, out.path)
     radians = top.radians
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
-    unit = unit_in_radians(radians=radians)
-    spread = (
-        {name: value * unit for name, value in sigma.items()}
-        if isinstance(sigma, dict)
-        else sigma and sigma * unit
-    )
     recording = read_recording(
-        words[0], columns, decimal, conventions=conventions, sigma=spread, **(align or {})
+        words[0], columns, decimal, conventions=conventions, sigma=sigma, **(align or {})
     )
     given = top.given()
     known, source = known_inputs(given.inputs, given.stds), one_line(shown_path(words[0]))
-    try:
-        if window is not None:
-            found = fit_windows(recording, window, known, radians=radians)
-        else:
-            found = [fit_recording(recording, known, radians=radians)]
-    except DataError as error:
-        raise DataError(_with_options(str(error))) from None
-    for one in found:
-        one.notes, one.hints = ([*map(_with_options, x)] for x in (one.notes, one.hints))
-        one.faults = [*map(_with_options, one.faults)]
-        one.contradictions = [*map(_with_options, one.contradictions)]
+    if window is None:
+        found = [fit_recording(recording, known, radians=radians)]
+    else:
+        found = fit_windows(recording, window, known, radians=radians)
     failed = [x.failure() for x in found if x.failures()]
     with ExitStack() as stack:  # a file is replaced only if the report is written
         if scene_path and not failed and found[0].inputs is not None:
@@ -150,11 +122,11 @@ def fit_command(
             from ..plot.reports import draw_decay, draw_fit
             from ..plot.style import report_bytes
 
-            drawn = (draw_fit, found[0]) if window is None else (draw_decay, found)
+            drawn: Any = (draw_fit, found[0]) if window is None else (draw_decay, found)
             picture = report_bytes(plot, *drawn)
             stack.enter_context(opened(plot)).write(picture)
         out = out._replace(path="-") if scene_path else out
-        _write(found, source, " (in kg, m and s)" if given.si else "", window is not None, out)
+        _write(found, source, " (in kg, m and s)" if given.si else "", out)
     if failed and window is None:
         raise SomeFailedError(f"the fit has failed: {failed[0]}")
     opt.fail_for(failed, len(found), "windows")
@@ -162,22 +134,20 @@ def fit_command(
         found[0].scene(source)  # raises AbsentError for a steady precession
 
 
-def _write(found: list[Outcome], source: str, units: str, is_windows: bool, out: Output) -> None:
+def _write(found: list[Outcome], source: str, units: str, out: Output) -> None:
     """Write a report, or a record for each window."""
     from ..inverse.decay import decay_of, decay_text
     from ..inverse.report import fit_report
 
     if out.fmt == "table":
-        opt.write_report(out, lambda: fit_report(found, source, units, is_windows=is_windows))
+        opt.write_report(out, lambda: fit_report(found, source, units))
         return
-    records = [x.record() for x in found]
-    if out.fmt == "json" and is_windows:
-        decay = decay_of(found)
-        out.text(f"{json_text({'decay': decay and decay._asdict(), 'windows': records})}\n")
-    elif out.fmt == "json":
-        out.record(records[0], dict)
+    is_windows, records = len(found) > 1, [x.record() for x in found]
+    if out.fmt == "json":
+        decay = is_windows and decay_of(found)
+        windows = {"decay": decay and decay._asdict(), "windows": records}
+        out.text(f"{json_text(windows if is_windows else records[0])}\n")
     else:
         out.rows(records, list(dict.fromkeys(key for record in records for key in record)))
-    notes = [f"Note: {x.recording.named(note)}" for x in found for note in x.notes]
-    for line in [decay_text(found)] if is_windows else notes:
+    for line in [decay_text(found)] if is_windows else [f"Note: {x}" for x in found[0].notes]:
         complain(line)

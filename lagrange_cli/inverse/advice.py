@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import islice
 
 import numpy as np
 
@@ -34,22 +33,14 @@ _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
 half, and the residual of the spin over that of the whole recording."""
 
 
-def hints(recording: Recording, known: Known, outcome: Outcome) -> list[str]:
-    """Return what to try after a failed fit, if another fit confirms it."""
-    if outcome.contradictions:
-        return []
+def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
+    """Yield what makes a failed fit good, the likeliest mistakes first, and then the usual ones."""
     body = {name: x for name, x in known.items() if name in _BODY}
-    if not outcome.misfits:
-        return [*islice(_frames(recording, body), 1)]
-    usual = "check columns, units and axes"
-    if outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]:
-        usual = "a recording must last for a period of the nutation"
-    return [next(_tried(recording, known, body, outcome), usual)]
-
-
-def _tried(recording: Recording, known: Known, body: Known, outcome: Outcome) -> Iterator[str]:
-    """Yield what makes the fit good, the likeliest mistakes first."""
+    if outcome.contradictions:
+        return
     yield from _frames(recording, body)
+    if not outcome.misfits:
+        return
     if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
@@ -57,11 +48,14 @@ def _tried(recording: Recording, known: Known, body: Known, outcome: Outcome) ->
     if both and _is_good(replace(recording, sigma={}).exchanged, known):
         yield "phi and psi are exchanged: here phi is the spin and psi the precession"
     yield from _decays(recording, body, outcome)
+    if outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]:
+        yield "a recording must last for a period of the nutation"
+    yield "check columns, units and axes"
 
 
-def _is_good(recording: Recording, known: Known, chance: float = CHANCE) -> bool:
+def _is_good(recording: Recording, known: Known) -> bool:
     """Return whether a fit is good and needs no faster spin or reversed angle."""
-    found = best_fit(recording, known, chance=chance)
+    found = best_fit(recording, known)
     return found.verdict == GOOD and not found.recording.is_mirrored and found.is_spin_slow
 
 
@@ -77,10 +71,8 @@ def _frames(recording: Recording, known: Known) -> Iterator[str]:
     is_calmer = noise[best] < _calmness(few) + len(few.angles) * math.log(_CALMER)
     for word, axis in [*[best] * is_calmer, ("up", "-z")]:
         if _is_good(reoriented(recording, **{word: axis}), known):
-            what = f"axis of the data points up: use align up={axis}"
-            if word == "axis":
-                what = f"axis is the figure axis: use align axis={axis}"
-            yield f"the {axis} {what}"
+            what = "is the figure axis" if word == "axis" else "of the data points up"
+            yield f"the {axis} axis {what}: use align={word}={axis}"
 
 
 def _calmness(recording: Recording) -> float:
@@ -123,9 +115,9 @@ def _decays(recording: Recording, known: Known, outcome: Outcome) -> Iterator[st
             if fits[-1].verdict != GOOD and (shown or "phi" not in recording.angles):
                 break
         else:
-            if all(x.verdict == GOOD for x in fits):
-                if (decay := decay_of(fits)) and decay.time:
-                    yield f"the spin decays: use window {count}"
+            if decay := decay_of(fits):  # all three windows are good
+                if decay.time:
+                    yield f"the spin decays: use window={count}"
                 return
             shown = shown or _loss(outcome, fits)
     yield from [f"the spin decays: {shown}, and within each window"] * bool(shown)

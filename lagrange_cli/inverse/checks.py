@@ -8,16 +8,14 @@ Residuals of an encoder follow its steps.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from scipy.special import fdtrc, gammaincinv, ndtri
 
-from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from .recording import Recording, shifted_origin
 
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
@@ -61,8 +59,7 @@ class Residuals:
             return np.asarray(np.arange(self.y.size) == 0, float)
         power = np.abs(np.fft.rfft(self.y, 1 << (2 * self.y.size).bit_length())) ** 2
         found = np.fft.irfft(power)[: self.y.size]
-        found /= found[0]
-        return np.asarray(found, float)
+        return np.asarray(found / found[0])
 
     @property
     def autocorrelation(self) -> float:
@@ -100,10 +97,9 @@ class Residuals:
         waves = np.exp(2j * np.pi * frequency * t[:, np.newaxis] * np.arange(4))
         waves = np.concatenate([waves.real, waves.imag[:, 1:]], axis=1)
         drifts = x[:, np.newaxis, np.newaxis] ** range(3)
-        basis = (waves[:, :, np.newaxis] * drifts).reshape(x.size, -1)[:, : max(x.size // 3, 1)]
-        space, sizes, _ = np.linalg.svd(basis, full_matrices=False)
-        count = int(np.sum(sizes > 1e-6 * sizes[0]))
-        shown = space[:, :count] @ (space[:, :count].T @ y)
+        basis = (waves[..., np.newaxis] * drifts).reshape(x.size, -1)[:, : max(x.size // 3, 1)]
+        factors, _, count, _ = np.linalg.lstsq(basis, y, rcond=1e-6)
+        shown = basis @ factors
         explained, rest = float(shown @ shown), Residuals(t, y - shown, self.step)
         noise = max((rest.rms * rest.widening(chance)) ** 2 * y.size, 1e-12 * explained)
         dof = x.size - count
@@ -116,25 +112,19 @@ class Residuals:
         """
         if self.is_coarse:
             return
-        shown = f"the residuals of {name} are not noise"
+        shown, correlation = f"the residuals of {name} are not noise", self.autocorrelation
         bound = _bound(self.y.size, chance)
+        alike = f"{shown}: neighbours correlate by {correlation:.2f}"
+        rows_per_period = self.y.size / max(frequency * float(self.t[-1]), 1.0)
         if self.rms > _ABOVE * max(self.neighbours, self.step / math.sqrt(12), _ROUNDING):
             times = self.rms / max(self.neighbours, _ROUNDING)
             yield f"{shown}: they are {times:.3g} times the differences between neighbours"
-        elif self.autocorrelation < -2 * bound:
-            yield f"{shown}: neighbours correlate by {self.autocorrelation:.2f}"
-        elif self.autocorrelation > bound and self.is_slow(frequency):
-            yield (
-                f"{shown}: neighbours correlate by {self.autocorrelation:.2f}, noise by at most "
-                f"{bound:.2f}"
-            )
+        elif correlation < -2 * bound:
+            yield alike
+        elif correlation > bound and self.reach > min(rows_per_period / _ROWS_PER_LAG, _LAGS):
+            yield f"{alike}, noise by at most {bound:.2f}"
         elif self.structure(frequency, chance) < chance:
             yield f"{shown}: they drift or oscillate"
-
-    def is_slow(self, frequency: float) -> bool:
-        """Return whether residuals correlate over a part of a period, as a wrong motion does."""
-        period = self.y.size / max(frequency * float(self.t[-1]), 1.0)
-        return self.reach > min(period / _ROWS_PER_LAG, _LAGS)
 
 
 def _bound(count: int, chance: float) -> float:
@@ -147,26 +137,3 @@ def chi2_bounds(freedom: float, chance: float = CHANCE) -> tuple[float, float]:
     half = max(freedom, 1) / 2
     low, high = (float(gammaincinv(half, p)) / half for p in (chance / 2, 1 - chance / 2))
     return low, high
-
-
-def misfits(
-    recording: Recording,
-    residuals: Mapping[str, Residuals],
-    *,
-    frequency: float,
-    chance: float,
-    radians: bool,
-) -> Iterator[str]:
-    """Yield why a motion does not match a recording, the plainest reasons first."""
-    if (offset := shifted_origin(recording)) is not None:
-        shown = ", ".join(f"{x:.2g}" for x in offset)
-        yield (
-            "the distance of the marker from the origin varies with its direction: is the "
-            f"origin at the pivot, or is the pivot at about ({shown})?"
-        )
-    scale, unit = angle_unit(radians=radians)
-    for name, rest in residuals.items():
-        if rest.rms > LARGEST:
-            yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
-    for name, rest in residuals.items():
-        yield from rest.faults(name, frequency, chance)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import islice
 from types import NoneType
 from typing import Any
 
@@ -25,7 +26,7 @@ def fit_recording(recording: Recording, known: Known, *, radians: bool = False) 
     """
     outcome = best_fit(recording, known, radians=radians)
     if outcome.failures():
-        outcome.hints += hints(recording, known, outcome)
+        outcome.hints += islice(hints(recording, known, outcome), 1)
     return outcome
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -24,8 +25,9 @@ The key `steady` stands for `psidot0` if that is one of the STEADY_WORDS.
 WEIGHT = {"m", "g", "s"}
 CONTRADICTS = 3.0
 """Standard deviations from which a known input contradicts the recording."""
-_POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1}
 _RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
+_POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1, "precession_rate": -1}
+_POWERS |= dict.fromkeys(_RATES, -1)
 
 
 def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
@@ -56,15 +58,9 @@ def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
 
 def time_power(key: str) -> int:
     """Return the power of time in the unit of a number of a fit, such as -1 for r0."""
-    if key in _RATES or key == "precession_rate_elementary":
-        return -1
-    over, _, _ = key.partition("/")
-    if key == "b/a":
-        return 1
-    if set(key) & set("*/"):
-        below = key[len(over) :]
-        return sum(time_power(x) for x in over.split("*")) - 2 * (-1) * ("g" in below)
-    return _POWERS.get(key.removesuffix("_elementary"), 0)
+    above, _, below = key.removesuffix("_elementary").partition("/")
+    powers = [_POWERS.get(x, 0) for x in above.split("*")]
+    return sum(powers) - sum(_POWERS.get(x, 0) for x in re.findall(r"\w+", below))
 
 
 def scaled_known(known: Known, scale: float) -> Known:
@@ -104,11 +100,9 @@ def estimates(
     whole turns are invisible, else 0, and `spins` is true if the spin is recorded.
     """
     found = {x: v[x] for x in ("theta0", "thetadot0", "psidot0") if x in known}
-    spin_rate = v["r0"] - v["psidot0"] * np.cos(v["theta0"])
-    if spins and "r0" in known:
-        found["r0"] = _nearest(v["r0"], known["r0"][0], turn)
-    if spins and "phidot0" in known:
-        found["phidot0"] = _nearest(spin_rate, known["phidot0"][0], turn)
+    rates = {"r0": v["r0"], "phidot0": v["r0"] - v["psidot0"] * np.cos(v["theta0"])}
+    for name in rates.keys() & known.keys() if spins else ():
+        found[name] = _nearest(rates[name], known[name][0], turn)
     moment = v.get("A")
     if WEIGHT <= known.keys():
         implied = v["m"] * v["g"] * v["s"] / (v["a"] / 2)
@@ -140,12 +134,12 @@ def compared(
         (uncertain_text(x * size, std * size) if std else f"{x * size:.6g}") + unit
         for x, std in (given, found)
     )
+    verb = "agrees with" if far <= CONTRADICTS else "contradicts"
+    text = f"known {name} = {shown} {verb} the recording, which gives {own}"
     if far <= CONTRADICTS:
-        text = f"known {name} = {shown} agrees with the recording, which gives {own}"
         return far, True, f"{text}: {far:.1f} sigma"
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
     check = f", or check {', '.join(others)}" if others and name in {"A", "A_cm", "C"} else ""
-    text = f"known {name} = {shown} contradicts the recording, which gives {own}"
     return far, False, f"{text}, {far:.3g} sigma apart: omit {name}{check}"
 
 

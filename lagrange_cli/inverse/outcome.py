@@ -13,11 +13,12 @@ from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..errors import AbsentError
 from ..files.rotations import within_half_turn
+from ..names import ANGLES
 from ..output.notebook import HasRecord
 from ..output.report import uncertain_text
-from .checks import CHANCE, Residuals, chi2_bounds, misfits
+from .checks import CHANCE, LARGEST, Residuals, chi2_bounds
 from .known import Known
-from .recording import Recording
+from .recording import Recording, shifted_origin
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -127,14 +128,25 @@ class Outcome(HasRecord):
     @cached_property
     def misfits(self) -> list[str]:
         """Why the motion does not match the recording."""
-        how: Any = {"frequency": self.frequency, "chance": self.chance, "radians": self.radians}
-        found = [*misfits(self.recording, self.residuals, **how)]
-        high, chi2 = self.chi2_bounds[1], self.chi2_dof
-        if chi2 is not None and chi2 > high:
-            found.append(
-                f"chi2/dof = {chi2:.3g} is above {high:.3g}: another motion, or more noise"
+        return [*self._misfits()]
+
+    def _misfits(self) -> Iterator[str]:
+        """Yield why the motion does not match the recording, the plainest reasons first."""
+        if (offset := shifted_origin(self.recording)) is not None:
+            shown = ", ".join(f"{x:.2g}" for x in offset)
+            yield (
+                "the distance of the marker from the origin varies with its direction: is the "
+                f"origin at the pivot, or is the pivot at about ({shown})?"
             )
-        return found
+        scale, unit = angle_unit(radians=self.radians)
+        for name, rest in self.residuals.items():
+            if rest.rms > LARGEST:
+                yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
+        for name, rest in self.residuals.items():
+            yield from rest.faults(name, self.frequency, self.chance)
+        chi2, high = self.chi2_dof, self.chi2_bounds[1]
+        if chi2 is not None and chi2 > high:
+            yield f"chi2/dof = {chi2:.3g} is above {high:.3g}: another motion, or more noise"
 
     def failures(self) -> list[str]:
         """Return the reasons why the fit has failed, if there are any.
@@ -142,8 +154,7 @@ class Outcome(HasRecord):
         A motion that is impossible or not determined comes first, then one that does not match,
         then a known input that contradicts a motion that matches.
         """
-        found = [*self.faults, *self.misfits]
-        return found or self.contradictions
+        return [*self.faults, *self.misfits] or self.contradictions
 
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""
@@ -206,12 +217,10 @@ class Outcome(HasRecord):
         recording, (scale, _) = self.recording, angle_unit(radians=self.radians)
         t, start = recording.t, recording.t_start
         fine = np.linspace(0, t[-1], 1200)
-        names = ("theta", "phi", "psi")
-        motion = dict(zip(names, zip(self.motion(t), self.motion(fine), strict=True), strict=True))
+        at_rows, at_fine = (dict(zip(ANGLES, self.motion(x), strict=True)) for x in (t, fine))
         for name in [x for x in ("theta", "psi", "phi") if x in recording.angles]:
-            at_rows, at_fine = motion[name]
-            rest = within_half_turn(recording.angles[name] - at_rows)
-            data, curve = (at_rows + rest) * scale, at_fine * scale
+            rest = within_half_turn(recording.angles[name] - at_rows[name])
+            data, curve = (at_rows[name] + rest) * scale, at_fine[name] * scale
             yield Curve(name, t + start, data, fine + start, curve, rest * scale)
 
     def plot(self, figure: Figure | None = None) -> Figure:

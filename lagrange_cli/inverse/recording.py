@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..files import rotations
@@ -213,9 +214,9 @@ def recording_of(
 ) -> Recording:
     """Return the recording in some columns, without rows that have no number.
 
-    `sigma` are standard deviations in radians: one for all channels, or by channel.  The axis `up`
-    of space points upwards in the file, and the axis `axis` of the body is the figure axis.  Raises
-    LagtopError, DataError for a bad recording.
+    `sigma` are standard deviations in the unit of angles of the `conventions`: one for all
+    channels, or by channel.  The axis `up` of space points upwards in the file, and the axis `axis`
+    of the body is the figure axis.  Raises LagtopError, DataError for a bad recording.
     """
     t = given["t"][:, 0]
     _check_times(where, t)
@@ -252,7 +253,9 @@ def recording_of(
     if not 1e-60 < (span := float(t[order[-1]] - t[order[0]])) < 1e60:
         raise DataError(f"{where}: t must span 1e-60 to 1e+60, got {span:g}")
     raw = Recording("", t, 0.0, kind, angles, {}, position)
-    return replace(raw, sigma=_sigma(raw, sigma)).part(order)
+    unit = unit_in_radians(radians=conventions.radians)
+    spread = {name: x * unit for name, x in _sigma(raw, sigma).items()}
+    return replace(raw, sigma=spread).part(order)
 
 
 def _check_times(where: str, t: Array) -> None:

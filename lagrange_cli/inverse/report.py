@@ -14,9 +14,7 @@ _COLUMNS = ("r0", "b", "theta0_deg", "theta0_rad", "T_nutation", "mean_precessio
 """Numbers in the rows of windows."""
 
 
-def fit_report(
-    outcomes: Sequence[Outcome], source: str, units: str, *, is_windows: bool = False
-) -> Report:
+def fit_report(outcomes: Sequence[Outcome], source: str, units: str) -> Report:
     """Return the report on the fit of a file, or on its windows: a row for each of them.
 
     `units` are those of the known inputs.
@@ -36,7 +34,7 @@ def fit_report(
         "known": (", ".join(shown) or "nothing") + units,
         "sigma": "as given" if recording.sigma else "estimated from the residuals",
     }
-    if is_windows:
+    if len(outcomes) > 1:
         keys = [x for x in _COLUMNS if any(x in outcome.numbers for outcome in outcomes)]
         fields = [Field(x, x, is_text=True) for x in ("t", *keys, "verdict")]
         rows = []

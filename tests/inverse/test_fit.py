@@ -341,7 +341,7 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     del seen["phi"]
     outcome = fitted(t, seen)
     assert outcome.verdict == "failed"
-    assert "the spin decays: use window 12" in outcome.failure()
+    assert "the spin decays: use window=12" in outcome.failure()
     windows = fit_windows(
         recording_from(t, theta=seen["theta"], psi=seen["psi"]), 12, known_inputs(LAB, {})
     )
@@ -365,7 +365,7 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
             lambda rng, t: {
                 "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, ::-1]
             },
-            "use align up=x",
+            "use align=up=x",
         ),
     ],
 )
