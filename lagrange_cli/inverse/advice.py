@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arithmetic.text import shortened
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
@@ -28,6 +29,8 @@ _WINDOWS = (12, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
+_FEW = 0.03
+"""Largest share of rows that are outliers."""
 _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
 """If windows are not good: standard deviations of a loss of spin, the least share of it in either
 half, and the residual of the spin over that of the whole recording."""
@@ -41,6 +44,12 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     yield from _frames(recording, body)
     if not outcome.misfits:
         return
+    wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
+    if 0 < len(wrong) <= _FEW * recording.t.size:
+        rest = recording.rows(~np.isin(recording.t, [*wrong]))
+        if _is_good(rest, body):
+            shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
+            yield f"leave out what is recorded at t = {shortened(shown)}"
     if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"

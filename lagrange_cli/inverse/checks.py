@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from scipy.special import fdtrc, gammaincinv, ndtri
 
-from ..arithmetic.types import Array
+from ..arithmetic.types import Array, Mask
 
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
@@ -23,6 +23,9 @@ LARGEST = 0.3
 """Largest rms residual of a channel in radians."""
 _ABOVE, _ROUNDING = 6.0, 1e-10
 """Largest rms residual over the noise of neighbours, and rms of rounding errors in radians."""
+_OUTLIER = 15.0
+"""Least residual of an outlier, over the standard deviation of the
+others, which the median estimates."""
 _ROWS_PER_LAG, _LAGS, _WEAK = 4.0, 12, 0.1
 """Least number of rows per period over the reach of a correlation, the longest reach of noise, and
 a correlation that is none."""
@@ -51,6 +54,13 @@ class Residuals:
         """Whether the steps of an encoder explain the residuals."""
         within = float(np.quantile(np.abs(self.y), 0.95)) <= _WITHIN * self.step
         return within and self.rms <= _COARSE * self.step
+
+    @property
+    def outliers(self) -> Mask:
+        """Whether a residual is one that no noise has."""
+        sizes = np.abs(self.y)
+        usual = max(float(np.median(sizes)) / float(ndtri(0.75)), self.step, _ROUNDING)
+        return np.asarray(sizes > _OUTLIER * usual)
 
     @cached_property
     def correlations(self) -> Array:

@@ -143,6 +143,11 @@ class Outcome(HasRecord):
             if rest.rms > LARGEST:
                 yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
         for name, rest in self.residuals.items():
+            if rest.outliers.any():
+                row = np.abs(rest.y).argmax()
+                off, at = abs(rest.y[row]) * scale, self.recording.t_start + rest.t[row]
+                yield f"{name} is {off:.3g} {unit} off at t = {at:.6g}, far more than elsewhere"
+        for name, rest in self.residuals.items():
             yield from rest.faults(name, self.frequency, self.chance)
         chi2, high = self.chi2_dof, self.chi2_bounds[1]
         if chi2 is not None and chi2 > high:

@@ -308,6 +308,23 @@ def test_exchanged_spin_and_precession_are_noticed() -> None:
     assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
 
 
+def test_an_outlier_is_named() -> None:
+    t, seen = recorded("theta", "psi", seed=8)
+    seen["psi"][30] += 20 * DEGREE
+    failure = fitted(t, seen).failure()
+    ((off, at),) = re.findall(r"^psi is (.*) deg off at t = (.*), far more than else", failure)
+    assert float(off) == pytest.approx(20, abs=1)
+    assert float(at) == pytest.approx(t[30], rel=1e-5)
+    assert failure.endswith(f"; leave out what is recorded at t = {at}")
+
+
+@pytest.mark.slow
+def test_a_motion_that_passes_a_pole_on_the_other_side_is_not_good() -> None:
+    import fuzz_fits
+
+    assert fuzz_fits.checked(14, look="pole").fate == "wrong, failed"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["angles", "quaternion"])
 def test_a_decay_within_each_window_is_named(kind: str) -> None:
