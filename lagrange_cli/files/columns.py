@@ -257,7 +257,7 @@ def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -
 def expanded(names: Sequence[str]) -> list[str]:
     """Return the names of columns, groups expanded: `quaternion` becomes quaternion_0 and so on.
 
-    Raises LagtopError for an unknown name.
+    Raises LagtopError for an unknown name, and for a unit that its quantity cannot have.
     """
     single: list[str] = []
     for name in names:
@@ -265,9 +265,12 @@ def expanded(names: Sequence[str]) -> list[str]:
         quantity = _BY_PLAIN_NAME.get(word)
         size, ending = quantity.size if quantity else 1, f"_{unit}" if unit else ""
         single += [name] if size == 1 else [f"{word}{i}{ending}" for i in range(size)]
-    used = {single[i] for quantity in quantities_in(single).values() for i in quantity.columns}
+    found = quantities_in(single)
+    used = {single[i] for x in found.values() for i in x.columns}
     if unknown := [name for name in single if name not in {*used, SKIPPED}]:
         wanted = f"columns must be among {', '.join(QUANTITIES)}, all parts of one of them (such as"
         got = f"{quoted(unknown[0])}{suggestion(unknown[0], QUANTITIES)}"
         raise LagtopError(f"{wanted} qw,qx,qy,qz) or {SKIPPED}, got {got}", "columns")
+    for key, x in found.items():
+        in_known_unit(key, x, single)
     return single

@@ -52,7 +52,8 @@ class Trajectory:
         """Find the quantities and read their numbers; `columns` names all columns from the left.
 
         Rows that are empty in these columns are left out.  Raises DataError without a time or a
-        quantity besides, and for a cell that is not a number; LagtopError for wrong `columns`.
+        quantity besides, for a wrong unit, and for a cell that is not a number; LagtopError for
+        wrong `columns`.
         """
         self.name, self._place = table.name, table.place
         if columns is not None and len(columns) != table.width:
@@ -67,7 +68,7 @@ class Trajectory:
         try:
             self.quantities = found_in(names)
         except LagtopError as error:
-            if columns is not None and error.key:
+            if columns is not None and error.key == "columns":
                 raise
             raise DataError(f"{table.name}: {error}") from None
         used = sorted(i for found in self.quantities.values() for i in found.columns)

@@ -87,7 +87,7 @@ def read_by_all(path: str) -> None:
 def test_any_bytes_end_in_rows_or_in_one_line(count: int, tmp_path: Path) -> None:
     @given(CONTENTS)
     @example(b"{}")
-    @settings(max_examples=count, derandomize=count == 60)
+    @settings(max_examples=count, derandomize=True)
     def read_any(content: bytes) -> None:
         (tmp_path / "file").write_bytes(content)
         read_by_all(str(tmp_path / "file"))

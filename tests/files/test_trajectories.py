@@ -244,6 +244,14 @@ def test_names_keep_the_units_of_headings_in_a_comment(tmp_path: Path) -> None:
     assert [*values["t"][0], *values["theta"][0]] == [0.5, 1]
 
 
+def test_a_unit_is_the_fault_of_the_file_or_of_the_names(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("clock [rpm],tilt\n0,1\n")
+    with pytest.raises(DataError, match=r"file: t must have a unit such as s or ms, got .* 'rpm'"):
+        read_trajectory(str(tmp_path / "file"), ["t", "theta"])
+    with pytest.raises(LagtopError, match=r"^t must have a unit such as s or ms, got .* 'rpm'"):
+        read_trajectory(str(tmp_path / "file"), ["t [rpm]", "theta"])
+
+
 def test_bad_names_of_columns(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("0 1\n")
     with pytest.raises(LagtopError, match=r"columns must name all 2 columns of .* got 5 names"):
