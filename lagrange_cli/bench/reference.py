@@ -64,7 +64,8 @@ class Reference:
             tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
             spin = "r0" if top.phidot0 is None else "phidot0"
             names = ("m", "A", "C", "s", "g", spin, "thetadot0", "psidot0", tilt)
-            m, A, C, s, g, r0, theta_rate, psi_rate, theta = map(mpmath.mpf, map(top.exact, names))
+            given = (mpmath.mpf(x.numerator) / x.denominator for x in map(top.exact, names))
+            m, A, C, s, g, r0, theta_rate, psi_rate, theta = given
             theta *= mpmath.pi / 180 if tilt == "theta0_deg" else 1
             u0 = mpmath.cos(theta)
             r0 += psi_rate * u0 if spin == "phidot0" else 0
