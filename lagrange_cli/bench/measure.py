@@ -19,14 +19,14 @@ from ..output.report import Field, Report, fields_of, short
 from ..plot.style import LIGHT, plain
 from ..solver.solve import Motion
 from .methods import METHODS, SlowError, attitudes
-from .reference import Attitude, exact_motion, rotation_angle
+from .reference import Quaternion, exact_motion, rotation_angle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CHECKED = 51
 """Number of times that are compared with the reference, the last one among them."""
-RUNS, SECONDS_OF_RUNS, LIMIT = 9, 0.3, 3.0
+RUNS, SECONDS_OF_RUNS, SLOW = 9, 0.3, 3.0
 """Most warm runs, the CPU seconds after which they end, and the limit of one run."""
 ERROR = "greatest error (rad)"
 
@@ -89,7 +89,7 @@ class Task(NamedTuple):
     motion: Motion
     periods: float
     times: Array
-    exact: dict[int, Attitude]
+    exact: dict[int, Quaternion]
     """The exact attitudes, by the index of their time."""
 
 
@@ -103,7 +103,7 @@ def task_of(scene: str, motion: Motion, periods: float, count: int) -> Task:
 
 
 def measure(
-    task: Task, name: str, setting: float | str, limit: float = LIMIT, runs: int = RUNS
+    task: Task, name: str, setting: float | str, limit: float = SLOW, runs: int = RUNS
 ) -> Row:
     """Return the error and the times of one method; a remark states why it has none."""
     row, method = Row(task.scene, name, setting, task.periods), METHODS[name]

@@ -26,11 +26,11 @@ DIGITS, ROOT_DIGITS = 50, 1000
 
 Many = Any
 """A number of mpmath."""
-Attitude = tuple[Many, ...]
+Quaternion = tuple[Many, ...]
 """The parts w, x, y, z of the rotation from body to space."""
 
 
-def rotation_angle(computed: Sequence[Any], exact: Attitude) -> float:
+def rotation_angle(computed: Sequence[Any], exact: Quaternion) -> float:
     """Return the angle (rad) of the rotation from an exact to a computed attitude.
 
     This is the definition of error in all reports.  The computed quaternion may have any norm and
@@ -106,7 +106,7 @@ class Reference:
             halves.append(momentum / 2 * integral / (x2 * self.speed))
         return sn, cn, halves[0] + drift, halves[1] - drift
 
-    def attitude(self, t: Many) -> Attitude:
+    def attitude(self, t: Many) -> Quaternion:
         """Return the attitude at a time, which is on the line of nodes at t = 0."""
         with mpmath.workdps(DIGITS):
             sn, cn, *halves = self._state(mpmath.mpf(t))

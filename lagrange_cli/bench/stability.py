@@ -1,6 +1,6 @@
 """Errors of methods in stiff and extreme scenes, beside the error that input rounding causes.
 
-A new kind of scene is one entry in KINDS.  The README describes the kinds.
+A new kind of scene is one entry in HARD_KINDS.  The README describes the kinds.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SPANS = 1.0, 100.0
 TIMES = 8
 """Number of times in each span that are compared; a quarter of them for the input rounding."""
 COMPARED = "lagtop", "scipy.special", "DOP853", "Radau", "Taylor"
-LIMIT = 1.0
+SLOW = 1.0
 """CPU seconds after which a run is too slow."""
 AT_ROUNDING, LOST = 100, 1e-3
 """Limits of the verdicts: a multiple of the effect of input rounding, and an error in rad."""
@@ -109,7 +109,7 @@ FIXED: list[tuple[str, Scene]] = [
     ("extreme-sizes", {"m": 1e12, "s": 1e-12, "g": 1e6, "A": 1e-12, "C": 1e-12, "r0": 1e9}),
 ]
 """The fixed scenes of each kind, for the body UNIT."""
-KINDS: dict[str, Callable[[Random], Scene]] = {
+HARD_KINDS: dict[str, Callable[[Random], Scene]] = {
     "fast-spin": lambda rng: moving(rng) | {"r0": 10 ** rng.uniform(3, 6)},
     "slow-spin": lambda rng: (
         body(rng) | {"r0": 10 ** rng.uniform(-9, -2), "theta0_deg": rng.uniform(20, 170)}
@@ -122,7 +122,7 @@ KINDS: dict[str, Callable[[Random], Scene]] = {
     "extreme-sizes": extreme_sizes,
 }
 """The function that returns a random scene of each kind."""
-KEYS = "scene method setting periods error_rad input_rounding verdict inputs remark"
+SHOWN = "scene method setting periods error_rad input_rounding verdict inputs remark"
 
 
 def stability(
@@ -135,20 +135,20 @@ def stability(
 
     Each method runs at its tightest setting.  Raises LagtopError for an unknown kind.
     """
-    names = list(KINDS) if kinds is None else check_names("kinds", kinds, KINDS)
+    names = list(HARD_KINDS) if kinds is None else check_names("kinds", kinds, HARD_KINDS)
     scenes = [(kind, x) for kind in names for x in motions(kind, samples, seed)]
     rows = [row for kind, motion in progress(scenes, "scenes") for row in compared(kind, motion)]
     found = [
         max((x for x in rows if (x.scene, x.periods, x.method) == case), key=badness)
         for case in product(names, SPANS, COMPARED)
     ]
-    return report_of(conditions(samples, seed), KEYS, TIMES + 1, found, conclusions(found))
+    return report_of(conditions(samples, seed), SHOWN, TIMES + 1, found, conclusions(found))
 
 
 def motions(kind: str, samples: int, seed: int) -> list[Motion]:
     """Return the fixed motions of a kind, and random ones that nutate under a torque."""
     fixed, rng = [UNIT | scene for name, scene in FIXED if name == kind], Random(f"{seed} {kind}")
-    tops = (Top(**x) for x in chain(fixed, (KINDS[kind](rng) for _ in repeat(None))))
+    tops = (Top(**x) for x in chain(fixed, (HARD_KINDS[kind](rng) for _ in repeat(None))))
     nutating = (x for x in map(solve, tops) if x.regime in (Regime.REGULAR, Regime.NO_SPIN))
     return list(islice(nutating, len(fixed) + samples))
 
@@ -163,7 +163,7 @@ def compared(kind: str, motion: Motion) -> Iterator[Row]:
             for t, exact in list(zip(task.times.tolist(), task.exact.values(), strict=True))[4::4]
         )
         for name in COMPARED:
-            row = measure(task, name, METHODS[name].settings[-1], LIMIT, runs=1)
+            row = measure(task, name, METHODS[name].settings[-1], SLOW, runs=1)
             verdict = verdict_of(row.error_rad, rounding, row.remark)
             row = row._replace(input_rounding=rounding, verdict=verdict)
             yield row._replace(periods=span, inputs=motion.top.as_text())
@@ -219,7 +219,7 @@ def conditions(samples: int, seed: int) -> dict[str, str]:
         "worst of them",
         "rounding": "input rounding: sum of the rotations that half an ulp of each input causes",
         "verdicts": f"rounding level: error at most {AT_ROUNDING} times input rounding; lost: "
-        f"error above {LOST:g} rad; inaccurate: between; too slow: more than {LIMIT:g} s of CPU",
+        f"error above {LOST:g} rad; inaccurate: between; too slow: more than {SLOW:g} s of CPU",
         "settings": ", ".join(f"{x} {METHODS[x].settings[-1]}" for x in COMPARED),
     }
 

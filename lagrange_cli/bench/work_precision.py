@@ -14,7 +14,7 @@ from ..output.report import Report
 from ..output.terminal import Progress, silent
 from ..plot.style import LIGHT, plain
 from ..solver.solve import Motion
-from .measure import ERROR, LIMIT, RUNS, Row, Task, looks, measure, panels_of, report_of, task_of
+from .measure import ERROR, RUNS, SLOW, Row, Task, looks, measure, panels_of, report_of, task_of
 from .methods import METHODS
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ PERIODS = 20.3
 """Default span in nutation periods.  It does not end at a turning point, where errors are least."""
 LOST = 0.1
 """Error (rad) above which a method no longer follows the motion."""
-KEYS = "scene method setting periods error_rad ns_per_sample setup_ms evaluations front remark"
+SHOWN = "scene method setting periods error_rad ns_per_sample setup_ms evaluations front remark"
 
 
 def bench(
@@ -47,7 +47,7 @@ def bench(
     each = len(found) // len(tasks)
     rows = [row for i in range(0, len(found), each) for row in marked(found[i : i + each])]
     said, checked = conclusions(rows, len(spans) > 1), len(tasks[0].exact)
-    return report_of(conditions(tasks), KEYS, checked, rows, said)
+    return report_of(conditions(tasks), SHOWN, checked, rows, said)
 
 
 def marked(rows: Sequence[Row]) -> list[Row]:
@@ -107,7 +107,7 @@ def conditions(tasks: Sequence[Task]) -> dict[str, str]:
         "setting": "rtol = atol in the units of the scene; of fixed steps, their number per "
         "nutation period",
         "time": f"CPU, least of up to {RUNS} warm runs, without the set-up; a run of more than "
-        f"{LIMIT:g} s is ended. RK4 and MuJoCo are sampled at the checked times only",
+        f"{SLOW:g} s is ended. RK4 and MuJoCo are sampled at the checked times only",
         "compiled": "Taylor (heyoka) and MuJoCo; SciPy and RK4 call a right-hand side in Python",
         "not timed": "energy, conversion of angles to attitudes, imports",
     }

@@ -24,7 +24,7 @@ from ..top.ranges import MAX_PERIODS, MAX_TIME, Points, check_reach
 from .arguments import Arguments, ExactComplex
 from .functions import Functions, Point
 from .modulus import Kind, Modulus, angle
-from .tables import Row, Rows, Value, numbers, rows_of
+from .tables import Cell, Cells, Rows, numbers, table_rows
 
 ETA_COLUMNS = ("tau", "eta", "etadot", "h1", "theta", "xi_prime")
 """The columns; tau is always included."""
@@ -190,14 +190,14 @@ def eta_rows(
         found = eta_constants(quadrature)
         return found, Functions(found.modulus(quadrature))
 
-    def columns(x: ExactComplex, known: tuple[EtaConstants, Functions]) -> Row:
+    def columns(x: ExactComplex, known: tuple[EtaConstants, Functions]) -> Cells:
         found: dict[str, Any] = {}
         for name, y in eta_columns(x.real, quadrature, *known).items():
             if name in {"tau", *names}:
                 found |= angle(name, y, in_radians=radians) if name == "theta" else {name: y}
         return found
 
-    return rows_of(Arguments(tau).numbers(digits), columns, known, quadrature.inputs, digits)
+    return table_rows(Arguments(tau).numbers(digits), columns, known, quadrature.inputs, digits)
 
 
 def eta_columns(
@@ -211,8 +211,8 @@ def eta_columns(
     h1 = c.sigma1 * (exact(tau) - c.period / 4)
     am, sn, cn, dn = (z.real for z in functions.jacobi(Point(h1)) if z is not None)
     below = 1 + c.d * sn
-    eta: Value = (c.gamma + c.s * sn) / below
-    rate: Value = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / below**2
+    eta: Cell = (c.gamma + c.s * sn) / below
+    rate: Cell = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / below**2
     if quadrature.lower == quadrature.upper:
         eta, rate = quadrature.lower, Fraction(0)
     return dict(zip(ETA_COLUMNS, (tau, eta, rate, h1, am, sn), strict=True))
@@ -227,14 +227,14 @@ def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, A
     quadrature.check()
     lower, upper, outer, g, height = quadrature
     part = "_imag" if height else ""
-    roots: dict[str, Value] = dict.fromkeys(("p", "q", "q_imag", "outer_root"))
+    roots: dict[str, Cell] = dict.fromkeys(("p", "q", "q_imag", "outer_root"))
     if len(outer) > 1:
         first, second = outer
         roots |= {"p": (first + second) / 2, f"q{part}": height or abs(first - second) / 2}
     elif outer:
         roots["outer_root"] = outer[0]
 
-    def compute(_: int) -> Row:
+    def compute(_: int) -> Cells:
         c = eta_constants(quadrature)
         moduli = dict.fromkeys(("k", "k_imag", "k1", "k1_imag"))
         return {

@@ -14,7 +14,7 @@ from ..top.ranges import MAX_PERIODS, MAX_TIME, ListedPoints, check_reach
 from .arguments import Arguments, ExactComplex
 from .functions import THIRD, Functions, Point
 from .modulus import GivenModulus, Kind, angle, real_parts, split
-from .tables import Row, Rows, rows_of
+from .tables import Cells, Rows, table_rows
 
 QUOTIENTS = ("sn", "cn", "dn", "ns", "nc", "nd", "sc", "cs", "sd", "ds", "cd", "dc")
 """Jacobi's functions in Glaisher's notation: pq = pn/qn, nn = 1."""
@@ -22,7 +22,7 @@ FAMILIES = ("am", *QUOTIENTS, "theta", "zeta", "omega", "pi")
 """The functions of u; `am` stands for am, sn, cn and dn."""
 _FIRST_DIGITS = 32
 
-Numbers = dict[str, acb | None]
+Values = dict[str, acb | None]
 
 
 class FunctionRequest(NamedTuple):
@@ -81,11 +81,11 @@ def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
     at_precision(_FIRST_DIGITS, lambda: request.check(doubles=digits is None))
     has_parameter = bool({"omega", "pi"} & set(request.families))
 
-    def constants() -> tuple[Functions, Numbers]:
+    def constants() -> tuple[Functions, Values]:
         functions = Functions(modulus.reduced())
         return functions, functions.zetas(v) if has_parameter else {}
 
-    def columns(x: ExactComplex, constants: tuple[Functions, Numbers]) -> Row:
+    def columns(x: ExactComplex, constants: tuple[Functions, Values]) -> Cells:
         u, (functions, zetas) = point(x), constants
         if request.u.in_quarters:
             u = Point(u.real / (2 * functions.scale))
@@ -100,12 +100,12 @@ def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
         return {"u": argument} | real_parts(jacobi) | split(found)
 
     inputs = [*request.parameter, *modulus.value]
-    return rows_of(request.u.numbers(digits), columns, constants, inputs, digits)
+    return table_rows(request.u.numbers(digits), columns, constants, inputs, digits)
 
 
-def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Numbers:
+def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Values:
     """Return am in the unit of the request, and the quotients of sn, cn, dn and 1."""
-    has_am, found = "am" in request.families, Numbers()
+    has_am, found = "am" in request.families, Values()
     wanted = {*request.families, *(("sn", "cn", "dn") if has_am else ())}
     if wanted.isdisjoint(QUOTIENTS):
         return found
@@ -121,9 +121,9 @@ def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Numbers
     return found
 
 
-def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Numbers:
+def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Values:
     """Return the theta and the Zeta functions of u."""
-    families, kind, found = request.families, functions.kind, Numbers()
+    families, kind, found = request.families, functions.kind, Values()
     for ij, z in functions.thetas(u).items() if "theta" in families else ():
         is_real = kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0")
         found[f"theta{ij}"] = _on_axes(z, u, odd=ij == "11") if is_real else z
@@ -132,11 +132,9 @@ def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Numbers
     return found
 
 
-def _third(
-    request: FunctionRequest, values: Mapping[str, tuple[acb | None, acb | None]]
-) -> Numbers:
+def _third(request: FunctionRequest, values: Mapping[str, tuple[acb | None, acb | None]]) -> Values:
     """Return Omega and Pi, or their imaginary parts."""
-    found, part = Numbers(), "_imag" if request.imaginary and request.is_real else ""
+    found, part = Values(), "_imag" if request.imaginary and request.is_real else ""
     for i, family in enumerate(("omega", "pi")):
         for ij in THIRD if family in request.families else ():
             z = values[ij][i]

@@ -23,7 +23,7 @@ from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, check_reach
 from .arguments import Arguments, ExactComplex
 from .modulus import GivenModulus, Kind, Modulus, angle, real_parts, split
-from .tables import Row, Rows, numbers, rows_of
+from .tables import Cells, Rows, numbers, table_rows
 
 CONSTANTS = """
 m | m | parameter k² | |
@@ -178,7 +178,7 @@ def amplitude_rows(
         check_reach("phi", points, MAX_PERIODS * (math.pi if radians else 180.0))
     heading = "phi_rad" if radians else "phi_deg"
 
-    def columns(x: ExactComplex, legendre: Legendre) -> Row:
+    def columns(x: ExactComplex, legendre: Legendre) -> Cells:
         found = legendre.at(x, radians=radians)._asdict()
         if n is None:
             del found["Pi"]
@@ -188,7 +188,7 @@ def amplitude_rows(
 
     inputs = [*given.value, n or Fraction(0)]
     at = phi.numbers(digits)
-    return rows_of(at, columns, lambda: Legendre(given.reduced(), given.m, n), inputs, digits)
+    return table_rows(at, columns, lambda: Legendre(given.reduced(), given.m, n), inputs, digits)
 
 
 def constants_record(
@@ -201,7 +201,7 @@ def constants_record(
     """
     given.check()
 
-    def compute(_: int) -> Row:
+    def compute(_: int) -> Cells:
         found = constants_of(given.reduced(), radians=radians)
         if n is not None:
             found["Pi"] = Legendre(given.reduced(), given.m, n).complete.Pi

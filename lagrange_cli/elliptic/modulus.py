@@ -20,7 +20,7 @@ from flint import acb, arb
 from ..arithmetic.enclosures import exact
 from ..errors import LagtopError
 from .arguments import ExactComplex
-from .tables import Value
+from .tables import Cell
 
 _LEAST_BELOW_1 = Fraction("1e-17")
 """Least 1 - |q|: the exponent of k' is then within the limits of printed numbers."""
@@ -111,15 +111,15 @@ class GivenModulus(NamedTuple):
         return Modulus(exact(square).sqrt(), exact(1 - square).sqrt(), kind, stretch)
 
 
-def split(numbers: Mapping[str, acb | None]) -> dict[str, Value]:
+def split(numbers: Mapping[str, acb | None]) -> dict[str, Cell]:
     """Return the real and the imaginary parts of complex numbers."""
-    parts: dict[str, Value] = {}
+    parts: dict[str, Cell] = {}
     for name, z in numbers.items():
         parts[f"{name}_re"], parts[f"{name}_im"] = (None, None) if z is None else (z.real, z.imag)
     return parts
 
 
-def real_parts(numbers: Mapping[str, acb | None]) -> dict[str, Value]:
+def real_parts(numbers: Mapping[str, acb | None]) -> dict[str, Cell]:
     """Return the real parts of complex numbers."""
     return {name: None if z is None else z.real for name, z in numbers.items()}
 

@@ -15,18 +15,18 @@ from ..errors import OutOfRangeError
 from .arguments import ExactComplex
 
 C = TypeVar("C")
-Value = arb | Fraction | str | None
+Cell = arb | Fraction | str | None
 """A number in a ball or as a fraction, a word, or None for a number that does not exist."""
-Row = Mapping[str, Value]
+Cells = Mapping[str, Cell]
 Rows = tuple[list[str], Iterator[Sequence[Sequence[NumberText]]]]
 """The header, and blocks of rows as text; an empty text is a missing number."""
 
 _ROWS_AT_ONCE = 100
 
 
-def rows_of(
+def table_rows(
     arguments: Iterable[ExactComplex],
-    columns: Callable[[ExactComplex, C], Row],
+    columns: Callable[[ExactComplex, C], Cells],
     constants: Callable[[], C],
     inputs: Sequence[Fraction],
     digits: int | None,
@@ -50,7 +50,7 @@ def rows_of(
 
 
 def numbers(
-    compute: Callable[[int], Row],
+    compute: Callable[[int], Cells],
     inputs: Iterable[Fraction],
     digits: int | None,
     *,

@@ -1,4 +1,4 @@
-"""Numbers that are formulas of the inputs, for many tops at once, in pairs of doubles.
+"""Doubles that are formulas of the inputs, for many tops at once, in pairs of doubles.
 
 They are further keys, which `solver` declares with their meanings, and the numbers of steady tops.
 Where the terms of a formula cancel, `solve` computes the top.  Equation numbers are Chrapan's.
@@ -11,7 +11,7 @@ import numpy as np
 from ..arithmetic.pairs import PI, DoubleDouble, two_sum
 from ..arithmetic.types import Array
 from .formulas import OF_TORQUE_FREE, Formulas, Motions, turn_time
-from .tops import Numbers
+from .tops import Doubles
 from .trust import GOOD, PAIR_EPS
 
 _LEAST_SQUARE = 2.0**-20
@@ -19,34 +19,34 @@ _LEAST_SQUARE = 2.0**-20
 _TURN = DoubleDouble(np.array([2 * PI.high]), np.array([2 * PI.low]))
 
 
-def total(of: Motions, *terms: Numbers, error: Array | float = 0.0) -> Numbers:
+def total(of: Motions, *terms: Doubles, error: Array | float = 0.0) -> Doubles:
     """Return a sum; the tops for which it loses digits are no longer known.
 
     `error` is an absolute error of the terms, in units of PAIR_EPS.
     """
     size: Array = sum(abs(term.high) for term in terms) + error
-    found: Numbers = sum(terms[1:], terms[0])
+    found: Doubles = sum(terms[1:], terms[0])
     of.known &= PAIR_EPS * size <= GOOD * abs(found.high)
     return found
 
 
-def momentum(of: Motions) -> Numbers:
+def momentum(of: Motions) -> Doubles:
     """Return beta = psi' sin^2 theta0 + b cos theta0 (4,5)."""
     return total(of, of.pairs.momentum, of.pairs.b * of.pairs.cos, error=abs(of.pairs.b.high))
 
 
-def energy(of: Motions) -> Numbers:
+def energy(of: Motions) -> Doubles:
     """Return alpha = theta'^2 + psi'^2 sin^2 theta0 + a cos theta0 (4,4)."""
     return total(of, of.pairs.energy, of.pairs.a * of.pairs.cos, error=of.pairs.a.high)
 
 
-def at_pole(of: Motions, b_from_pole: Numbers) -> Numbers:
+def at_pole(of: Motions, b_from_pole: Doubles) -> Doubles:
     """Return f(1) = -(beta - b)^2 or f(-1) = -(beta + b)^2 of (4,9), from b (u0 -+ 1)."""
     root = total(of, of.pairs.momentum, b_from_pole)
     return -root * root
 
 
-def discriminant(of: Motions) -> Numbers:
+def discriminant(of: Motions) -> Doubles:
     """Return b^2 - 2 a cos theta0, negative if there is no steady precession."""
     a, b, cos = of.pairs.a, of.pairs.b, total(of, of.pairs.cos, error=1.0)
     found = total(of, b * b, -2.0 * a * cos, error=a.high)
@@ -54,13 +54,13 @@ def discriminant(of: Motions) -> Numbers:
     return found
 
 
-def steady(of: Motions) -> Numbers:
+def steady(of: Motions) -> Doubles:
     """Return q = b +- sqrt(b^2 - 2 a cos theta0), of the sign of b; NaN if there is none."""
     both = abs(of.pairs.b) + discriminant(of).sqrt()
     return DoubleDouble.choose(of.pairs.b.high < 0, -both, both)
 
 
-def spin_of(of: Motions, square: Numbers) -> Numbers:
+def spin_of(of: Motions, square: Doubles) -> Doubles:
     """Return the r0 for which b^2 is `square`, 0 if that is negative."""
     root = DoubleDouble.choose(square.high > 0, square, 0.0).sqrt()
     return DoubleDouble(of.tops.A) / DoubleDouble(of.tops.C) * root
@@ -87,7 +87,7 @@ ELEMENTARY: Formulas = {
 """The formula of each key; a number is NaN where its divisor is 0."""
 
 
-def steady_motion(of: Motions) -> tuple[Numbers, Numbers, Numbers]:
+def steady_motion(of: Motions) -> tuple[Doubles, Doubles, Doubles]:
     """Return the rate of the steady precession that a word names, a (u3 - u0) and the spin rate.
 
     The cubic (4,9) has a double root u0, and a (u3 - u0) is a sum: psi'^2 sin^2 plus the

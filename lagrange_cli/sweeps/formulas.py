@@ -18,18 +18,18 @@ from scipy.special import ellipe, ellipkm1, elliprf
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..solver.keys import degree_name
-from .tops import Numbers, Start, TopArrays
+from .tops import Doubles, Start, TopArrays
 
 _LEAST, _MOST = 1e-280, 1e280
 """Sizes between which pairs of doubles keep all of their digits."""
 
 
-def sqrt(x: Numbers) -> Numbers:
+def sqrt(x: Doubles) -> Doubles:
     """Return the square roots of numbers >= 0."""
     return x.sqrt() if isinstance(x, DoubleDouble) else np.sqrt(x)
 
 
-def where(condition: Mask, yes: Numbers, no: Numbers) -> Numbers:
+def where(condition: Mask, yes: Doubles, no: Doubles) -> Doubles:
     """Choose between two numbers, element by element."""
     choose: Any = DoubleDouble.choose if isinstance(yes, DoubleDouble) else np.where
     return choose(condition, yes, no)
@@ -42,19 +42,19 @@ class Gaps(NamedTuple):
     finite without a torque.
     """
 
-    u1_u0: Numbers
-    u0_u2: Numbers
-    u1_u2: Numbers
-    below_u1: Numbers  # 1 + u1
-    below_u2: Numbers
-    above_u1: Numbers  # 1 - u1
-    above_u2: Numbers
-    a_u3_u0: Numbers
-    a_u3_u1: Numbers
-    a_u3_u2: Numbers
-    a_u3_above: Numbers  # a (u3 - 1)
-    momentum_u1: Numbers  # beta - b u1, the momentum psi' (1 - u^2) of (4,7) at u1
-    momentum_u2: Numbers
+    u1_u0: Doubles
+    u0_u2: Doubles
+    u1_u2: Doubles
+    below_u1: Doubles  # 1 + u1
+    below_u2: Doubles
+    above_u1: Doubles  # 1 - u1
+    above_u2: Doubles
+    a_u3_u0: Doubles
+    a_u3_u1: Doubles
+    a_u3_u2: Doubles
+    a_u3_above: Doubles  # a (u3 - 1)
+    momentum_u1: Doubles  # beta - b u1, the momentum psi' (1 - u^2) of (4,7) at u1
+    momentum_u2: Doubles
 
 
 def gaps_from_rest(start: Start) -> Gaps:
@@ -97,7 +97,7 @@ def gaps_from_rest(start: Start) -> Gaps:
     )
 
 
-def cubic_of(start: Start) -> tuple[Numbers, Numbers, Numbers]:
+def cubic_of(start: Start) -> tuple[Doubles, Doubles, Doubles]:
     """Return c2, c1, c0 of the cubic (4,9), a x^3 + c2 x^2 + c1 x + c0 in x = u - u0."""
     energy, along = start.energy, start.sin * start.theta_rate
     c2 = 2 * start.a * start.cos - energy - start.b * start.b
@@ -105,7 +105,7 @@ def cubic_of(start: Start) -> tuple[Numbers, Numbers, Numbers]:
     return c2, c1, along * along
 
 
-def gaps_from_start(start: Start, cubic: tuple[Numbers, Numbers, Numbers], D: Numbers) -> Gaps:
+def gaps_from_start(start: Start, cubic: tuple[Doubles, Doubles, Doubles], D: Doubles) -> Gaps:
     """Return the gaps of any start from its cubic and D = a (u3 - u0), its largest root times a.
 
     The other two roots x1 >= 0 >= x2 solve a quadratic equation with a negative last coefficient,
@@ -136,12 +136,12 @@ def gaps_from_start(start: Start, cubic: tuple[Numbers, Numbers, Numbers], D: Nu
     )
 
 
-def u2(gaps: Gaps) -> Numbers:
+def u2(gaps: Gaps) -> Doubles:
     """Return the lower turning point (4,11) from its distance to the nearer pole."""
     return where(gaps.above_u2 < gaps.below_u2, 1 - gaps.above_u2, gaps.below_u2 - 1)
 
 
-def rates_half(start: Start, gaps: Gaps) -> tuple[Numbers, Numbers]:
+def rates_half(start: Start, gaps: Gaps) -> tuple[Doubles, Doubles]:
     """Return the rates of spin and precession at T/2, (4,8) and (4,7).
 
     The axis is then at u = u2 + (u1 - u0)(u3 - u2)/(u3 - u0).
@@ -154,8 +154,8 @@ def rates_half(start: Start, gaps: Gaps) -> tuple[Numbers, Numbers]:
 
 
 def mean_parts(
-    k_prime: Numbers, gaps: Gaps, momenta: tuple[Numbers, Numbers] | None = None
-) -> tuple[Numbers, Numbers]:
+    k_prime: Doubles, gaps: Gaps, momenta: tuple[Doubles, Doubles] | None = None
+) -> tuple[Doubles, Doubles]:
     """Return the means over a period of the partial fractions of psi' (4,7) at both poles,
 
         south = (beta - b u)/(2 (1 + u)),    north = (beta - b u)/(2 (1 - u)).
@@ -166,14 +166,14 @@ def mean_parts(
     at_u1, at_u2 = momenta or (gaps.momentum_u1, gaps.momentum_u2)
     mc = k_prime * k_prime
 
-    def half_mean(from_u1: Numbers, from_u2: Numbers) -> Numbers:
+    def half_mean(from_u1: Doubles, from_u2: Doubles) -> Doubles:
         mean = period_mean(k_prime, from_u2 * mc / from_u1, at_u1, at_u2 * mc)
         return mean / from_u1 / 2
 
     return half_mean(gaps.below_u1, gaps.below_u2), half_mean(gaps.above_u1, gaps.above_u2)
 
 
-def period_mean(k_prime: Numbers, p: Numbers, x: Numbers, y: Numbers) -> Numbers:
+def period_mean(k_prime: Doubles, p: Doubles, x: Doubles, y: Doubles) -> Doubles:
     """Return the mean over a period of (x cn^2 + y sn^2)/(cn^2 + p sn^2), for k', p > 0.
 
     It is Bulirsch's cel(k', p, x, y)/K (DLMF 19.2.11).  Each step is Bartky's transformation
@@ -198,7 +198,7 @@ _NOME = (48555069, 3567400, 268616, 20910, 1707, 150, 15, 2, 1)
 """Coefficients of the nome over e, a series in e^4 (DLMF 19.5.5)."""
 
 
-def nome(of: Motions) -> Numbers:
+def nome(of: Motions) -> Doubles:
     """Return the nome q = exp(-pi K'/K) (2,4).
 
     The exponential loses log(1/q) digits.  Small nomes are therefore a series in
@@ -210,12 +210,12 @@ def nome(of: Motions) -> Numbers:
     return np.where(e < 0.2, e * np.polyval(_NOME, e**4), by_exponential)
 
 
-def tilt_deg(above: Array, below: Array) -> Numbers:
+def tilt_deg(above: Array, below: Array) -> Doubles:
     """Return a tilt in degrees from 1 - u and 1 + u: near the poles acos(u) would lose digits."""
     return np.degrees(2 * np.arctan2(np.sqrt(above), np.sqrt(below)))
 
 
-def turn_time(rate: Array) -> Numbers:
+def turn_time(rate: Array) -> Doubles:
     """Return the time of one turn at a rate (section 8), NaN if the rate is 0."""
     return 2 * np.pi / np.where(rate == 0, np.nan, abs(rate))
 
@@ -256,7 +256,7 @@ Formulas = dict[str, Callable[[Any], Any]]
 """A formula for each key; those that only other formulas use are not keys of the record."""
 
 
-def alpha(of: Any) -> Numbers:
+def alpha(of: Any) -> Doubles:
     """Return alpha = F(amplitude, k') (1,6), by Carlson's integral (DLMF 19.25.5).
 
     Its sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)) and cn^2 are products.
@@ -272,7 +272,7 @@ def u_quarter(of: Any) -> Array:
     return np.where(of.gaps.u1_u0 <= 0, of.start.cos - fall, np.nan)
 
 
-def spin_at_rest(of: Any) -> Numbers:
+def spin_at_rest(of: Any) -> Doubles:
     """Return the mean spin rate (6,3), a drift and one turn per nutation, a sum of one sign."""
     turn = 2 * np.pi / of["T_nutation"]
     return of.start.spin_drift + np.where(of.start.r0 < 0, -turn, turn) / 2

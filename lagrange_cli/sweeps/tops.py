@@ -19,7 +19,7 @@ from ..solver.facts import Regime
 from ..top.top import Top
 from ..top.values import STEADY_WORDS
 
-Numbers = Any
+Doubles = Any
 """An array of doubles, or pairs of doubles."""
 _SMALL, _LARGE = 1e-30, 1e30
 """Sizes between which no formula leaves the range of doubles."""
@@ -35,35 +35,35 @@ _MOST_SPIN = 1e150
 class Start(NamedTuple):
     """The constants of the motions and their states at t = 0."""
 
-    a: Numbers  # 2mgs/A (4,4)
-    b: Numbers  # C r0/A (4,5)
-    r0: Numbers
-    sleep: Numbers  # b^2/2 - a, from the inputs: it cancels near the threshold of sleeping
-    spin_drift: Numbers  # r0 - b/2 = r0 (2A - C)/2A, the spin rate without the nutation (6,1)
-    sin: Numbers
-    cos: Numbers  # u0
-    below: Numbers  # 1 + u0 = 2 cos^2(theta0/2)
-    above: Numbers  # 1 - u0 = 2 sin^2(theta0/2)
-    theta_rate: Numbers
-    psi_rate: Numbers
+    a: Doubles  # 2mgs/A (4,4)
+    b: Doubles  # C r0/A (4,5)
+    r0: Doubles
+    sleep: Doubles  # b^2/2 - a, from the inputs: it cancels near the threshold of sleeping
+    spin_drift: Doubles  # r0 - b/2 = r0 (2A - C)/2A, the spin rate without the nutation (6,1)
+    sin: Doubles
+    cos: Doubles  # u0
+    below: Doubles  # 1 + u0 = 2 cos^2(theta0/2)
+    above: Doubles  # 1 - u0 = 2 sin^2(theta0/2)
+    theta_rate: Doubles
+    psi_rate: Doubles
 
     def in_doubles(self) -> Start:
         """Return each number rounded to a double."""
         return Start(*(x.high for x in self))
 
     @property
-    def energy(self) -> Numbers:
+    def energy(self) -> Doubles:
         """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4)."""
         around = self.psi_rate * self.sin
         return self.theta_rate * self.theta_rate + around * around
 
     @property
-    def momentum(self) -> Numbers:
+    def momentum(self) -> Doubles:
         """psi' sin^2(theta0) = beta - b u0 (4,5)."""
         return self.psi_rate * self.sin * self.sin
 
     @property
-    def spin_rate(self) -> Numbers:
+    def spin_rate(self) -> Doubles:
         """The spin rate phi' at the start (4,8)."""
         return self.r0 - self.psi_rate * self.cos
 

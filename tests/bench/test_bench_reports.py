@@ -71,7 +71,7 @@ def test_bad_requests_end_in_one_line(lagtop: Lagtop, args: list[str], said: str
     assert done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("kind", hard.KINDS)
+@pytest.mark.parametrize("kind", hard.HARD_KINDS)
 def test_each_kind_nutates_and_repeats_by_its_seed(kind: str) -> None:
     scenes = [[x.top for x in hard.motions(kind, 2, seed)] for seed in (1, 1, 2)]
     assert scenes[0] == scenes[1]
