@@ -34,9 +34,9 @@ b | b | C r0/A | 1/time | (4,5) | C*r0/A
 # Roots
 u1 | u1 | cos ϑ, highest | | (4,9)
    | (energy_constant - a*u1)*(1 - u1**2) = (momentum_constant - b*u1)**2 ~ roots[1]
-u2 | u2 | cos ϑ, lowest | | (4,11)
+u2 | u2 | cos ϑ, lowest | | (4,9)
    | (energy_constant - a*u2)*(1 - u2**2) = (momentum_constant - b*u2)**2 ~ roots[0]
-u3 | u3 | third root | | (4,11)
+u3 | u3 | third root | | (4,9)
    | (energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2 ~ u2 + wide/a
    | if there is a torque
 # Moduli and integrals
@@ -62,8 +62,8 @@ T_precession | Tψ | mean precession period | time | §8 | 2*pi/abs(mean_precess
 # Turning points
 u_quarter | u(T/4) | cos ϑ at T/4 | | (5,2) | u1 - (u1 - u2)*k_prime/(1 + k_prime)
    | if the start is at u1
-theta_min_deg | ϑ min | least tilt | angle | (4,9) | acos(u1)
-theta_max_deg | ϑ max | greatest tilt | angle | (4,9) | acos(u2)
+theta_min_deg | ϑ min | least tilt | angle | (4,6) | acos(u1)
+theta_max_deg | ϑ max | greatest tilt | angle | (4,6) | acos(u2)
 # Mean rates
 mean_spin_rate | φ' mean | mean spin rate | rad/time | (6,3) | r0 - b - (P - Q)/(2*K) where P, Q
 mean_precession_rate | ψ' mean | mean precession rate | rad/time | (7,3) | (P + Q)/(2*K) where P, Q
@@ -153,9 +153,9 @@ precession_rate_elementary | ψ' elementary | precession of a fast top | rad/tim
 T_nutation_elementary | T elementary | nutation of a fast top | time | 2πA/(C r0)
    | 2*pi*A/(C*abs(r0)) | if r0 is not 0
 # where
-P | | mean of (β - b)/(1 - u), times K | | (3,11)
+P | | mean of (β - b)/(1 - u), times K | | (3,8)
    | (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2) ~ over_pole(-1)
-Q | | mean of (β + b)/(1 + u), times K | | (3,11)
+Q | | mean of (β + b)/(1 + u), times K | | (3,8)
    | (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2) ~ over_pole(1)
 U | | cos ϑ half a period after the start | |
    | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))

@@ -289,7 +289,7 @@ def _middle(x: arb) -> Any:
 def mean_of_inverse(at_u1: arb, at_u2: arb, m_k_prime: arb) -> arb:
     """Return the mean over a period of 1/d, where d > 0 is linear in u, from d at u1 and u2.
 
-    By (4,30), d = d2 cos^2 x + d1 sin^2 x, where x is the amplitude counted from u2.  The mean has
+    By (4,20), d = d2 cos^2 x + d1 sin^2 x, where x is the amplitude counted from u2.  The mean has
     the weight M/sqrt(cos^2 x + k'^2 sin^2 x), where M is the arithmetic-geometric mean of 1 and k'.
     Bartky's transformation (Bulirsch 1969) replaces x and leaves the mean of
 
