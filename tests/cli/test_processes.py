@@ -188,18 +188,18 @@ def test_memory_does_not_grow_with_the_rows() -> None:
 
 
 def heed_signals() -> None:
-    """Undo what `nohup` and `&` do to a run of the tests."""
-    for number in (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT):
-        signal.signal(number, signal.SIG_DFL)
+    """Undo what `nohup` and `&` do to a run of the tests, and to the commands that it starts."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGQUIT, signal.SIG_DFL)
 
 
 def started(*options: str, folder: Path, before: str = "") -> subprocess.Popen[bytes]:
     """Start `lagtop table` with a file as output, and wait until it writes."""
     command = [*LAGTOP, "table", *options, "-o", str(folder / "out.csv")]
     line = f'{before} exec "$@"'
-    running = subprocess.Popen(
-        ["bash", "-c", line, "_", *command], stderr=subprocess.PIPE, preexec_fn=heed_signals
-    )
+    heed_signals()
+    running = subprocess.Popen(["bash", "-c", line, "_", *command], stderr=subprocess.PIPE)
     while not any(path.name.startswith(".lagtop") for path in folder.iterdir()):
         assert running.poll() is None
         time.sleep(0.02)
