@@ -319,14 +319,14 @@ _MORE_DIGITS = "use digits=N"
 def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
     """Return decimals below and above all numbers in a finite ball.
 
-    Raises OutOfRangeError for a number whose size is not within 1e-990000000000000000 and
+    Raises OutOfRangeError for a number whose size is not between 1e-990000000000000000 and
     1e+990000000000000000.
     """
     bits = max(80, ball.bits(), 0 if ball.is_exact() else ball.rel_accuracy_bits())
     middle, radius, exponent = map(int, ball.mid_rad_10exp(int(bits / BITS) + 8))
     if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
         raise OutOfRangeError(
-            "the size of a value is not within 1e-990000000000000000 and 1e+990000000000000000, "
+            "the size of a value is not between 1e-990000000000000000 and 1e+990000000000000000, "
             "the limits of digits=N: take a smaller argument"
         )
     low, high = Decimal(middle - radius), Decimal(middle + radius)

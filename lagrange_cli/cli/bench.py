@@ -53,8 +53,8 @@ def bench_command(
     formulas.  The column `setting` holds the tolerance of a method, or its number of steps per
     nutation period.  A * marks the front: no other row is both faster and more accurate.
 
-    Taylor's method needs heyoka, and MuJoCo its own package; a missing one is named.  To check a
-    method of your own, write its trajectory to a file and use lagtop compare.
+    Taylor's method needs heyoka, and MuJoCo its own package; bench names missing ones.  To check
+    a method of your own, write its trajectory to a file and use lagtop compare.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
     from ..bench.work_precision import PERIODS, bench, methods_figure

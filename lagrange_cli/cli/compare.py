@@ -91,7 +91,7 @@ def compare_command(
     if not words:
         raise LagtopError("no trajectory: give a file, or - for standard input")
     if words.count("-") > 1:
-        raise LagtopError("standard input can be read once, got - twice")
+        raise LagtopError("standard input can be read only once, got - twice")
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, top.radians).checked()
     alignment = Alignment.of(align or [])
     motion = opt.motion_of(top.given(), uses_stds=False)

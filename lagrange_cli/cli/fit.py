@@ -100,7 +100,7 @@ def fit_command(
         raise LagtopError(f"fit takes one recording, got {len(words)}: {remedy}")
     scene_path = out.path if opt.extension(out.path) == "toml" else None
     if window is not None and scene_path:
-        raise LagtopError("--window goes without -o FILE.toml")
+        raise LagtopError("--window cannot be used with -o FILE.toml")
     opt.check_plot(plot, out.path)
     radians = top.radians
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()

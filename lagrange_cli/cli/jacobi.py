@@ -67,7 +67,7 @@ def write_functions(rows: Rows, count: int, out: Output) -> None:
     "jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i",
     "jacobi --m 2 --phi 10,20 --n 0.3",
 )
-@opt.option("--k", type=MODULUS, help="Modulus: 0 or more, or imaginary as 0.8i.")
+@opt.option("--k", type=MODULUS, help="Modulus: 0 or more, or imaginary (0.8i).")
 @opt.option("--k-prime", type=MODULUS, help="Complementary modulus k', for k close to 1.")
 @opt.option("--m", type=MODULUS, help="Parameter m = k^2, any real number.")
 @opt.option("--nome", type=MODULUS, help="Nome q = exp(-pi K'/K), between -1 and 1.")
@@ -84,13 +84,15 @@ def write_functions(rows: Rows, count: int, out: Output) -> None:
     "zeta (logarithmic derivatives of theta), omega, pi (of u and --param, after Chrapan).  "
     "[default: am]",
 )
-@opt.option("--param", type=opt.Parsed("V", _parse_parameter), help="Of omega and pi, as 0.2+0.7i.")
+@opt.option(
+    "--param", type=opt.Parsed("V", _parse_parameter), help="For omega and pi, e.g. 0.2+0.7i."
+)
 @opt.option(
     "--phi",
     type=ARGUMENTS,
     help="Amplitudes, such as 30,90,-210 or 30+20i: print Legendre's F(phi, k) and E(phi, k).",
 )
-@opt.option("--n", type=opt.NUMBER, help="Print Legendre's Pi(n; phi | k), or the complete one.")
+@opt.option("--n", type=opt.NUMBER, help="Print Legendre's Pi(n; phi | k) or Pi(n | k).")
 @opt.rad
 @opt.digits(opt.MOST_TABLE_DIGITS)
 @function_formats
@@ -150,7 +152,7 @@ def _parameter(
             raise LagtopError("--param needs --functions omega or pi")
         return ExactComplex(Fraction(0)), False
     if param is None:
-        raise LagtopError("the functions omega and pi need --param, as 0.7, 0.7i or 0.2+0.7i")
+        raise LagtopError("the functions omega and pi need --param: 0.7, 0.7i or 0.2+0.7i")
     return param
 
 
@@ -158,7 +160,7 @@ def _parse_distance(text: str) -> ExactComplex:
     """Return 0.7 or, imaginary, 0.7i."""
     value = parse_complex(text)
     if min(value) < 0 or all(value):
-        raise LagtopError(f"must be >= 0, or imaginary as 0.7i, got {value}")
+        raise LagtopError(f"must be >= 0, or imaginary (0.7i), got {value}")
     return value
 
 
@@ -198,7 +200,7 @@ def eta_command(
     digits: int | None,
     out: Output,
 ) -> None:
-    """Compute eta of Aksenov's intermediate orbit of a satellite (1977, 3.2).
+    """Compute eta of Aksenov's satellite orbit (1977, section 3.2).
 
     Eta gives the latitude of the satellite.  It oscillates between delta* and delta:
     (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2).

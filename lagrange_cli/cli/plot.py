@@ -47,7 +47,7 @@ FILMS = "gif", "mp4"
 @opt.option("--key", metavar="KEY", help="Key of `map`.  [default: mean_precession_rate]")
 @opt.option("--x", metavar="RANGE", help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
 @opt.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0]")
-@opt.option("--camera", metavar="AZ,EL", help="Azimuth and elevation.  [default: in front]")
+@opt.option("--camera", metavar="AZ,EL", help="Azimuth and elevation, deg.  [default: in front]")
 @opt.option("--title", metavar="TEXT", help="Title of the picture, or '' for none.")
 @opt.option("--dark", is_flag=True, help="Dark background.")
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
@@ -86,7 +86,7 @@ def plot_command(
     for word in scenes:
         hint = suggestion(word, [*KINDS, SHEET, *scene_names()])
         if hint and not (opt.is_scene(word) or exists(word)):
-            raise LagtopError(f"{word!r} is no kind of picture and no scene{hint}")
+            raise LagtopError(f"{word!r} is neither a kind of picture nor a scene{hint}")
     if not (output or animate):
         example = _file_among(scenes, *FORMATS)
         raise LagtopError(f"nothing to do: give -o {example} or --animate FILE.gif")
@@ -99,7 +99,7 @@ def plot_command(
     if dpi is not None and not LEAST_DPI <= dpi <= MOST_DPI:
         raise LagtopError(f"--dpi must be in [{LEAST_DPI:g}, {MOST_DPI:g}], got {float(dpi):g}")
     if output is not None and is_screen(output):
-        raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
+        raise LagtopError("a picture cannot be shown in a terminal: give -o FILE.png")
     if opt.extension(output or "") in FILMS:
         raise LagtopError(f"a film needs --animate: write --animate {output} instead of -o")
     fmt = "svg" if output in (None, "-") else check_picture(output, FORMATS)
@@ -192,7 +192,7 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Valu
 )
 @opt.top()
 @opt.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
-@opt.option(*("-o", "--output"), metavar="FILE", help="FILE.html (replaced when all is written).")
+@opt.option(*("-o", "--output"), metavar="FILE", help="FILE.html (replaced once all is written).")
 def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     """Write an interactive page for the browser.
 

@@ -87,7 +87,7 @@ def _parse_list(text: str) -> list[str]:
     """Return the names of a comma-separated list.  Raises LagtopError for an empty name."""
     names = split_names(text)
     if "" in names:
-        raise LagtopError(f"must be names with commas and no blanks between, got {quoted(text)}")
+        raise LagtopError(f"must be comma-separated names without blanks, got {quoted(text)}")
     return names
 
 
@@ -251,7 +251,7 @@ def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
         return
     name, _, value = word.partition("=")
     if name in DECLARED and is_decimal(value):
-        raise LagtopError(f"an input is no scene: write --{name.replace('_', '-')} {value}")
+        raise LagtopError(f"an input is not a scene: write --{name.replace('_', '-')} {value}")
     from ..top.units import is_unit  # start-up
 
     if is_unit(word):
@@ -259,7 +259,7 @@ def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
         name, number = bare[-1] if bare else ("m", Fraction(2))
         option = f"--{name.removesuffix('_deg').removesuffix('_rad').replace('_', '-')}"
         raise LagtopError(
-            f"{word} is no scene: put a value with its unit in quotes: "
+            f"{word} is not a scene: put a value with its unit in quotes: "
             f"{option} '{float(number):g} {word}'"
         )
 
@@ -295,14 +295,14 @@ def warn(found: Given, *, uses_stds: bool = False) -> None:
     if found.empty is not None:
         complain(f"Warning: {found.empty} has no inputs: using the worked example")
     if found.file is not None and found.file.hides:
-        complain(f"Warning: {found.file.name} is read from this folder, not the scene of that name")
+        complain(f"Warning: {found.file.name} is the file in this folder, not the built-in scene")
     if found.missing:
         units = {name: f" {unit}" for name, unit in BODY_UNITS.items()} if found.si else {}
         texts = {name: f"{value:g}{units.get(name, '')}" for name, value in found.missing.items()}
         words = [f"--{name} {quoted(x) if found.si else x}" for name, x in texts.items()]
         complain(f"Warning: {remark_on(found.missing, words)}")
     if found.stds and not uses_stds:
-        used = "solve, table and plot angles use it"
+        used = "only solve, table and plot angles use it"
         complain(f"Warning: the uncertainty of {', '.join(found.stds)} is not used: {used}")
 
 
@@ -334,7 +334,7 @@ def output(
                 _check_parquet(output, others)
             function(out=Output(output, chosen, fmt is not None), **others)
 
-        kind, help_ = click.Choice(formats), "Output file (replaced when all is written)."
+        kind, help_ = click.Choice(formats), "Output file (replaced once all is written)."
         found: Any = option("--format", "fmt", metavar="FORMAT", type=kind, help=text)(run)
         found = option("-o", "--output", metavar="FILE", default="-", help=help_)(found)
         return cast(F, found)

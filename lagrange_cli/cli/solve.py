@@ -153,7 +153,7 @@ def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
     if motion.roots_sum is None:
         top = motion.top
         raise AbsentError(
-            "--derivation must be of a top that nutates after release from rest, got one of the "
+            "--derivation needs a top that nutates after release from rest, got the "
             f"regime {motion.regime.value!r}, thetadot0 = {float(top.thetadot0)}, "
             f"psidot0 = {float(top.psidot0)}"
         )

@@ -115,7 +115,7 @@ def sweep_command(
         if out.fmt in {"json", "table"}:
             raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
     if len(words) > 1:
-        raise LagtopError(f"a sweep has one file of tops, got {' '.join(words)}")
+        raise LagtopError(f"a sweep takes one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
     digest = digest_of(path) if path is not None and parts is not None else ""
     how: dict[str, Any] = {"radians": top.radians, "fmt": out.fmt, "decimal": decimal, "keys": keys}
@@ -166,7 +166,7 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
     kind=opt.values(parse_number_or_span),
     rate=opt.values(parse_number_or_span, steady=True),
 )
-@opt.option("--scan", type=opt.count(), help="Values of each unknown.  [default: 4000, 60 or 20]")
+@opt.option("--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60 or 20]")
 @opt.keys
 @opt.output("csv", "ndjson", "json", "table", on_terminal="table")
 def find_command(
@@ -181,8 +181,8 @@ def find_command(
     An input given as a range from:to (or log:from:to) is an unknown; up to three are allowed.  Give
     as many conditions KEY=NUMBER as unknowns.  If inputs have units, a condition may have a unit
     too (T_precession=500ms); without one, it is in SI.  Conditions such as regime=regular,
-    path=looping or 'theta_max<120' restrict the solutions.  With one unknown, a word alone asks for
-    the borders of its class, such as the spin at which loops begin.
+    path=looping or 'theta_max<120' restrict the solutions.  With one unknown and no KEY=NUMBER,
+    path= or regime= finds the borders of a class, such as the spin at which loops begin.
 
     With one unknown, find returns every solution that the scan brackets.  With several, it follows
     the best points of the scan and can miss solutions.  The exit code is 1 if no solution is found.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     "table --t-max 1e9 --n 3 --digits 30 --certify --format json",
 )
 @opt.top()
-@opt.option("--t-max", type=opt.TIME, help="Last time.  [default: one period; 1 without one]")
+@opt.option("--t-max", type=opt.TIME, help="Last time.  [default: one period; 1 if there is none]")
 @opt.option("--t-min", type=opt.TIME, help="First time.  [default: 0]")
 @opt.option("--n", type=opt.count(), help="Number of times.  [default: 101]")
 @opt.option("--dt", type=opt.TIME, help="Time step, instead of --n.")
@@ -119,8 +119,7 @@ def warn_if_misleading(stds: AngleStds | None, names: Sequence[str]) -> None:
         first = min((stds.misleading[x] for x in misled), key=abs)
         complain(
             f"Warning: uncertainties of {', '.join(misled)} are not reliable from t = {first:g}: "
-            "linear propagation gives another spread than motions one and two standard deviations "
-            "away"
+            "linear propagation disagrees with motions one and two standard deviations away"
         )
 
 

@@ -55,7 +55,7 @@ def with_stds(
     if misled:
         complain(
             f"Warning: uncertainties of {', '.join(misled)} are not reliable: linear propagation "
-            "gives another spread than motions one and two standard deviations away"
+            "disagrees with motions one and two standard deviations away"
         )
     texts = {
         name: NumberText(uncertain_text(_to_the_last_digit(motion, name, float(value), std), std))

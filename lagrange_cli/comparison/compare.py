@@ -77,8 +77,8 @@ class Comparison(HasRecord):
     psi_error_max: float | None = _key("greatest difference of the precession, in (-pi, pi]")
     rates_error_max: float | None = _key("greatest error of the angular velocity, over its size")
     theta_drift: float | None = _key("growth of the tilt's difference per unit of time, fitted")
-    phi_drift: float | None = _key("the same of the spin")
-    psi_drift: float | None = _key("the same of the precession")
+    phi_drift: float | None = _key("the same for the spin")
+    psi_drift: float | None = _key("the same for the precession")
     norm_error: float | None = _key(
         "greatest distance from 1 of the norm of a quaternion or axis, or of the matrix R R^T"
     )
@@ -90,7 +90,7 @@ class Comparison(HasRecord):
     lost_at: float | None = _key("time of the first row that is not finite")
     order: float | None = _key("order of convergence of all trajectories")
     cause: str | None = _key("the cause of the error")
-    explained: str | None = _key("`most likely`: below the limit without the cause; else `partly`")
+    explained: str | None = _key("`most likely` if `cause_error` is below the limit, else `partly`")
     cause_error: float | None = _key("greatest error with this cause corrected")
     remedy: str | None = _key("arguments that take the cause into account, as `name=value`")
 

@@ -68,7 +68,7 @@ class GivenModulus(NamedTuple):
         name, (real, imag) = self.name, self.value
         if name in {"k", "k_prime"}:
             if real < 0 or imag < 0 or (real and imag):
-                form = f"{name} must be 0 or more, or imaginary as 0.8i"
+                form = f"{name} must be 0 or more, or imaginary (0.8i)"
                 raise LagtopError(f"{form}, got {self.value}", name)
         elif imag:
             raise LagtopError(f"{name} must be real, got {self.value}", name)

@@ -158,7 +158,7 @@ class Recording:
     def windows(self, count: int) -> list[Recording]:
         """Return the recording in equal windows of time.  Raises LagtopError for a bad count."""
         if count < 2:
-            raise LagtopError(f"window must be 2 windows or more, got {count}", "window")
+            raise LagtopError(f"window must be at least 2, got {count}", "window")
         number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
         rows = [np.flatnonzero(number == i) for i in range(count)]
         if (least := min(x.size for x in rows)) < LEAST_ROWS:

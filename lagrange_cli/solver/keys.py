@@ -93,7 +93,7 @@ f_slope_u1 | f'(u1) | slope of (4,9) at u1 | 1/time² | (4,9)
    | -a*(u1 - u2)*(u3 - u1) ~ -swing*narrow
 u2_criterion | a u2 u3 | criterion for the sign of u2 | 1/time² | (4,12)
    | a*u2*u3 ~ u2*(wide + a*u2)
-spin_share | 1 - C/2A | share of steady spin | | (6,1) | 1 - C/(2*A)
+spin_share | 1 - C/2A | steady share of the spin | | (6,1) | 1 - C/(2*A)
 # Angles after half a period and a whole one
 phi_half_deg | φ(T/2) | spin after half a period | angle | §6
    | integral(phidot, 0, T_nutation/2) ~ half[0]

@@ -99,7 +99,7 @@ class FirstOrder:
     def misleads(self, key: str, std: float) -> bool:
         """Return whether linear propagation misleads for a number with an uncertainty.
 
-        It does if motions one and two standard deviations away have another spread about the
+        It does if motions one and two standard deviations away have a different spread about the
         number, or lack it.
         """
         if degree_name(key) not in DIFFERENTIABLE:

@@ -137,7 +137,7 @@ def gaps_from_start(start: Start, cubic: tuple[Doubles, Doubles, Doubles], D: Do
 
 
 def u2(gaps: Gaps) -> Doubles:
-    """Return the lower turning point (4,11) from its distance to the nearer pole."""
+    """Return the lower turning point (4,9) from its distance to the nearer pole."""
     return where(gaps.above_u2 < gaps.below_u2, 1 - gaps.above_u2, gaps.below_u2 - 1)
 
 
@@ -308,7 +308,7 @@ OF_TORQUE_FREE: Formulas = OF_VERTICAL | {
 """Formulas of tops released without a torque."""
 OF_NUTATION: Formulas = _OF_ALL | {
     "u1": lambda of: of.start.cos + of.gaps.u1_u0,  # (4,9)
-    "u2": lambda of: u2(of.gaps),  # (4,11)
+    "u2": lambda of: u2(of.gaps),  # (4,9)
     "u3": lambda of: (of.start.a + of.gaps.a_u3_above) / of.start.a,
     "m": lambda of: of.start.a * of.gaps.u1_u2 / of.gaps.a_u3_u2,  # k^2 (4,19)
     "k": lambda of: np.sqrt(of["m"]),

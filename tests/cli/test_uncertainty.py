@@ -177,7 +177,7 @@ def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
     scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
     assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
     assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
-    said = "Warning: the uncertainty of m is not used: solve, table and plot angles use it\n"
+    said = "Warning: the uncertainty of m is not used: only solve, table and plot angles use it\n"
     assert lagtop("view", scene, "-o", tmp_path / "top.html").stderr == said
 
 

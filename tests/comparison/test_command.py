@@ -115,7 +115,7 @@ ROW = "t,theta\n0,30\n"
 @pytest.mark.parametrize(
     ("text", "arguments", "code", "message"),
     [
-        (ROW, "-", 2, "standard input can be read once, got - twice"),
+        (ROW, "-", 2, "standard input can be read only once, got - twice"),
         (ROW, "--step-sizes 1,2", 2, "--step-sizes must have one number per trajectory (1), got 2"),
         (ROW, "--step-sizes 0", 2, "--step-sizes must be > 0, got 0.0"),
         ("t,theta\n0,x\n", "", 65, "standard input, line 2, column 2: theta must be a finite"),

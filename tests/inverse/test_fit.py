@@ -544,7 +544,7 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (f"{SAMPLE} {SAMPLE}", 2, "fit takes one recording, got 2: fit each file alone"),
         (f"{SAMPLE} --sigma -1", 2, "--sigma must be > 0, got -1"),
         (f"{SAMPLE} --sigma theta=1", 2, "--sigma must be given for all of theta, phi, psi"),
-        (f"{SAMPLE} --window 1", 2, "--window must be 2 windows or more, got 1"),
+        (f"{SAMPLE} --window 1", 2, "--window must be at least 2, got 1"),
         (f"{SAMPLE} --window 100", 2, "--window must hold 12 rows or more, got 1: use fewer"),
         (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
         (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),

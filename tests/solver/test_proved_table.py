@@ -100,7 +100,7 @@ def test_the_separatrix_is_decided_at_once_at_any_time(lagtop: Lagtop) -> None:
     args = [*top, "--t-min", "1e20", "--t-max", "1e20", "--n", "1", "--digits", "20"]
     refused = lagtop("table", *args, "--format", "csv", "--columns", "theta")
     assert (refused.exit_code, refused.stdout) == (2, "")
-    assert "the size of a value is not within 1e-990000000000000000 and" in refused.stderr
+    assert "the size of a value is not between 1e-990000000000000000 and" in refused.stderr
     shown = lagtop("table", *args, "--format", "csv", "--columns", "phi,psi,axis_z,quaternion_w")
     assert shown.stdout.splitlines()[1:] == ["180.0,180.0,1.0,-1.0"]
 

@@ -37,7 +37,7 @@ def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
 def test_what_has_no_derivation_says_so(lagtop: Lagtop, options: str) -> None:
     found = lagtop("solve", "--derivation", *options.split())
     assert (found.exit_code, found.stdout) == (1, "")
-    assert found.stderr.startswith("Error: --derivation must be of a top that nutates after")
+    assert found.stderr.startswith("Error: --derivation needs a top that nutates after")
     assert found.stderr.count("\n") == 1
 
 

@@ -138,7 +138,7 @@ def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
         ("--A 1 --C 3 --m 1,2", 2, "--C must be <= 2 A = 2.0, got 3.0"),
         ("--r0 500(5)", 2, "--r0 must have no uncertainty in this command, got '500(5)'"),
         ("nowhere.toml", 65, "nowhere.toml: No such file or directory"),
-        ("a.csv b.csv", 2, "a sweep has one file of tops, got a.csv b.csv"),
+        ("a.csv b.csv", 2, "a sweep takes one file of tops, got a.csv b.csv"),
         ("- --m 1,2", 2, "a range of m and a file of tops exclude each other"),
         ("--jobs 2 --dask tcp://127.0.0.1:9", 2, "use --jobs or --dask, not both"),
     ],
