@@ -162,7 +162,7 @@ class Recording:
         number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
         rows = [np.flatnonzero(number == i) for i in range(count)]
         if (least := min(x.size for x in rows)) < LEAST_ROWS:
-            text = f"window must hold {LEAST_ROWS} rows or more, got {least}: use fewer windows"
+            text = f"window must leave {LEAST_ROWS} rows or more in each, got {least}: use fewer"
             raise LagtopError(text, "window")
         return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]
 

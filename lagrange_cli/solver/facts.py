@@ -134,7 +134,7 @@ class Facts(NamedTuple):
 
     @property
     def moves(self) -> bool:
-        """A number of the motion is not 0."""
+        """The torque, the spin or a rate is not 0."""
         turns = self.top.psidot0 and not self.pole
         return bool(self.a or self.spin or turns or not self.steady)
 

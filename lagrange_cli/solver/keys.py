@@ -15,7 +15,7 @@ which are finite without torque, and exactly 0 if two roots coincide:
     swing = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1)
 
 `where` names lines of the last group.  That group also has the numbers that only remarks and
-`Motion.swing` need.  Equation numbers are Chrapan's.
+`Motion.swing` need.  Equation numbers are Chrapan's, for release from rest.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ f_slope_u1 | f'(u1) | slope of (4,9) at u1 | 1/time² | (4,9)
 u2_criterion | a u2 u3 | criterion for the sign of u2 | 1/time² | (4,12)
    | a*u2*u3 ~ u2*(wide + a*u2)
 spin_share | 1 - C/2A | steady share of the spin | | (6,1) | 1 - C/(2*A)
-# Angles after half a period and a whole one
+# Angles after half a period and after a period
 phi_half_deg | φ(T/2) | spin after half a period | angle | §6
    | integral(phidot, 0, T_nutation/2) ~ half[0]
    | if the top nutates, and the axis is not vertical half a period after the start
@@ -162,10 +162,10 @@ U | | cos ϑ half a period after the start | |
    ~ u2 + (u1 - cos(theta0))*wide/(wide + a*(u2 - cos(theta0)))
 V | | cos ϑ between two quarters | | (5,2) | u1 - (u1 - u2)*k_prime/(1 + k_prime)
 nutation | | angle of the nutation | angle | | theta_max - theta_min
-excess | | of the mean rate over the elementary one, in ppm | | §8
+excess | | excess of the mean rate over the elementary rate, in ppm | | §8
    | 1000000*(mean_precession_rate/precession_rate_elementary - 1)
 swing_rate | | rate of the swing on the separatrix | rad/time | | course.rate
-lowest | | time at which it is lowest | time | | -course.h0/course.rate
+lowest | | time at which the axis is lowest | time | | -course.h0/course.rate
 """
 
 

@@ -1,6 +1,6 @@
 """The numbers of a motion: the formulas of `keys`, evaluated as they stand, in balls of Arb.
 
-No formula saves digits: a ball that has lost too many of them is computed again with more.  What is
+Formulas may lose digits: a ball that has lost too many is computed again with more.  What is
 not a formula of the table is here: the functions that formulas use, the roots of the cubic, the
 mean of 1/(1 - u), and the limits.  Equation numbers are Chrapan's.
 """

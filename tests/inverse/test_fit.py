@@ -545,7 +545,11 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (f"{SAMPLE} --sigma -1", 2, "--sigma must be > 0, got -1"),
         (f"{SAMPLE} --sigma theta=1", 2, "--sigma must be given for all of theta, phi, psi"),
         (f"{SAMPLE} --window 1", 2, "--window must be at least 2, got 1"),
-        (f"{SAMPLE} --window 100", 2, "--window must hold 12 rows or more, got 1: use fewer"),
+        (
+            f"{SAMPLE} --window 100",
+            2,
+            "--window must leave 12 rows or more in each, got 1: use fewer",
+        ),
         (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
         (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),
         (f"{SAMPLE} --A-cm 1", 2, "--A-cm must be given with m and s, as A = A_cm + m s^2"),
