@@ -125,7 +125,7 @@ def at_precision(digits: int, compute: Callable[[], T], *, alone: bool = False) 
 
 
 def kept(compute: Callable[[int], T]) -> Callable[[int], T]:
-    """Return `compute(digits)` at a precision of so many digits, computed once for each.
+    """Return `compute(digits)` at that precision, computed once for each number of digits.
 
     A result is kept only after the precision was found unchanged: a wide one would be found again
     at every attempt.

@@ -27,8 +27,8 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     """Explain keys and columns, with formulas and numbers.
 
     A key is the name of a result.  Each formula is shown in symbols and with the numbers of the
-    top.  Without KEY, all keys and columns are listed.  The record of solve has most keys; the
-    others are computed if you name them.  Keys go to solve --get, sweep --keys, find --keys and
+    top.  Without KEY, all keys and columns are listed.  Solve prints the keys of the record;
+    name the further keys to compute them.  Keys go to solve --get, sweep --keys, find --keys and
     plot --key; columns go to table --columns.
     """
     from ..solver.explanation import explanations, listed

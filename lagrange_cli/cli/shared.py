@@ -131,7 +131,7 @@ euler_sequence = option(
 
 
 def _scenes_or_files(ctx: click.Context, param: click.Parameter, begun: str) -> list[Any]:
-    """Return the shipped scenes that begin with a word, or a request for files."""
+    """Return the built-in scenes that begin with a word, or a request for files."""
     from ..top.scenes import scene_names
 
     scenes = [name for name in scene_names() if name.startswith(begun)]
@@ -188,7 +188,7 @@ class TopOptions(NamedTuple):
 def is_scene(word: str) -> bool:
     """Return whether a word among others, such as conditions, names a scene.
 
-    Scenes are `-`, shipped scenes, words that end in `.toml`, and words with a dot or a slash that
+    Scenes are `-`, built-in scenes, words that end in `.toml`, and words with a dot or a slash that
     are no condition.
     """
     from ..top.scenes import is_scene_file

@@ -33,9 +33,9 @@ _FRAMES = [
     *(Alignment(x, x) for x in _AXES[3:]),
     *(Alignment(y, x) for x, y in product(_AXES, repeat=2) if x != y),
 ]
-"""All frames whose axes are those of lagtop in another order or direction, the likeliest first.
+"""All frames with lagtop's axes in another order or direction, the likeliest first.
 
-A left-handed frame is a right-handed one with all axes reversed, but for the zeros of its angles.
+A left-handed frame is a right-handed frame with all axes reversed, except for its zero angles.
 """
 
 
@@ -79,7 +79,7 @@ class _Search:
         return math.inf
 
     def errors(self, cause: Cause, most: int = 0) -> Array:
-        """Return the errors without a cause, on so many rows or on all."""
+        """Return the errors with a cause corrected, on at most `most` rows or on all."""
         run = self.some(cause.undo).few(most) if most else cause.undone(self.run)
         return errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
 

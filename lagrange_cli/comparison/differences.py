@@ -124,7 +124,7 @@ class Run(NamedTuple):
         return self._replace(given=given, begins=self.begins * factor - shift)
 
     def few(self, most: int) -> Run:
-        """Return at most so many rows, evenly spread."""
+        """Return at most `most` rows, evenly spread."""
         every = -(-len(self.given["t"]) // most)
         return self._replace(given=rows_of(self.given, slice(None, None, every)))
 

@@ -87,7 +87,7 @@ def comparison_report(
     conditions = {
         "scene": motion.top.as_text(),
         "regime": motion.regime,
-        "errors": f"radians, those of rates relative; greatest of all rows; fine up to {limit:g}",
+        "errors": f"radians, for rates relative; greatest over all rows; fine up to {limit:g}",
     }
     lines = [line for x in results for line in _conclusions(x, limit, found, argument)]
     if found is not None:

@@ -63,7 +63,7 @@ class Arguments(NamedTuple):
 def places(points: Points, digits: int | None) -> Iterator[Fraction]:
     """Yield points as the nearest doubles or, if `digits` is a number, as exact decimals.
 
-    The inner points of a range with equal ratios are then rounded to so many significant digits.
+    The inner points of a range with equal ratios are then rounded to that number of digits.
     """
     if digits is None:
         return (Fraction(float(x)) for x in points.decimals())

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 SKIPPED = "_"
 """The name of an ignored column."""
-EXAMPLE = "columns=t,quaternion or the like ('t [ms]' for times in ms)"
+EXAMPLE = "for example columns=t,quaternion ('t [ms]' for times in ms)"
 """An example of names of columns, for messages."""
 
 
@@ -203,7 +203,7 @@ def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> No
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
         lacks_z = {"x", "y"} <= {*names} and "z" not in names
-        remedy = "z is missing" if lacks_z else f"name them with {EXAMPLE}"
+        remedy = "z is missing" if lacks_z else f"name them, {EXAMPLE}"
         raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
     plain = [plain_name(name)[0] for name in names]
     for key, quantity in found.items():
@@ -212,7 +212,7 @@ def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> No
             for other, word in enumerate(plain):
                 if other != i and word in {plain[i], *angle}:
                     wrong = f"must name each quantity once, got {names[i]!r} and {names[other]!r}"
-                    remedy = "use columns=t,theta,_ or the like, where _ leaves one out"
+                    remedy = "skip one with _, for example columns=t,theta,_"
                     raise LagtopError(f"columns {wrong}: {remedy}", "columns")
 
 

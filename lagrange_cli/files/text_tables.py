@@ -356,9 +356,9 @@ def _layout(texts: Sequence[str], known: CountKnown, decimal: str) -> _Layout:
 
 
 def _layout_of(texts: Sequence[str], width: int, decimal: str) -> _Layout:
-    """Return the layout of a file with so many columns, whose names are given.
+    """Return the layout of a file with `width` columns, whose names are given.
 
-    Numbers begin with the first row that has so many cells, like the row below it, and a number.
+    Numbers begin with the first row that has a number and `width` cells, as the row below has.
     """
     splits = [_splits(text, decimal) for text in texts]
     ranked = [

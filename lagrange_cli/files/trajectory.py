@@ -57,12 +57,12 @@ class Trajectory:
         """
         self.name, self._place = table.name, table.place
         if columns is not None and len(columns) != table.width:
-            wanted = f"all {table.width} columns of {table.name} (_ leaves one out)"
+            wanted = f"all {table.width} columns of {table.name} (_ skips one)"
             wrong = f"columns must name {wanted}, got {len(columns)} names"
             raise LagtopError(wrong, "columns")
         names = table.headings if columns is None else columns
         if names is None:
-            remedy = f"name its {table.width} columns with {EXAMPLE}"
+            remedy = f"name its {table.width} columns, {EXAMPLE}"
             raise DataError(f"{table.name} has no header: {remedy}")
         self.names = names
         try:
@@ -81,7 +81,7 @@ class Trajectory:
         for key, places in self._places.items():
             if len(self._numbers.lines) and self._numbers.empty[:, places].all():
                 shown = ", ".join(self.used[i] for i in places)
-                remedy = "remove its columns, or leave them out with columns=t,_ or the like"
+                remedy = "remove its columns, or skip them with _, for example columns=t,_"
                 raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
         t = self._numbers.values[:, self._places["t"][0]]
         for i in np.flatnonzero(~np.isfinite(t))[:1]:

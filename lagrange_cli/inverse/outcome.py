@@ -88,7 +88,7 @@ class Outcome(HasRecord):
     correlations: Mapping[str, float] = field(default_factory=dict)
     """Correlations of a, b and r0 by pairs such as `a and b`, as far as they are parameters."""
     distances: Mapping[str, float] = field(default_factory=dict)
-    """Distances of known inputs from those of the recording, in standard deviations."""
+    """Distances of known inputs from their values in the recording, in standard deviations."""
     is_spin_slow: bool = True
     """Whether the spin is slow enough to show the direction of psi."""
     chance: float = CHANCE

@@ -34,7 +34,7 @@ _UNEVEN = 0.05
 
 
 def are_whole(frames: Array) -> bool:
-    """Return whether times in units of a frame are whole numbers, but for jitter."""
+    """Return whether times in units of a frame are whole numbers, except for jitter."""
     return bool(np.mean(np.abs(frames - np.round(frames))) < _UNEVEN)
 
 

@@ -1,7 +1,7 @@
 """The nutation that a recording shows: signals without whole turns, their period and their noise.
 
-The cosine of the tilt is periodic; spin and precession are periodic but for a mean rate.  Harmonics
-of one frequency describe all of them.  Long recordings are averaged evenly over time, never cut.
+The cosine of the tilt is periodic, and so are spin and precession apart from a mean rate.
+Harmonics of one frequency describe all of them.  Long recordings are averaged, never cut.
 """
 
 from __future__ import annotations

@@ -174,7 +174,7 @@ def _exceeds(x: arb, limit: arb) -> bool:
 
 
 def inputs_of(top: Top) -> tuple[str, ...]:
-    """Return the inputs of a top as they were given, but for a word, which is no number."""
+    """Return the keys of the inputs of a top that were given as numbers."""
     names = [name for name, x in top.as_dict().items() if x is not None]
     order = [name for key in DECLARED for name in names if bare_name(name) == key]
     return tuple(name for name in order if not (name == "psidot0" and top.steady_word))

@@ -61,7 +61,7 @@ class Facts(NamedTuple):
 
     top: Top
     inputs: dict[str, Fraction]
-    """The rational ones of m, A, C, s, g, r0, phidot0, thetadot0 and psidot0."""
+    """The rational inputs among m, A, C, s, g, r0, phidot0, thetadot0 and psidot0."""
     tilt: Tilt
     equal: int
     """D: two numbers that agree to D digits are equal."""

@@ -42,7 +42,7 @@ TERMS = 4
 _BITS = 85
 """Bits to which a constant is known before it is rounded to a double."""
 _NEGLIGIBLE = 2.0**-60
-"""Size of a term that is left out, over that of the first one."""
+"""Largest size of an omitted term, over the first term."""
 _SIZE = 16
 """Binary exponent of the largest coefficient about a turning point."""
 

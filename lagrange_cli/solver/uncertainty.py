@@ -20,9 +20,9 @@ _CONTEXT = Context(prec=40)
 MISLEADING = 0.15
 """Least error of linear propagation that is reported, over the uncertainty."""
 _WEIGHTS = {1: 1 / 6, 2: 1 / 12}
-"""Weights of inputs so many standard deviations away, on either side.
+"""Weights by number of standard deviations, on either side of an input.
 
-Those of squares and of fourth powers are the moments of a normal distribution.
+With them, the second and the fourth moment are those of a normal distribution.
 """
 _LEAST = 1e-9
 """Least error that is reported, over the number."""

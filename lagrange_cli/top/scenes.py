@@ -1,4 +1,4 @@
-"""Scenes: files of TOML with the inputs of a top by key, and the shipped ones."""
+"""Scenes: files of TOML with the inputs of a top by key, and the built-in scenes."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ _NO_SCENE = ": pass a recording to fit or compare, a table of tops to sweep"
 
 
 def _shipped() -> str:
-    """Return the folder of the shipped scenes: inside the package, or beside it in a checkout."""
+    """Return the folder of the built-in scenes: inside the package, or beside it in a checkout."""
     package = os.path.dirname(os.path.dirname(__file__))
     inside = os.path.join(package, "scenes")
     return inside if os.path.isdir(inside) else os.path.join(package, "..", "sample_inputs")
 
 
 def scene_names() -> list[str]:
-    """Return the names of the shipped scenes."""
+    """Return the names of the built-in scenes."""
     names = os.listdir(_shipped())
     return sorted(name.removesuffix(_ENDING) for name in names if name.endswith(_ENDING))
 
 
 def scene_path(name: str) -> str:
-    """Return the path of a scene: the given file, or the file of a shipped scene."""
+    """Return the path of a scene: the given file, or the file of a built-in scene."""
     is_word = name.replace("-", "").isalnum() and not os.path.isfile(name)
     path = os.path.join(_shipped(), name + _ENDING) if is_word else name
     return path if os.path.exists(path) else name
 
 
 def scene_remark(name: str) -> str:
-    """Return the first line of a shipped scene, which describes it."""
+    """Return the first line of a built-in scene, which describes it."""
     with open(scene_path(name), encoding="utf-8") as file:
         return file.readline().removeprefix("#").strip()
 
 
 def is_scene_file(word: str) -> bool:
-    """Return whether a word ends in `.toml` or is the name of a shipped scene."""
+    """Return whether a word ends in `.toml` or is the name of a built-in scene."""
     return word.endswith(_ENDING) or scene_path(word) != word
 
 
@@ -60,7 +60,7 @@ class SceneFile:
 
         self.name, self._text = shown_path(path), ""
         self.hides = os.path.isfile(path) and path in scene_names()
-        """Whether it is a file with the name of a shipped scene."""
+        """Whether it is a file with the name of a built-in scene."""
         remedy = "" if path.endswith(_ENDING) else _NO_SCENE
         try:
             self._text = decoded(read_bytes(scene_path(path), _MOST_BYTES), self.name)

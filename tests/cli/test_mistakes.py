@@ -62,7 +62,7 @@ MISTAKES = {
     "table|--t-max|1e15": "--digits",
     "find|T_nutation=1": "unknown inputs as ranges, such as --r0 10:200, got 0",
     "compare|book.xlsx": "an archive, Parquet or an array of NumPy is no text: save it as CSV",
-    "compare|bare.csv": "has no header: name its 2 columns with --columns t,quaternion or the like",
+    "compare|bare.csv": "has no header: name its 2 columns, for example --columns t,quaternion",
     "compare|empty.csv": "psi is empty (psi): remove its columns",
     "compare|thousands.csv": "use --decimal point or --decimal comma",
 }

@@ -1,5 +1,5 @@
 // The page: the top in space, its curves, the inputs and the numbers.
-// DATA holds the scene, the shipped scenes, the inputs and the keys; `motionOf` computes.
+// DATA holds the scene, the built-in scenes, the inputs and the keys; `motionOf` computes.
 
 const at = Object.fromEntries([...document.querySelectorAll("[id]")].map((part) => [part.id, part]));
 const CURVES = {
@@ -11,7 +11,7 @@ const text = (x, digits = 7) => String(Number(x.toPrecision(digits))).replace(/-
 const number = (word) => (word.trim() ? Number(word.replace("−", "-").replace(",", ".")) : NaN);
 const even = (from, to, n) => Array.from({ length: n + 1 }, (_, i) => from + ((to - from) * i) / (n || 1));
 const circle = even(0, 2 * Math.PI, 120);
-/** The name of a unit; a shipped scene has none of its own. */
+/** The name of a unit; a built-in scene has none of its own. */
 const unitOf = (unit) => (unit === "angle" ? "°" : at.scenes.value in DATA.scenes ? unit : DATA.units[unit]);
 /** The name of an input, or the meaning of a key, with its unit if that is known. */
 function titleOf({ name, meaning, unit }) {
