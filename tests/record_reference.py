@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import mpmath as mp
@@ -43,7 +43,7 @@ def reference_record(
     """
     of = _motion(tuple(inputs.items()), digits, root_digits)
     with mp.workdps(root_digits):
-        found = of.record()
+        found = of.record
 
     def shown(key: str, x: Many) -> Many:
         return x if x is None or not key.endswith("_rad") or radians else x * of.degrees
@@ -71,7 +71,12 @@ def reference_state(
     inputs: Mapping[str, Any], t: Any, digits: int = DIGITS, root_digits: int = ROOT_DIGITS
 ) -> State:
     """Return the state of a motion at a time."""
-    of = _motion(tuple(inputs.items()), digits, root_digits)
+    return _state(tuple(inputs.items()), t, digits, root_digits)
+
+
+@lru_cache(1000)
+def _state(inputs: tuple[tuple[str, Any], ...], t: Any, digits: int, root_digits: int) -> State:
+    of = _motion(inputs, digits, root_digits)
     with mp.workdps(root_digits):
         angles = of.angles(exact(t)) if t else (mp.acos(of.u0), mp.mpf(0), mp.mpf(0), of.fall)
         u, sin2 = mp.cos(angles[0]), mp.sin(angles[0]) ** 2
@@ -113,7 +118,7 @@ def _half(angle: Many) -> tuple[Many, Many]:
     return mp.sin(angle / 2), mp.cos(angle / 2)
 
 
-@lru_cache
+@lru_cache(1000)
 def _motion(inputs: tuple[tuple[str, Any], ...], digits: int, root_digits: int) -> _Motion:
     with mp.workdps(root_digits):
         return _Motion(dict(inputs), digits)
@@ -225,6 +230,7 @@ class _Motion:
             halves.append(pole * (self.r0 - self.b) / 2 * time + grown)
         return halves[0] - halves[1], halves[0] + halves[1]
 
+    @cached_property
     def record(self) -> dict[str, Many]:
         """Return the numbers by key, angles in radians."""
         a, b, u0, u1, u2, u3 = self.a, self.b, self.u0, self.u1, self.u2, None

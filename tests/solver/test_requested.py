@@ -24,10 +24,10 @@ def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
     assert header.split(",") == derivation_keys()
     steps = dict(zip(derivation_keys(), cells.split(","), strict=True))
     assert {x.key for x in FIGURES} == set(derivation_keys()[7:])
-    right = 0
+    right, values = 0, true_values()
     with ar.workdps(40):
         for figure in FIGURES:
-            true = round_alike(true_values()[figure.key], figure.text)
+            true = round_alike(values[figure.key], figure.text)
             assert round_alike(ar.mpf(steps[figure.key]), figure.text) == true, figure.name
             right += true == figure.text
     assert (right, len(FIGURES)) == (16, 30)

@@ -89,8 +89,7 @@ def test_sleeping_says_whether_it_is_stable() -> None:
     assert hanging.remark == "only phi - psi is defined; stable"
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("tilt", [1.0, 30.0, 90.0, 179.0])
+@pytest.mark.parametrize(("sign", "tilt"), [(1, 1.0), (-1, 30.0), (1, 179.0)])
 def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
     """The threshold is (C r0)^2 = 100 A m g s, to the last bit; the numbers are the reference's."""
     unit = UNIT | {"theta0_deg": tilt}
