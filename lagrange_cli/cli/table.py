@@ -107,7 +107,7 @@ def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     from ..solver.derivatives import NO_DERIVATIVE
 
     stds = AngleStds(motion, found.stds)
-    if stds.derivatives.missing:
+    if stds.missing:
         complain(f"Warning: no uncertainty of the angles: {NO_DERIVATIVE}")
     return stds
 

@@ -41,8 +41,8 @@ _STEPS, _SHARP = (200, 1_000), 30
 """Binary orders of the steps to try, over the size of an input, and digits of a derivative."""
 _ALIKE, _NEGLIGIBLE = 1e-20, 1e-55
 _LEAST_DOUBLE = Fraction(1, 2**1075)
-_STENCILS = {-1: -0.5, 0: 0.0, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}
-"""Weights of neighbours in a derivative, by place in steps: central, and at an end of a range."""
+_CENTRAL, _AHEAD = {-1: -0.5, 0: 0.0, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}
+"""Weights of neighbours in a derivative, by place in steps."""
 
 
 class Sensitivities(NamedTuple):
@@ -98,17 +98,14 @@ class Derivatives:
         nearest: float = rounded(f"the derivative of {key} by {name}", found, None)
         return nearest
 
-    def _neighbours(self, name: str, order: int = _STEPS[0]) -> tuple[Fraction, list[Neighbour]]:
+    def _neighbours(self, name: str, order: int = _STEPS[0]) -> tuple[Fraction, Neighbours]:
         step = Fraction(size_of(self.motion, name)) / 2**order
         return step, neighbours(self.motion, name, step)
 
     def _of(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a number by an input to 30 digits; None if there is none."""
-        for order in _STEPS:
-            found = self._quotient(key, name, order)
-            if found is not None:
-                return found
-        return None
+        quotients = (self._quotient(key, name, order) for order in _STEPS)
+        return next((x for x in quotients if x is not None), None)
 
     def _quotient(self, key: str, name: str, order: int) -> Fraction | None:
         """Return the derivative from differences, with the step 2^-order of the size of the input.
@@ -121,7 +118,7 @@ class Derivatives:
         h, size = exact(step), exact(step * 2**order)
 
         def quotient(digits: int) -> Fraction | None:
-            values = [_value(x.motion, key, digits) for x in beside]
+            values = [_value(x, key, digits) for x, _ in beside]
             if any(x is None for x in values):
                 return None
             first, last = ((y - x) / h for x, y in pairwise(values))
@@ -132,22 +129,22 @@ class Derivatives:
             limit = _ALIKE * (steepest + scale)
             if _exceeds(abs(bent), limit) or _exceeds(4 * h * steepest, largest):
                 # a kink or a jump, unless the number is 0 here and its curvature is constant
-                place = 2 * beside[2].place - beside[1].place
-                beyond = moved(self.motion, name, place * step)
+                middle, end = (Fraction(getattr(x.top, name)) for x, _ in beside[1:])
+                beyond = moved(beside[2][0], name, end - middle)
                 more = _value(beyond, key, digits) if beyond else None
                 if more is None:
                     return None
                 bent = (more - values[2]) / h - last - bent
             if _exceeds(abs(bent), limit):
                 return None
-            slope = sum(x * y.weight for x, y in zip(values, beside, strict=True)) / h
+            slope = sum(x * weight for x, (_, weight) in zip(values, beside, strict=True)) / h
             if not _exceeds(slope.abs_upper(), _NEGLIGIBLE * scale * size.min(arb(1))):
                 return Fraction(0)
             if slope.rel_accuracy_bits() < _SHARP * BITS:
                 raise TooFewDigitsError
             return fraction(slope.mid())
 
-        most = max(x.motion.facts.equal for x in beside) + order
+        most = max(x.facts.equal for x, _ in beside) + order
         what = f"a derivative of {key}"
         return decided(quotient, most, digits=order // 2, lost=order // 4, what=what)
 
@@ -182,31 +179,26 @@ def inputs_of(top: Top) -> tuple[str, ...]:
 
 def moved(motion: Motion, name: str, change: Fraction) -> Motion | None:
     """Return the motion with one input changed, or None if there is no such top."""
+    if not change:
+        return motion
     try:
         return solve(motion.top.replace(**{name: Fraction(getattr(motion.top, name)) + change}))
     except LagtopError:
         return None
 
 
-class Neighbour(NamedTuple):
-    """A motion with one input moved by some steps; its weight in a derivative times the step."""
-
-    place: int
-    motion: Motion
-    weight: float
+Neighbours = list[tuple[Motion, float]]
+"""Three motions at equal steps of one input, with their weights in a derivative times the step."""
 
 
-def neighbours(motion: Motion, name: str, step: Fraction) -> list[Neighbour]:
+def neighbours(motion: Motion, name: str, step: Fraction) -> Neighbours:
     """Return neighbours on both sides or, if the input is at the end of its range, on one.
 
     The list is empty if the input can have no other value.
     """
-    central, ahead = _STENCILS
-    for weights, side in ((central, 1), (ahead, 1), (ahead, -1)):
-        places = [side * i for i in weights]
-        motions = [moved(motion, name, i * step) if i else motion for i in places]
-        pairs = zip(places, motions, weights.values(), strict=True)
-        found = [Neighbour(place, x, side * weight) for place, x, weight in pairs if x]
+    for weights, side in ((_CENTRAL, 1), (_AHEAD, 1), (_AHEAD, -1)):
+        motions = {place: moved(motion, name, side * place * step) for place in weights}
+        found = [(x, side * weights[place]) for place, x in motions.items() if x]
         if len(found) == len(weights):
             return found
     return []

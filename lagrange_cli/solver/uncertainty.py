@@ -9,9 +9,8 @@ from fractions import Fraction
 from functools import cache, partial
 from typing import Any, NamedTuple
 
-from ..arithmetic.enclosures import pi_to, rounded
+from ..arithmetic.enclosures import rounded
 from ..errors import OutOfRangeError
-from ..top.top import Top
 from .derivatives import DIFFERENTIABLE, Derivatives, moved
 from .keys import INPUTS, TEXT_KEYS, degree_name
 from .solve import Motion
@@ -66,15 +65,9 @@ class FirstOrder:
 
     def slope(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a key or input by a given input, or None."""
-        same = degree_name(key)
-        if same == "theta0_deg":
-            same = tilt_of(self.motion.top)
-        given = same in self.derivatives.inputs
-        found = Fraction(same == name) if given else self.derivatives.of(same, name)
-        if found is None or same == key:
-            return found
-        degree = pi_to(60) / 180
-        return found * degree if key.endswith("_rad") else found / degree
+        if key in self.derivatives.inputs:
+            return Fraction(key == name)
+        return self.derivatives.of(key, name)
 
     def std(self, key: str) -> float | None:
         """Return the standard uncertainty of a key or an input, or None.
@@ -117,18 +110,18 @@ class FirstOrder:
 
         `given` holds the values of the inputs.  The key must have an uncertainty.
         """
-        found = self.motion.number(degree_name(key), 40)
+        found = self.motion.number(key, 40)
         value = Fraction(found.value) if found else None
         variance, lines = self._variance(key), []
         for name, std in self.stds.items():
-            slope, in_degrees = (
-                self.slope(x, name) or Fraction(0) for x in (key, degree_name(key))
-            )
+            slope = self.slope(key, name) or Fraction(0)
             part = slope * Fraction(std)
-            elasticity = in_degrees * Fraction(given[name]) / value if value else None
-            share = part * part / variance if variance else None
-            parts: dict[str, Fraction | None] = {"sensitivity": slope, "contribution": part}
-            parts |= {"elasticity": elasticity, "share": share}
+            parts = {
+                "sensitivity": slope,
+                "contribution": part,
+                "elasticity": slope * Fraction(given[name]) / value if value else None,
+                "share": part * part / variance if variance else None,
+            }
             numbers = {
                 x: None if y is None else rounded(f"the {x} of {name}", y, None)
                 for x, y in parts.items()
@@ -159,11 +152,6 @@ def _value(motion: Motion, key: str) -> float | None:
     except OutOfRangeError:
         return None
     return None if found is None else float(found.value)
-
-
-def tilt_of(top: Top) -> str:
-    """Return the key of the tilt in the unit in use."""
-    return "theta0_deg" if top.theta0_rad is None else "theta0_rad"
 
 
 def stds_of(

@@ -25,17 +25,20 @@ from lagrange_cli.solver.tables import ProvedTable
 
 TIMES = [0.375, -7.25, 2.0**-40, -(2.0**-40), 1e3, -1e6, 1e12]
 TURN = 2 * pi_to(60)
+HALF_A_TURN = Fraction("3.14159265358979323846264338328")
+"""Half a turn in thirty digits."""
 MEANS = {"phi": "spin", "psi": "precession"}
 COLUMNS_OF_STATE = [x for x in COLUMNS if x not in {"t", "dphi", "dpsi"}]
 
 
 @pytest.mark.parametrize("name", EVERY_KIND)
 def test_proved_rows_are_those_of_the_reference(name: str) -> None:
-    """Thirty digits of every column, and of dphi and dpsi; and the radii of doubles."""
+    """Thirty digits of every column, of dphi, dpsi and wrapped angles; and the radii of doubles."""
     inputs, motion = Top(**EVERY_KIND[name]).as_dict(), solve(Top(**EVERY_KIND[name]))
     record = reference_record(inputs, radians=True)
     many = ProvedTable(motion, [*COLUMNS_OF_STATE, "dphi", "dpsi"], 30, radians=True)
     doubles = ProvedTable(motion, COLUMNS_OF_STATE, radians=True)
+    wrapped = ProvedTable(motion, list(MEANS), 30, radians=True, wrap=True)
     for t in (-7.25, 1e12)[: 1 if "separatrix" in name else None]:
         with mpmath.workdps(120):
             exact = reference_columns(inputs, t)
@@ -47,6 +50,10 @@ def test_proved_rows_are_those_of_the_reference(name: str) -> None:
                 if (true := exact.get(column)) is not None:
                     apart = abs(mpmath.mpf(found.value) - true)
                     assert apart <= abs(true) * mpmath.mpf("5.01e-30") + 1e-90, (t, column)
+            for column, found in zip(MEANS, wrapped.row(Fraction(t)), strict=True):
+                turns = (exact[column] - mpmath.mpf(found.value)) / (2 * mpmath.pi)
+                assert abs(turns - mpmath.nint(turns)) <= 1e-30, (t, column)
+                assert abs(Fraction(found.value)) <= HALF_A_TURN, (t, column)
             for column, found in zip(doubles.chosen, doubles.row(Fraction(t)), strict=True):
                 apart, radius = abs(found.value - exact[column]), float(found.radius)
                 assert apart <= radius + 1e-90, (t, column)

@@ -17,7 +17,7 @@ from lagtop import LagtopError, Top, sensitivities, solve
 from record_reference import exact, reference_record, reference_state
 from scenes import EPS, EVERY_KIND, UNIT
 
-from lagrange_cli.solver.angle_stds import AngleDerivatives, AngleStds
+from lagrange_cli.solver.angle_stds import AngleStds
 from lagrange_cli.solver.derivatives import inputs_of
 from lagrange_cli.solver.uncertainty import FirstOrder
 
@@ -130,7 +130,7 @@ def test_derivatives_in_a_plane_are_those_of_the_tilt(excess: float) -> None:
     top = Top(**UNIT | {"r0": 0, "theta0_deg": 90, "thetadot0": 2**0.5 * (1 + excess)})
     period, inputs = solve(top).T_nutation, ["m", "A", "thetadot0"]
     times = np.array([0.3 * period, -1.6 * period, 1e6 * period])
-    found = AngleDerivatives(solve(top), inputs).at(times)
+    found = AngleStds(solve(top), dict.fromkeys(inputs, 1.0)).slopes(times)
     assert not found[:, 1:].any()
     for t, row in zip(times.tolist(), found[:, 0].T.tolist(), strict=True):
         true = [angle_slopes(top, name, t)[0] for name in inputs]
@@ -148,12 +148,12 @@ def test_derivatives_of_the_angles_are_right_at_any_time(scene: str) -> None:
     motion, inputs = solve(top), inputs_of(top)
     period = motion.T_nutation
     times = np.array([0.3 * period, -1e6 * period])
-    slopes = AngleDerivatives(motion, inputs)
-    found = slopes.at(times)
+    stds = AngleStds(motion, dict.fromkeys(inputs, 1.0))
+    found = stds.slopes(times)
     sizes = [abs(getattr(top, name)) or 1 / period for name in inputs]
     for i, name in enumerate(inputs):
-        if slopes.noise[name] * sizes[i] > 1e-9:  # where uncertainties take proved rows too
-            found[i] = AngleDerivatives(motion, [name]).in_digits(times)[0]
+        if stds.noise[name] * sizes[i] > 1e-9:  # where uncertainties take proved rows too
+            found[i] = AngleStds(motion, {name: 1.0}).proved_slopes(times)[0]
     most = 1e-3 if scene in ("near the separatrix", "near a pole") else 5e-9
     true = np.array([[angle_slopes(top, name, t) for t in times.tolist()] for name in inputs])
     true, across = true.transpose(0, 2, 1), np.array(sizes)[:, None, None]
@@ -165,16 +165,16 @@ def test_derivatives_of_the_angles_are_right_at_any_time(scene: str) -> None:
 
 
 def test_derivatives_of_angles_at_the_start() -> None:
-    found = AngleDerivatives(solve(Top(thetadot0=0.5)), ["r0", "theta0_deg"]).at(np.zeros(2))
+    found = AngleStds(solve(Top(thetadot0=0.5)), {"r0": 1, "theta0_deg": 1}).slopes(np.zeros(2))
     assert found[:, :3, 0].tolist() == [[0.0, 0.0, 0.0], [math.pi / 180, 0.0, 0.0]]
 
 
 @pytest.mark.parametrize("scene", ["separatrix", "sleeping", "over the top"])
 def test_angles_have_no_derivative_if_the_neighbours_depart_at_once(scene: str) -> None:
-    found = AngleDerivatives(solve(Top(**EVERY_KIND[scene])), ["thetadot0", "psidot0"])
+    found = AngleStds(solve(Top(**EVERY_KIND[scene])), {"thetadot0": 1, "psidot0": 1})
     assert "thetadot0" in found.missing or scene == "over the top"
     assert scene == "sleeping" or "psidot0" in found.missing
-    assert np.isnan(found.at(np.array([0.5]))).any()
+    assert np.isnan(found.slopes(np.array([0.5]))).any()
 
 
 @pytest.mark.parametrize(
