@@ -15,23 +15,20 @@ _ZERO = np.zeros(())
 
 
 class Pair(NamedTuple):
-    """A number, or an array of numbers, as the sum of two doubles."""
+    """A number as the sum of two doubles."""
 
-    high: float | Array
-    low: float | Array
+    high: float
+    low: float
 
 
 PI = Pair(3.141592653589793, 1.2246467991473532e-16)
 
 
 def pair(value: Any) -> Pair:
-    """Return a fraction or a ball as the sum of two doubles."""
+    """Return a fraction or a ball as the sum of two doubles, infinity and 0 if it overflows."""
     high = float(value)
-    return Pair(high, float(_less(value, high)))
-
-
-def _less(value: Any, part: float) -> Any:
-    return value - (Fraction(part) if isinstance(value, Fraction) else part)
+    part = Fraction(high) if isinstance(value, Fraction) else high
+    return Pair(high, float(value - part) if math.isfinite(high) else 0.0)
 
 
 def two_product(x: float | Array, y: float | Array) -> tuple[Array, Array]:

@@ -151,10 +151,13 @@ class Solution:
 
     def sampler(self) -> Sampler:
         """Return the constants used by `angles`, computed once."""
-        from .sampling import sampler_of  # start-up: loads NumPy
+        from .sampling import FIRST_DIGITS, Sampler  # start-up: loads NumPy
+
+        def sampler(digits: int) -> Sampler:
+            return Sampler(self.balls(digits)["course"], self.facts.tilt.angle())
 
         if self._sampler is None:
-            self._sampler = sampler_of(self.facts, self.balls)
+            self._sampler = decided(sampler, self.facts.equal, digits=FIRST_DIGITS)
         return self._sampler
 
 

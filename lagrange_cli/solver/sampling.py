@@ -17,7 +17,7 @@ All constants are computed in many digits and rounded once.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -26,19 +26,19 @@ from flint import arb
 from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.arrays import BLOCK, doubles_of
-from ..arithmetic.enclosures import TooFewDigitsError, decided, nearest
+from ..arithmetic.enclosures import TooFewDigitsError, nearest
+from ..arithmetic.pairs import pair
 from ..arithmetic.types import Array
 from ..errors import LagtopError, OutOfRangeError
 from ..names import ANGLES
 from ..top.ranges import MAX_PERIODS, MAX_TIME
 from .attitude import Course, Nutation
 from .columns import FORMULAS, REDUCED, TIMELESS, WITHIN_A_TURN, Columns
-from .facts import Facts
 from .series import Frame, near, theta_series
 
 MOST_TURNS = 2.0**51
 """Number of turns beyond which no double holds an angle within a turn."""
-_DIGITS = 24
+FIRST_DIGITS = 24
 """Digits of mean rates and periods: 2^50 periods use 16 of them, and a double 16 more."""
 _SHARP = 2.0**-106
 """Largest error of a constant in two doubles, relative to its size."""
@@ -84,16 +84,10 @@ def period_of(length: arb) -> Period:
         return Period(0.0, 0.0, 0.0, 0.0)
     if length.rel_accuracy_bits() < -math.log2(_SHARP):
         raise TooFewDigitsError
-    long, low = pair_of(length)
+    long, low = pair(length)
     mantissa, exponent = math.frexp(long)
     high = math.ldexp(math.trunc(mantissa * _EXACT), exponent - 26)
     return Period(near(1 / length), high, long - high, low)
-
-
-def pair_of(x: arb) -> tuple[float, float]:
-    """Return the middle of a ball as the sum of two doubles."""
-    high = float(x.mid())
-    return high, float((x.mid() - high).mid()) if math.isfinite(high) else 0.0
 
 
 def whole_periods(
@@ -130,7 +124,7 @@ class Growth:
         for x in (rate * unit, start, cycle):
             if not (x.is_finite() and float(x.rad()) <= _SHARP * (1 + abs(float(x.mid())))):
                 raise TooFewDigitsError
-        self.start, self.rate, self.cycle = map(pair_of, (start, rate, cycle))
+        self.start, self.rate, self.cycle = map(pair, (start, rate, cycle))
         self.time = period_of(cycle / rate if not rate.contains(0) else arb("inf"))
         """The time of a cycle at the mean rate."""
 
@@ -290,9 +284,13 @@ def swing_parts(
 class Sampler:
     """The angles of one motion over time."""
 
-    def __init__(self, of: Course, tilt: float) -> None:
-        """Take the constants of a motion and its tilt at t = 0."""
+    def __init__(self, of: Course, tilt: arb) -> None:
+        """Take the constants of a motion and its tilt at t = 0.
+
+        Raises TooFewDigitsError if a constant is not known to the digits that are needed.
+        """
         unit, (x, y), spin, precession = of.unit, of.start, of.spin, of.precession
+        self.tilt = near(tilt)
         self.spin, self.precession = Growth(spin, x - y, unit), Growth(precession, x + y, unit)
         of_X = Growth((precession + spin) / 2, x, unit, 0.5)
         of_Y = Growth((precession - spin) / 2, y, unit, 0.5)
@@ -303,8 +301,7 @@ class Sampler:
             self.parts: Parts = ThetaParts(of).at
         else:
             constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
-            self.parts = partial(swing_parts, constants, tilt)
-        self.tilt = tilt
+            self.parts = partial(swing_parts, constants, self.tilt)
         self.max_time = min(float((int(MAX_PERIODS) * unit).mid()), MAX_TIME)
         fastest = max(abs(self.spin.rate[0]), abs(self.precession.rate[0]))
         self.max_wrapped = MOST_TURNS * 2 * math.pi / fastest if fastest else math.inf
@@ -353,15 +350,3 @@ class Sampler:
         angles = self.evaluate(flat, ANGLES, wrap=wrap)
         angles[:, np.flatnonzero(flat == 0.0)] = [[self.tilt], [0.0], [0.0]]
         return Angles(*angles.reshape(3, *times.shape))
-
-
-def sampler_of(facts: Facts, balls: Callable[[int], Mapping[str, Any]]) -> Sampler:
-    """Return the sampler of a motion, from its facts and its numbers in balls of some digits.
-
-    Its constants are computed in as many digits as they need.
-    """
-
-    def sampler(digits: int) -> Sampler:
-        return Sampler(balls(digits)["course"], near(facts.tilt.angle()))
-
-    return decided(sampler, facts.equal, digits=_DIGITS)

@@ -194,6 +194,10 @@ class Motion(Solution):
         Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
         may also be named singly.  Raises LagtopError for an unknown column or a time out of range.
         """
-        from .tables import table  # start-up
+        from ..arithmetic.arrays import doubles_of  # start-up
+        from .columns import chosen_columns
+        from .tables import columns_at
 
-        return table(self, t, columns, wrap=wrap)
+        times, at = doubles_of("t", t), columns_at(self, columns, radians=True, wrap=wrap)
+        found = at(times.reshape(-1)).reshape(-1, *times.shape)
+        return dict(zip(chosen_columns(columns), found, strict=True))

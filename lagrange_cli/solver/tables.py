@@ -14,9 +14,7 @@ from itertools import islice
 
 import numpy as np
 from flint import arb
-from numpy.typing import ArrayLike
 
-from ..arithmetic.arrays import doubles_of
 from ..arithmetic.enclosures import (
     Rounded,
     TooFewDigitsError,
@@ -157,15 +155,6 @@ def six_digits(x: Array) -> Array:
         return np.where(x > 0, np.rint(x * finer / coarser) / finer * coarser, x)
 
 
-def table(
-    motion: Solution, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
-) -> dict[str, Array]:
-    """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
-    times, at = doubles_of("t", t), columns_at(motion, columns, radians=True, wrap=wrap)
-    found = at(times.reshape(-1)).reshape(-1, *times.shape)
-    return dict(zip(chosen_columns(columns), found, strict=True))
-
-
 def grid(
     motion: Solution,
     t_min: Fraction | None = None,
@@ -196,27 +185,6 @@ def grid(
         return EvenPoints(t_min, step, count)
     except LagtopError as error:
         raise LagtopError(f"the grid of times {error}") from None
-
-
-def ball_columns(
-    motion: Solution, time: Fraction, constants: Callable[[int], dict[str, arb]], digits: int
-) -> Columns:
-    """Return columns at one time, in balls of the precision in use.
-
-    Raises TooFewDigitsError if the digits do not separate the roots or the half periods.
-    """
-    t, of = exact(time), motion.balls(digits)
-    course: Course = of["course"]
-    at = course.at(t) if time else start_of(motion.facts, of)
-    spin, precession = course.spin * t + at.dphi, course.precession * t + at.dpsi
-    if motion.facts.plane:  # these angles change only at the poles, by half turns
-        spin, precession = (arb.pi() * nearest(x / arb.pi()) for x in (spin, precession))
-    items = {"t": t, "X": at.x, "Y": at.y, "spin": spin, "precession": precession}
-    items |= {"spin_wave": at.dphi, "precession_wave": at.dpsi, "tilting": at.tilting}
-    formulas = _BALL_FORMULAS
-    if isinstance(course, SingleSwing) and time:
-        formulas, items["swing_rate"] = formulas | _SWING, course.rate
-    return Columns(formulas, _BALLS | constants(digits) | items)
 
 
 def within_a_turn(angle: arb, *, plane: bool) -> arb:
@@ -252,9 +220,7 @@ class ProvedTable:
 
         Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
-        facts = self.motion.facts
-
-        columns = kept(partial(ball_columns, self.motion, time, self._constants))
+        facts, columns = self.motion.facts, kept(partial(self._columns, time))
         most = max(facts.equal, equal_digits([time], self.digits or 0))
 
         def ball(name: str, digits: int) -> arb:
@@ -270,6 +236,24 @@ class ProvedTable:
             return found
 
         return [number(name) for name in self.chosen]
+
+    def _columns(self, time: Fraction, digits: int) -> Columns:
+        """Return all columns at one time, in balls of the precision in use.
+
+        Raises TooFewDigitsError if the digits do not separate the roots or the half periods.
+        """
+        facts, of, t = self.motion.facts, self.motion.balls(digits), exact(time)
+        course: Course = of["course"]
+        at = course.at(t) if time else start_of(facts, of)
+        spin, precession = course.spin * t + at.dphi, course.precession * t + at.dpsi
+        if facts.plane:  # these angles change only at the poles, by half turns
+            spin, precession = (arb.pi() * nearest(x / arb.pi()) for x in (spin, precession))
+        items = {"t": t, "X": at.x, "Y": at.y, "spin": spin, "precession": precession}
+        items |= {"spin_wave": at.dphi, "precession_wave": at.dpsi, "tilting": at.tilting}
+        formulas = _BALL_FORMULAS
+        if isinstance(course, SingleSwing) and time:
+            formulas, items["swing_rate"] = formulas | _SWING, course.rate
+        return Columns(formulas, _BALLS | self._constants(digits) | items)
 
     def rows(
         self, times: Points, *, radii: bool = False

@@ -62,7 +62,7 @@ def angle_slopes(top: Top, name: str, t: float) -> list[float]:
     """Return the derivatives of tilt, spin and precession at a time."""
 
     def values(inputs: dict[str, Any]) -> Sequence[Any]:
-        return reference_state(inputs, t, root_digits=400)[:3]
+        return reference_state(inputs, t, digits=80, root_digits=300)[:3]
 
     return slopes(top, name, values, Fraction(1, 10**36))
 

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from lagrange_cli.solver.columns import COLUMNS, SCALARS, shown_columns
 from lagrange_cli.solver.explanation import explanations, listed
-from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys
+from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys, bare_name
 
 TOPS = {
     "worked example": Top(),
@@ -61,45 +61,23 @@ def evaluated(formula: str, names: dict[str, Any]) -> tuple[Any, Any]:
     return (eval(left, {}, names) if left else None), eval(right, {}, names)
 
 
-def numbers_of(motion: Motion) -> dict[str, Any]:
+@pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
+def test_the_formula_of_a_key_or_column_gives_its_number(top: Top) -> None:
+    motion = solve(top)
     record = motion.record(radians=True, keys=all_keys(radians=True))
-    bare = {name.removesuffix("_rad"): value for name, value in record.items()}
-    return {name: value for name, value in bare.items() if isinstance(value, float)}
-
-
-@pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
-def test_the_formula_of_a_key_gives_its_number(top: Top) -> None:
-    motion = solve(top)
-    numbers = numbers_of(motion)
-    names = functions(motion) | numbers
-    checked = set()
-    for key in all_keys():
-        name, shown = key.removesuffix("_deg"), NUMBERS.get(key)
-        if shown is None or name not in numbers:
-            continue
-        left, right = evaluated(shown.formula, names)
+    numbers = {bare_name(key): x for key, x in record.items() if isinstance(x, float)}
+    columns = motion.table([0.3 * motion.T_nutation], list(COLUMNS)[1:])
+    numbers |= {name: float(x[0]) for name, x in columns.items()}
+    names = functions(motion) | numbers | {"t": 0.3 * motion.T_nutation}
+    shown = {bare_name(key): line for key, line in NUMBERS.items()} | SCALARS
+    checked = [name for name in numbers if name in shown]
+    for name in checked:
+        left, right = evaluated(shown[name].formula, names)
         value = numbers[name] if left is None else left
-        assert float(right) == pytest.approx(float(value), rel=1e-8, abs=1e-9), key
-        checked.add(key)
-    assert len(checked) >= 40
-
-
-@pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
-def test_the_formula_of_a_column_gives_its_number(top: Top) -> None:
-    motion = solve(top)
-    t = 0.3 * motion.T_nutation
-    values = {name: float(x[0]) for name, x in motion.table([t], list(COLUMNS)).items()}
-    names = functions(motion) | numbers_of(motion) | values
-    for name, column in SCALARS.items():
-        if not column.formula:
-            assert name == "t"
-            continue
-        left, right = evaluated(column.formula, names)
-        value = values[name] if left is None else left
         if name.startswith("quaternion"):  # a quaternion and its opposite are one attitude
-            assert abs(float(right)) == pytest.approx(abs(value), abs=1e-9), name
-        else:
-            assert float(right) == pytest.approx(float(value), rel=1e-8, abs=1e-9), name
+            right, value = abs(right), abs(value)
+        assert float(right) == pytest.approx(float(value), rel=1e-8, abs=1e-9), name
+    assert len(checked) >= 40 + len(columns)
 
 
 def test_every_number_has_a_formula() -> None:
