@@ -107,7 +107,7 @@ decimal = option(
     metavar="MARK",
     type=click.Choice(["point", "comma", ".", ","]),
     callback=lambda _, __, mark: {None: "", "point": ".", "comma": ","}.get(mark, mark),
-    help="Decimal mark of the input: point or comma.  [default: detected]",
+    help="Decimal mark of the file: point or comma.  [default: detected]",
 )
 columns = option(
     "--columns",

@@ -96,7 +96,7 @@ def sweep_command(
     A file of tops is CSV with a header, or JSON lines, with names such as r0.  Options and the
     scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
     unit: m [g].  If a top cannot be solved, the exit code is 1 and the column error gives the
-    reason.  For a grid with --keys, list error to see it.
+    reason.  For a grid with --keys, add error to the keys.
 
     A top takes about 1 us.  Keys outside the record that are formulas of the inputs,
     such as stability_factor, Lz and the steady rates, cost no more; others take about 1 ms.

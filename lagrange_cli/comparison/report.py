@@ -104,7 +104,7 @@ def _conclusions(
     if x.rows_missing:
         yield f"{x.rows_missing} of {x.rows} rows have empty cells."
     if x.compared == "attitude" and (x.norm_error or 0.0) > _WRONG_NORM:
-        yield f"The norm of its quaternion or matrix is up to {x.norm_error:.1e} off 1."
+        yield f"The norm of its quaternion or matrix is off 1 by up to {x.norm_error:.1e}."
     if (slip := x.pivot_slip or 0.0) > limit:
         yield f"The pivot slips: the mass centre's distance from it changes by up to {slip:.1%}."
     if x.cause is not None:

@@ -49,7 +49,7 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
         rest = recording.rows(~np.isin(recording.t, [*wrong]))
         if _is_good(rest, body):
             shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
-            yield f"leave out what is recorded at t = {shortened(shown)}"
+            yield f"leave out the rows at t = {shortened(shown)}"
     if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"

@@ -38,9 +38,9 @@ t | t | time | time | |
 theta | ϑ | tilt | angle | (4,6) | acos(u) ~ tilt
 phi | φ | spin | angle | (6,1) | integral(phidot, 0, t) ~ spin
 psi | ψ | precession | angle | (7,1) | integral(psidot, 0, t) ~ precession
-dphi | Δφ | spin less its mean rate times t, a wave | angle | (6,4)
+dphi | Δφ | periodic part of the spin, from 0 at t = 0 | angle | (6,4)
    | phi - mean_spin_rate*t ~ spin_wave
-dpsi | Δψ | precession less its mean rate times t, a wave | angle | (7,4)
+dpsi | Δψ | periodic part of the precession, from 0 at t = 0 | angle | (7,4)
    | psi - mean_precession_rate*t ~ precession_wave
 u | u | cos ϑ | | (4,20)
    | u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2 ~ (XX - YY)/N

@@ -315,7 +315,7 @@ def test_an_outlier_is_named() -> None:
     ((off, at),) = re.findall(r"^psi is (.*) deg off at t = (.*), far more than else", failure)
     assert float(off) == pytest.approx(20, abs=1)
     assert float(at) == pytest.approx(t[30], rel=1e-5)
-    assert failure.endswith(f"; leave out what is recorded at t = {at}")
+    assert failure.endswith(f"; leave out the rows at t = {at}")
 
 
 @pytest.mark.slow
@@ -515,7 +515,7 @@ def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None
         ("t,psi", "{t},40", "psi alone does not determine a top: give --theta0"),
         ("t,theta,psi", "0,40,{t}", "t must span"),
         ("t,theta,psi", "{t},240,{t}", "theta must be between 0 and 180 deg"),
-        ("t,theta,psi", "-{t},,", r"theta is empty \(theta\): remove its columns, or leave"),
+        ("t,theta,psi", "-{t},,", r"theta is empty \(theta\): remove its columns, or skip"),
         (
             "t,theta,psi",
             "{back},40,10",
