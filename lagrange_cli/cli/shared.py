@@ -292,8 +292,8 @@ def motion_of(found: Given, *, exact: bool = False, uses_stds: bool = True) -> M
 
 def warn(found: Given, *, uses_stds: bool = False) -> None:
     """Warn of a scene without inputs, of defaults for the body, and of unused uncertainties."""
-    if found.empty is not None:
-        complain(f"Warning: {found.empty} has no inputs: using the worked example")
+    if found.file is not None and not found.file.inputs:
+        complain(f"Warning: {found.file.name} has no inputs: using the worked example")
     if found.file is not None and found.file.hides:
         complain(f"Warning: {found.file.name} is the file in this folder, not the built-in scene")
     if found.missing:

@@ -7,7 +7,7 @@ the README of `compare` are generated from them.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +15,7 @@ from ..arithmetic.text import quoted, shortened
 from ..errors import LagtopError
 from ..names import ANGLES, suggestion
 from ..top.inputs import declared
-from ..top.units import factor_of, is_unit
+from ..top.units import conversion, is_unit
 from .headings import name_and_unit
 
 if TYPE_CHECKING:
@@ -193,12 +193,6 @@ def found_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     `columns` if a quantity is named twice.
     """
     found = quantities_in(names)
-    _check_names(names, found)
-    return {key: in_known_unit(key, x, names) for key, x in found.items()}
-
-
-def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> None:
-    """Raise LagtopError without a time and a quantity, and for two names of the same part."""
     if "t" not in found or len(found) < 2:
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
@@ -214,6 +208,7 @@ def _check_names(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> No
                     wrong = f"must name each quantity once, got {names[i]!r} and {names[other]!r}"
                     remedy = "skip one with _, for example columns=t,theta,_"
                     raise LagtopError(f"columns {wrong}: {remedy}", "columns")
+    return {key: in_known_unit(key, x, names) for key, x in found.items()}
 
 
 def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
@@ -233,7 +228,7 @@ def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> Found
     if not own:
         raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
     into = "rad" if own == "angle" else own
-    return found._replace(unit=into, factor=factor_of(key, str(unit), into))
+    return found._replace(unit=into, factor=conversion(key, str(unit), into)[0])
 
 
 def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -> Array:

@@ -21,7 +21,8 @@ from ..top.given import Given, gather
 from ..top.inputs import TILT, checked_double, one_of_each, overridden
 from ..top.ranges import MOST_POINTS, Points
 from ..top.top import INPUTS
-from ..top.values import STEADY_WORDS, Value, conversion, tilt_key
+from ..top.units import conversion
+from ..top.values import STEADY_WORDS, Value, tilt_key
 from .columns import known_quantities
 from .headings import name_and_unit
 from .text_tables import Table, read_table

@@ -135,18 +135,16 @@ def _standard_output() -> Iterator[BinaryIO]:
 def _file(path: str) -> Iterator[BinaryIO]:
     if path.endswith("/"):
         raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if (descriptor := _descriptor(path)) is not None:
-        with open(descriptor, "wb", closefd=False) as stream:
-            yield stream
-        return
     try:
         mode = os.stat(path).st_mode
     except FileNotFoundError:
         if not path:
             raise
         mode = None
-    if mode is not None and not stat.S_ISREG(mode):  # a pipe or a device
-        with open(path, "wb") as stream:
+    descriptor = _descriptor(path)
+    if descriptor is not None or (mode is not None and not stat.S_ISREG(mode)):  # a pipe, a device
+        place = path if descriptor is None else descriptor
+        with open(place, "wb", closefd=descriptor is None) as stream:
             yield stream
         return
     target = os.path.realpath(path)  # the file behind a link

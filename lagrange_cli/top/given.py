@@ -69,11 +69,6 @@ class Given(NamedTuple):
 
         return remark_in_si(remark) if remark and self.si else remark
 
-    @property
-    def empty(self) -> str | None:
-        """The name of the scene file if it has no inputs, else None."""
-        return self.file.name if self.file is not None and not self.file.inputs else None
-
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.
 

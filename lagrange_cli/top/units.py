@@ -117,23 +117,19 @@ def _meant(name: str, text: str) -> str:
     return hint or f"; known: {', '.join(UNITS)}, their products and powers"
 
 
-def unit_to_keep(key: str, unit: str) -> str:
-    """Return the unit that the input or the time `key`, given in a unit, is converted to.
+def conversion(key: str, unit: str, wanted: str | None = None) -> tuple[Fraction, str]:
+    """Return the factor that converts the quantity `key` from a unit to `wanted` in SI, and that.
 
-    A tilt stays in degrees if its unit contains pi, and in radians otherwise.
+    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`; by default that of the input
+    or the time `key`.  A tilt stays in degrees if its unit contains pi, and in radians otherwise.
+    No unit is kept.  Raises LagtopError for a unit of other dimensions.
     """
-    if not key.startswith(TILT):
-        return DECLARED[key].unit if key in DECLARED else "time"
-    factor_of(TILT, unit, "rad")  # refuses other dimensions
-    return "deg" if unit_of_text(unit).power_of_pi else "rad"
-
-
-def factor_of(key: str, unit: str, wanted: str) -> Fraction:
-    """Return the factor that converts the quantity `key` from a unit to `wanted` in SI.
-
-    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`.  Raises LagtopError for a
-    unit of other dimensions.
-    """
+    if not unit:
+        return Fraction(1), ""
+    if is_tilt := wanted is None and key.startswith(TILT):
+        key, wanted = TILT, "rad"
+    elif wanted is None:
+        wanted = DECLARED[key].unit if key in DECLARED else "time"
     into = unit_of_text(in_si(wanted))
     try:
         given = unit_of_text(unit)
@@ -147,8 +143,10 @@ def factor_of(key: str, unit: str, wanted: str) -> Fraction:
         must = f"have a unit such as {example}" if wanted else "have no unit"
         wrong = f"{key} must {must}, got the unit {quoted(unit)} ({error})"
         raise LagtopError(wrong, key) from None
+    if is_tilt and given.power_of_pi:
+        return conversion(key, unit, "deg")
     powers_of_pi = given.power_of_pi - into.power_of_pi
-    return given.size / into.size * pi_to(PI_DIGITS) ** powers_of_pi
+    return given.size / into.size * pi_to(PI_DIGITS) ** powers_of_pi, wanted
 
 
 def in_si(unit: str) -> str:

@@ -85,7 +85,11 @@ def parse_value(
     if re.search(r"±|\+/?-", unit):
         wrong = f"must have its unit once, at the end, as in '24.0 ± 0.2 cm', {got}"
         raise LagtopError(f"{key} {wrong}", key)
-    factor, unit = conversion(key, unit, wanted)
+    factor = Fraction(1)
+    if unit:
+        from .units import conversion  # start-up
+
+        factor, unit = conversion(key, unit, wanted)
 
     def read(text: str) -> Fraction:
         return parse_number(text) * factor
@@ -104,19 +108,6 @@ def parse_value(
             whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
         raise LagtopError(f"{key} {whole}", key) from None
     return Value(found, unit, None if std is None else std * factor)
-
-
-def conversion(key: str, unit: str, wanted: str | None = None) -> tuple[Fraction, str]:
-    """Return the factor from a unit of the input or quantity `key` to SI or to `wanted`, and that.
-
-    Raises LagtopError for a unit of other dimensions (see `units.factor_of`).
-    """
-    if not unit:
-        return Fraction(1), ""
-    from .units import factor_of, unit_to_keep  # start-up
-
-    wanted = unit_to_keep(key, unit) if wanted is None else wanted
-    return factor_of(key, unit, wanted), wanted
 
 
 def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:

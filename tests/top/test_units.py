@@ -14,7 +14,7 @@ from conftest import Lagtop, assert_one_line
 from lagtop import Top, read_scene
 
 from lagrange_cli.top.given import gather
-from lagrange_cli.top.units import UNITS, factor_of, unit_of_text, unit_to_keep
+from lagrange_cli.top.units import UNITS, conversion, unit_of_text
 from lagrange_cli.top.values import Value, parse_value
 
 PAPER = "--m 1587g --A 39032g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
@@ -40,7 +40,7 @@ def read(inputs: dict[str, str]) -> dict[str, Value]:
     ],
 )
 def test_definitions_are_exact(key: str, unit: str, size: Fraction) -> None:
-    assert factor_of(key, unit, unit_to_keep(key, unit)) == size
+    assert conversion(key, unit)[0] == size
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_definitions_are_exact(key: str, unit: str, size: Fraction) -> None:
 )
 def test_turns_have_pi_in_all_digits(unit: str, turns: str) -> None:
     with mpmath.workdps(1150):
-        factor = factor_of("r0", unit, "rad/time")
+        factor, _ = conversion("r0", unit)
         size = mpmath.mpf(factor.numerator) / factor.denominator
         exact = 2 * mpmath.pi * mpmath.mpf(Fraction(turns).numerator) / Fraction(turns).denominator
         assert abs(size - exact) < mpmath.mpf(10) ** -1098
