@@ -2,7 +2,7 @@
 
 Each fact is the sign of a polynomial in u = cos(theta0) with rational coefficients.  Only the kinds
 of motion that differ in a sign have different formulas, so no formula compares numbers with a
-threshold.  Equation numbers are Chrapan's.
+threshold.  Equation numbers are Chrapan's; alpha and beta are the constants of (4,4) and (4,5).
 """
 
 from __future__ import annotations

@@ -154,7 +154,7 @@ class Numbers(dict[str, Any]):
         q = b + (-1 if self.facts.spin < 0 else 1) * root(square(b) - 2 * a * u0)
         return a / q, q / (2 * u0)
 
-    # the cubic f(u) = (alpha - a u)(1 - u^2) - (beta - b u)^2 (4,9)
+    # the cubic f(u) = (alpha - a u)(1 - u^2) - (beta - b u)^2 (4,9); alpha is energy_constant
 
     @property
     def beta_minus_b(self) -> arb:

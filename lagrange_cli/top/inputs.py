@@ -42,7 +42,7 @@ C | C | polar moment | polar moment of inertia | positive, at most 2A | mass len
 s | s | pivot to mass centre | distance from the pivot to the mass centre | 0 or more | len | 4
 g | g | gravity | gravitational acceleration | 0 or more | len/time² | 981
 r0 | r0 | total spin rate
-    | total rate about the axis, phi' + psi' cos(theta) | | rad/time | 50
+    | total spin rate about the axis, phi' + psi' cos(theta) | | rad/time | 50
 phidot0 | φ'0 | spin rate at start
     | spin rate at start | instead of r0 = phidot0 + psidot0 cos(theta0) | rad/time |
 theta0 | ϑ0 | tilt at the start

@@ -57,7 +57,7 @@ class Top:
         m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
         A_cm        in place of A: that moment about the centre of mass, A = A_cm + m s^2
         s, g        distance from the pivot to the centre of mass, and gravity, >= 0
-        r0          spin: the angular velocity about the figure axis, which is constant (any sign)
+        r0          total spin rate: the constant angular velocity about the figure axis (any sign)
         phidot0     in place of r0: the rate of the angle phi, r0 = phidot0 + psidot0 cos(theta0)
         theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
         theta0_rad  or the same in radians, 0 to pi; not both
