@@ -215,8 +215,8 @@ def conclusions(rows: Sequence[Row]) -> Iterator[str]:
 def conditions(samples: int, seed: int) -> dict[str, str]:
     """Return what the figures depend on."""
     return {
-        "scenes": f"the fixed ones of each kind and {samples} random, seed {seed}; a row shows the "
-        "worst of them",
+        "scenes": f"the fixed scene of each kind and {samples} random, seed {seed}; a row shows "
+        "the worst scene",
         "rounding": "input rounding: sum of the rotations that half an ulp of each input causes",
         "verdicts": f"rounding level: error at most {AT_ROUNDING} times input rounding; lost: "
         f"error above {LOST:g} rad; inaccurate: between; too slow: more than {SLOW:g} s of CPU",

@@ -104,7 +104,7 @@ def conditions(tasks: Sequence[Task]) -> dict[str, str]:
         "scenes": "; ".join(scenes),
         "times": f"{tasks[0].times.size} from 0 over {', '.join(spans)} nutation "
         f"period{'s' * (spans != ['1'])}",
-        "setting": "rtol = atol in the units of the scene; of fixed steps, their number per "
+        "setting": "rtol = atol in the units of the scene; for fixed steps, their number per "
         "nutation period",
         "time": f"CPU, least of up to {RUNS} warm runs, without the set-up; a run of more than "
         f"{SLOW:g} s is ended. RK4 and MuJoCo are sampled at the checked times only",

@@ -1,4 +1,4 @@
-"""Records of many tops: of given ones (`lagtop sweep`) and of found ones (`lagtop find`)."""
+"""Records of many tops: `lagtop sweep`, and `lagtop find`, which searches for them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mistakes of engines and students, in the writing of a trajectory or in the inputs of a top."""
+"""Mistakes of engines and students, in the notation of a trajectory or in the inputs of a top."""
 
 from __future__ import annotations
 

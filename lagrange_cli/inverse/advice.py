@@ -1,4 +1,4 @@
-"""What to try after a failed fit: only what another fit confirms."""
+"""Advice after a failed fit: only remedies that another fit confirms."""
 
 from __future__ import annotations
 

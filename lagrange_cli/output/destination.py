@@ -1,4 +1,4 @@
-"""Destination of output: a file that is replaced when all is written, or standard output.
+"""Destination of output: a file that is replaced once all is written, or standard output.
 
 `Output` is a destination with a format; it writes a text, a record or rows.  Formats of
 rows and tables are imported when they are needed, because `lagtop solve` starts often.

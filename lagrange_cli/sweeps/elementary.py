@@ -1,4 +1,4 @@
-"""Doubles that are formulas of the inputs, for many tops at once, in pairs of doubles.
+"""Numbers that are formulas of the inputs, for many tops at once, in pairs of doubles.
 
 They are further keys, which `solver` declares with their meanings, and the numbers of steady tops.
 Where the terms of a formula cancel, `solve` computes the top.  Equation numbers are Chrapan's.

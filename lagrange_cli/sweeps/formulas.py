@@ -1,4 +1,4 @@
-"""The formulas of the paper for many tops at once, in forms that lose no digits.
+"""The formulas of the paper for many tops at once, in forms that avoid cancellation.
 
 Numbers are arrays of doubles, or pairs of doubles (`DoubleDouble`) where differences cancel.
 `solver` evaluates the formulas as they are printed, in enclosures that show lost digits.  Arrays
