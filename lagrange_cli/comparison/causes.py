@@ -1,4 +1,4 @@
-"""The search for the causes of an error: each is tried by computing without it."""
+"""The search for the causes of an error: each is corrected in turn, and the error computed."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ A left-handed frame is a right-handed frame with all axes reversed, except for i
 def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
     """Return the cause of an error, and another one that leaves as little, if there is one.
 
-    A cause explains an error if it takes off nine tenths.  Of those that bring the error below the
+    A cause explains an error if it removes nine tenths.  Of those that bring the error below the
     limit, return the simplest that leaves about as little as the best.  If there is none, try two
     causes at once.  Otherwise return the best cause, which explains a part and
     spoils nothing.

@@ -69,7 +69,7 @@ def _is_good(recording: Recording, known: Known) -> bool:
 
 
 def _frames(recording: Recording, known: Known) -> Iterator[str]:
-    """Yield the axis of space or of the body in whose frame the motion is that of a top."""
+    """Yield the axis of space or of the body in whose frame a top explains the motion."""
     if recording.kind == "angles":
         return
     few = recording.thinned(_ROWS)

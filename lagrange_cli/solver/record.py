@@ -247,6 +247,6 @@ def _fast_remark(motion: Solution, radians: bool) -> str:
     where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
     return (
         f"{FAST_WORDS}: nutates by {short(f'nutation_{unit}')} {unit} "
-        f"in {short('T_nutation')} time; its mean is {where} mgs/(C r0) = "
+        f"in {short('T_nutation')} time; the mean rate is {where} mgs/(C r0) = "
         f"{short('precession_rate_elementary')} rad/time"
     )

@@ -107,6 +107,6 @@ def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
         assert abs(parts) < 10_300
         assert 0 < nods < 1.15
         assert solve(Top(**unit, r0=sign * r0)).remark == (
-            f"pseudo-regular precession: nutates by {float(nods):.3g} deg in "
-            f"{float(period):.3g} time; its mean is {where} mgs/(C r0) = {float(rate):.3g} rad/time"
+            f"pseudo-regular precession: nutates by {float(nods):.3g} deg in {float(period):.3g} "
+            f"time; the mean rate is {where} mgs/(C r0) = {float(rate):.3g} rad/time"
         )
