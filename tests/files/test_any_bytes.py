@@ -83,7 +83,7 @@ def read_by_all(path: str) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::lagrange_cli.errors.MixedBodyWarning")
-@pytest.mark.parametrize("count", [60, pytest.param(2_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [30, pytest.param(2_000, marks=pytest.mark.slow)])
 def test_any_bytes_end_in_rows_or_in_one_line(count: int, tmp_path: Path) -> None:
     @given(CONTENTS)
     @example(b"{}")
