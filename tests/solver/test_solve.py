@@ -14,18 +14,6 @@ from scenes import UNIT
 from lagrange_cli.solver.facts import Regime
 
 
-@pytest.mark.parametrize("scale", [1e-30, 1e30])
-def test_change_of_units(scale: float) -> None:
-    """Powers of two in length, mass and time only shift exponents."""
-    unit = 2.0 ** round(math.log2(scale))
-    plain = solve(Top())
-    shifted = solve(
-        Top(m=1587 * unit, A=39032 * unit**3, C=17458 * unit**3, s=4 * unit, g=981 * unit)
-    )
-    assert shifted.T_nutation == plain.T_nutation
-    assert shifted.mean_precession_rate == plain.mean_precession_rate
-
-
 @pytest.mark.parametrize(
     ("start", "regime", "path"),
     [
