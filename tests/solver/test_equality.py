@@ -15,8 +15,6 @@ import pytest
 from lagtop import Motion, Top, solve
 from scenes import UNIT
 
-from lagrange_cli.arithmetic.enclosures import equal_digits
-
 TINY = Fraction(1, 10**100)
 UP = 1 + 2.0**-52
 """The double next to 1."""
@@ -203,10 +201,3 @@ def test_mean_rates_without_torque_may_be_midway(
         **{name: Fraction(x) for name, x in given.items()},
     )
     assert solve(top).record(digits=5, keys=[key]) == {key: printed}
-
-
-def test_d_grows_with_the_digits_of_inputs_and_output() -> None:
-    assert equal_digits([Fraction(1)]) == 1200
-    assert 1360 <= equal_digits([Fraction(0.1)]) <= 1370
-    assert equal_digits([Fraction(1, 10**100)], 30) == 2200
-    assert equal_digits([Fraction(1)], 1000) == 11200
