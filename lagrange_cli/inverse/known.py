@@ -14,7 +14,7 @@ from ..errors import LagtopError
 from ..names import check_names
 from ..output.report import uncertain_text
 from ..top.inputs import checked_double
-from ..top.top import Top
+from ..top.top import INPUTS, Top
 from ..top.values import STEADY_WORDS
 
 Known = Mapping[str, tuple[float, float]]
@@ -35,7 +35,7 @@ def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
 
     Raises LagtopError for an input that a fit cannot use.
     """
-    check_names("known", [*given] or ["m"], [*Top.fields, "A_cm", "phidot0"])
+    check_names("known", [*given] or ["m"], INPUTS)
     words = {name for name in given if given[name] in STEADY_WORDS}
     known = {x: checked_double(x, y) for x, y in given.items() if x not in words}
     for name in ("m", "s", "g", "A", "C", "r0"):

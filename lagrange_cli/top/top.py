@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from ..arithmetic.enclosures import pi_to, text_of
 from ..arithmetic.numbers import Number, unit_in_radians, unrounded
@@ -78,7 +78,6 @@ class Top:
     (True, None, 1587.0, 1587.0)
     """
 
-    fields: ClassVar[tuple[str, ...]]
     m: Number = _EXAMPLE
     A: Number = _EXAMPLE
     C: Number = _EXAMPLE
@@ -182,7 +181,7 @@ class Top:
     def inputs(self, *, radians: bool = False) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
-        values: dict[str, Any] = {name: getattr(self, name) for name in self.fields}
+        values: dict[str, Any] = {name: getattr(self, name) for name in INPUTS}
         if values[tilt] is None:
             other: Any = self.theta0_deg if radians else self.theta0_rad
             degree = unit_in_radians(radians=False)
@@ -225,7 +224,6 @@ class Top:
 
 INPUTS = tuple(name for name in Top.__slots__ if name != "steady_word")
 """The keys of all inputs of a top, with the alternatives to A and r0."""
-Top.fields = tuple(name for name in INPUTS if name not in STANDS_FOR)
 
 
 def _checked(name: str, value: Any) -> Number:
