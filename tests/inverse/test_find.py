@@ -1,4 +1,4 @@
-"""`find`: inputs that give target values, checked by quadrature in mpmath and by dense sweeps."""
+"""`find`: inputs that give target values, checked by a reference in mpmath and dense sweeps."""
 
 from __future__ import annotations
 
@@ -8,43 +8,11 @@ import math
 from pathlib import Path
 from typing import Any
 
-import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
 from lagtop import LagtopError, MixedBodyWarning, Top, find, solve, sweep
-
-
-def by_quadrature(top: Top) -> dict[str, float]:
-    """Return numbers of a top from Euler's cubic and its integrals over a half nutation.
-
-    With u = cos(theta), u'^2 = (1 - u^2)(E - a u) - (beta - b u)^2 and psi' = (beta - b u)/(1-u^2).
-    """
-    m, A, C, s, g, r0 = (mpmath.mpf(float(x)) for x in (top.m, top.A, top.C, top.s, top.g, top.r0))
-    a, b = 2 * m * g * s / A, C * r0 / A
-    u0 = mpmath.cos(mpmath.radians(top.theta0_deg or 0))
-    along = top.psidot0 * (1 - u0**2)
-    beta = along + b * u0
-    energy = top.thetadot0**2 + along * top.psidot0 + a * u0
-    cubic = [energy - beta**2, 2 * b * beta - a, -energy - b * b, a]
-    low, high, beyond = sorted(map(mpmath.re, mpmath.polyroots(cubic, maxsteps=200, asc=True)))
-    half = (high - low) / 2
-
-    def mean(rate: Any) -> Any:
-        def at(x: Any) -> Any:
-            u = low + half * (1 - mpmath.cos(x))
-            return rate(u) / mpmath.sqrt(a * (beyond - u))
-
-        return mpmath.quad(at, mpmath.linspace(0, mpmath.pi, 5))
-
-    period = 2 * mean(lambda u: mpmath.mpf(1))
-    precession = 2 * mean(lambda u: (beta - b * u) / (1 - u * u)) / period
-    return {
-        "T_nutation": float(period),
-        "mean_precession_rate": float(precession),
-        "T_precession": float(2 * mpmath.pi / abs(precession)),
-        "theta_max_deg": float(mpmath.degrees(mpmath.acos(low))),
-    }
+from record_reference import reference_record
 
 
 @pytest.mark.parametrize(
@@ -68,8 +36,8 @@ def test_solutions_have_the_target_values(
     found = find(targets, **unknowns)
     assert len(found) == count
     for motion in found:
-        numbers = by_quadrature(motion.top)
-        assert {key: numbers[key] for key in targets} == pytest.approx(targets, rel=1e-11)
+        exact = reference_record(motion.top.as_dict())
+        assert {key: float(exact[key]) for key in targets} == pytest.approx(targets, rel=1e-13)
         assert [getattr(motion, key) for key in targets] == pytest.approx(
             [*targets.values()], rel=1e-13
         )
@@ -168,31 +136,26 @@ def test_nothing_found(line: str, message: str, lagtop: Lagtop) -> None:
 STEADY_BODY: dict[str, Any] = {"m": 1, "g": 9.81, "s": 0.2, "A": 2 / 3, "C": 1}
 
 
-@pytest.mark.parametrize("word", ["steady", "steady-fast"])
-def test_steady_tops(word: str) -> None:
+@pytest.mark.parametrize(
+    ("word", "goal", "known", "count"),
+    [
+        ("steady", 0.5, {"r0": 1}, 1),
+        ("steady-fast", 0.5, {"r0": 1}, 0),
+        ("steady-fast", -2, {"r0": 1}, 1),
+        ("steady", 2.5, {"phidot0": 3}, 1),
+    ],
+)
+def test_steady_tops(word: str, goal: float, known: dict[str, Any], count: int) -> None:
     """The rate x solves A cos(theta) x^2 - C r0 x + m g s = 0, and Lz = A x sin^2 + C r0 cos."""
-    known: Any = {"r0": 1, "theta0_deg": (91, 179), "psidot0": word, "scan": 200}
-    found = find({"Lz": 0.5}, **STEADY_BODY, **known)
-    assert len(found) == (1 if word == "steady" else 0)
+    ranges: Any = {"theta0_deg": (91 if "r0" in known else 20, 179), "scan": 100}
+    found = find({"Lz": goal}, **STEADY_BODY, psidot0=word, **ranges, **known)
+    assert len(found) == count
     for motion in found:
-        assert motion.top.theta0_deg == pytest.approx(110.64767658947)
-        assert motion.top.psidot0 == pytest.approx(1.46053532332)
+        x, u = motion.mean_precession_rate, math.cos(math.radians(motion.top.theta0_deg or 0))
+        r0 = known["r0"] if "r0" in known else known["phidot0"] + x * u
+        assert 2 / 3 * u * x * x - r0 * x + 9.81 * 0.2 == pytest.approx(0, abs=1e-12)
+        assert 2 / 3 * x * (1 - u * u) + r0 * u == pytest.approx(goal)
         assert motion.regime == "steady precession"
-    fast = find({"Lz": -2}, **STEADY_BODY, **known)
-    for motion in fast:
-        u, x = math.cos(math.radians(motion.top.theta0_deg or 0)), float(motion.top.psidot0)
-        assert 2 / 3 * u * x * x - x + 9.81 * 0.2 == pytest.approx(0, abs=1e-12)
-        assert 2 / 3 * x * (1 - u * u) + u == pytest.approx(-2)
-    assert bool(fast) == (word == "steady-fast")
-
-
-def test_steady_tops_with_a_spin_rate() -> None:
-    """The rate x solves (A - C) cos(theta) x^2 - C phi' x + m g s = 0."""
-    known: Any = {"phidot0": 3, "theta0_deg": (20, 160), "psidot0": "steady", "scan": 200}
-    (motion,) = find({"Lz": 2.5}, **STEADY_BODY, **known)
-    u, x = math.cos(math.radians(motion.top.theta0_deg or 0)), motion.mean_precession_rate
-    assert -u * x * x / 3 - 3 * x + 9.81 * 0.2 == pytest.approx(0, abs=1e-12)
-    assert 2 / 3 * x * (1 - u * u) + (3 + x * u) * u == pytest.approx(2.5)
 
 
 def test_flat_parts_of_a_condition_are_no_starts() -> None:
@@ -224,7 +187,8 @@ def test_a_leap_is_no_root() -> None:
     found = find({"mean_spin_rate": 46}, psidot0=(-40, 40))
     assert [x.mean_spin_rate for x in found] == pytest.approx([46], rel=1e-13)
     (behind,) = find({"mean_precession_rate": -11.5}, r0=(-60, 60), theta0_deg=120)
-    assert by_quadrature(behind.top)["mean_precession_rate"] == pytest.approx(-11.5)
+    exact = reference_record(behind.top.as_dict())["mean_precession_rate"]
+    assert float(exact) == pytest.approx(-11.5)
 
 
 @pytest.mark.parametrize(
@@ -328,13 +292,8 @@ def test_units_that_do_not_belong(lagtop: Lagtop) -> None:
 
 
 def test_texts_with_units() -> None:
-    body: Any = {
-        "m": "1587 g",
-        "A": "39032 g cm^2",
-        "C": "17458 g cm^2",
-        "s": "4 cm",
-        "g": "981 cm/s^2",
-    }
+    body: Any = {"m": "1587 g", "A": "39032 g cm^2", "C": "17458 g cm^2", "s": "4 cm"}
+    body |= {"g": "981 cm/s^2"}
     (found,) = find({"T_precession": "2000 ms"}, r0="100:1900 rpm", scan=100, **body)
     (plain,) = find({"T_precession": 2}, r0=(10, 200), scan=100)
     assert (found.top.r0, found.top.m) == pytest.approx((plain.top.r0, 1.587), rel=1e-12)

@@ -22,7 +22,7 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli.inverse.advice import release
 from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.decay import decay_of, fit_windows
-from lagrange_cli.inverse.known import body_numbers, known_inputs
+from lagrange_cli.inverse.known import known_inputs
 from lagrange_cli.inverse.motions import angles, nutating
 from lagrange_cli.inverse.outcome import Outcome
 from lagrange_cli.inverse.problem import Problem
@@ -163,7 +163,11 @@ def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "known"), [("theta", {"psidot0": 0}), ("psi", {"theta0_deg": 75})]
+    ("name", "known"),
+    [
+        pytest.param("theta", {"psidot0": 0}, marks=pytest.mark.slow),
+        ("psi", {"theta0_deg": 75}),
+    ],
 )
 def test_one_angle_and_a_known_start(name: str, known: dict[str, float]) -> None:
     t, seen = recorded(name, seed=5)
@@ -191,7 +195,7 @@ def test_irregular_times_with_two_rows_per_period() -> None:
 
 def test_the_sample_gives_the_body() -> None:
     rows = np.genfromtxt(recordings.SAMPLES / "recording.csv", delimiter=",", skip_header=3)
-    t, (theta, psi, phi) = rows[::2, 0], np.radians(rows[::2, 1:].T)
+    t, (theta, psi, phi) = rows[::4, 0], np.radians(rows[::4, 1:].T)
     outcome = fit(t, theta=theta, psi=psi, phi=phi, known={"m": 1.587, "g": 9.81, "s": 0.04})
     assert_true(outcome, {"A": 3.9032e-3, "C": 1.7458e-3, "r0": 50, "theta0_deg": 41}, least=4)
     assert repr(outcome).startswith(f"fit of {t.size} rows: good\na   ")
@@ -219,7 +223,7 @@ def test_the_recordings_are_what_the_script_writes() -> None:
     ("known", "truth"),
     [
         (LAB | {"C": 2.5e-3, "A": 4.45e-3}, {"r0": 52.36, "b": TRUTH["b"]}),
-        ({"r0": 52.36, "C": 2.5e-3}, {"A": 4.45e-3, "m*g*s": 0.3924}),
+        ({"r0": 52.36, "C": 2.5e-3, "g": 9.81}, {"A": 4.45e-3, "m*s": 0.04}),
         *(
             pytest.param(known, truth, marks=pytest.mark.slow)
             for known, truth in (
@@ -251,14 +255,16 @@ def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
         assert unsure[key][:2] == pytest.approx(sure[key][:2], rel=1e-4)
 
 
-@pytest.mark.parametrize("rough", [{"C": "0.003(1)"}, {"m": "0.2(2)", "A": 4.44e-3}])
+@pytest.mark.parametrize(
+    "rough",
+    [pytest.param({"C": "0.003(1)"}, marks=pytest.mark.slow), {"m": "0.2(2)", "A": 4.44e-3}],
+)
 def test_a_rough_input_is_improved(rough: dict[str, Any]) -> None:
     """The fit with it begins in phase with the recording, whatever b the rough value implies."""
     t, seen = recorded("theta", "psi", "phi", seed=9)
     found = fitted(t, seen, known=LAB | rough)
-    assert found.verdict == "good", found.failures()
-    sure = fitted(t, seen, known=LAB)
-    assert found.numbers["b"][:2] == pytest.approx(sure.numbers["b"][:2], rel=0.01)
+    assert_true(found, TRUTH)
+    assert found.numbers["b"].std < 0.3
 
 
 @pytest.mark.slow
@@ -271,13 +277,6 @@ def test_a_prior_lies_between_a_known_input_and_none() -> None:
     weights = np.array([std**-2, spread**-2])
     assert found.value == pytest.approx(weights @ [value, prior] / weights.sum(), abs=0.02 * std)
     assert found.std == pytest.approx(weights.sum() ** -0.5, rel=0.02)
-
-
-def test_products_of_unknown_inputs() -> None:
-    one = dict.fromkeys(("m", "g", "s", "A", "C", "r0"), np.array([2.0]))
-    assert body_numbers(4.0, 2.0, {}) == {"C*r0/A": 2, "m*g*s/A": 4}  # type: ignore[arg-type]
-    found = body_numbers(np.array([4.0]), np.array([2.0]), {x: one[x] for x in ("g", "C", "r0")})
-    assert {x: float(y[0]) for x, y in found.items()} == {"A": 2, "m*s": 4}
 
 
 # Wrong, hopeless and steady recordings
@@ -308,6 +307,7 @@ def test_exchanged_spin_and_precession_are_noticed() -> None:
     assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
 
 
+@pytest.mark.slow
 def test_an_outlier_is_named() -> None:
     t, seen = recorded("theta", "psi", seed=8)
     seen["psi"][30] += 20 * DEGREE
@@ -635,7 +635,19 @@ def test_hard_recordings_are_fitted(look: str) -> None:
     assert any(x.word == "good" for x in results), results
 
 
-def test_a_known_input_that_contradicts_the_recording_is_named() -> None:
+@pytest.mark.parametrize(
+    ("c", "r0"),
+    [("0.00270(10)", "60(1)"), pytest.param("0.0026", "52.36", marks=pytest.mark.slow)],
+)
+def test_a_known_input_that_contradicts_the_recording_is_named(c: str, r0: str) -> None:
+    t, seen = recorded("theta", "psi", seed=8)
+    failure = fitted(t, seen, known=LAB | {"C": c, "r0": r0}).failure()
+    assert failure.startswith(f"known C = {c} contradicts the recording"), failure
+    assert failure.endswith("omit C, or check m, g, s, r0")
+
+
+@pytest.mark.slow
+def test_known_inputs_that_agree_and_a_nutation_of_a_steady_precession() -> None:
     t, seen = recorded("theta", "psi", seed=8)
     agreeing = fitted(t, seen, known=LAB | {"C": 2.5e-3, "r0": "52.4(1)"})
     assert agreeing.verdict == "good", agreeing.failures()
@@ -645,10 +657,6 @@ def test_a_known_input_that_contradicts_the_recording_is_named() -> None:
     assert [x.split(",")[0] for x in wrong.failures()] == [
         "known psidot0 = steady contradicts the recording",
     ]
-    for c, r0 in (("0.0026", "52.36"), ("0.00270(10)", "60(1)")):
-        failure = fitted(t, seen, known=LAB | {"C": c, "r0": r0}).failure()
-        assert failure.startswith(f"known C = {c} contradicts the recording"), failure
-        assert failure.endswith("omit C, or check m, g, s, r0")
 
 
 @pytest.mark.parametrize(
