@@ -21,7 +21,12 @@ from record_reference import reference_record
         ({"T_precession": 2.0}, {"r0": "10:200"}, 1),
         ({"T_nutation": 0.45}, {"r0": "10:200"}, 2),
         ({"theta_max_deg": 90.0}, {"r0": "log:10:200"}, 1),
-        ({"T_precession": 0.8, "T_nutation": 0.43}, {"r0": "10:200", "theta0_deg": "5:150"}, 2),
+        pytest.param(
+            {"T_precession": 0.8, "T_nutation": 0.43},
+            {"r0": "10:200", "theta0_deg": "5:150"},
+            2,
+            marks=pytest.mark.slow,
+        ),
         (
             {"mean_precession_rate": 7, "T_nutation": 0.5, "theta_max_deg": 70},
             {"m": 1587, "s": 4, "C": 17458, "g": 981, "r0": "30:70", "A": "3e4:6e4"}
