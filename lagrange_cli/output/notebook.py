@@ -54,16 +54,16 @@ def record_html(caption: str, record: Mapping[str, Any], keys: Mapping[str, Key]
     return html_table(caption, rows)
 
 
-def html_table(caption: str, rows: Iterable[Sequence[Any]], head: Sequence[str] = ()) -> str:
+def html_table(caption: str, rows: Iterable[Sequence[Any]]) -> str:
     """Return rows as an HTML table, texts to the left and numbers to the right."""
 
-    def line(cells: Sequence[Any], tag: str) -> str:
+    def line(cells: Sequence[Any]) -> str:
         texts = (
-            f'<{tag} style="text-align: {"left" if isinstance(x, str) else "right"}">'
-            f"{'' if x is None else escape(str(x))}</{tag}>"
+            f'<td style="text-align: {"left" if isinstance(x, str) else "right"}">'
+            f"{'' if x is None else escape(str(x))}</td>"
             for x in cells
         )
         return f"<tr>{''.join(texts)}</tr>"
 
-    lines = [*([line(head, "th")] if head else []), *(line(cells, "td") for cells in rows)]
-    return f"<table><caption>{escape(caption)}</caption>{''.join(lines)}</table>"
+    lines = "".join(map(line, rows))
+    return f"<table><caption>{escape(caption)}</caption>{lines}</table>"
