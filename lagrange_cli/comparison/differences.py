@@ -156,16 +156,14 @@ class Exact:
         """Return the angles, and the `quaternion` and `rates` as arrays of shape (n, parts)."""
         if (key := t.tobytes()) in self._kept:
             return self._kept[key]
-        found = [*self.motion.table(t, [*ANGLES, "quaternion", *"pqr"], wrap=True).values()]
-        states = dict(zip(ANGLES, found[:3], strict=True))
-        turn, rates = np.stack(found[3:7], axis=1), np.stack(found[7:], axis=1)
+        found = np.stack([*self.motion.table(t, ["quaternion", *"pqr"]).values()], axis=1)
+        turn, rates = found[:, :4], found[:, 4:]
         if self.is_turned:
             space, body, spin = self.turns
             body = rotations.product(rotations.about_z(spin * t), body)
             turn = rotations.product(rotations.product(space, turn), body)
             rates = rotations.rotated(rotations.conjugate(body), rates) + _Z * spin
-            states = rotations.angles_of(turn)
-        states |= {"quaternion": turn, "rates": rates}
+        states = rotations.angles_of(turn) | {"quaternion": turn, "rates": rates}
         if t.size <= _KEPT:
             self._kept[key] = states
         return states
