@@ -146,6 +146,7 @@ def with_options(text: str, params: Sequence[click.Parameter]) -> str:
     for name, option in _options(params).items():
         text = re.sub(rf"\b{name}=(?=[-\w(.])", f"{option} ", text)
         text = re.sub(rf"\b(give|omit) {name}\b(?! =)", rf"\1 {option}", text)
+        text = re.sub(rf"\band {name}\b(?= are both given)", f"and {option}", text)
     return text
 
 

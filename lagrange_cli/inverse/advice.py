@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.text import shortened
+from ..errors import DataError, LagtopError
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
@@ -59,13 +60,24 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     yield from _decays(recording, body, outcome)
     if outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]:
         yield "a recording must last for a period of the nutation"
-    yield "check columns, units and axes"
+    start = [x for x in ("theta0", "psidot0") if x in known]
+    yield f"check {', '.join([*start, 'columns'])}, units and axes"
 
 
 def _is_good(recording: Recording, known: Known) -> bool:
     """Return whether a fit is good and needs no faster spin or reversed angle."""
-    found = best_fit(recording, known)
-    return found.verdict == GOOD and not found.recording.is_mirrored and found.is_spin_slow
+    found = _tried(recording, known)
+    if found is None or found.verdict != GOOD:
+        return False
+    return not found.recording.is_mirrored and found.is_spin_slow
+
+
+def _tried(recording: Recording, known: Known, chance: float = CHANCE) -> Outcome | None:
+    """Return a fit, or None if the recording does not determine a top without other inputs."""
+    try:
+        return best_fit(recording, known, chance=chance)
+    except DataError:
+        return None
 
 
 def _frames(recording: Recording, known: Known) -> Iterator[str]:
@@ -118,10 +130,16 @@ def _decays(recording: Recording, known: Known, outcome: Outcome) -> Iterator[st
     for count in _WINDOWS:
         if count * _ROWS_PER_WINDOW > recording.t.size:
             break
-        parts, fits = recording.windows(count), list[Outcome]()
+        try:
+            parts, fits = recording.windows(count), list[Outcome]()
+        except LagtopError:  # of rows that are not even
+            break
         for i in (0, count // 2, -1):
-            fits.append(best_fit(parts[i], known, chance=CHANCE / count))
-            if fits[-1].verdict != GOOD and (shown or "phi" not in recording.angles):
+            found = _tried(parts[i], known, CHANCE / count)
+            if found is None:
+                return
+            fits.append(found)
+            if found.verdict != GOOD and (shown or "phi" not in recording.angles):
                 break
         else:
             if decay := decay_of(fits):  # all three windows are good

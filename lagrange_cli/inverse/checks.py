@@ -93,6 +93,20 @@ class Residuals:
         sums = float(np.sum(self.correlations[1 : min(self.reach, self.y.size // 4)]))
         return math.sqrt(max(1 + 2 * sums, 1.0))
 
+    def lost(self, frequency: float) -> float:
+        """Return the share of an oscillation that a filter with these correlations takes away.
+
+        A filter of variance v, in rows^2, multiplies it by 1 - w^2 v/2, and the correlations of
+        white noise have the variance 2 v after it.
+        """
+        if self.is_coarse:
+            return 0.0
+        rows, found = np.arange(1, min(self.reach, self.y.size // 4)), self.correlations
+        near = found[1 : rows.size + 1]
+        variance = float(rows**2 @ near) / max(1 + 2 * float(near.sum()), 0.1)
+        step = float(self.t[-1] - self.t[0]) / self.y.size
+        return max((2 * math.pi * frequency * step) ** 2 * variance / 2, 0.0)
+
     def structure(self, frequency: float, chance: float = CHANCE) -> float:
         """Return the probability that noise resembles a drifting oscillation as much.
 

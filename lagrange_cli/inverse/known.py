@@ -25,6 +25,11 @@ The key `steady` stands for `psidot0` if that is one of the STEADY_WORDS.
 WEIGHT = {"m", "g", "s"}
 CONTRADICTS = 3.0
 """Standard deviations from which a known input contradicts the recording."""
+_MOST_TURNS, _APART = 10, 6.0
+"""A known C selects among spins that differ by whole turns per row: the most turns, and the least
+distance of the values of C that these spins have, in standard deviations of C."""
+_UNITS, _ROUGHLY = (2 * math.pi, 30 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7), 0.02
+"""Factors between units, in either direction, and how close a contradiction is to them."""
 _RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
 _POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1, "precession_rate": -1}
 _POWERS |= dict.fromkeys(_RATES, -1)
@@ -116,7 +121,7 @@ def estimates(
         if "r0" in known:
             r0 = np.full_like(r0, known["r0"][0])
         elif spins:
-            r0 = _nearest(r0, float((v["b"] * moment)[0] / known["C"][0]), turn)
+            r0 = r0 + tied_shift(float(r0[0]), float((v["b"] * moment)[0]), known["C"], turn)
         found["C"] = v["b"] * moment / r0
     return found
 
@@ -138,9 +143,31 @@ def compared(
     text = f"known {name} = {shown} {verb} the recording, which gives {own}"
     if far <= CONTRADICTS:
         return far, True, f"{text}: {far:.1f} sigma"
+    text = f"{text}, {far:.3g} sigma apart"
+    if name == "A" and WEIGHT <= known.keys():
+        added = given[0] + known["m"][0] * known["s"][0] ** 2
+        if abs(added - found[0]) <= CONTRADICTS * math.hypot(given[1], found[1]):
+            return far, False, f"{text}: A is about the pivot, and this is A_cm"
+    for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
+        if abs(given[0] / factor / found[0] - 1) < _ROUGHLY:
+            times = f"{factor:.3g} times" if factor > 1 else f"1/{1 / factor:.3g} of it"
+            return far, False, f"{text}, about {times}: check the units, or omit {name}"
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
+    if WEIGHT <= known.keys() and abs(math.log(abs(given[0] / found[0]))) > 1:
+        others.append("the unit of t")
     check = f", or check {', '.join(others)}" if others and name in {"A", "A_cm", "C"} else ""
-    return far, False, f"{text}, {far:.3g} sigma apart: omit {name}{check}"
+    return far, False, f"{text}: omit {name}{check}"
+
+
+def tied_shift(r0: float, product: float, C: tuple[float, float], turn: float) -> float:
+    """Return the whole turns per row that bring r0 next to C r0 / C, the spin that a known C has.
+
+    They are 0 if there are too many: then another spin would meet any C.
+    """
+    wanted = product / C[0]
+    shift = turn * round((wanted - r0) / turn) if turn else 0.0
+    most = min(_MOST_TURNS, abs(C[0]) / (_APART * C[1]) if C[1] else math.inf)
+    return shift if abs(wanted) <= most * turn else 0.0
 
 
 def _nearest(rate: Array, given: float, turn: float) -> Array:

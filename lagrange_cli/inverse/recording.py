@@ -26,7 +26,8 @@ CHANNELS = {
 }
 """Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
 about the axis."""
-LEAST_ROWS = 12
+LEAST_ROWS, _LEAST_TIMES = 12, 0.25
+"""Least number of rows, and the least number of different times over it."""
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
 _UNEVEN = 0.05
@@ -162,8 +163,8 @@ class Recording:
         number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
         rows = [np.flatnonzero(number == i) for i in range(count)]
         if (least := min(x.size for x in rows)) < LEAST_ROWS:
-            text = f"window must leave {LEAST_ROWS} rows or more in each, got {least}: use fewer"
-            raise LagtopError(text, "window")
+            wanted = f"{LEAST_ROWS} rows or more in each window"
+            raise LagtopError(f"window must leave {wanted}, got {least}: use fewer", "window")
         return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]
 
 
@@ -178,7 +179,7 @@ def read_recording(
     trajectory = read_trajectory(path, columns, decimal)
     conventions = reading["conventions"]
     given = trajectory.values(radians=conventions.radians)
-    first = float(given["t"][0, 0])
+    first = float(given["t"][0, 0]) if given["t"].size else 0.0
     given["t"] = trajectory.elapsed.reshape(-1, 1)
     reading["conventions"] = trajectory.conventions(conventions)
     found = recording_of(trajectory.name, given, **reading)
@@ -247,11 +248,13 @@ def recording_of(
     if (wrong := tilts[np.abs(tilts - np.pi / 2) > np.pi / 2 + _BEYOND]).size:
         raise DataError(
             f"{where}: theta must be between 0 and 180 deg (pi rad), got {np.degrees(wrong[0]):.6g}"
-            " deg"
+            " deg: an angle from the horizontal is named elevation"
         )
     order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
     if not 1e-60 < (span := float(t[order[-1]] - t[order[0]])) < 1e60:
         raise DataError(f"{where}: t must span 1e-60 to 1e+60, got {span:g}")
+    if (seen := np.unique(t).size) < _LEAST_TIMES * t.size:
+        raise DataError(f"{where}: t has {seen} values in {t.size} rows: give it more digits")
     raw = Recording("", t, 0.0, kind, angles, {}, position)
     unit = unit_in_radians(radians=conventions.radians)
     spread = {name: x * unit for name, x in _sigma(raw, sigma).items()}
@@ -260,6 +263,8 @@ def recording_of(
 
 def _check_times(where: str, t: Array) -> None:
     """Raise DataError for a time that is not finite or turns back."""
+    if t.size == 0:
+        raise DataError(f"{where} must have at least one row of numbers")
     if not np.isfinite(t).all():
         raise DataError(f"{where}: t must be finite numbers, got {t[~np.isfinite(t)][0]}")
     if (back := np.flatnonzero(np.diff(t) < 0)).size and not (np.diff(t) <= 0).all():

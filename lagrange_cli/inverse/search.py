@@ -19,7 +19,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError
 from .checks import CHANCE, LARGEST, Residuals
-from .known import Known, compared, estimates, scaled_known, time_power
+from .known import Known, compared, estimates, scaled_known, tied_shift, time_power
 from .motions import STATE
 from .nutation import nutating_outcome
 from .outcome import FAILED, Outcome
@@ -56,6 +56,8 @@ _SURE = 2.0
 _FASTER = 3.0
 """Ratio of spin rates from which the slower one tells the direction of psi."""
 _LEAST_SIGMA = 1e-12
+_FILTERED = 1e-4
+"""Share of the nutation that a filter takes away, from which a note says so."""
 _Noise = Mapping[str, tuple[float, float]]
 
 
@@ -124,10 +126,14 @@ def best_fit(
         outcome.notes.append(f"{shown}: the noise is below sigma")
     widest = max(rest.widening(chance) for rest in outcome.residuals.values())
     if widest > 1 and outcome.verdict != FAILED:
-        outcome.notes.append(
+        note = (
             "the residuals correlate from row to row (smoothed data, or an encoder): standard "
             f"deviations are {widest:.2g} times as large"
         )
+        lost = max(rest.lost(frequency) for rest in outcome.residuals.values())
+        if lost > _FILTERED:
+            note += f"; a filter makes the nutation {lost:.2%} smaller, so fit the raw data"
+        outcome.notes.append(note)
     return outcome
 
 
@@ -211,9 +217,10 @@ def _assumed(found: Minimum, faster: float, turns: float, turn: float) -> list[s
             f"psi may count in the other direction, if the spin makes {faster:.2g} turns per row"
         )
     if turns > 0.5:
+        how = "the one that C selects" if found.problem.is_tied else "the slowest possible rate"
         notes.append(
             f"the spin exceeds half a turn per row: r0 is known up to multiples of {turn:.6g}, and "
-            "is the slowest possible rate"
+            f"is {how}"
         )
     return notes
 
@@ -321,14 +328,14 @@ def _constrained(
     problem = Problem(old.recording, known, old.sizes, turns=old.turns)
     moment = v.get("A", v.get("m", math.nan) * v.get("g", 1) * v.get("s", 1) * 2 / v["a"])
     if turn and "r0" in old.names:
-        wanted = v["r0"]
         if "r0" in known:
-            wanted = known["r0"][0]
+            shift = turn * round((known["r0"][0] - v["r0"]) / turn)
         elif "phidot0" in known:
             wanted = known["phidot0"][0] + v["psidot0"] * math.cos(v["theta0"])
-        elif problem.is_tied:
-            wanted = v["b"] * moment / known["C"][0]
-        shift = turn * round((wanted - v["r0"]) / turn)
+            shift = turn * round((wanted - v["r0"]) / turn)
+        else:
+            tied = problem.is_tied
+            shift = tied_shift(v["r0"], v["b"] * moment, known["C"], turn) if tied else 0.0
         problem.turns += shift
         v["r0"] += shift
     x = np.array([problem.known.get(name, v.get(name, 0.0)) for name in problem.names])

@@ -516,6 +516,8 @@ def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None
         ("t,psi", "{t},40", "psi alone does not determine a top: give --theta0"),
         ("t,theta,psi", "0,40,{t}", "t must span"),
         ("t,theta,psi", "{t},240,{t}", "theta must be between 0 and 180 deg"),
+        ("t,theta,psi", "{few},40,{t}", "t has 4 values in 20 rows: give it more digits"),
+        ("t,theta", "", "must have at least one row"),
         ("t,theta,psi", "-{t},,", r"theta is empty \(theta\): remove its columns, or skip"),
         (
             "t,theta,psi",
@@ -528,7 +530,7 @@ def test_bad_data_get_a_line(
     lagtop: Lagtop, tmp_path: Path, header: str, row: str, message: str
 ) -> None:
     path = tmp_path / "data.csv"
-    rows = [row.format(t=i, back=i % 5) for i in range(20)]
+    rows = [row.format(t=i, back=i % 5, few=i // 5) for i in range(20)]
     path.write_text("\n".join([header, *rows, ""]))
     result = lagtop("fit", path)
     assert result.exit_code in {1, 65}
@@ -549,7 +551,7 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (
             f"{SAMPLE} --window 100",
             2,
-            "--window must leave 12 rows or more in each, got 1: use fewer",
+            "--window must leave 12 rows or more in each window, got 1",
         ),
         (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
         (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),
