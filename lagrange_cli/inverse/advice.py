@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
+from ..files.rotations import within_half_turn
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
@@ -54,6 +55,7 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
+    yield from _other_angles(recording, body)
     both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
     if both and _is_good(replace(recording, sigma={}).exchanged, known):
         yield "phi and psi are exchanged: here phi is the spin and psi the precession"
@@ -101,6 +103,22 @@ def _calmness(recording: Recording) -> float:
     signals = signals_in(recording)
     frequency, _ = oscillation_in(signals)
     return sum(math.log(x) for x in noise_of(signals, frequency, recording).values())
+
+
+def _other_angles(recording: Recording, known: Known) -> Iterator[str]:
+    """Yield another meaning of the angles of a recording in which a top explains them."""
+    angles, free = recording.angles, replace(recording, sigma={})
+    if recording.kind != "angles":
+        return
+    larger = {x: np.degrees(y) for x, y in angles.items()}
+    if all(np.nanmax(np.abs(x)) <= 2 * np.pi for x in larger.values()):
+        wrapped = {x: y if x == "theta" else within_half_turn(y) for x, y in larger.items()}
+        if _is_good(replace(free, angles=wrapped), known):
+            yield "the angles are in radians: name their columns so, as theta_rad"
+    if "theta" in angles and np.nanmax(angles["theta"]) <= np.pi / 2:
+        from_horizontal = {**angles, "theta": np.pi / 2 - angles["theta"]}
+        if _is_good(replace(free, angles=from_horizontal), known):
+            yield "theta is measured from the horizontal: name its column elevation"
 
 
 def release(recording: Recording) -> int:

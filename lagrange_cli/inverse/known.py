@@ -150,7 +150,7 @@ def compared(
             return far, False, f"{text}: A is about the pivot, and this is A_cm"
     for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
         if abs(given[0] / factor / found[0] - 1) < _ROUGHLY:
-            times = f"{factor:.3g} times" if factor > 1 else f"1/{1 / factor:.3g} of it"
+            times = f"{factor:.3g} times as large" if factor > 1 else f"1/{1 / factor:.3g} of it"
             return far, False, f"{text}, about {times}: check the units, or omit {name}"
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
     if WEIGHT <= known.keys() and abs(math.log(abs(given[0] / found[0]))) > 1:

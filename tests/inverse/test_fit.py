@@ -649,6 +649,56 @@ def test_a_known_input_that_contradicts_the_recording_is_named(c: str, r0: str) 
     assert failure.endswith("omit C, or check m, g, s, r0")
 
 
+@pytest.mark.parametrize(
+    ("known", "cause"),
+    [
+        ({"A": 4.45e-3 - 0.5 * 0.08**2}, "A is about the pivot, and this is A_cm"),
+        ({"C": 2.5e-3, "r0": 500.0}, "about 9.55 times as large: check the units, or omit C"),
+        ({"C": 2.5e-6, "r0": 52.36}, "about 1/1e+03 of it: check the units, or omit C"),
+    ],
+)
+def test_a_contradiction_says_which_unit_or_moment_it_is(
+    known: dict[str, float], cause: str
+) -> None:
+    t, seen = recorded("theta", "psi", seed=8)
+    assert fitted(t, seen, known=LAB | known).failure().endswith(cause)
+
+
+def test_no_faster_spin_meets_a_known_moment() -> None:
+    """Frame numbers instead of seconds make the moments 17,000 times as large."""
+    _, seen = recorded("theta", "phi", "psi", rows=120, noise=0.05, seed=8)
+    for c in (2.5e-3, "0.00250(5)"):
+        failure = fitted(np.arange(120.0), seen, known=LAB | {"C": c}).failure()
+        assert failure.startswith("known C = 0.0025")
+        assert failure.endswith("omit C, or check m, g, s, the unit of t")
+
+
+def test_a_filter_is_said_to_make_the_nutation_smaller() -> None:
+    t, seen = recorded("theta", "psi", rows=242, noise=0.5, seed=8)
+    smooth = {x: np.convolve(np.unwrap(y), np.ones(3) / 3, "valid") for x, y in seen.items()}
+    outcome = fitted(t[1:-1], smooth)
+    (note,) = [x for x in outcome.notes if "a filter makes the nutation" in x]
+    share = float(note.rpartition("nutation ")[2].partition("%")[0]) / 100
+    step = 2 * math.pi * float(t[1]) / outcome.numbers["T_nutation"].value
+    assert share == pytest.approx(step**2 / 3, rel=0.5)
+
+
+@pytest.mark.parametrize("meaning", ["radians", "elevation"])
+def test_another_meaning_of_angles_is_named(meaning: str) -> None:
+    t, seen = recorded("theta", "psi", rows=120, noise=0.1, seed=8)
+    if meaning == "radians":  # read as degrees
+        seen = {x: np.radians(y) for x, y in seen.items()}
+    else:
+        seen["theta"] = math.pi / 2 - seen["theta"]
+    assert meaning in fitted(t, seen).hints[-1]
+
+
+def test_a_known_tilt_that_is_wrong_is_questioned() -> None:
+    t, seen = recorded("psi", rows=120, noise=0.05, seed=8)
+    outcome = fitted(t, seen, known=LAB | {"theta0_deg": 20})
+    assert outcome.hints[-1] == "check theta0, columns, units and axes"
+
+
 @pytest.mark.slow
 def test_known_inputs_that_agree_and_a_nutation_of_a_steady_precession() -> None:
     t, seen = recorded("theta", "psi", seed=8)
