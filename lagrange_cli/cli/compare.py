@@ -119,5 +119,5 @@ def compare_command(
 
 def as_options(remedy: str) -> str:
     """Return the arguments of a remedy as options, such as `--align up=y,left`."""
-    argument = r"\b(align|quaternion_order|rates_frame)="
+    argument = r"\b(align|quaternion_order|euler_sequence|rates_frame)="
     return re.sub(argument, lambda found: f"--{found[1].replace('_', '-')} ", remedy)

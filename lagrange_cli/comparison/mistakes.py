@@ -112,6 +112,10 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
             "thetadot0": math.copysign(rate, rate * folded),
             **(both if folded < 0 else {}),
         },
+        "theta0 is measured from the horizontal": {
+            "theta0_rad": math.pi / 2 - tilt,
+            "thetadot0": -rate,
+        },
         "g points upwards": over,
         # A top with the same a and b, which need be no body: its spin differs by a constant rate.
         "A and C are exchanged": {
@@ -133,11 +137,13 @@ def _of_writing(run: Run) -> Iterator[Cause]:
     for key, given, name, now in (
         ("quaternion", "quaternion_order", "the quaternion is {} and was read as {}", order),
         ("rates", "rates_frame", "the rates are in the frame of {}", how.rates),
+        ("euler", "euler_sequence", "the Euler angles are in the sequence {}", how.euler),
     ):
         if key in run.given:
-            meant: dict[str, Any] = {key: other[now]}
+            then = other.get(now, now.swapcase())
+            meant: dict[str, Any] = {key: then}
             undo = partial(Run._replace, conventions=how._replace(**meant))
-            yield Cause(name.format(other[now], now), undo, remedy=f"{given}={other[now]}")
+            yield Cause(name.format(then, now), undo, remedy=f"{given}={then}")
     flipped = np.array([1.0 if x == "w" else -1.0 for x in order])
     unit = np.radians if how.radians else np.degrees
     changes: dict[str, dict[str, Callable[[Array], Array]]] = {
@@ -149,6 +155,7 @@ def _of_writing(run: Run) -> Iterator[Cause]:
         "angles in degrees were taken as radians, or the reverse": dict.fromkeys(
             (*ANGLES, "euler"), unit
         ),
+        "theta is measured from the horizontal": {"theta": lambda x: math.pi / 2 - x},
         "psi is counted backwards": {"psi": np.negative},
         "phi is counted backwards": {"phi": np.negative},
     }

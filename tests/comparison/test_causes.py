@@ -67,6 +67,7 @@ def bodies(top: Top) -> dict[str, Body]:
         "psidot0 has the wrong sign": start(psidot=-1),
         "thetadot0 has the wrong sign": start(slope=-1),
         "theta0 has the wrong sign": start(-tilt),
+        "theta0 is measured from the horizontal": start(math.pi / 2 - tilt, slope=-1),
         "theta0 in radians was taken as degrees": start(math.radians(tilt)),
         "theta0 in degrees was taken as radians": start(math.degrees(tilt)),
         "g is 0": body._replace(torque=0.0),
@@ -101,6 +102,11 @@ READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
     "phi and psi are exchanged": lambda turn, _: {
         key: angles(turn)[of] for key, of in (("theta", "theta"), ("phi", "psi"), ("psi", "phi"))
     },
+    "theta is measured from the horizontal": lambda turn, _: {
+        **angles(turn),
+        "theta": math.pi / 2 - angles(turn)["theta"],
+    },
+    "the Euler angles are in the sequence XYZ": lambda turn, _: {"euler": turn.as_euler("XYZ")},
     "phi is counted backwards": lambda turn, _: angles(turn, phi=-1),
     "psi is counted backwards": lambda turn, _: angles(turn, psi=-1),
     "the rates are in the frame of space": lambda turn, rates: {
