@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
+from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from ..file_bytes import shown_path, utf8_path
@@ -18,7 +19,8 @@ from ..solver.solve import Motion
 from .compare import COMPARISON_KEYS, LIMIT, Comparison, Convergence
 from .differences import Alignment, Run
 
-_WRONG_NORM = 1e-6
+_WRONG_NORM, _FEW = 1e-6, 0.03
+"""The least distance of a norm from 1 that is said, and the largest share of rows that are few."""
 _COLUMNS = (
     Field("file", "file", one_line, is_text=True),
     Field("step", "step", "{:g}".format),
@@ -113,6 +115,8 @@ def _conclusions(
         remedy = f" ({argument(x.remedy)})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
         yield f"{words}: {x.cause}{remedy}. {error}."
+    elif rows := _few_rows(x, limit):
+        yield rows
     elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (
         found and found.converges
     ):
@@ -122,6 +126,15 @@ def _conclusions(
             hints.append("see which top lagtop fit finds in the file")
         hint = f": {', or '.join(hints)}" if hints else ""
         yield f"None of the known causes explains the error{hint}."
+
+
+def _few_rows(x: Comparison, limit: float) -> str:
+    """Return which rows are off if they are few and the last row is not among them."""
+    wrong = np.flatnonzero(x.error > limit)
+    if not 0 < wrong.size <= _FEW * x.rows or not x.error[-1] <= limit:
+        return ""
+    shown = shortened(", ".join(f"{t:.6g}" for t in x.t[wrong]))
+    return f"The limit is exceeded in only {wrong.size} of {x.rows} rows, at t = {shown}."
 
 
 def sentence(x: Comparison) -> str:
