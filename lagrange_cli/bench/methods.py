@@ -33,10 +33,10 @@ class SlowError(Exception):
     """A run has exceeded its limit of CPU time."""
 
 
-Run = tuple[Sequence[Array] | Array, int | None]
+Sampled = tuple[Sequence[Array] | Array, int | None]
 """The columns theta, phi and psi, or the quaternion w, x, y, z from body to space; and the number
 of evaluations of the right-hand side (of Taylor's method, its steps times its order)."""
-Sample = Callable[[Array, float], Run]
+Sample = Callable[[Array, float], Sampled]
 """A function of increasing times and of a limit of CPU seconds.
 
 It may raise SlowError, or ArithmeticError if the method fails.
@@ -120,7 +120,7 @@ def scipy_special(motion: Motion, _: Any) -> Sample:
     inputs = motion.top.inputs(radians=True)
     start = [float(inputs[x]) for x in ("theta0_rad", "thetadot0", "psidot0")]
 
-    def sample(t: Array, _: float) -> Run:
+    def sample(t: Array, _: float) -> Sampled:
         theta, phi, psi = angles(np.array([[a, b, *start]]), t)[:, 0]
         return [theta, phi + (r0 - b) * t, psi], None
 
@@ -133,7 +133,7 @@ def scipy_method(name: str, motion: Motion, tolerance: float) -> Sample:
 
     start, equations = problem_of(motion.top)
 
-    def sample(t: Array, limit: float) -> Run:
+    def sample(t: Array, limit: float) -> Sampled:
         slope, calls = counted(equations, limit)
         with warnings.catch_warnings(action="ignore"):  # a failure is in the message
             flow = solve_ivp(slope, (0.0, t[-1]), start, name, t, rtol=tolerance, atol=tolerance)
@@ -155,7 +155,7 @@ def rk4(motion: Motion, per_period: int) -> Sample:
     """Return the classical Runge-Kutta method with equal steps between two times."""
     (start, equations), period = problem_of(motion.top), float(motion.T_nutation or 1)
 
-    def sample(t: Array, limit: float) -> Run:
+    def sample(t: Array, limit: float) -> Sampled:
         (f, calls), state, rows = counted(equations, limit), start, []
         for count, h in fixed_steps(t, period / per_period):
             for _ in range(count):
@@ -181,7 +181,7 @@ def taylor(motion: Motion, tolerance: float) -> Sample:
     system = list(zip(names, slope(0.0, names), strict=True))
     integrator = heyoka.taylor_adaptive(system, start, tol=tolerance)
 
-    def sample(t: Array, limit: float) -> Run:
+    def sample(t: Array, limit: float) -> Sampled:
         end, steps = time.process_time() + limit, 0
         integrator.time, integrator.state[:] = 0.0, start
         rows, rest = [start[None]], t[t > 0]
@@ -222,7 +222,7 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
     engine.set_mju_user_warning(warned.append)  # or else MuJoCo writes a file
     rates = np.array([*start[:2], float(top.r0)]) * period
 
-    def sample(t: Array, limit: float) -> Run:
+    def sample(t: Array, limit: float) -> Sampled:
         end, rows = time.process_time() + limit, []
         warned.clear()
         engine.mj_resetData(model, data)

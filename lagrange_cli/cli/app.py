@@ -132,9 +132,11 @@ def _check_epoch() -> None:
 
 def _naming_option(error: LagtopError, params: Sequence[click.Parameter]) -> str:
     """Return a message with the option in place of the key of the error, which it begins with."""
-    text, key = str(error), error.key or ""
-    if text.startswith(f"{key} ") and (option := _options(params).get(key)):
-        text = option + text.removeprefix(key)
+    text, key, options = str(error), error.key or "", _options(params)
+    if text.startswith(f"{key} ") and key in options:
+        text = options[key] + text.removeprefix(key)
+        other = r"(?<= and )\w+(?= are both given)"
+        text = re.sub(other, lambda found: options.get(found[0], found[0]), text)
     return with_options(text, params)
 
 
@@ -146,7 +148,6 @@ def with_options(text: str, params: Sequence[click.Parameter]) -> str:
     for name, option in _options(params).items():
         text = re.sub(rf"\b{name}=(?=[-\w(.])", f"{option} ", text)
         text = re.sub(rf"\b(give|omit) {name}\b(?! =)", rf"\1 {option}", text)
-        text = re.sub(rf"\band {name}\b(?= are both given)", f"and {option}", text)
     return text
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files import rotations
-from .differences import Alignment, Exact, Run, angles_of, errors, sizes, start_of
+from .differences import Alignment, ExactMotion, Run, angles_of, errors, sizes, start_of
 from .mistakes import BACKWARDS, Cause, Undo, mistakes
 
 EXPLAINS = 0.1
@@ -39,7 +39,7 @@ A left-handed frame is a right-handed frame with all axes reversed, except for i
 """
 
 
-def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
+def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
     """Return the cause of an error, and another one that leaves as little, if there is one.
 
     A cause explains an error if it removes nine tenths.  Of those that bring the error below the
@@ -61,7 +61,7 @@ def likely_causes(exact: Exact, run: Run, limit: float) -> list[Cause]:
 class _Search:
     """The search for the causes of the error of a trajectory."""
 
-    def __init__(self, exact: Exact, run: Run) -> None:
+    def __init__(self, exact: ExactMotion, run: Run) -> None:
         self.run, self.given = run, exact
         self.mistakes = mistakes(exact.motion.top, run)
         self.some, self.tilt = cache(self._some), cache(self._tilt)
@@ -171,7 +171,7 @@ def _is_reversed(align: Alignment) -> bool:
     return not align.left and align.up.startswith("-") and align.axis == align.up
 
 
-def _named(align: Alignment, exact: Exact, run: Run) -> Cause:
+def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
     """Return an alignment as a cause."""
     given, words, names = run.align, [align], []
     if align[:3] == given[:3] and align.start and not given.start:

@@ -19,7 +19,7 @@ from ..output.notebook import HasRecord
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 from .causes import likely_causes
-from .differences import CONSERVED, Alignment, Exact, Run, blocks
+from .differences import CONSERVED, Alignment, ExactMotion, Run, blocks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -196,7 +196,7 @@ def compared(
         raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
     if wrong := [step for step in step_sizes or [] if not step > 0]:
         raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
-    exact, steps = Exact(motion), step_sizes or repeat(None)
+    exact, steps = ExactMotion(motion), step_sizes or repeat(None)
     results = [_measured(exact, *x) for x in zip(runs, steps, strict=False)]
     found = convergence(results, limit) if step_sizes else None
     for i, (x, run) in enumerate(zip(results, runs, strict=True)):
@@ -218,7 +218,7 @@ def compared(
     return results, found
 
 
-def _measured(exact: Exact, run: Run, step: float | None) -> Comparison:
+def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
     try:
         parts = [

@@ -135,7 +135,7 @@ class Run(NamedTuple):
         return replace(seen, t=seen.t + begins)
 
 
-class Exact:
+class ExactMotion:
     """The exact motion of a top, or one that follows from it by symmetry.
 
     `space` turns the motion, `body` is a turn before it, and `spin` is more rate of spin.
@@ -195,7 +195,7 @@ def start_of(seen: Observed, exact: dict[str, Array]) -> tuple[float, float] | N
     return phi, psi
 
 
-def blocks(exact: Exact, run: Run) -> Iterator[dict[str, Array]]:
+def blocks(exact: ExactMotion, run: Run) -> Iterator[dict[str, Array]]:
     """Yield the times `t` of some rows and their differences from the exact motion, by name.
 
     `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
@@ -219,7 +219,7 @@ def blocks(exact: Exact, run: Run) -> Iterator[dict[str, Array]]:
         yield {"t": seen.t} | _differences(exact.motion, seen, states, missing)
 
 
-def errors(exact: Exact, run: Run) -> Array:
+def errors(exact: ExactMotion, run: Run) -> Array:
     """Return the error of each row and that of its rates, if they are given; shape (2, n)."""
     found = ([x["error"], x.get("rates", x["error"])] for x in blocks(exact, run))
     return np.concatenate([*found], axis=1)

@@ -18,7 +18,7 @@ from ..files.observed import ORDERS
 from ..names import ANGLES
 from ..solver.solve import solve
 from ..top.top import Top
-from .differences import Alignment, Exact, Run
+from .differences import Alignment, ExactMotion, Run
 
 _GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
 _UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0}
@@ -33,7 +33,7 @@ class Cause(NamedTuple):
     name: str
     undo: Undo | None = None
     """Corrects the trajectory."""
-    exact: Exact | None = None
+    exact: ExactMotion | None = None
     """The motion of the other inputs."""
     align: Alignment | None = None
     remedy: str = ""
@@ -128,7 +128,7 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
     for name, changed in inputs.items():
         turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
         with suppress(LagtopError):  # there is no such top
-            yield Cause(name, exact=Exact(solve(top.replace(**changed)), **turns))
+            yield Cause(name, exact=ExactMotion(solve(top.replace(**changed)), **turns))
 
 
 def _of_writing(run: Run) -> Iterator[Cause]:

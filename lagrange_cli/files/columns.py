@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 SKIPPED = "_"
 """The name of an ignored column."""
-EXAMPLE = "for example columns=t,quaternion ('t [ms]' for times in ms)"
+NAMING = "for example columns=t,quaternion ('t [ms]' for times in ms)"
 """An example of names of columns, for messages."""
 
 
@@ -197,7 +197,7 @@ def found_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
         lacks_z = {"x", "y"} <= {*names} and "z" not in names
-        remedy = "z is missing" if lacks_z else f"name them, {EXAMPLE}"
+        remedy = "z is missing" if lacks_z else f"name them, {NAMING}"
         raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
     plain = [plain_name(name)[0] for name in names]
     for key, quantity in found.items():

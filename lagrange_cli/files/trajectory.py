@@ -21,7 +21,7 @@ from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_pat
 from ..names import repeated
 from ..top.ranges import ListedPoints
 from .columns import (
-    EXAMPLE,
+    NAMING,
     SKIPPED,
     converted,
     expanded,
@@ -62,7 +62,7 @@ class Trajectory:
             raise LagtopError(wrong, "columns")
         names = table.headings if columns is None else columns
         if names is None:
-            remedy = f"name its {table.width} columns, {EXAMPLE}"
+            remedy = f"name its {table.width} columns, {NAMING}"
             raise DataError(f"{table.name} has no header: {remedy}")
         self.names = names
         try:

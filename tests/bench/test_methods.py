@@ -13,7 +13,7 @@ from lagtop import LagtopError, Top, solve
 from scipy.integrate import solve_ivp
 
 from lagrange_cli.bench.measure import measure, task_of
-from lagrange_cli.bench.methods import METHODS, Run, SlowError, fixed_steps
+from lagrange_cli.bench.methods import METHODS, Sampled, SlowError, fixed_steps
 from lagrange_cli.bench.stability import motions
 from lagrange_cli.bench.work_precision import bench
 
@@ -29,7 +29,7 @@ ERRORS = {
 PACKAGES = {"Taylor": "heyoka", "MuJoCo-RK4": "mujoco", "MuJoCo-Euler": "mujoco"}
 
 
-def run(name: str, setting: Any, times: Any, limit: float = 60.0) -> Run:
+def run(name: str, setting: Any, times: Any, limit: float = 60.0) -> Sampled:
     """Return the run of a method in the scene of this file."""
     pytest.importorskip(PACKAGES.get(name, "numpy"))
     return METHODS[name].prepare(MOTION, setting)(times, limit)

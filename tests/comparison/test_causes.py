@@ -16,7 +16,7 @@ from engines import Array, Body, dop853, wxyz
 from lagtop import Top, compare
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.comparison.differences import Exact, Run
+from lagrange_cli.comparison.differences import ExactMotion, Run
 from lagrange_cli.comparison.mistakes import mistakes
 from lagrange_cli.files.observed import Conventions
 from lagrange_cli.files.rotations import angle_between
@@ -191,7 +191,7 @@ def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
 
 
 @cache
-def tried() -> dict[str, Exact]:
+def tried() -> dict[str, ExactMotion]:
     """Return the motions that the search tries."""
     given = Run({"t": T[:, np.newaxis], "quaternion": run("toy")[0].as_quat()}, Conventions())
     return {x.name: x.exact for x in mistakes(TOPS["toy"], given) if x.exact}

@@ -108,7 +108,7 @@ def test_a_steady_rate_for_a_rate_of_phi(lagtop: Lagtop, word: str, rate: float,
 def test_one_of_each_pair(tmp_path: Path, lagtop: Lagtop) -> None:
     whole = ["--m", "1", "--C", "1", "--s", "1", "--g", "1"]
     both = lagtop("solve", "--A", "1", "--A-cm", "2", *whole)
-    assert_one_line(both, 2, "--A-cm and A are both given")
+    assert_one_line(both, 2, "--A-cm and --A are both given")
     with pytest.raises(LagtopError, match="A_cm and A are both given"):
         sweep(A=1, A_cm=1, m=1, C=1, s=1, g=1)
     path = tmp_path / "scene.toml"
