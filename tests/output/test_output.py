@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -124,6 +125,14 @@ def test_uncertainties_are_rounded_as_the_particle_data_group_does() -> None:
         assert uncertain_text(5.0, std) == shown
     assert uncertain_text(0.0, 0.02) == "0.000(20)"
     assert uncertain_text(2e300, 1e295) == "2.000000(10)e+300"
+
+
+def test_a_motion_is_a_table_in_a_notebook() -> None:
+    table = ElementTree.fromstring(solve(Top(theta0_deg=0))._repr_html_())
+    assert [x.text for x in table.iter("caption")] == ["sleeping"]
+    rows = {row[0].text: [x.text for x in row] for row in table.iter("tr")}
+    assert rows["m"] == ["m", "m", "mass", "1587.0", "mass"]
+    assert "path" not in rows  # it is None
 
 
 # files
@@ -239,6 +248,7 @@ def test_data_do_not_control_a_terminal(
     monkeypatch.setattr("sys.stdout", stdout)
     monkeypatch.setattr("lagrange_cli.output.destination.is_screen", lambda _: is_screen)
     Output("-", fmt).rows([{"id": hostile, "r0": 1.0}], ["id", "r0"])
+    Output("-", fmt).text(hostile if fmt == "csv" else "")
     text = stdout.buffer.getvalue().decode()
     assert (hostile in text) is (fmt == "csv" and not is_screen)
     assert "evil" in text

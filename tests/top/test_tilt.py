@@ -74,6 +74,7 @@ def test_a_tilt_in_doubles() -> None:
     )
     assert Tilt(None, Fraction(0)).doubles() == (0, 1, 0, 1)
     assert Tilt.of(Top(theta0_rad=1).as_dict()) == Tilt(None, Fraction(1))
+    assert Top(theta0_rad=1).inputs()["theta0_deg"] == pytest.approx(math.degrees(1), rel=1e-15)
 
 
 def test_a_tilt_beyond_pi_is_refused() -> None:

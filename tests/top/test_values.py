@@ -20,6 +20,7 @@ from uncertainties import ufloat
 from lagrange_cli.top.ranges import POINTS_AT_ONCE, EvenPoints
 from lagrange_cli.top.values import (
     Value,
+    parse_number_or_span,
     parse_range,
     parse_value,
     parse_values,
@@ -192,3 +193,9 @@ def test_bad_ranges(text: str, wrong: str) -> None:
     with pytest.raises(LagtopError) as found:
         parse_values(text)
     assert str(found.value).startswith(wrong)
+
+
+def test_a_span_goes_from_the_smaller_to_the_larger_end() -> None:
+    assert str(parse_number_or_span("log:1:2.5")) == "1 to 2.5"
+    with pytest.raises(LagtopError, match="whose first end is the smaller one, got '2:2'"):
+        parse_number_or_span("2:2")
