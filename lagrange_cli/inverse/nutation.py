@@ -124,7 +124,7 @@ def _faults(found: Minimum, *, is_even: bool) -> list[str]:
         ratio = values["b"] / (values["r0"] or math.inf)
         std = found.std("b") / abs(values["r0"] or math.inf)
         is_free = "phi" in problem.recording.angles and is_even
-        if not -4 * std < ratio < 2 + 4 * std and not (is_free and abs(ratio) < 4 * std):
+        if not -3 * std < ratio < 2 + 3 * std and not (is_free and abs(ratio) < 3 * std):
             faults.append(f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2")
     return faults
 
