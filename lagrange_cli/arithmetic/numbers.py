@@ -7,7 +7,7 @@ from fractions import Fraction
 from operator import index
 from typing import Any
 
-Number = float | Fraction
+Real = float | Fraction
 """An input: a double, or the exact value of a decimal."""
 
 _NOT_REAL = (bool, str, bytes, bytearray, complex)
@@ -22,7 +22,7 @@ def is_real(value: object) -> bool:
     return is_scalar and getattr(dtype, "kind", None) in {"i", "u", "f"}
 
 
-def unrounded(value: Any, nearest: float) -> Number:
+def unrounded(value: Any, nearest: float) -> Real:
     """Return a finite real number as its nearest double if that is exact, else as a fraction.
 
     Numbers of a type without a ratio of integers are rounded.

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import ArrayLike
 
-from ..arithmetic.numbers import Number, angle_unit
+from ..arithmetic.numbers import Real, angle_unit
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import check_names
@@ -46,7 +46,7 @@ WINDOW = np.array([1.35, 1.0])
 class Options(NamedTuple):
     """What a picture shows, and how; by default a picture chooses its own times, camera and map."""
 
-    t_max: Number | None = None
+    t_max: Real | None = None
     radians: bool = False
     camera: tuple[float, float] | None = None
     """Azimuth and elevation (radians)."""
@@ -86,7 +86,7 @@ def tilt_period(motion: Motion) -> float | None:
     return None if motion.theta_min_deg == motion.theta_max_deg else motion.T_nutation
 
 
-def last_time(motion: Motion, t_max: Number | None, least: float, most: float) -> float:
+def last_time(motion: Motion, t_max: Real | None, least: float, most: float) -> float:
     """Return the last time of a picture: t_max, or else one turn of the precession.
 
     The turn counts as `least` to `most` nutation periods.  On the separatrix it is the time of the

@@ -27,7 +27,7 @@ from ..arithmetic.enclosures import (
     settled,
     sign,
 )
-from ..arithmetic.numbers import Number
+from ..arithmetic.numbers import Real
 from ..arithmetic.text import NumberText, double_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError
@@ -263,7 +263,7 @@ class ProvedTable:
         Times are the doubles used by `lagtop table` or, if digits are requested, decimals.
         """
 
-        def texts(time: Number) -> list[NumberText]:
+        def texts(time: Real) -> list[NumberText]:
             row = self.row(Fraction(time if self.digits else float(time)))
             values = [double_text(x.value) if self.digits is None else x.value for x in row]
             return [*map(NumberText, values), *(x.radius for x in row if radii)]

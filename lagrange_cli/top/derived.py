@@ -22,7 +22,7 @@ from ..arithmetic.enclosures import (
     settled,
     sign_to,
 )
-from ..arithmetic.numbers import Number
+from ..arithmetic.numbers import Real
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .values import STEADY_WORDS
@@ -84,7 +84,7 @@ def rational(x: Fraction | float) -> fmpq:
     return fmpq(*x.as_integer_ratio())
 
 
-def moment(inputs: Mapping[str, Number]) -> Fraction:
+def moment(inputs: Mapping[str, Real]) -> Fraction:
     """Return the moment about the pivot, A = A_cm + m s^2 (Steiner's theorem), exactly.
 
     Raises LagtopError for a negative A_cm.
@@ -95,7 +95,7 @@ def moment(inputs: Mapping[str, Number]) -> Fraction:
     return A_cm + m * s**2
 
 
-def spin(inputs: Mapping[str, Number]) -> float:
+def spin(inputs: Mapping[str, Real]) -> float:
     """Return the total rate about the axis, r0 = phi' + psi' cos(theta0) (4,1), as a double."""
     phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
     tilt = Tilt.of(inputs)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.numbers import Number
+from ..arithmetic.numbers import Real
 from ..errors import LagtopError, check_type
 from .inputs import (
     BODY,
@@ -52,7 +52,7 @@ class Given(NamedTuple):
         return {name: float(x.std) for name, x in self.values.items() if x.std is not None}
 
     @property
-    def body(self) -> Mapping[str, Number]:
+    def body(self) -> Mapping[str, Real]:
         """The body of the worked example, in SI or CGS."""
         return BODY_IN_SI if self.si else BODY
 
@@ -132,7 +132,7 @@ def gather(
 
 
 def read_scene(
-    path: str | os.PathLike[str], given: Mapping[str, Number] | None = None, *, exact: bool = False
+    path: str | os.PathLike[str], given: Mapping[str, Real] | None = None, *, exact: bool = False
 ) -> Top:
     """Return the top of a scene file; `given` inputs override those of the file.
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from ..arithmetic.numbers import Number, is_real
+from ..arithmetic.numbers import Real, is_real
 from ..arithmetic.text import quoted
 from ..errors import LagtopError, MixedBodyWarning
 
@@ -127,7 +127,7 @@ def warn_of(missing: Mapping[str, float], stacklevel: int) -> None:
     warnings.warn(remark_on(missing, [arguments]), MixedBodyWarning, stacklevel)
 
 
-def checked_double(key: str, value: Number) -> float:
+def checked_double(key: str, value: Real) -> float:
     """Return an input rounded to the nearest double.
 
     Raises LagtopError beyond the range of doubles, and for anything but a real number.

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from ..arithmetic.enclosures import pi_to, text_of
-from ..arithmetic.numbers import Number, unit_in_radians, unrounded
+from ..arithmetic.numbers import Real, unit_in_radians, unrounded
 from ..errors import LagtopError
 from .inputs import (
     DECLARED,
@@ -37,8 +37,8 @@ _OTHER_END = {"s": "a low centre of mass", "g": "upward gravity"}
 class BodyAndStart(NamedTuple):
     """The inputs of a top by key: m, A, C, s and g of its body, and the others of its start."""
 
-    body: dict[str, Number]
-    start: dict[str, Number]
+    body: dict[str, Real]
+    start: dict[str, Real]
 
 
 _EXAMPLE: Any = None
@@ -78,20 +78,20 @@ class Top:
     (True, None, 1587.0, 1587.0)
     """
 
-    m: Number = _EXAMPLE
-    A: Number = _EXAMPLE
-    C: Number = _EXAMPLE
-    s: Number = _EXAMPLE
-    g: Number = _EXAMPLE
-    r0: Number = _EXAMPLE
-    theta0_deg: Number | None = None
-    thetadot0: Number = _EXAMPLE
+    m: Real = _EXAMPLE
+    A: Real = _EXAMPLE
+    C: Real = _EXAMPLE
+    s: Real = _EXAMPLE
+    g: Real = _EXAMPLE
+    r0: Real = _EXAMPLE
+    theta0_deg: Real | None = None
+    thetadot0: Real = _EXAMPLE
     psidot0: Any = None
-    theta0_rad: Number | None = None
+    theta0_rad: Real | None = None
     steady_word: str | None = field(default=None, init=False)
     """The word that was given for psidot0, which then is the nearest double; None for a number."""
-    A_cm: Number | None = None
-    phidot0: Number | None = None
+    A_cm: Real | None = None
+    phidot0: Real | None = None
 
     def __new__(cls, *values: Any, **inputs: Any) -> Self:
         """Return a new top.  Raises TypeError for an unknown input with the name that was meant."""
@@ -226,7 +226,7 @@ INPUTS = tuple(name for name in Top.__slots__ if name != "steady_word")
 """The keys of all inputs of a top, with the alternatives to A and r0."""
 
 
-def _checked(name: str, value: Any) -> Number:
+def _checked(name: str, value: Any) -> Real:
     """Return an input as a double or as a fraction.  Raises LagtopError for an impossible one."""
     nearest = checked_double(name, value)
     if not math.isfinite(nearest):
@@ -252,13 +252,13 @@ def _checked(name: str, value: Any) -> Number:
     return number
 
 
-def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:
+def _require(fine: bool, name: str, wanted: str, value: Real, remedy: str = "") -> None:
     if not fine:
         hint = f" ({remedy})" if remedy else ""
         raise LagtopError(f"{name} must be {wanted}, got {_shown(value)}{hint}", name)
 
 
-def _shown(value: Number) -> str:
+def _shown(value: Real) -> str:
     """Return a number as text, with enough digits to tell 180.00000000000000000001 from 180."""
     is_double = isinstance(value, float) or (abs(value) <= _LARGEST and float(value) == value)
     return str(float(value)) if is_double else text_of(Fraction(value), 50)
