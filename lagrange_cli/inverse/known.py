@@ -121,7 +121,8 @@ def estimates(
         if "r0" in known:
             r0 = np.full_like(r0, known["r0"][0])
         elif spins:
-            r0 = r0 + tied_shift(float(r0[0]), float((v["b"] * moment)[0]), known["C"], turn)
+            wanted = float((v["b"] * moment)[0]) / known["C"][0]
+            r0 = _nearest(r0, wanted, turn, most_turns(known["C"]))
         found["C"] = v["b"] * moment / r0
     return found
 
@@ -147,29 +148,36 @@ def compared(
     if name == "A" and WEIGHT <= known.keys():
         added = given[0] + known["m"][0] * known["s"][0] ** 2
         if abs(added - found[0]) <= CONTRADICTS * math.hypot(given[1], found[1]):
-            return far, False, f"{text}: A is about the pivot, and this is A_cm"
+            return far, False, f"{text}: it is about the mass centre, so give A_cm instead"
+    ratio = given[0] / found[0] if found[0] else math.inf
     for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
-        if abs(given[0] / factor / found[0] - 1) < _ROUGHLY:
+        if abs(ratio / factor - 1) < _ROUGHLY:
             times = f"{factor:.3g} times as large" if factor > 1 else f"1/{1 / factor:.3g} of it"
             return far, False, f"{text}, about {times}: check the units, or omit {name}"
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
-    if WEIGHT <= known.keys() and abs(math.log(abs(given[0] / found[0]))) > 1:
-        others.append("the unit of t")
+    others += ["the unit of t"] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
     check = f", or check {', '.join(others)}" if others and name in {"A", "A_cm", "C"} else ""
     return far, False, f"{text}: omit {name}{check}"
 
 
-def tied_shift(r0: float, product: float, C: tuple[float, float], turn: float) -> float:
-    """Return the whole turns per row that bring r0 next to C r0 / C, the spin that a known C has.
+def most_turns(C: tuple[float, float]) -> float:
+    """Return the turns per row up to which a known C, with its uncertainty, selects a spin.
 
-    They are 0 if there are too many: then another spin would meet any C.
+    Among faster spins, one would meet any C.
     """
-    wanted = product / C[0]
-    shift = turn * round((wanted - r0) / turn) if turn else 0.0
-    most = min(_MOST_TURNS, abs(C[0]) / (_APART * C[1]) if C[1] else math.inf)
-    return shift if abs(wanted) <= most * turn else 0.0
+    return min(_MOST_TURNS, abs(C[0]) / (_APART * C[1]) if C[1] else math.inf)
 
 
-def _nearest(rate: Array, given: float, turn: float) -> Array:
+def whole_turns(rate: float, wanted: float, turn: float, most: float = math.inf) -> float:
+    """Return the whole turns per row that bring a rate next to a wanted one.
+
+    They are 0 if the wanted rate makes more than `most` turns per row.
+    """
+    if not turn or abs(wanted) > most * turn:
+        return 0.0
+    return turn * round((wanted - rate) / turn)
+
+
+def _nearest(rate: Array, given: float, turn: float, most: float = math.inf) -> Array:
     """Return rates that are shifted together by whole turns to be nearest to a given one."""
-    return rate - turn * round((float(rate[0]) - given) / turn) if turn else rate
+    return rate + whole_turns(float(rate[0]), given, turn, most)

@@ -19,7 +19,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError
 from .checks import CHANCE, LARGEST, Residuals
-from .known import Known, compared, estimates, scaled_known, tied_shift, time_power
+from .known import Known, compared, estimates, most_turns, scaled_known, time_power, whole_turns
 from .motions import STATE
 from .nutation import nutating_outcome
 from .outcome import FAILED, Outcome
@@ -132,7 +132,7 @@ def best_fit(
         )
         lost = max(rest.lost(frequency) for rest in outcome.residuals.values())
         if lost > _FILTERED:
-            note += f"; a filter makes the nutation {lost:.2%} smaller, so fit the raw data"
+            note += f"; if a filter did that, the nutation is {100 * lost:.2g} % too small"
         outcome.notes.append(note)
     return outcome
 
@@ -328,14 +328,14 @@ def _constrained(
     problem = Problem(old.recording, known, old.sizes, turns=old.turns)
     moment = v.get("A", v.get("m", math.nan) * v.get("g", 1) * v.get("s", 1) * 2 / v["a"])
     if turn and "r0" in old.names:
+        wanted, most = v["r0"], math.inf
         if "r0" in known:
-            shift = turn * round((known["r0"][0] - v["r0"]) / turn)
+            wanted = known["r0"][0]
         elif "phidot0" in known:
             wanted = known["phidot0"][0] + v["psidot0"] * math.cos(v["theta0"])
-            shift = turn * round((wanted - v["r0"]) / turn)
-        else:
-            tied = problem.is_tied
-            shift = tied_shift(v["r0"], v["b"] * moment, known["C"], turn) if tied else 0.0
+        elif problem.is_tied:
+            wanted, most = v["b"] * moment / known["C"][0], most_turns(known["C"])
+        shift = whole_turns(v["r0"], wanted, turn, most)
         problem.turns += shift
         v["r0"] += shift
     x = np.array([problem.known.get(name, v.get(name, 0.0)) for name in problem.names])
