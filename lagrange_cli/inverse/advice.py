@@ -31,8 +31,8 @@ _WINDOWS = (12, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
-_FEW = 0.03
-"""Largest share of rows that are outliers."""
+_FEW, _LEAST_TIMES = 0.03, 0.25
+"""Largest share of rows that are outliers, and least share of times that differ."""
 _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
 """If windows are not good: standard deviations of a loss of spin, the least share of it in either
 half, and the residual of the spin over that of the whole recording."""
@@ -46,6 +46,8 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     yield from _frames(recording, body)
     if not outcome.misfits:
         return
+    if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
+        yield f"t has {seen} values in {recording.t.size} rows: give it more digits"
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if 0 < len(wrong) <= _FEW * recording.t.size:
         rest = recording.rows(~np.isin(recording.t, [*wrong]))
@@ -55,10 +57,8 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
-    yield from _other_angles(recording, body)
-    both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
-    if both and _is_good(replace(recording, sigma={}).exchanged, known):
-        yield "phi and psi are exchanged: here phi is the spin and psi the precession"
+    others = _other_angles(replace(recording, sigma={}))
+    yield from (words for other, words in others if _is_good(other, known))
     yield from _decays(recording, body, outcome)
     if outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]:
         yield "a recording must last for a period of the nutation"
@@ -105,20 +105,23 @@ def _calmness(recording: Recording) -> float:
     return sum(math.log(x) for x in noise_of(signals, frequency, recording).values())
 
 
-def _other_angles(recording: Recording, known: Known) -> Iterator[str]:
-    """Yield another meaning of the angles of a recording in which a top explains them."""
-    angles, free = recording.angles, replace(recording, sigma={})
+def _other_angles(recording: Recording) -> Iterator[tuple[Recording, str]]:
+    """Yield the recording with another meaning of its angles, and this meaning in words."""
+    angles = recording.angles
     if recording.kind != "angles":
         return
     larger = {x: np.degrees(y) for x, y in angles.items()}
     if all(np.nanmax(np.abs(x)) <= 2 * np.pi for x in larger.values()):
         wrapped = {x: y if x == "theta" else within_half_turn(y) for x, y in larger.items()}
-        if _is_good(replace(free, angles=wrapped), known):
-            yield "the angles are in radians: name their columns so, as theta_rad"
+        words = "the angles are in radians: name their columns so, as theta_rad"
+        yield replace(recording, angles=wrapped), words
     if "theta" in angles and np.nanmax(angles["theta"]) <= np.pi / 2:
         from_horizontal = {**angles, "theta": np.pi / 2 - angles["theta"]}
-        if _is_good(replace(free, angles=from_horizontal), known):
-            yield "theta is measured from the horizontal: name its column elevation"
+        words = "theta is measured from the horizontal: name its column elevation"
+        yield replace(recording, angles=from_horizontal), words
+    if {"phi", "psi"} <= angles.keys():
+        words = "phi and psi are exchanged: here phi is the spin and psi the precession"
+        yield recording.exchanged, words
 
 
 def release(recording: Recording) -> int:

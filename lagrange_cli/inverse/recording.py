@@ -26,8 +26,7 @@ CHANNELS = {
 }
 """Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
 about the axis."""
-LEAST_ROWS, _LEAST_TIMES = 12, 0.25
-"""Least number of rows, and the least number of different times over it."""
+LEAST_ROWS = 12
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
 _UNEVEN = 0.05
@@ -253,8 +252,6 @@ def recording_of(
     order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
     if not 1e-60 < (span := float(t[order[-1]] - t[order[0]])) < 1e60:
         raise DataError(f"{where}: t must span 1e-60 to 1e+60, got {span:g}")
-    if (seen := np.unique(t).size) < _LEAST_TIMES * t.size:
-        raise DataError(f"{where}: t has {seen} values in {t.size} rows: give it more digits")
     raw = Recording("", t, 0.0, kind, angles, {}, position)
     unit = unit_in_radians(radians=conventions.radians)
     spread = {name: x * unit for name, x in _sigma(raw, sigma).items()}
