@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 import click
@@ -103,7 +102,7 @@ def compare_command(
         results, found = compared(motion, trajectories, max_error, step_sizes)
         if top.scene is None and not top.inputs:
             complain("Warning: no scene and no inputs: compared with the worked example")
-        return comparison_report(motion, results, found, max_error, as_options)
+        return comparison_report(motion, results, found, max_error)
 
     def draw(report: Report) -> Figure:
         from ..plot.reports import draw_errors
@@ -115,9 +114,3 @@ def compare_command(
     if failed:
         count, names = len(report.rows), shortened(", ".join(failed), 100)
         raise SomeFailedError(f"{len(failed)} of {count} trajectories not fine: {names}")
-
-
-def as_options(remedy: str) -> str:
-    """Return the arguments of a remedy as options, such as `--align up=y,left`."""
-    argument = r"\b(align|quaternion_order|euler_sequence|rates_frame)="
-    return re.sub(argument, lambda found: f"--{found[1].replace('_', '-')} ", remedy)

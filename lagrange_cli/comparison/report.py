@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -82,24 +82,21 @@ def comparison_report(
     results: Sequence[Comparison],
     found: Convergence | None,
     limit: float = LIMIT,
-    argument: Callable[[str], str] = str,
 ) -> Report:
-    """Return the report on trajectories; `argument` writes a remedy such as `align=start`."""
+    """Return the report on trajectories."""
     shown = [x for x in _COLUMNS if any(getattr(row, x.key) is not None for row in results)]
     conditions = {
         "scene": motion.top.as_text(),
         "regime": motion.regime,
         "errors": f"radians, for rates relative; greatest over all rows; fine up to {limit:g}",
     }
-    lines = [line for x in results for line in _conclusions(x, limit, found, argument)]
+    lines = [line for x in results for line in _conclusions(x, limit, found)]
     if found is not None:
         lines.append(found.sentence)
     return Report(conditions, fields_of([*COMPARISON_KEYS], *shown), results, lines)
 
 
-def _conclusions(
-    x: Comparison, limit: float, found: Convergence | None, argument: Callable[[str], str]
-) -> Iterator[str]:
+def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iterator[str]:
     if x.columns:
         yield f"Columns: {x.columns}." + f" Not used: {x.unused}." * bool(x.unused)
     yield f"{sentence(x)}."
@@ -112,7 +109,7 @@ def _conclusions(
     if x.cause is not None:
         words = (x.explained or "").capitalize() + " cause" * (x.explained == "most likely")
         words = "Partly explained" if x.explained == "partly" else words
-        remedy = f" ({argument(x.remedy)})" if x.remedy else ""
+        remedy = f" ({x.remedy})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
         yield f"{words}: {x.cause}{remedy}. {error}."
     elif rows := _few_rows(x, limit):
