@@ -47,7 +47,9 @@ FILMS = "gif", "mp4"
 @opt.option("--key", metavar="KEY", help="Key of `map`.  [default: mean_precession_rate]")
 @opt.option("--x", metavar="RANGE", help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
 @opt.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0]")
-@opt.option("--camera", metavar="AZ,EL", help="Azimuth and elevation, deg.  [default: in front]")
+@opt.option(
+    "--camera", metavar="AZ,EL", help="Azimuth and elevation in deg, or rad.  [default: in front]"
+)
 @opt.option("--title", metavar="TEXT", help="Title of the picture, or '' for none.")
 @opt.option("--dark", is_flag=True, help="Dark background.")
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")

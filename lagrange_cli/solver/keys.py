@@ -255,14 +255,14 @@ TEXTBOOK_KEYS = [x for x in FURTHER_KEYS if NUMBERS[x].group.startswith("Steady"
 """The keys of the elementary theory: they depend only on the body, the spin and the tilt."""
 TEXT_KEYS = ("regime", "path", "remark")
 """The keys of a record whose values are words."""
-GIVEN = {
+INPUT_KEYS = {
     f"{name}_deg" if name == TILT else name: Key("Inputs", x.symbol, x.name, x.unit)
     for name, x in DECLARED.items()
     if name in NINE
 }
 """The declaration of each input by key, the tilt in degrees."""
 KEYS = (
-    GIVEN
+    INPUT_KEYS
     | {"regime": Key("Constants", "", "regime"), "path": Key("Constants", "", "path of the axis")}
     | {name: NUMBERS[name] for name in NUMBER_KEYS}
     | {"remark": Key("Remark", "", "special properties of the motion, if any")}
@@ -276,14 +276,16 @@ def key_of(word: str, *, radians: bool = False) -> str:
     The key of an uncertainty, such as `T_std`, is that of its number with `_std`.
     """
     symbol, std, _ = word.partition("_std")
-    named = [name for name, key in (GIVEN | NUMBERS).items() if symbol and key.symbol == symbol]
+    named = [
+        name for name, key in (INPUT_KEYS | NUMBERS).items() if symbol and key.symbol == symbol
+    ]
     is_key = unit_name(degree_name(symbol), radians=radians) in all_keys(radians=radians)
     return word if is_key or len(named) != 1 else unit_name(named[0], radians=radians) + std
 
 
 def record_keys(*, radians: bool = False) -> list[str]:
     """Return all keys of a record in their order."""
-    names = [*GIVEN, "regime", *NUMBER_KEYS, "path", "remark"]
+    names = [*INPUT_KEYS, "regime", *NUMBER_KEYS, "path", "remark"]
     return [unit_name(name, radians=radians) for name in names]
 
 

@@ -50,7 +50,7 @@ _TINY = 5e-324
 """The smallest argument that is not 0."""
 np.empty(2**19)  # glibc keeps freed memory from now on: pages are not faulted again in each call
 Index = slice | NDArray[np.intp]
-Evaluated = Callable[[Array, float], Iterator[tuple[Index, dict[str, Any]]]]
+ItemsAt = Callable[[Array, float], Iterator[tuple[Index, dict[str, Any]]]]
 """A function of times and of max |t| that yields the items of formulas at some times, by index.
 
 Among them are the parts of X and Y, up to a common positive factor.  No real part is negative.
@@ -298,7 +298,7 @@ class Sampler:
         self.known |= {"of_X": of_X, "of_Y": of_Y}
         """What formulas need at any time."""
         if isinstance(of, Nutation):
-            self.parts: Evaluated = ThetaParts(of).at
+            self.parts: ItemsAt = ThetaParts(of).at
         else:
             constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
             self.parts = partial(swing_parts, constants, self.tilt)

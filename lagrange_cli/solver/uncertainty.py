@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ..arithmetic.enclosures import rounded
 from ..errors import OutOfRangeError
 from .derivatives import DIFFERENTIABLE, Derivatives, moved
-from .keys import GIVEN, TEXT_KEYS, degree_name
+from .keys import INPUT_KEYS, TEXT_KEYS, degree_name
 from .solve import Motion
 
 _CONTEXT = Context(prec=40)
@@ -61,7 +61,7 @@ class FirstOrder:
     def has(self, key: str) -> bool:
         """Return whether a key is an input, or a number of the motion with derivatives."""
         name = degree_name(key)
-        return name in GIVEN or (name in DIFFERENTIABLE and self.motion.has(name))
+        return name in INPUT_KEYS or (name in DIFFERENTIABLE and self.motion.has(name))
 
     def slope(self, key: str, name: str) -> Fraction | None:
         """Return the derivative of a key or input by a given input, or None."""
