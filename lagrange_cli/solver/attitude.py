@@ -80,7 +80,7 @@ class Nutation:
         """K'/K, or None if k = 0."""
         self.hyperbolic = self.ratio is not None and float(self.ratio.mid()) < 1
         """Whether K > K'."""
-        self.bend = of["swing"] * of["narrow"] / 2
+        self.bend = of["height"] * of["narrow"] / 2
         """-u'' at u1."""
         self.sides = _sides(facts, of, of["K_prime"] if self.hyperbolic else of["K"])
         """The constants of X and of Y."""
@@ -235,12 +235,12 @@ def _sides(facts: Facts, of: Names, unit: arb) -> tuple[Side, Side]:
 
     For X, sn^2 F = (1 + u2)/(1 + u1).  For Y, sn^2 F = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
     """
-    swing, wide, low = of["swing"], of["wide"], 1 - of["u2"]
+    height, wide, low = of["height"], of["wide"], 1 - of["u2"]
     far = wide - of["a"] * low  # a (u3 - 1)
     found = []
     for over_pole, momentum, sine2, cosine2, size2 in (
-        (facts.over_bottom, facts.plus, 1 + of["u2"], swing, 1 + of["u1"]),
-        (facts.over_top, facts.minus, (1 - of["u1"]) * wide, swing * far, low * of["k_prime"]),
+        (facts.over_bottom, facts.plus, 1 + of["u2"], height, 1 + of["u1"]),
+        (facts.over_top, facts.minus, (1 - of["u1"]) * wide, height * far, low * of["k_prime"]),
     ):
         amplitude = arb.atan2(root(sine2), root(cosine2))
         F = acb.elliptic_f(acb(amplitude), acb(of["m_k_prime"])).real

@@ -41,7 +41,7 @@ class Explained(NamedTuple):
 
     name: str
     kind: str
-    """`record`, `on request` or `column`."""
+    """`record`, `further` or `column`."""
     symbol: str
     meaning: str
     unit: str
@@ -69,7 +69,7 @@ def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[
     keys = shown_keys(radians=radians, named=named, requested=True)
     columns = shown_columns(radians=radians, named=named)
     return [
-        *(row(name, "record" if name in of_record else "on request", keys[name]) for name in keys),
+        *(row(name, "record" if name in of_record else "further", keys[name]) for name in keys),
         *(row(name, "column", columns[name]) for name in columns),
     ]
 

@@ -12,7 +12,7 @@ Formulas use names of keys and inputs, without the unit of an angle, and the fun
 printed one, the form that is evaluated follows after `~`.  It uses the distances of the roots,
 which are finite without torque, and exactly 0 if two roots coincide:
 
-    swing = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1)
+    height = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1)
 
 `where` names lines of the last group.  That group also has the numbers that only remarks and
 `Motion.swing` need.  Equation numbers are Chrapan's, for release from rest.
@@ -90,7 +90,7 @@ f_upright | f(1) | u'² of (4,9) upright | 1/time² | (4,9)
 f_hanging | f(-1) | u'² of (4,9) hanging | 1/time² | (4,9)
    | -(momentum_constant + b)**2 ~ -beta_plus_b**2
 f_slope_u1 | f'(u1) | slope of (4,9) at u1 | 1/time² | (4,9)
-   | -a*(u1 - u2)*(u3 - u1) ~ -swing*narrow
+   | -a*(u1 - u2)*(u3 - u1) ~ -height*narrow
 u2_criterion | a u2 u3 | criterion for the sign of u2 | 1/time² | (4,12)
    | a*u2*u3 ~ u2*(wide + a*u2)
 spin_share | 1 - C/2A | steady share of the spin | | (6,1) | 1 - C/(2*A)
@@ -154,9 +154,9 @@ T_nutation_elementary | T elementary | nutation of a fast top | time | 2πA/(C r
    | 2*pi*A/(C*abs(r0)) | if r0 is not 0
 # where
 P | | mean of (β - b)/(1 - u), times K | | (3,8)
-   | (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2) ~ over_pole(-1)
+   | (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2) ~ pole_integral(-1)
 Q | | mean of (β + b)/(1 + u), times K | | (3,8)
-   | (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2) ~ over_pole(1)
+   | (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2) ~ pole_integral(1)
 U | | cos ϑ half a period after the start | |
    | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))
    ~ u2 + (u1 - cos(theta0))*wide/(wide + a*(u2 - cos(theta0)))
@@ -250,7 +250,7 @@ _FIRST_FURTHER = list(NUMBERS).index("energy_without_spin")
 NUMBER_KEYS = list(NUMBERS)[:_FIRST_FURTHER]
 """The numbers of a record, in order; `regime` precedes them, `path` and `remark` follow."""
 FURTHER_KEYS = list(NUMBERS)[_FIRST_FURTHER:]
-"""The numbers on request, in order."""
+"""The further numbers, in order."""
 TEXTBOOK_KEYS = [x for x in FURTHER_KEYS if NUMBERS[x].group.startswith("Steady")]
 """The keys of the elementary theory: they depend only on the body, the spin and the tilt."""
 TEXT_KEYS = ("regime", "path", "remark")
@@ -290,7 +290,7 @@ def record_keys(*, radians: bool = False) -> list[str]:
 
 
 def all_keys(*, radians: bool = False) -> list[str]:
-    """Return the keys of a record and those on request, in their order."""
+    """Return the keys of a record and further ones, in their order."""
     further = [unit_name(name, radians=radians) for name in FURTHER_KEYS]
     return [*record_keys(radians=radians), *further]
 

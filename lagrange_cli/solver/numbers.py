@@ -193,7 +193,7 @@ class Numbers(dict[str, Any]):
         return self["energy_constant"] + square(self["b"])
 
     @property
-    def swing(self) -> arb:
+    def height(self) -> arb:
         """u1 - u2; exactly 0 if the tilt is constant."""
         return arb(0) if self.facts.steady else self["u1"] - self["u2"]
 
@@ -214,7 +214,7 @@ class Numbers(dict[str, Any]):
         """k^2 (4,19); exactly 0 without nutation and without torque."""
         if self.facts.steady or not self.facts.a:
             return arb(0)
-        return self["a"] * self["swing"] / self["wide"]
+        return self["a"] * self["height"] / self["wide"]
 
     @property
     def m_k_prime(self) -> arb:
@@ -223,7 +223,7 @@ class Numbers(dict[str, Any]):
 
     # means and growth over time
 
-    def over_pole(self, pole: int) -> arb:
+    def pole_integral(self, pole: int) -> arb:
         """Return Q (pole = 1) or P (pole = -1): K times the mean of (beta + b pole)/(1 + u pole).
 
         If the axis passes over the pole where 1 + u pole = 0, psi + pole phi grows by a whole turn

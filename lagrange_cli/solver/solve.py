@@ -52,7 +52,7 @@ class Motion(Solution):
     """
 
     def __dir__(self) -> Sequence[str]:
-        """Return the public names: methods, and the keys of the record and on request."""
+        """Return the public names: methods, and the keys of the record and further ones."""
         methods = vars(Motion) | vars(Solution)
         public = [name for name in methods if not name.startswith("_")]
         return [*public, "facts", *NUMBERS]
