@@ -14,7 +14,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files import rotations
 from .differences import Alignment, ExactMotion, Run, angles_of, errors, sizes, start_of
-from .mistakes import BACKWARDS, Cause, Undo, mistakes
+from .mistakes import Cause, Undo, mistakes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
@@ -47,22 +47,22 @@ def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
     causes at once.  Otherwise return the best cause, which explains a part and
     spoils nothing.
     """
-    search = _Search(exact, run)
+    search = _Search(exact, run, limit)
     if np.isfinite(search.errors(_NONE, _SOME)[0]).sum() < _LEAST:
         return []
     found = next(filter(None, (search.best(x, limit) for x in search.groups())), [])
     if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
         mirrored = search.aligned(search.mistakes, in_other=False)
         found = search.best([*found, *mirrored], limit)
-    parts = (x for x in next(search.groups()) if not search.spoils(x, limit))
+    parts = (x for x in next(search.groups()) if not search.spoils(x))
     return found or search.best(parts, _PART)
 
 
 class _Search:
     """The search for the causes of the error of a trajectory."""
 
-    def __init__(self, exact: ExactMotion, run: Run) -> None:
-        self.run, self.given = run, exact
+    def __init__(self, exact: ExactMotion, run: Run, limit: float) -> None:
+        self.run, self.given, self.limit = run, exact, limit
         self.mistakes = mistakes(exact.motion.top, run)
         self.some, self.tilt = cache(self._some), cache(self._tilt)
         self.enough = EXPLAINS * self.error(_NONE, _SOME)
@@ -88,41 +88,38 @@ class _Search:
         worst = np.fmax.reduce(self.errors(cause, most), axis=None)
         return float(worst) if np.isfinite(worst) else math.inf
 
-    def spoils(self, cause: Cause, limit: float) -> bool:
+    def spoils(self, cause: Cause) -> bool:
         """Return whether the attitude, or the rates, are clearly worse without a cause."""
         after, before = (np.fmax.reduce(self.errors(x, _FEW), axis=1) for x in (cause, _NONE))
-        return bool((after > np.fmax(2 * before, limit)).any())
+        return bool((after > np.fmax(2 * before, self.limit)).any())
 
     def best(self, causes: Iterable[Cause], limit: float) -> list[Cause]:
         """Return the simplest cause that leaves about as little as the best, and another one."""
         enough = min(self.enough, limit)
-        hopeful = [x for x in causes if self.error(x, _FEW) <= enough]
-        found = [x._replace(error=self.error(x, _SOME)) for x in hopeful]
-        while found := [x for x in found if x.error <= enough]:
-            bound = max(_AS_GOOD * min(x.error for x in found), _ROUNDING)
-            good = [x for x in found if x.error <= bound]
-            others = [x for x in good if x[1:3] != good[0][1:3]]  # another mistake
-            whole = [x._replace(error=self.error(x)) for x in [good[0], *others[:1]]]
-            if whole[0].error <= enough:
-                return [x for x in whole if x.error <= enough]
-            found.remove(good[0])
-        return []
+        found = [x for x in causes if self.error(x, _FEW) <= enough]
+        found = [x._replace(error=self.error(x, _SOME)) for x in found]
+        bound = max(_AS_GOOD * min((x.error for x in found), default=0.0), _ROUNDING)
+        good = [x for x in found if x.error <= min(bound, enough)]
+        others = [x for x in good if x[1:3] != good[0][1:3]]  # another mistake
+        whole = [x._replace(error=self.error(x)) for x in [*good[:1], *others[:1]]]
+        return [x for x in whole if x.error <= enough]
 
     def groups(self) -> Iterator[list[Cause]]:
         """Yield groups of causes; each group is tried if the one before explains nothing.
 
         They are single causes, a shift of the clock, a mistake with other zeros of the angles and
-        the clock, a mistake in another frame, two mistakes, and the reverse of time.
+        the clock, a mistake in another frame, and two mistakes.
         """
         tops = [x for x in self.mistakes if x.exact]
         early = 1 + self.mistakes.index(tops[0])
         same, other = (self.aligned([_NONE], in_other) for in_other in (False, True))
         yield [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
+        if not (self.errors(_NONE, _SOME)[0] > self.limit).any():
+            return  # only the rates are wrong
         yield self.shifts()
         yield self.aligned(self.mistakes, in_other=False)
         yield self.aligned(self.mistakes, in_other=True)
         yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops]
-        yield [BACKWARDS]
 
     def aligned(self, causes: Iterable[Cause], in_other: bool) -> list[Cause]:
         """Return each cause with other zeros of the angles and the clock, or in other frames.
@@ -130,17 +127,15 @@ class _Search:
         Under each alignment, the first row has the tilt of the exact motion.
         """
         found, given = [], self.run.align
+        frames = [x for x in _FRAMES if x[:3] != given[:3]] if in_other else [given]
+        times = sorted({given.time, given.time or bool(self.run.t[0])})
         for cause in causes:
             run, exact = self.some(cause.undo).few(_FEW), cause.exact or self.given
-            times = sorted({given.time, given.time or bool(run.t[0])})
-            frames = dict.fromkeys([Alignment(*given[:3]), *_FRAMES])
             for time, start, frame in product(times, sorted({given.start, True}), frames):
+                tilt = exact.at(run.t[:1] * (not time))["theta"][0]
                 align = frame._replace(start=start, time=time)
-                twice = in_other and start and _is_reversed(align)  # the same as a left-handed one
-                if (frame[:3] != given[:3]) == in_other and align != given and not twice:
-                    tilt = exact.at(run.t[:1] * (not time))["theta"][0]
-                    if not abs(self.tilt(cause.undo, frame) - tilt) > self.enough:
-                        found.append(_named(align, exact, run).with_other(cause))
+                if align != given and not abs(self.tilt(cause.undo, frame) - tilt) > self.enough:
+                    found.append(_named(align, exact, run).with_other(cause))
         return found
 
     def shifts(self) -> list[Cause]:
@@ -166,29 +161,23 @@ class _Search:
         return [Cause(f"the clock is shifted by {best:.5g}", partial(Run.timed, shift=best))]
 
 
-def _is_reversed(align: Alignment) -> bool:
-    """Return whether the frames are right-handed and have the same axis down, as NED has z."""
-    return not align.left and align.up.startswith("-") and align.axis == align.up
-
-
 def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
     """Return an alignment as a cause."""
     given, words, names = run.align, [align], []
+    is_down = align.axis == align.up and align.up.startswith("-")  # z in NED
     if align[:3] == given[:3] and align.start and not given.start:
         seen = run._replace(align=align._replace(start=False)).observed()
         turns = np.asarray(start_of(seen, exact.at(seen.t)) or (0.0, 0.0))
         phi, psi = np.degrees(rotations.within_half_turn(turns))
         starts = {"psi": psi, "phi": phi}.items()
         names = [" and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > 1e-3)]
-    elif align[:3] != given[:3] and (align.left or _is_reversed(align)):
+    elif align[:3] != given[:3] and (align.left or is_down):
         axis = align.up.lstrip("-")
         down = f"-{axis}" if align.left else axis
         words.append(Alignment(down, down, not align.left, start=True, time=align.time))
         names = [f"the frame is left-handed with {axis} up, or has {axis} down"]
     elif align[:3] != given[:3]:
-        axes = [f"{align.up} is up"] * (align.up != given.up or given.left)
-        axes += [f"the figure axis is the body's {align.axis} axis"] * (align.axis != given.axis)
-        names = [" and ".join(axes)]
+        names = [f"{align.up} is up and the figure axis is the body's {align.axis} axis"]
     if align.time and not given.time:
         names.append(f"the clock starts at {run.t[0]:.10g}")
     remedy = " or ".join(f"align={x}" for x in words)

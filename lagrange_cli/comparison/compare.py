@@ -43,8 +43,6 @@ _RISES, _SPREAD = 1.2, 1.0
 """Ratio of errors above which a finer step is worse; greatest spread of one method's orders."""
 _SURE = 2.0
 """Largest change of a difference from row to row, in radians, for whole turns to be counted."""
-_KEPT = {"t", "error", *ANGLES}
-"""Columns that are kept whole; only the extremes of the others are."""
 
 
 def _key(meaning: str, default: Any = None) -> Any:
@@ -221,10 +219,7 @@ def compared(
 def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
     try:
-        parts = [
-            {name: y if name in _KEPT else _extremes(y) for name, y in x.items()}
-            for x in blocks(exact, run)
-        ]
+        parts = [*blocks(exact, run)]
     except LagtopError as wrong:
         if "file" not in run.about or wrong.key != "t":
             raise
@@ -232,10 +227,10 @@ def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
     found = {name: np.concatenate([x.pop(name) for x in parts]) for name in [*parts[0]]}
     t, error, known = found.pop("t"), found["error"], dict[str, Any]()
     for name, values in found.items():
-        names = name, f"{name}_max", f"{name}_error_max"
-        if (ends := _extremes(values)).size:
-            first = ends[0] if name in CONSERVED else 0.0
-            greatest = abs(ends - first).max() / (first if name == "pivot_slip" else 1.0)
+        if (finite := values[np.isfinite(values)]).size:
+            first = finite[0] if name in CONSERVED else 0.0
+            greatest = abs(finite - first).max() / (first if name == "pivot_slip" else 1.0)
+            names = name, f"{name}_max", f"{name}_error_max"
             key = next(x for x in names if x in COMPARISON_KEYS)
             known[key] = float(greatest) if np.isfinite(greatest) else None
         if name in ANGLES:
@@ -256,12 +251,6 @@ def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
         error=error,
         **known,
     )
-
-
-def _extremes(values: Array) -> Array:
-    """Return the first, the least and the greatest of the finite values, if there are any."""
-    finite = values[np.isfinite(values)]
-    return np.array([finite[0], finite.min(), finite.max()]) if finite.size else finite
 
 
 def _slope(t: Array, angle: Array) -> float | None:
@@ -316,8 +305,6 @@ def convergence(results: Sequence[Comparison], limit: float) -> Convergence | No
         said = f"The error does not fall with the step: {why}."
         return Convergence(errors, said, converges=min(errors) <= limit)
     usable = (error >= ROUNDING) & (error < LOST_PHASE)
-    if len({*step[usable]}) < 2:
-        usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
     x, y = np.log(step[usable]), np.log(error[usable])
     order = float(np.polyfit(x, y, 1)[0]) if len({*x}) > 1 else None
     if order is None or np.ptp(np.diff(y) / np.diff(x)) > _SPREAD or order < LEAST_ORDER:

@@ -82,14 +82,11 @@ class Alignment(NamedTuple):
         A left-handed frame is a right-handed one whose axes are all reversed.  Raises LagtopError
         if the attitude is not complete enough.
         """
-        word = "axis" * self.has_axis
-        if not word and run.axis is None:
-            word = "left" * self.left or "up" * (self.up != "z" and run.space_rates is None)
-        if word and run.quaternion is None:
-            needs = "the whole attitude" if word == "axis" else "the axis or the whole attitude"
-            raise LagtopError(f"align {word} needs {needs}: omit it", "align")
         if self[:3] == Alignment()[:3]:
             return run
+        if run.quaternion is None and (self.has_axis or run.axis is None):
+            needs = "the axis or the whole attitude, and align axis the whole attitude"
+            raise LagtopError(f"align up and align left need {needs}: omit them", "align")
         frames = rotations.to_z(self.up), rotations.to_z(self.axis)
         if not self.left:
             return run.turned(*frames)

@@ -52,12 +52,11 @@ class Cause(NamedTuple):
         return Cause(name, self.undo or other.undo, other.exact, self.align, remedy)
 
 
-BACKWARDS = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
-
-
 def mistakes(top: Top, run: Run) -> list[Cause]:
     """Return all mistakes, the simplest first."""
-    return [*_of_units(run), *_of_inputs(top, run), *_of_writing(run)]
+    backwards = Cause("time runs backwards", partial(Run.timed, factor=-1.0))
+    others = [*_of_units(run), *_of_inputs(top, run), *_of_writing(run)]
+    return [backwards, *others] if run.t[0] > run.t[-1] else [*others, backwards]
 
 
 def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
@@ -66,8 +65,6 @@ def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
 
 
 def _of_units(run: Run) -> Iterator[Cause]:
-    if run.t[0] > run.t[-1]:
-        yield BACKWARDS
     factors = {f"t is in {x}": y for x, y in _UNITS.items()}
     if (run.t == np.rint(run.t)).all():
         factors |= {f"t counts frames, {x} per second": 1 / x for x in _FRAME_RATES}
@@ -83,15 +80,13 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
     steiner = Fraction(top.m) * Fraction(top.s) ** 2
     tilt, rate = float(top.inputs(radians=True)["theta0_rad"]), float(top.thetadot0)
     left = " (in a left-handed frame a positive turn is clockwise)" * run.align.left
-    mirrored = top.psidot0 and run.observed(slice(1)).quaternion is not None
-    mirror = " (or that of {}, if the frame is left-handed or has z down)" if mirrored else ""
     folded, ratio = math.remainder(math.degrees(tilt), math.tau), A / C
     half = rotations.about_z(math.pi)
     both: dict[str, Any] = {"space": half, "body": half}
     over: dict[str, Any] = {"space": rotations.product(rotations.HALF_TURN_X, half), "body": half}
     over |= {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -rate}
     inputs: dict[str, dict[str, Any]] = {
-        f"r0 has the wrong sign{left}{mirror.format('psidot0')}": {"r0": -top.r0},
+        f"r0 has the wrong sign{left}": {"r0": -top.r0},
         "the gyroscopic term is left out of Euler's equations (as if C = A)": {"C": top.A},
         "the gyroscopic term has the wrong sign (as if C = 2A - C)": {"C": 2 * A - C},
         "the gyroscopic term is halved (as if C = (A + C)/2)": {"C": (A + C) / 2},
@@ -102,7 +97,7 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         "r0 in radians was taken as rpm": {"r0": r0 * math.pi / 30},
         "r0 in rpm was taken as radians": {"r0": r0 * 30 / math.pi},
         "r0 was taken as the gimbal's rate phi'": {"r0": r0 + float(top.psidot0) * math.cos(tilt)},
-        f"psidot0 has the wrong sign{mirror.format('r0')}": {"psidot0": -top.psidot0},
+        "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
         "thetadot0 has the wrong sign": {"thetadot0": -rate},
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
         **{f"g is {g} (or m or s is wrong by as much)": {"g": Fraction(g)} for g in _GRAVITY},

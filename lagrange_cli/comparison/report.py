@@ -6,21 +6,19 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from ..file_bytes import shown_path, utf8_path
 from ..files.observed import Conventions, Quantities, observe
 from ..files.trajectory import read_trajectory
-from ..inverse.recording import LEAST_ROWS
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import one_line
 from ..solver.solve import Motion
 from .compare import COMPARISON_KEYS, LIMIT, Comparison, Convergence
 from .differences import Alignment, Run
 
-_WRONG_NORM, _FEW = 1e-6, 0.03
-"""The least distance of a norm from 1 that is said, and the largest share of rows that are few."""
+_WRONG_NORM = 1e-6
+"""The least distance of a norm from 1 that is said."""
 _COLUMNS = (
     Field("file", "file", one_line, is_text=True),
     Field("step", "step", "{:g}".format),
@@ -107,31 +105,15 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
     if (slip := x.pivot_slip or 0.0) > limit:
         yield f"The pivot slips: the mass centre's distance from it changes by up to {slip:.1%}."
     if x.cause is not None:
-        words = (x.explained or "").capitalize() + " cause" * (x.explained == "most likely")
-        words = "Partly explained" if x.explained == "partly" else words
+        words = "Partly explained" if x.explained == "partly" else "Most likely cause"
         remedy = f" ({x.remedy})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
         yield f"{words}: {x.cause}{remedy}. {error}."
-    elif rows := _few_rows(x, limit):
-        yield rows
     elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (
         found and found.converges
     ):
-        hints = ["compare runs with other step sizes"] * (x.verdict == "drifts" and not found)
-        can_fit = x.theta_error_max is not None and x.rows >= LEAST_ROWS
-        if x.verdict in {"drifts", "another top"} and can_fit and (x.error_max or 0.0) > LIMIT:
-            hints.append("see which top lagtop fit finds in the file")
-        hint = f": {', or '.join(hints)}" if hints else ""
+        hint = ": compare runs with other step sizes" * (x.verdict == "drifts" and not found)
         yield f"None of the known causes explains the error{hint}."
-
-
-def _few_rows(x: Comparison, limit: float) -> str:
-    """Return which rows are off if they are few and the last row is not among them."""
-    wrong = np.flatnonzero(x.error > limit)
-    if not 0 < wrong.size <= _FEW * x.rows or not x.error[-1] <= limit:
-        return ""
-    shown = shortened(", ".join(f"{t:.6g}" for t in x.t[wrong]))
-    return f"The limit is exceeded in only {wrong.size} of {x.rows} rows, at t = {shown}."
 
 
 def sentence(x: Comparison) -> str:

@@ -38,33 +38,16 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert result.stderr == f"Error: 1 of 2 trajectories not fine: {other}\n"
     assert "right.csv: fine, at most" in result.stdout
     assert "The norm of its quaternion or matrix is off 1 by up to 1.0e-05." in result.stdout
-    assert "Most likely cause: r0 has the wrong sign (or that of psidot0, if" in result.stdout
+    assert "Most likely cause: r0 has the wrong sign. With" in result.stdout
     rows = json.loads(lagtop("compare", right, other, *OPTIONS, "--format", "json").stdout)["rows"]
     assert [row["verdict"] for row in rows] == ["fine", "off from the start"]
     assert [list(row) for row in rows] == [[*COMPARISON_KEYS]] * 2
     assert lagtop("compare", "-", *OPTIONS, input=right.read_bytes()).exit_code == 0
     strict = lagtop("compare", right, *OPTIONS, "--max-error", "1e-9")
-    assert (strict.exit_code, "none of the known" in strict.stdout.lower()) == (1, True)
-    assert "lagtop fit" not in strict.stdout  # the error is below that of any recording
+    hint = "None of the known causes explains the error: compare runs with other step sizes.\n"
+    assert (strict.exit_code, hint in strict.stdout) == (1, True)
     assert "file verdict rows max error at the end energy ─" in " ".join(strict.stdout.split())
     assert "rad off, its rates by 2.1e-07 (relative)." in strict.stdout
-
-
-def test_a_few_wrong_rows_are_named(lagtop: Lagtop, tmp_path: Path) -> None:
-    t, states = rk4(Body.of(TOP), 2e-3, 0.5)
-    states[[70, 71]] = states[[170, 171]]
-    shown = lagtop("compare", write(tmp_path / "x.csv", (t, states)), *OPTIONS).stdout
-    assert "The limit is exceeded in only 2 of 251 rows, at t = 0.14, 0.142.\n" in shown
-
-
-def test_another_top_is_left_to_a_fit(lagtop: Lagtop, tmp_path: Path) -> None:
-    t, states = rk4(Body.of(TOP), 2e-3, 0.5)
-    w, x, y, z = states[:, :4].T
-    tilt = 2 * np.degrees(np.arctan2(np.hypot(x, y), np.hypot(w, z)))
-    seen = write(tmp_path / "tilt.csv", (t, tilt), "t,theta")
-    shown = lagtop("compare", seen, *OPTIONS, "--m", 1800, "--C", 19e3).stdout
-    hint = "compare runs with other step sizes, or see which top lagtop fit finds in the file."
-    assert f"None of the known causes explains the error: {hint}" in shown
 
 
 def test_the_worked_example_is_not_assumed_in_silence(lagtop: Lagtop, tmp_path: Path) -> None:
