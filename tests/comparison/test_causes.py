@@ -16,11 +16,6 @@ from engines import Array, Body, dop853, wxyz
 from lagtop import Top, compare
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.comparison.differences import ExactMotion, Run
-from lagrange_cli.comparison.mistakes import mistakes
-from lagrange_cli.files.observed import Conventions
-from lagrange_cli.files.rotations import angle_between
-
 _BODIES = {
     "slim": (0.35, 8.5e-4, 4e-4, 0.03, 90, 40, 1, 3),
     "toy": (1.2, 0.018, 0.004, 0.1, 60, 55, -0.5, 1),
@@ -79,9 +74,13 @@ def bodies(top: Top) -> dict[str, Body]:
     }
 
 
+def attitude(turn: Rotation, **others: Any) -> Given:
+    return {"quaternion": wxyz(turn), **others}
+
+
 def framed(turn: Rotation, rows: Any) -> Given:
     """Return the attitude in other axes of space and body, right-handed or left-handed."""
-    return {"quaternion": wxyz(Rotation.from_matrix(rows @ turn.as_matrix() @ np.transpose(rows)))}
+    return attitude(Rotation.from_matrix(rows @ turn.as_matrix() @ np.transpose(rows)))
 
 
 def angles(turn: Rotation, phi: float = 1, psi: float = 1) -> Given:
@@ -96,58 +95,45 @@ FRAMES = {
     "axis=-z,up=-z": [[1, 0, 0], [0, -1, 0], [0, 0, -1]],  # NED
 }
 """The axes of engines in the coordinates of lagtop, by their words."""
+_Y_UP = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
 READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
-    "conjugate": lambda turn, _: {"quaternion": wxyz(turn.inv())},
+    "conjugate": lambda turn, _: attitude(turn.inv()),
     "the quaternion is xyzw and was read": lambda turn, _: {"quaternion": turn.as_quat()},
-    "phi and psi are exchanged": lambda turn, _: {
-        key: angles(turn)[of] for key, of in (("theta", "theta"), ("phi", "psi"), ("psi", "phi"))
-    },
-    "theta is measured from the horizontal": lambda turn, _: {
-        **angles(turn),
-        "theta": math.pi / 2 - angles(turn)["theta"],
-    },
+    "phi and psi are exchanged": lambda turn, _: dict(
+        zip(("theta", "psi", "phi"), angles(turn).values(), strict=True)
+    ),
+    "theta is measured from the horizontal": lambda turn, _: (
+        angles(turn) | {"theta": math.pi / 2 - angles(turn)["theta"]}
+    ),
     "the Euler angles are in the sequence XYZ": lambda turn, _: {"euler": turn.as_euler("XYZ")},
     "phi is counted backwards": lambda turn, _: angles(turn, phi=-1),
     "psi is counted backwards": lambda turn, _: angles(turn, psi=-1),
-    "the rates are in the frame of space": lambda turn, rates: {
-        "quaternion": wxyz(turn),
-        "rates": turn.apply(rates),
-    },
-    "the rates are in degrees": lambda turn, rates: {
-        "quaternion": wxyz(turn),
-        "rates": np.degrees(rates),
-    },
+    "rates are in the frame of space": lambda turn, x: attitude(turn, rates=turn.apply(x)),
+    "the rates are in degrees": lambda turn, rates: attitude(turn, rates=np.degrees(rates)),
     "degrees per unit of time": lambda _, rates: {"rates": np.degrees(rates)},
-    "y is up and the figure axis is the body's y axis": lambda turn, _: framed(
-        turn, [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
-    ),
+    "y is up and the figure axis is the body's y axis": lambda turn, _: framed(turn, _Y_UP),
     "left-handed with y up, or has y down": lambda turn, _: framed(turn, FRAMES["up=y,left"]),
     "left-handed with z up, or has z down": lambda turn, _: framed(turn, FRAMES["left"]),
-    "phi starts at 57.3 degrees": lambda turn, _: {
-        "quaternion": wxyz(turn * Rotation.from_euler("z", 1))
-    },
-    "the clock starts at 0.0123": lambda turn, _: {"t": T + 0.0123, "quaternion": wxyz(turn)},
-    "rows are off by one: each holds the state of the next": lambda turn, _: {
-        "t": T[:-1],
-        "quaternion": wxyz(turn[1:]),
-    },
-    "the state of the previous": lambda turn, _: {"t": T[1:], "quaternion": wxyz(turn[:-1])},
-    "time runs backwards": lambda turn, _: {"t": -T, "quaternion": wxyz(turn)},
-    "t is in ms": lambda turn, _: {"t": 1000 * T, "quaternion": wxyz(turn)},
-    "t counts frames, 200 per second": lambda turn, _: {
-        "t": np.rint(200 * T),
-        "quaternion": wxyz(turn),
-    },
-    "the clock is shifted by -0.125": lambda turn, _: {"t": T[:-25], "quaternion": wxyz(turn[25:])},
-    "the clock is 1 % fast": lambda turn, _: {"t": 1.01 * T, "quaternion": wxyz(turn)},
+    "phi starts at 57.3 degrees": lambda turn, _: attitude(turn * Rotation.from_euler("z", 1)),
+    "the clock starts at 0.0123": lambda turn, _: attitude(turn, t=T + 0.0123),
+    "rows are off by one: each holds the state of the next": lambda turn, _: attitude(
+        turn[1:], t=T[:-1]
+    ),
+    "the state of the previous": lambda turn, _: attitude(turn[:-1], t=T[1:]),
+    "time runs backwards": lambda turn, _: attitude(turn, t=-T),
+    "t is in ms": lambda turn, _: attitude(turn, t=1000 * T),
+    "t counts frames, 200 per second": lambda turn, _: attitude(turn, t=np.rint(200 * T)),
+    "the clock is shifted by -0.125": lambda turn, _: attitude(turn[25:], t=T[:-25]),
+    "the clock is 1 % fast": lambda turn, _: attitude(turn, t=1.01 * T),
 }
 """What is given to `compare` with a mistake in it, by a part of the name of the mistake."""
 UNKNOWN = {"C is 2 % off", "m is 1 % off", "the clock is 1 % fast"}
 """Mistakes that are not among the known ones, so that none may be named."""
+SLOW = UNKNOWN | {"r0 in degrees was taken as radians"}
 PLANTED = [name for name in (*bodies(TOPS["toy"]), *READINGS) if name]
 
 FORMS: dict[str, Callable[[Rotation, Array], Given]] = {
-    "quaternion": lambda turn, rates: {"quaternion": wxyz(turn), "rates": rates},
+    "quaternion": lambda turn, rates: attitude(turn, rates=rates),
     "float32": lambda turn, _: {"quaternion": wxyz(turn).astype(np.float32)},
     "4 digits": lambda turn, _: {"matrix": np.round(turn.as_matrix(), 4)},
     "6 digits": lambda turn, _: {"quaternion": np.round(-wxyz(turn), 6)},
@@ -171,16 +157,12 @@ def test_a_right_trajectory_is_fine(name: str, form: str, method: str) -> None:
     assert compare(TOPS[name], **given).verdict == "fine"
 
 
-QUICK = {"A and C are exchanged", "r0 has the wrong sign", "theta0 has the wrong sign"}
-QUICK |= READINGS.keys() - UNKNOWN
-
-
 def slow(name: str, is_slow: bool) -> Any:
     return pytest.param(name, marks=pytest.mark.slow) if is_slow else name
 
 
 @pytest.mark.parametrize("name", [slow(x, x != "toy") for x in TOPS])
-@pytest.mark.parametrize("mistake", [slow(x, x not in QUICK) for x in PLANTED])
+@pytest.mark.parametrize("mistake", [slow(x, x in SLOW) for x in PLANTED])
 def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
     states = run(name, "" if mistake in READINGS else mistake)
     given: Given = {"t": T} | READINGS.get(mistake, FORMS["quaternion"])(*states)
@@ -190,29 +172,8 @@ def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
     assert (found.cause_error or 0) < 1e-5
 
 
-@cache
-def tried() -> dict[str, ExactMotion]:
-    """Return the motions that the search tries."""
-    given = Run({"t": T[:, np.newaxis], "quaternion": run("toy")[0].as_quat()}, Conventions())
-    return {x.name: x.exact for x in mistakes(TOPS["toy"], given) if x.exact}
-
-
-@pytest.mark.parametrize("mistake", [x for x in bodies(TOPS["toy"]) if x and x not in UNKNOWN])
-def test_the_motion_with_a_mistake_is_that_of_an_engine(mistake: str) -> None:
-    t, states = dop853(bodies(TOPS["toy"])[mistake], T[:21], 1e-10)
-    [exact] = [x for name, x in tried().items() if mistake in name]
-    found = exact.at(t)
-    assert angle_between(found["quaternion"], states[:, :4]).max() < 1e-7
-    assert found["rates"] == pytest.approx(states[:, 4:], rel=1e-7, abs=1e-6)
-
-
-IN_FRAMES = {
-    "A and C are exchanged": "A and C are exchanged",
-    "(A + m s^2)": "A about the p",
-    "g is 10 (or m or s is wrong by as": "g is 10 (or m",
-    "r0 in rpm was taken as radians": "r0 in rpm was",
-}
-"""Mistakes in the frames of engines, and how their names begin."""
+IN_FRAMES = ["A and C are exchanged", "(A + m s^2)", "g is 10 (or m or s is wrong by as"]
+IN_FRAMES += ["r0 in rpm was taken as radians"]
 LEFT = "the frame is left-handed with {0} up, or has {0} down; ".format
 NAMES = {"up=y,left": LEFT("y"), "left": LEFT("z"), "axis=-z,up=-z": LEFT("z")}
 NAMES["axis=y,up=y"] = "y is up and the figure axis is the body's y axis; "
@@ -231,13 +192,13 @@ def test_two_causes_at_once_are_named(how: str, frame: str, mistake: str) -> Non
     given: Given = {"t": T + 10 * (how == "clock")} | framed(turn, FRAMES[frame])
     found = compare(TOPS["toy"], **given, align="" if how == "frame" else frame)
     firsts = {"frame": NAMES[frame], "psi": "psi starts at ", "clock": "the clock starts at 10; "}
-    name = IN_FRAMES[mistake]
-    assert firsts[how] in (found.cause or "")
-    assert f"; {name}" in (found.cause or "")
+    assert (found.cause or "").startswith(firsts[how])
+    assert mistake in (found.cause or "")
     assert (found.explained, (found.cause_error or 1) < 1e-5) == ("most likely", True)
     remedy = (found.remedy or "").split(" or ")[0].removeprefix("align=")
     again = compare(TOPS["toy"], **given, align=remedy)
-    assert (again.cause or "").startswith(name)
+    assert mistake in (again.cause or "")
+    assert ";" not in (again.cause or "")
 
 
 @pytest.mark.slow
