@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from contextlib import ExitStack
 from fractions import Fraction
@@ -90,8 +89,7 @@ def plot_command(
         if hint and not (opt.is_scene(word) or exists(word)):
             raise LagtopError(f"{word!r} is neither a kind of picture nor a scene{hint}")
     if not (output or animate):
-        example = _file_among(scenes, *FORMATS)
-        raise LagtopError(f"nothing to do: give -o {example} or --animate FILE.gif")
+        raise LagtopError("nothing to do: give -o FILE.png or --animate FILE.gif")
     if duration is not None and animate is None:
         raise LagtopError("--duration needs --animate FILE.gif")
     if (key or x or y) and "map" not in kinds:
@@ -147,11 +145,6 @@ def plot_command(
     warn_if_misleading(stds, ["theta", "dphi", "psi"])
 
 
-def _file_among(words: Sequence[str], *extensions: str) -> str:
-    """Return the word that is probably meant as the output file, or an example of one."""
-    return next((x for x in words if opt.extension(x) in extensions), f"FILE.{extensions[0]}")
-
-
 def _kinds(names: Sequence[str]) -> list[str]:
     """Return the kinds of picture, each once; `all` stands for several, and is the default."""
     sheet = [kind for kind in KINDS if kind != "map"]
@@ -165,11 +158,8 @@ def _camera(text: str, radians: bool) -> tuple[float, float]:
     try:
         azimuth, elevation = (x * unit for x in opt.parse_numbers(text))
     except ValueError:  # of a number, or of another count of numbers
-        azimuth, elevation = math.inf, math.inf
-    if abs(azimuth) > 2 * math.pi or abs(elevation) > math.pi / 2:
-        turn, quarter, name = ("2π", "π/2", "rad") if radians else ("360", "90", "deg")
-        bounds = f"[-{turn}, {turn}] and [-{quarter}, {quarter}] {name}"
-        raise LagtopError(f"--camera must be AZIMUTH,ELEVATION in {bounds}, got {text!r}")
+        wanted = "AZIMUTH,ELEVATION such as 30,15"
+        raise LagtopError(f"--camera must be {wanted}, got {text!r}") from None
     return azimuth, elevation
 
 
@@ -202,8 +192,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     page computes the motion.  It works offline, as a single file.
     """
     if not (output or opens):
-        example = _file_among([top.scene or ""], "html", "htm")
-        raise LagtopError(f"nothing to do: give -o {example} or --open")
+        raise LagtopError("nothing to do: give -o FILE.html or --open")
     if output == "-" and (opens or is_screen("-")):
         raise LagtopError("a page on standard output needs a pipe: give -o FILE.html")
     if splitext(output or "")[1].lower() not in {"", ".html", ".htm"}:

@@ -11,7 +11,7 @@ from ..errors import AbsentError, LagtopError
 from ..names import Key, check_names
 from ..output.destination import Output
 from ..solver.facts import Regime
-from ..solver.keys import all_keys, key_of, record_keys, shown_keys, unit_name
+from ..solver.keys import all_keys, key_of, shown_keys, unit_name
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
 from . import shared as opt
@@ -110,8 +110,7 @@ def _selected(words: Sequence[str], radians: bool) -> list[str]:
     values = [key.removesuffix("_std") for key in keys]
     if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
         values = list(dict.fromkeys(values))
-    known = record_keys(radians=radians)
-    check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
+    check_names("get", values, all_keys(radians=radians))
     return keys
 
 

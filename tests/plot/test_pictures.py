@@ -405,7 +405,7 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
         (["map", "-o", "x.png", "--x", "r0=9:2:3"], "start < stop"),
         (["map", "-o", "x.png", "--x", "theta0=1:9:3"], "two inputs"),
         (["map", "-o", "x.png", "--g", "0", "--key", "u3"], "undefined"),
-        (["sphere", "-o", "x.png", "--camera", "1,95"], "--camera must be"),
+        (["sphere", "-o", "x.png", "--camera", "1,2,3"], "--camera must be"),
         (["sphere", "-o", "x.png", "--t-max", "-1"], "t-max"),
         (["sphere", "-o", "x.png", "--t-max", "1e9"], "nutation periods"),
         (["sphere", "-o", "x.png", "--dpi", "5"], "--dpi must be in [20, 1000]"),
