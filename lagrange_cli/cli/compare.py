@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..arithmetic.text import shortened
-from ..errors import LagtopError, SomeFailedError
+from ..errors import LagtopError
 from ..file_bytes import shown_path
 from ..output.terminal import one_line
 from ..top.scenes import is_scene_file
@@ -111,6 +110,4 @@ def compare_command(
 
     report = opt.write_report(out, find, plot, draw)
     failed = [one_line(shown_path(x.file)) for x in report.rows if x.verdict != "fine"]
-    if failed:
-        count, names = len(report.rows), shortened(", ".join(failed), 100)
-        raise SomeFailedError(f"{len(failed)} of {count} trajectories not fine: {names}")
+    opt.fail_for(failed, len(report.rows), "trajectories")

@@ -105,27 +105,19 @@ class _Search:
         return [x for x in whole if x.error <= enough]
 
     def groups(self) -> Iterator[list[Cause]]:
-        """Yield groups of causes; each group is tried if the one before explains nothing.
-
-        They are single causes, a shift of the clock, a mistake with other zeros of the angles and
-        the clock, a mistake in another frame, and two mistakes.
-        """
+        """Yield groups of causes; each group is tried if the one before explains nothing."""
         tops = [x for x in self.mistakes if x.exact]
         early = 1 + self.mistakes.index(tops[0])
         same, other = (self.aligned([_NONE], in_other) for in_other in (False, True))
         yield [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
-        if not (self.errors(_NONE, _SOME)[0] > self.limit).any():
-            return  # only the rates are wrong
-        yield self.shifts()
-        yield self.aligned(self.mistakes, in_other=False)
-        yield self.aligned(self.mistakes, in_other=True)
-        yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops]
+        if (self.errors(_NONE, _SOME)[0] > self.limit).any():  # not only the rates are wrong
+            yield self.shifts()
+            yield self.aligned(self.mistakes, in_other=False)
+            yield self.aligned(self.mistakes, in_other=True)
+            yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops]
 
     def aligned(self, causes: Iterable[Cause], in_other: bool) -> list[Cause]:
-        """Return each cause with other zeros of the angles and the clock, or in other frames.
-
-        Under each alignment, the first row has the tilt of the exact motion.
-        """
+        """Return each cause with the alignments under which the first row has the exact tilt."""
         found, given = [], self.run.align
         frames = [x for x in _FRAMES if x[:3] != given[:3]] if in_other else [given]
         times = sorted({given.time, given.time or bool(self.run.t[0])})

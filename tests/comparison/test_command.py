@@ -35,7 +35,7 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     other = write(tmp_path / "other.csv", run)
     result = lagtop("compare", right, other, *OPTIONS)
     assert result.exit_code == 1
-    assert result.stderr == f"Error: 1 of 2 trajectories not fine: {other}\n"
+    assert result.stderr == f"Error: 1 of 2 trajectories failed; the first: {other}\n"
     assert "right.csv: fine, at most" in result.stdout
     assert "The norm of its quaternion or matrix is off 1 by up to 1.0e-05." in result.stdout
     assert "Most likely cause: r0 has the wrong sign. With" in result.stdout
