@@ -169,21 +169,19 @@ def _usage_message(error: click.ClickException) -> str:
 
 
 def _option_meant(error: click.NoSuchOption) -> str:
-    """Return a hint with the options that a wrong one means: by its letters, then by its word."""
+    """Return a hint with the options that a wrong one means: by its word, then by its letters."""
     params = error.ctx.command.params if error.ctx else []
     known = [x for param in params for x in param.opts if x.startswith("--")]
     name = error.option_name.lstrip("-")
     if error.ctx and error.ctx.parent is None and name in DECLARED:
         return f": put a command in front of it, as in lagtop solve --{name}"
-    same = [x for x in known if x[2:].lower() == name.lower()] if len(name) == 1 else []
-    begun = sorted((x for x in known if x.startswith(f"--{name}")), key=len)[:1]
     word = {"omega": "spin"}.get(name.lower(), name.lower())
     named = [f"--{key}" for key, x in DECLARED.items() if word in x.name.split()]
-    if found := same or (begun if len(name) > 1 else []) or [x for x in named if x in known]:
+    if found := [x for x in named if x in known]:
         return f" (did you mean {' or '.join(map(repr, found))}?)"
-    begin, least = error.option_name[:3], 4  # --rad is not --format, nor --sigma --s
-    alike = [x for x in known if x.startswith(begin) and len(x) >= least]
-    return suggestion(error.option_name, alike)
+    begun = [x for x in known if x[2].lower() == name[:1].lower()]  # --rad is not --format
+    alike = [x for x in begun if (len(x[2:]) == 1) == (len(name) == 1)]  # nor --sigma --s
+    return suggestion(f"--{name}", alike)
 
 
 @click.group(
