@@ -30,12 +30,11 @@ _AXES = "z", "y", "x", "-z", "-y", "-x"
 _FRAMES = [
     *(Alignment(x, x) for x in _AXES[:3]),
     *(Alignment(x, x, left=True) for x in _AXES[:3]),
-    *(Alignment(x, x) for x in _AXES[3:]),
     *(Alignment(y, x) for x, y in product(_AXES, repeat=2) if x != y),
 ]
 """All frames with lagtop's axes in another order or direction, the likeliest first.
 
-A left-handed frame is a right-handed frame with all axes reversed, except for its zero angles.
+A right-handed frame with z down is left-handed with z up, except for its zero angles.
 """
 
 
@@ -156,18 +155,15 @@ class _Search:
 def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
     """Return an alignment as a cause."""
     given, words, names = run.align, [align], []
-    is_down = align.axis == align.up and align.up.startswith("-")  # z in NED
     if align[:3] == given[:3] and align.start and not given.start:
         seen = run._replace(align=align._replace(start=False)).observed()
         turns = np.asarray(start_of(seen, exact.at(seen.t)) or (0.0, 0.0))
         phi, psi = np.degrees(rotations.within_half_turn(turns))
         starts = {"psi": psi, "phi": phi}.items()
         names = [" and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > 1e-3)]
-    elif align[:3] != given[:3] and (align.left or is_down):
-        axis = align.up.lstrip("-")
-        down = f"-{axis}" if align.left else axis
-        words.append(Alignment(down, down, not align.left, start=True, time=align.time))
-        names = [f"the frame is left-handed with {axis} up, or has {axis} down"]
+    elif align[:3] != given[:3] and align.left:
+        words.append(Alignment(f"-{align.up}", f"-{align.up}", start=True, time=align.time))
+        names = [f"the frame is left-handed with {align.up} up, or has {align.up} down"]
     elif align[:3] != given[:3]:
         names = [f"{align.up} is up and the figure axis is the body's {align.axis} axis"]
     if align.time and not given.time:

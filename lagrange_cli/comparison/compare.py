@@ -164,11 +164,9 @@ def compare(
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
     rows = quantities_of(t, given)
     times, rows["missing"] = rows["t"][:, 0], 0 * rows["t"]
-    if not len(times):
-        raise LagtopError("t must have at least one row, got none", "t")
-    steps = np.diff(times)
-    if not np.isfinite(times).all() or not ((steps >= 0).all() or (steps <= 0).all()):
-        raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
+    steps, is_finite = np.diff(times), times.size and np.isfinite(times).all()
+    if not is_finite or not ((steps >= 0).all() or (steps <= 0).all()):
+        raise LagtopError("t must have finite times that increase, or decrease, by rows", "t")
     for key, x in given.items():
         if isinstance(x, np.ma.MaskedArray):
             rows["missing"] += np.ma.getmaskarray(x).reshape(rows[key].shape).any(1, keepdims=True)
@@ -189,11 +187,9 @@ def compared(
     then the top is right.  Raises LagtopError for bad step sizes, DataError for times that are
     too late in a file.
     """
-    if step_sizes is not None and len(step_sizes) != len(runs):
-        wanted = f"one number per trajectory ({len(runs)})"
-        raise LagtopError(f"step_sizes must have {wanted}, got {len(step_sizes)}", "step_sizes")
-    if wrong := [step for step in step_sizes or [] if not step > 0]:
-        raise LagtopError(f"step_sizes must be > 0, got {wrong[0]}", "step_sizes")
+    if step_sizes and (len(step_sizes) != len(runs) or not min(step_sizes) > 0):
+        wanted = f"one number > 0 per trajectory ({len(runs)})"
+        raise LagtopError(f"step_sizes must have {wanted}, got {step_sizes}", "step_sizes")
     exact, steps = ExactMotion(motion), step_sizes or repeat(None)
     results = [_measured(exact, *x) for x in zip(runs, steps, strict=False)]
     found = convergence(results, limit) if step_sizes else None

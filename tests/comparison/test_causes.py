@@ -224,7 +224,7 @@ def test_mirrored_motions_have_two_names() -> None:
     found = compare(top, T, quaternion=wxyz(turn))
     both = "r0 has the wrong sign; or the frame is left-handed with z up, or has z down"
     assert (found.cause, found.verdict) == (both, "another top")
-    assert found.remedy == "align=axis=-z,up=-z or align=left,start"
+    assert found.remedy == "align=left,start or align=axis=-z,up=-z,start"
     first = compare(top, T, quaternion=wxyz(turn), align="left,start")
     assert first.verdict == "fine"
     turned = compare(top, T, quaternion=wxyz(turn * Rotation.from_euler("z", 1)), align="start")
