@@ -14,7 +14,7 @@ from ..solver.keys import shown_keys, unit_name
 from ..sweeps.records import sweep
 from .known import body_numbers, time_power
 from .outcome import PERCENT, Number, Outcome
-from .problem import Minimum, Problem
+from .problem import BESIDE_POLE, Minimum, Problem
 from .recording import Recording
 
 _MEANINGS = {
@@ -36,7 +36,7 @@ _DERIVED = (
     *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
     *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
 )
-_NEAR_POLE = 0.1
+_UNSURE = 0.1
 """Standard deviation of the tilt over its distance from a pole, beyond which the precession in the
 first row is not determined."""
 _IMPROVED = 0.999
@@ -65,7 +65,7 @@ def nutating_outcome(
     )
     hidden = {x for x, y in zip(names, stds, strict=True) if y > _IMPROVED * given.get(x, math.inf)}
     tilt, (factor, angle) = found.values["theta0"], angle_unit(radians=radians)
-    if found.std("theta0") > _NEAR_POLE * min(tilt, math.pi - tilt):
+    if pairs.get("theta0", (0.0, 0.0))[1] > _UNSURE * min(tilt, math.pi - tilt):
         hidden |= {"psidot0", "psi_zero", "phi_zero"}
     numbers = {}
     for name, (value, *spreads) in pairs.items():
@@ -135,6 +135,7 @@ def _computed(
     """Return the numbers of the motion and of the body for many parameters, start in radians."""
     v = problem.values(x)
     free = {*problem.names, *["b"] * problem.is_tied, *["a"] * problem.has_torque}
+    free |= {*BESIDE_POLE.values()} if problem.pole else set()
     free |= {"r0"} if "phidot0" in problem.known else set()
     free -= {"a"} if problem.has_torque and not problem.stds else set()
     names = [name for name in (*_MEANINGS, *problem.stds) if name in free]

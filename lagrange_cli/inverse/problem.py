@@ -14,7 +14,7 @@ from ..arithmetic.types import Array
 from .known import WEIGHT, Known
 from .motions import STATE, angles
 from .recording import Recording
-from .signals import Signal, mean_rate
+from .signals import NEAR_POLE, Signal, mean_rate
 
 _DEPENDENT = 1e-7
 """Ratio of singular values of the slopes below which parameters are not determined."""
@@ -28,6 +28,9 @@ _IN_PHASE = 0.7
 """Largest rms residual of the spin, in radians, of a motion that may be out of phase."""
 STEPS = 60
 """Evaluations of the least squares."""
+BESIDE_POLE = {"along": "theta0", "across": "psidot0", "speed": "thetadot0"}
+"""Parameters of a start beside a pole, each in place of one that is singular on the pole: the place
+of the axis along and across its velocity, in radians from the pole, and its speed."""
 _POLE, _FAR = 1e-9, 1e3
 """Least distance from a pole, and weighted residual of a motion that does not exist."""
 _GAIN = 1e-7
@@ -36,7 +39,8 @@ _APART = 4.0
 """Standard deviations between different tops."""
 _CURVED, _BENT, _BROKEN, _STIFF = 2.0, 2.0, 6.0, 100.0
 """Standard deviations at which chi^2 is compared with a parabola, the factors above it that show a
-bent valley and one without a floor, and the weight of the distance at which it is searched."""
+bent valley and, on both sides, one without a floor, and the weight of the distance at which the
+floor is searched."""
 _SHAPE_ROWS = 300
 """Rows that show the shape of chi^2."""
 
@@ -48,7 +52,9 @@ class Problem:
     inputs replace a, b, r0 and the start as far as they determine them, unless the fit is `free`.
     Then they only serve to compute the body.  A known input that is uncertain is a parameter with
     a prior.  If whole turns of the spin per row are invisible, r0 exceeds the rate that is seen,
-    which is below half a turn per row, by the `turns` per unit of time.
+    which is below half a turn per row, by the `turns` per unit of time.  If the start is beside a
+    `pole` (1 or -1), its parameters are those of BESIDE_POLE, and the zeros are those of an axis
+    that leaves the pole in the direction of its velocity.
     """
 
     def __init__(
@@ -59,8 +65,10 @@ class Problem:
         *,
         free: bool = False,
         turns: float = 0,
+        pole: int = 0,
     ) -> None:
         self.recording, self.sizes, self.turns, self.free = recording, sizes, turns, free
+        self.pole = pole
         """The `sizes` are the standard deviations of the channels."""
         seen = recording.angles.keys()
         alone = {"psidot0"} if seen == {"theta"} else {"theta0"} if seen == {"psi"} else set()
@@ -82,6 +90,9 @@ class Problem:
         fixed |= {"r0"} if "phidot0" in has else set()
         names = [x for x in (*STATE, *["r0"] * ("phi" in seen)) if x not in fixed]
         names += [f"{x}_zero" for x in ("psi", "phi") if x in seen]
+        if pole:
+            smooth = {y: x for x, y in BESIDE_POLE.items()}
+            names = [smooth.get(x, x) for x in names]
         self.count = len(names)
         """The number of parameters without a prior."""
         self.names = [*names, *self.stds]
@@ -89,7 +100,8 @@ class Problem:
     def of(self, recording: Recording, sizes: Array | None = None) -> Problem:
         """Return the same problem for another form of the recording."""
         sizes = self.sizes if sizes is None else sizes
-        return Problem(recording, self.inputs, sizes, free=self.free, turns=self.turns)
+        known, free, turns, pole = self.inputs, self.free, self.turns, self.pole
+        return Problem(recording, known, sizes, free=free, turns=turns, pole=pole)
 
     @property
     def rows(self) -> int:
@@ -104,6 +116,14 @@ class Problem:
         """Return the quantities of the motion from parameters, shape (tops, parameters)."""
         found: dict[str, Any] = {"psi_zero": 0.0, "phi_zero": 0.0, **self.known}
         found |= dict(zip(self.names, x.T, strict=True))
+        if self.pole:
+            distance = np.maximum(np.hypot(found["along"], found["across"]), _POLE)
+            turn = np.arctan2(found["across"], found["along"])  # of the velocity from the meridian
+            found["theta0"] = distance if self.pole > 0 else math.pi - distance
+            found["thetadot0"] = self.pole * found["speed"] * np.cos(turn)
+            found["psidot0"] = found["speed"] * np.sin(turn) / np.sin(distance)
+            found["psi_zero"] = found["psi_zero"] - turn
+            found["phi_zero"] = found["phi_zero"] + self.pole * turn
         if "A_cm" in self.known:
             found["A"] = found["A_cm"] + found["m"] * found["s"] ** 2
         weight = 2 * math.prod(found.get(x, math.nan) for x in ("m", "g", "s"))
@@ -116,6 +136,22 @@ class Problem:
             found["b"] = found["C"] / moment * found["r0"]
         found.setdefault("r0", found["b"])
         return {name: np.broadcast_to(value, len(x)) for name, value in found.items()}
+
+    def beside_pole(self, x: Array) -> tuple[Problem, Array]:
+        """Return the problem, and parameters, in the form for a start beside a pole, if it is."""
+        v = {name: y[0] for name, y in self.values(x[np.newaxis]).items()}
+        pole = 1 if v["theta0"] < math.pi / 2 else -1
+        distance = min(v["theta0"], math.pi - v["theta0"])
+        away, round_it = pole * v["thetadot0"], v["psidot0"] * math.sin(distance)
+        speed, turn = math.hypot(away, round_it), math.atan2(round_it, away)
+        is_free = {*BESIDE_POLE.values()} <= {*self.names} - self.inputs.keys()
+        if not is_free or not distance < min(NEAR_POLE, speed):
+            return self, x
+        v |= {"along": distance * math.cos(turn), "across": distance * math.sin(turn)}
+        v |= {"speed": speed, "psi_zero": v["psi_zero"] + turn}
+        v["phi_zero"] -= pole * turn
+        problem = Problem(self.recording, self.inputs, self.sizes, free=self.free, pole=pole)
+        return problem, np.array([v[name] for name in problem.names])
 
     def angles(self, x: Array, t: Array) -> Array:
         """Return theta, phi and psi with the zeros of the recording, shape (3, tops, times)."""
@@ -158,7 +194,8 @@ class Problem:
         self, x: Array, function: Callable[[Array], Array], *, central: bool = True
     ) -> Array:
         """Return the derivatives of a function of many tops by the parameters, in the last axis."""
-        steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), _LEAST_SIZE)
+        least = np.array([1.0 if name in BESIDE_POLE else _LEAST_SIZE for name in self.names])
+        steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), least)
         steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
         below = x - np.diag(steps) if central else x[np.newaxis]
         found = function(np.concatenate([x + np.diag(steps), below]))
@@ -297,7 +334,8 @@ class Minimum:
             i, b = problem.names.index("a"), problem.values(x[np.newaxis])["b"][0]
             least = max(_LEAST * np.linalg.norm(spread[i]), b * b / _FASTEST)
             loose[i] |= x[i] <= least
-        unknown = [name for name, x in zip(problem.names, loose, strict=True) if x]
+        names = [BESIDE_POLE.get(name, name) for name in problem.names]
+        unknown = [name for name, x in zip(names, loose, strict=True) if x]
         return cls(problem, x, spread, 2 * cost, unknown, is_curved)
 
     @property
@@ -356,8 +394,8 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
     """Return factors by which the axes of a covariance are too short, at least 1.
 
     Two standard deviations away on either side, chi^2 should have grown by 4.  If it grows by much
-    more, the valley of chi^2 is bent, and its floor is followed.  If chi^2 is still wrong there,
-    the covariance is, as the second number says.  Chi^2 is that of the change of the motion.
+    more, the valley of chi^2 is bent, and its floor is followed.  If there is none on either side,
+    the covariance is wrong, as the second number says.  Chi^2 is that of the change of the motion.
     """
     few = problem.thinned(_SHAPE_ROWS)
     few = few.of(few.recording, few.sizes * math.sqrt(few.rows / problem.rows))
@@ -378,4 +416,4 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
         grown[side, axis] = float(np.sum(change(end[np.newaxis]) ** 2))
     least = np.maximum(grown.min(axis=0, initial=math.inf), 0.04)
     factors = np.sqrt(np.clip(_CURVED**2 / least, 1.0, 100.0))
-    return np.asarray(factors), bool(np.any(grown > _BROKEN * _CURVED**2))
+    return np.asarray(factors), bool(np.any(grown.min(axis=0) > _BROKEN * _CURVED**2))

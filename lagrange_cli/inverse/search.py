@@ -325,7 +325,7 @@ def _constrained(
 ) -> Minimum:
     """Return the minimum with all known inputs, from the one without them."""
     old, v = found.problem, found.values
-    problem = Problem(old.recording, known, old.sizes, turns=old.turns)
+    problem = Problem(old.recording, known, old.sizes, turns=old.turns, pole=old.pole)
     moment = v.get("A", v.get("m", math.nan) * v.get("g", 1) * v.get("s", 1) * 2 / v["a"])
     if turn and "r0" in old.names:
         wanted, most = v["r0"], math.inf
@@ -381,4 +381,4 @@ def _best_starts(
         is_new = all(p is not problem or np.any(np.abs(x - y)[:2] > near) for _, p, y in kept)
         if is_new and len(kept) < _STARTS and math.isfinite(size):
             kept.append((data, problem, x))
-    return kept
+    return [(data, *problem.beside_pole(x)) for data, problem, x in kept]

@@ -28,6 +28,8 @@ Noise exceeds it at the best of all frequencies about once in 370 times.
 """
 _TIED = 0.3
 """Loss of the log of the noise, per angle, up to which a higher frequency is preferred."""
+NEAR_POLE = 0.1
+"""Distance from a pole, in radians, below which the axis may pass over it or begin on it."""
 _JUMP = 0.5
 """Change of an angle within a bin, in radians, beyond which the mean of the bin is not used."""
 
@@ -72,6 +74,12 @@ class Signal(NamedTuple):
         found = (self.harmonics(np.array([frequency]), x) for x in orders)
         factors, noise = min(found, key=lambda x: x[1])
         return factors[0], float(noise[0])
+
+
+def passes_pole(tilt: Signal) -> bool:
+    """Return whether the axis comes so near to a pole that spin and precession may jump there."""
+    distance = math.pi / 2 - np.abs(np.arcsin(tilt.y))
+    return bool(distance.min() < min(NEAR_POLE, distance.max() / 5))
 
 
 def signals_in(recording: Recording) -> dict[str, Signal]:
@@ -130,8 +138,11 @@ def binned(recording: Recording, signals: Mapping[str, Signal], most: int) -> Re
 def oscillation_in(signals: Mapping[str, Signal]) -> tuple[float, bool]:
     """Return the frequency of the nutation, up to half a period per row, and if it is visible.
 
-    It is the frequency at which harmonics describe the signals best.
+    It is the frequency at which harmonics describe the signals best: that of the tilt alone, if
+    the axis may pass over a pole.
     """
+    if "theta" in signals and passes_pole(signals["theta"]):
+        signals = {"theta": signals["theta"]}
     rows = max(x.t.size for x in signals.values())
     best = _best_frequency([x.averaged(_MOST_ROWS) for x in signals.values()])
     if rows <= _MOST_ROWS or (best[1] > 0 and best[0] * best[2] < _MOST_ROWS / 8):

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from .motions import nutating
-from .signals import Signal
+from .signals import NEAR_POLE, Signal, passes_pole
 
 _HEIGHTS = np.concatenate([[1e-6], 10.0 ** np.linspace(-4, 8, 73)])
 """Values of (u3 - 1)/(1 - u2) between which a mean precession rate is searched for."""
@@ -34,6 +34,7 @@ def starts(signals: Mapping[str, Signal], frequency: float, tilt: float | None) 
     """
     period, shown = 1 / frequency, signals.get("theta")
     least, greatest, at_start = _turning_points(shown, frequency) if shown else (*_grid(), None)
+    jumps = shown is not None and passes_pole(shown)
     rates: list[float] = []
     if "psi" in signals:
         spin = signals["psi"]
@@ -51,11 +52,14 @@ def starts(signals: Mapping[str, Signal], frequency: float, tilt: float | None) 
             height = _HEIGHTS[i] ** (1 - share) * _HEIGHTS[i + 1] ** share
             ends = least[row], greatest[row]
             found.append(np.stack([*ends, *nutating(*ends, period, height, signs)[:3]]))
-        if not rates:
+        if not rates or jumps:
             found.append(np.stack(np.broadcast_arrays(*pair, *tops[:3])).reshape(5, -1))
     low, high, a, b, beta = np.concatenate(found, axis=1)
     u1, u2 = np.cos(low), np.cos(high)
-    u = (u2 + (u1 - u2) * _PHASES[:, np.newaxis]) if at_start is None else np.clip(at_start, u2, u1)
+    if at_start is None:
+        u = u2 + (u1 - u2) * _PHASES[:, np.newaxis]
+    else:
+        u = np.clip(at_start[:, np.newaxis], u2, u1)
     if tilt is not None:
         near = (u1 + 0.02 > math.cos(tilt)) & (math.cos(tilt) > u2 - 0.02)
         u = np.where(near, math.cos(tilt), np.nan)
@@ -72,19 +76,27 @@ def starts(signals: Mapping[str, Signal], frequency: float, tilt: float | None) 
     return np.asarray(both[np.isfinite(both).all(axis=1)])
 
 
-def _turning_points(tilt: Signal, frequency: float) -> tuple[Array, Array, float]:
-    """Return pairs of turning points near those of the harmonics, and the cosine at the start."""
+def _turning_points(tilt: Signal, frequency: float) -> tuple[Array, Array, Array]:
+    """Return pairs of turning points near those of the harmonics, and cosines at the start.
+
+    An axis that comes near a pole may pass over it, and begin beside it.
+    """
     factors, _ = tilt.finest(frequency)
     phases, order = np.linspace(0, 1 / frequency, 720), factors.size // 2
     wave = factors @ tilt.basis(phases, np.array([frequency]), order)[0]
     ends = np.arccos(np.clip([wave.max(), wave.min()], -1, 1))
     seen = np.arccos([tilt.y.max(), tilt.y.min()])
-    lows = np.array([ends[0], seen[0], seen[0] / 3])
-    highs = np.array([ends[1], seen[1], math.pi - (math.pi - seen[1]) / 3])
+    room = math.pi - seen[1]
+    lows, highs = [ends[0], seen[0], seen[0] / 3], [ends[1], seen[1], math.pi - room / 3]
+    start = [math.acos(np.clip(wave[0], -1, 1))]
+    if passes_pole(tilt):
+        lows.append(0.0)
+        highs.append(math.pi)
+        start += [x for x in (10 * _POLE, math.pi - 10 * _POLE) if abs(x - start[0]) < NEAR_POLE]
     pairs = np.stack(np.meshgrid(lows, highs)).reshape(2, -1)
     least, greatest = np.clip(pairs, _POLE, math.pi - _POLE)
     inside = least < greatest
-    return least[inside], greatest[inside], float(wave[0])
+    return least[inside], greatest[inside], np.cos(start)
 
 
 def _grid() -> tuple[Array, Array]:
