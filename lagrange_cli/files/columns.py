@@ -15,8 +15,7 @@ from ..arithmetic.text import quoted, shortened
 from ..errors import LagtopError
 from ..names import ANGLES, suggestion
 from ..top.inputs import declared
-from ..top.units import conversion, is_unit
-from .headings import name_and_unit
+from ..top.units import SPELLINGS, conversion, is_unit
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -136,6 +135,34 @@ _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
 """Units that mean those of the scene, as in a drawn table."""
 
 
+_GREEK = str.maketrans(
+    dict(
+        zip(
+            "\u03b8\u03d1\u03c6\u03d5\u03c8\u03c9\u0307\u2032\u2080",
+            "theta theta phi phi psi omega dot ' 0".split(),
+            strict=True,
+        )
+    )
+)
+"""ASCII spellings of the Greek letters, a dot above, a prime, and a subscript 0."""
+
+
+def name_and_unit(heading: str) -> tuple[str, str]:
+    """Return the name in a heading, in ASCII, and its unit, empty if it has none.
+
+    The unit is in brackets, in parentheses or after a blank: `t [ms]`, `theta (deg)`, `r0 rpm`.
+    Brackets around numbers belong to the name, as in `omega[0]`.
+    """
+    text = re.sub(r"(theta|phi|psi)'", r"\1dot", heading.strip().translate(_GREEK))
+    match = re.fullmatch(r"(.*\S)\s*[\[(]([^\[\]()]*)[\])]", text)
+    if match is None or re.fullmatch(r"[\d\s,]+", match[2]):
+        match = re.fullmatch(r"(.*\S)\s+([^\W\d_]\S*|°\S*)", text)
+        if match is None or not is_unit(match[2]):
+            return text, ""
+    unit = match[2].strip()
+    return match[1], SPELLINGS.get(unit, unit)
+
+
 def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     """Return the quantities of some columns; a column belongs to the first quantity that fits."""
     plain = [plain_name(name) for name in names]
@@ -203,11 +230,11 @@ def found_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     for key, quantity in found.items():
         angle = {x[0] for x, _ in QUANTITIES[key].spellings} if key in ANGLES else set()
         for i in quantity.columns:
-            for other, word in enumerate(plain):
-                if other != i and word in {plain[i], *angle}:
-                    wrong = f"must name each quantity once, got {names[i]!r} and {names[other]!r}"
-                    remedy = "skip one with _, for example columns=t,theta,_"
-                    raise LagtopError(f"columns {wrong}: {remedy}", "columns")
+            same = [repr(names[j]) for j, x in enumerate(plain) if x in {plain[i], *angle}]
+            if len(same) > 1:
+                wrong = f"must name each quantity once, got {' and '.join(same)}"
+                remedy = "skip one with _, for example columns=t,theta,_"
+                raise LagtopError(f"columns {wrong}: {remedy}", "columns")
     return {key: in_known_unit(key, x, names) for key, x in found.items()}
 
 

@@ -99,9 +99,9 @@ def observe(given: Quantities, conventions: Conventions) -> Observed:
     elif len(alone) == len(ANGLES):
         found["quaternion"] = rotations.of_angles(**alone)
     elif "euler" in given:
-        found["quaternion"] = rotations.of_euler(conventions.euler, given["euler"])
+        found["quaternion"] = rotations.of_scipy("euler", conventions.euler, given["euler"])
     elif "rotvec" in given:
-        found["quaternion"] = rotations.of_vector(given["rotvec"])
+        found["quaternion"] = rotations.of_scipy("rotvec", given["rotvec"])
     elif "axis" in given:
         found |= _directed("axis", given["axis"])
     elif "position" in given and not alone:

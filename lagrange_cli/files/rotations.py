@@ -6,6 +6,8 @@ radians.  Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..arithmetic.types import Array
@@ -104,14 +106,19 @@ def within_half_turn(angle: Array) -> Array:
     return np.asarray(angle - np.ceil(angle / (2 * np.pi) - 0.5) * (2 * np.pi))
 
 
+def of_scipy(form: str, *given: Any) -> Array:
+    """Return rotations in another form of SciPy, such as `euler` with a sequence and angles."""
+    from scipy.spatial.transform import Rotation  # start-up
+
+    return np.asarray(getattr(Rotation, f"from_{form}")(*given).as_quat(scalar_first=True))
+
+
 def of_matrix(rows: Array) -> tuple[Array, Array]:
     """Return the rotations nearest to matrices, given row by row, and the distance of each matrix.
 
     The distance is the greatest element of |R R^T - 1|. The rotation is NaN for a matrix that is
     not a rotation, such as a reflection.
     """
-    from scipy.spatial.transform import Rotation
-
     matrices = rows.reshape(-1, 3, 3)
     gram = np.einsum("nij,nkj->nik", matrices, matrices)
     fault: Array = np.max(np.abs(gram - np.eye(3)), axis=(1, 2))
@@ -119,22 +126,8 @@ def of_matrix(rows: Array) -> tuple[Array, Array]:
     good[good] = np.linalg.det(matrices[good]) > 0
     found = np.full((len(rows), 4), np.nan)
     if good.any():
-        found[good] = Rotation.from_matrix(matrices[good]).as_quat(scalar_first=True)
+        found[good] = of_scipy("matrix", matrices[good])
     return found, fault
-
-
-def of_euler(sequence: str, angles: Array) -> Array:
-    """Return rotations by three angles about coordinate axes, in scipy's notation of sequences."""
-    from scipy.spatial.transform import Rotation
-
-    return np.asarray(Rotation.from_euler(sequence, angles).as_quat(scalar_first=True))
-
-
-def of_vector(vectors: Array) -> Array:
-    """Return rotations from rotation vectors: the direction is the axis, the length the angle."""
-    from scipy.spatial.transform import Rotation
-
-    return np.asarray(Rotation.from_rotvec(vectors).as_quat(scalar_first=True))
 
 
 def body_rates(

@@ -23,8 +23,7 @@ from ..top.ranges import MOST_POINTS, Points
 from ..top.top import INPUTS
 from ..top.units import conversion
 from ..top.values import STEADY_WORDS, Value, tilt_key
-from .columns import known_quantities
-from .headings import name_and_unit
+from .columns import known_quantities, name_and_unit
 from .text_tables import Table, read_table
 
 if TYPE_CHECKING:

@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 
 _BYTES_OF_A_NUMBER = 24
 """Most characters of a number in CSV."""
-_MOST_PARTS = 9
-"""Most columns of a quantity: those of a matrix."""
 _FINE = 1e-7
 """Largest rounding of a time, over the time between two rows, that does not matter."""
 
@@ -163,10 +161,9 @@ def read_trajectory(
 
 
 def _csv_of_parquet(content: bytes, name: str) -> bytes:
-    """Return the columns of numbers of a Parquet file as CSV; a list of a fixed size is several."""
+    """Return the columns of numbers of a Parquet file as CSV."""
     try:
-        import pyarrow as pa
-        from pyarrow import compute, csv, parquet
+        from pyarrow import csv, parquet, types
     except ImportError:
         remedy = "pip install pyarrow"
         raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
@@ -174,20 +171,12 @@ def _csv_of_parquet(content: bytes, name: str) -> bytes:
         file = parquet.ParquetFile(BytesIO(content))
         if twice := repeated(file.schema_arrow.names):
             raise ValueError(f"two columns are named {twice!r}")
-        sizes = {}
-        for x in file.schema_arrow:
-            parts = getattr(x.type, "list_size", 0)
-            kind = x.type.value_type if 0 < parts <= _MOST_PARTS else x.type
-            if pa.types.is_floating(kind) or pa.types.is_integer(kind):
-                sizes[x.name] = parts
-        size = file.metadata.num_rows * sum(max(x, 1) for x in sizes.values())
+        is_number = types.is_floating, types.is_integer
+        names = [x.name for x in file.schema_arrow if any(y(x.type) for y in is_number)]
+        size = file.metadata.num_rows * len(names)
         if size > (most := LARGEST_FILE // _BYTES_OF_A_NUMBER):
             raise ValueError(f"it must have at most {most} numbers, has {size}")
-        table, columns = file.read(columns=[*sizes]), dict[str, Any]()
-        for x, count in sizes.items():
-            cells = {f"{x}_{i}": compute.list_element(table[x], i) for i in range(count)}
-            columns |= cells or {x: table[x]}
-        csv.write_csv(pa.table(columns), stream := BytesIO())
+        csv.write_csv(file.read(columns=names), stream := BytesIO())
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
         raise DataError(f"{name}: bad Parquet file: {why}") from None

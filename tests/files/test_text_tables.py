@@ -12,7 +12,7 @@ from conftest import Lagtop, assert_one_line
 
 from lagrange_cli.errors import DataError
 from lagrange_cli.files import text_tables
-from lagrange_cli.files.headings import name_and_unit
+from lagrange_cli.files.columns import name_and_unit
 from lagrange_cli.files.tops import read_tops
 from lagrange_cli.files.trajectory import read_times, read_trajectory
 
