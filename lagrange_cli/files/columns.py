@@ -185,10 +185,9 @@ def known_quantities(names: Sequence[str]) -> int:
 
 
 def plain_name(name: str) -> tuple[str, str | None]:
-    """Return a name in lower-case letters and digits only, and its unit.
+    """Return a name in lower-case letters and digits only, and its unit, also that of `theta_deg`.
 
-    The name of an angle may end in its unit, as in `theta_deg`.  Only the last two parts of a path
-    count, as in `/imu/orientation/x` or `pose.orientation.x`.
+    Only the last two parts of a path count, as in `/imu/orientation/x` or `pose.orientation.x`.
     """
     text, unit = name_and_unit(name)
     text = text.lower()
@@ -239,10 +238,7 @@ def found_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
 
 
 def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> FoundQuantity:
-    """Return a quantity with the factor that converts it to s, m, rad/s or rad, if any.
-
-    Raises LagtopError for a unit that it cannot have, and for parts in different units.
-    """
+    """Return a quantity with the factor to s, m, rad/s or rad, if any.  Raises LagtopError."""
     named = [names[i] for i in found.columns]
     if len({plain_name(part)[1] for part in named}) > 1:
         shown = " and ".join(map(repr, named[:2]))
@@ -259,10 +255,7 @@ def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> Found
 
 
 def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -> Array:
-    """Return the numbers of a quantity in known units, all angles in radians.
-
-    Angles without a unit are in degrees, or else in `radians`.
-    """
+    """Return numbers in known units, all angles in radians; `radians` if their unit is missing."""
     import numpy as np
 
     if found.factor is not None:
@@ -277,10 +270,7 @@ def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -
 
 
 def expanded(names: Sequence[str]) -> list[str]:
-    """Return the names of columns, groups expanded: `quaternion` becomes quaternion_0 and so on.
-
-    Raises LagtopError for an unknown name, and for a unit that its quantity cannot have.
-    """
+    """Return names of columns, `quaternion` as quaternion_0 and so on.  Raises LagtopError."""
     single: list[str] = []
     for name in names:
         word, unit = plain_name(name)

@@ -139,8 +139,8 @@ class Table:
     def numbers(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
         """Return columns of numbers, without the rows that have none in these columns.
 
-        `names` are the names of all columns in messages.  Raises DataError with the place of a cell
-        that is no number.
+        `names` are those of all columns.  Raises DataError with the place of a cell that is no
+        number.
         """
         found = self._at_once() or self._at_once(columns) or self._one_by_one(columns, names)
         if found.values.shape[1] != len(columns):
@@ -151,8 +151,7 @@ class Table:
     def _at_once(self, columns: Sequence[int] | None = None) -> NumericColumns | None:
         """Return columns of numbers, or None if NumPy cannot read the rows.
 
-        Without `columns`, all cells must be numbers.  With them, a cell may be empty, and other
-        columns may hold words.
+        Only with `columns`, a cell may be empty, and other columns may hold words.
         """
         rows, mark, lines = self.rows, self.delimiter, array("q")
         if not isinstance(rows, Lines) or not mark or next(iter(rows), None) is None:
@@ -244,9 +243,8 @@ def read_table(
 ) -> Table:
     """Read a text table.
 
-    `known` distinguishes headings from titles.  `decimal` is a point, a comma, or empty if the
-    first rows decide.  `width` is the number of columns if their names are given; headings in the
-    file then do not count for its layout.  Raises DataError.
+    `decimal` is a point, a comma, or empty if the first rows decide.  `width` is the number of
+    columns if their names are given: headings then do not decide the layout.  Raises DataError.
     """
     if text.count("\n") > _MOST_LINES:
         raise DataError(f"{name}: a file must have at most {_MOST_LINES} lines: split it")
@@ -325,10 +323,9 @@ class _Layout(NamedTuple):
 
 
 def _layout(texts: Sequence[str], known: CountKnown, decimal: str) -> _Layout:
-    """Return the layout of a file whose headings are the row with the most known names.
+    """Return the layout of a file: its headings are the row with the most known names.
 
-    Titles in words may hold known names, too: headings are as many as the cells below, and have the
-    same delimiter.
+    Titles may hold known names, too, but headings are as many as the cells below, and delimited so.
     """
     splits = [_splits(text, decimal) for text in texts]
     numeric = [[x for x, cells in row.items() if _are_numbers(cells)] for row in splits]
@@ -385,9 +382,8 @@ def _are_numbers(cells: Sequence[str]) -> bool:
 
 def _has_number(row: Mapping[str, Sequence[str]]) -> bool:
     """Return whether a cell of a row is a number, by any delimiter but blanks if it has another."""
-    return any(
-        _NUMBER.fullmatch(x) for cells in [*row.values()][:-1] or row.values() for x in cells
-    )
+    splits = [*row.values()][:-1] or row.values()
+    return any(_NUMBER.fullmatch(x) for cells in splits for x in cells)
 
 
 def _split(text: str, delimiter: str) -> list[str]:
@@ -404,11 +400,9 @@ def split_row(text: str, delimiter: str) -> list[str]:
     """Return the cells of a line.  Raises LagtopError for a quoted cell that does not end on it."""
     if '"' not in text:
         return text.split() if delimiter == " " else [x.strip() for x in text.split(delimiter)]
+    form: Any = {"delimiter": delimiter, "strict": True, "skipinitialspace": True}
     try:
-        rows = csv.reader(
-            [text.strip(" ")], delimiter=delimiter, strict=True, skipinitialspace=True
-        )
-        return [x.strip() for x in next(rows)]
+        return [x.strip() for x in next(csv.reader([text.strip(" ")], **form))]
     except csv.Error as error:
         limit = "a quoted cell must have at most 131072 characters"
         wrong = f"a quoted cell must end with its quote, and on its line: {error}"
@@ -422,9 +416,10 @@ def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
     if line.lstrip().startswith("["):
         whole = text.split("\n", number - 1)[-1]
         if len(whole) > LARGEST_ARRAY or whole.count(",") > _MOST_VALUES:
-            wanted = f"a JSON array must have at most {LARGEST_ARRAY} characters"
-            wanted += f" and {_MOST_VALUES} values"
-            raise DataError(f"{name}: {wanted}: write one object per line")
+            most = (
+                f"{LARGEST_ARRAY} characters and {_MOST_VALUES} values: write one object per line"
+            )
+            raise DataError(f"{name}: a JSON array must have at most {most}")
         try:
             rows = [*enumerate(json_value(whole, number), 1)]
         except LagtopError as error:

@@ -34,7 +34,6 @@ class Tops(NamedTuple):
     """The inputs of some tops, with the columns, lines and errors of each."""
 
     size: int
-    """The number of tops."""
     inputs: Mapping[str, Any]
     """For each input an array, or one value for all tops; NaN for a top without the input."""
     carried: Sequence[Sequence[Any]] = ()
@@ -70,10 +69,8 @@ class Product(NamedTuple):
 
     def arrays(self, shared: Mapping[str, Any]) -> Tops:
         """Return the inputs of the combinations; `shared` holds those that do not vary."""
-        numbers = np.arange(self.first, self.first + self.size)
-        _, *places = np.unravel_index(
-            numbers, (MOST_POINTS, *(x.count for x in self.axes.values()))
-        )
+        counts = MOST_POINTS, *(x.count for x in self.axes.values())
+        _, *places = np.unravel_index(np.arange(self.first, self.first + self.size), counts)
         found = {name: x.at(i) for (name, x), i in zip(self.axes.items(), places, strict=True)}
         return Tops(self.size, {**shared, **found})
 
@@ -156,8 +153,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     """Return a file of tops, or standard input for `-`.
 
     Columns named in `computed` are neither read nor copied.  `decimal` is a point or a comma, or
-    empty if the file decides.  Raises DataError for a file that cannot be read, or that has no
-    headings of inputs.
+    empty if the file decides.  Raises DataError.
     """
     table = read_table(read_text(path), shown_path(path), _known_inputs, decimal)
     name, headings = table.name, table.headings or []
@@ -175,11 +171,16 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
             units[column] = Value(factor, unit)
         columns.append(column)
     if not units and known_quantities(headings) > 1:
-        wanted = "must hold tops, got a recording with the columns"
         shown = shortened(", ".join(headings), 120)
-        raise DataError(f"{name} {wanted} {shown}: pass it to fit or compare")
+        wrong = f"must hold tops, got a recording with the columns {shown}"
+        raise DataError(f"{name} {wrong}: pass it to fit or compare")
     carried = [x for x in columns if x not in units and x not in computed]
-    _check_spelling(carried, units.keys(), name)
+    inputs = {_plain(known): known for known in reversed(INPUTS) if known not in units}
+    if not any(x.startswith(TILT) for x in units):
+        inputs |= dict.fromkeys(("theta", "tilt", "elevation"), "theta0_deg")
+    for column in carried:
+        if known := inputs.get(_plain(column)):
+            raise DataError(f"{name}: the column {column} must be spelt {known}")
     if (twice := repeated(columns)) is not None:
         raise DataError(f"{name} must name each column once, got {twice!r} twice")
     if not units:
@@ -197,16 +198,6 @@ def _column_of(heading: str) -> tuple[str, str]:
 def _known_inputs(headings: Sequence[str]) -> int:
     """Return the number of inputs that some headings name."""
     return sum(_column_of(x)[0] in {*INPUTS, TILT} for x in headings)
-
-
-def _check_spelling(carried: Sequence[str], named: Collection[str], name: str) -> None:
-    """Raise DataError for an unread column that looks like an input missing from `named`."""
-    inputs = {_plain(known): known for known in reversed(INPUTS) if known not in named}
-    if not any(x.startswith(TILT) for x in named):
-        inputs |= dict.fromkeys(("theta", "tilt", "elevation"), "theta0_deg")
-    for column in carried:
-        if known := inputs.get(_plain(column)):
-            raise DataError(f"{name}: the column {column} must be spelt {known}")
 
 
 def _plain(column: str) -> str:

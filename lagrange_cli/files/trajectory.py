@@ -49,19 +49,16 @@ class Trajectory:
     def __init__(self, table: Table, columns: Sequence[str] | None = None) -> None:
         """Find the quantities and read their numbers; `columns` names all columns from the left.
 
-        Rows that are empty in these columns are left out.  Raises DataError without a time or a
-        quantity besides, for a wrong unit, and for a cell that is not a number; LagtopError for
+        Rows that are empty in these columns are left out.  Raises DataError, or LagtopError for
         wrong `columns`.
         """
         self.name, self._place = table.name, table.place
         if columns is not None and len(columns) != table.width:
             wanted = f"all {table.width} columns of {table.name} (_ skips one)"
-            wrong = f"columns must name {wanted}, got {len(columns)} names"
-            raise LagtopError(wrong, "columns")
+            raise LagtopError(f"columns must name {wanted}, got {len(columns)} names", "columns")
         names = table.headings if columns is None else columns
         if names is None:
-            remedy = f"name its {table.width} columns, {NAMING}"
-            raise DataError(f"{table.name} has no header: {remedy}")
+            raise DataError(f"{table.name} has no header: name its {table.width} columns, {NAMING}")
         self.names = names
         try:
             self.quantities = found_in(names)
@@ -143,8 +140,7 @@ def read_trajectory(
     """Return the trajectory in a file, or in standard input for `-`.
 
     `columns` names all columns from the left and overrides the names in the file, but a heading's
-    unit stays unless the name has one.  `decimal` is a point or a comma, or empty if the file
-    decides.  Raises DataError for a file that cannot be read or holds no trajectory.
+    unit stays unless the name has one.  `decimal` is as in `read_tops`.  Raises DataError.
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
     content = read_bytes(path)
@@ -165,8 +161,7 @@ def _csv_of_parquet(content: bytes, name: str) -> bytes:
     try:
         from pyarrow import csv, parquet, types
     except ImportError:
-        remedy = "pip install pyarrow"
-        raise UnavailableError(f"{name}: Parquet needs pyarrow: {remedy}") from None
+        raise UnavailableError(f"{name}: Parquet needs pyarrow: pip install pyarrow") from None
     try:
         file = parquet.ParquetFile(BytesIO(content))
         if twice := repeated(file.schema_arrow.names):
@@ -186,8 +181,7 @@ def _csv_of_parquet(content: bytes, name: str) -> bytes:
 def read_times(path: str, decimal: str = "") -> ListedPoints:
     """Return the times in a file exactly, from its column `t` or its only column.
 
-    `decimal` is a point or a comma, or empty if the file decides.  Raises DataError for a file that
-    cannot be read, and for a row without a time.
+    `decimal` is as in `read_tops`.  Raises DataError, also for a row without a time.
     """
     table = read_table(read_text(path), shown_path(path), known_quantities, decimal)
     names = ["t"] * (table.width < 2) if table.headings is None else table.headings

@@ -102,9 +102,8 @@ def _json_value(value: Any) -> str:
 def opened(path: str) -> Iterator[BinaryIO]:
     """Yield a binary stream to a file, or to standard output for `-`.
 
-    The stream writes to a temporary file beside the file, whose name begins with `.lagtop-`.  It
-    replaces the file if the block succeeds, and is removed otherwise.  Raises CannotWriteError, or
-    BrokenPipeError if the reader has gone away.
+    A temporary file `.lagtop-...` beside the file replaces it if the block succeeds.  Raises
+    CannotWriteError, or BrokenPipeError if the reader has gone away.
     """
     try:
         with _standard_output() if path == "-" else _file(path) as stream:

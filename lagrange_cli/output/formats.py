@@ -26,11 +26,7 @@ if TYPE_CHECKING:
 Texts = Sequence[Sequence[str]]
 """A block of rows with numbers as text; an empty text is a missing number."""
 BlockColumns = Sequence[Any]
-"""The columns of a block, in one of two types.
-
-Arrays hold numbers, with one or several columns each and NaN for missing values.  Lists hold texts
-and JSON values.
-"""
+"""Arrays of numbers, each of one or several columns, and lists of texts and JSON values."""
 MOST_DRAWN_ROWS = 10_000
 """Most rows of a table for people, because rich takes long for many."""
 
@@ -116,8 +112,7 @@ def write(
     blocks = filter(None, blocks)
     if fmt == "parquet":
         _write_parquet(stream, names, blocks)
-        return
-    if fmt == "table":
+    elif fmt == "table":
         from .report import drawn
 
         rows: list[list[str]] = []
@@ -127,12 +122,12 @@ def write(
                 wanted = f"table shows at most {MOST_DRAWN_ROWS} rows"
                 raise LagtopError(f"format {wanted}, got more: use csv", "format")
         stream.write(drawn(names, rows, range(len(names)), width).encode())
-        return
-    first = next(blocks, b"")  # before anything is written, because most errors occur here
-    stream.write({"json": b"[", "ndjson": b""}.get(fmt, _csv_header(names)) + first)
-    for block in blocks:
-        stream.write((b",\n" if fmt == "json" else b"") + block)
-    stream.write(b"]\n" if fmt == "json" else b"")
+    else:
+        first = next(blocks, b"")  # before anything is written, because most errors occur here
+        stream.write({"json": b"[", "ndjson": b""}.get(fmt, _csv_header(names)) + first)
+        for block in blocks:
+            stream.write((b",\n" if fmt == "json" else b"") + block)
+        stream.write(b"]\n" if fmt == "json" else b"")
 
 
 def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes:

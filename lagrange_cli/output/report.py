@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from io import StringIO
+from itertools import groupby
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -59,8 +60,7 @@ class Report(NamedTuple):
 
     def values(self) -> list[dict[str, Any]]:
         """Return every row by key."""
-        names = [field.key for field in self.fields]
-        values = ({name: getattr(row, name) for name in names} for row in self.rows)
+        values = [{x.key: getattr(row, x.key) for x in self.fields} for row in self.rows]
         return [
             {x: utf8_path(y) if isinstance(y, str) else y for x, y in z.items()} for z in values
         ]
@@ -81,10 +81,9 @@ class Report(NamedTuple):
         if fmt == "ndjson":
             return b"".join(orjson.dumps(row) + b"\n" for row in self.values())
         conditions = {name: utf8_path(x) for name, x in self.conditions.items()}
-        whole = {"conditions": conditions, "rows": self.values()}
-        whole |= {"conclusions": [*map(utf8_path, self.conclusions)]} | (
-            {"units": self.units} if self.units else {}
-        )
+        conclusions = [*map(utf8_path, self.conclusions)]
+        whole = {"conditions": conditions, "rows": self.values(), "conclusions": conclusions}
+        whole |= {"units": self.units} if self.units else {}
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
     def _drawn(self, width: int | None) -> str:
@@ -101,10 +100,8 @@ class Report(NamedTuple):
 
 def _filled(text: str, width: int | None, indent: int = 0) -> str:
     """Return running text, in lines that fit if there is a width."""
-    text = printable(text)
-    if width is None:
-        return text
-    return fill(text, width, subsequent_indent=" " * indent, break_on_hyphens=False)
+    hanging = " " * indent
+    return fill(printable(text), width or 10**6, subsequent_indent=hanging, break_on_hyphens=False)
 
 
 WIDE = 110
@@ -122,12 +119,10 @@ def record_text(record: Mapping[str, Any], keys: Keys, width: int | None) -> str
     if (width or 0) < WIDE:
         shown.remove("Name")
     rows: list[list[str | Text]] = []
-    group = None
-    for name, key in keys.items():
-        if record.get(name) is not None and name != "remark":
-            if key.group != group:
-                group = key.group
-                rows.append([Text(group, "bold"), *[""] * (len(shown) - 1)])
+    with_value = (x for x in keys.items() if record.get(x[0]) is not None and x[0] != "remark")
+    for group, items in groupby(with_value, lambda x: x[1].group):
+        rows.append([Text(group, "bold"), *[""] * (len(shown) - 1)])
+        for name, key in items:
             cells = {"Key": name, "Symbol": key.symbol, "Name": key.meaning, "Unit": key.unit}
             cells["Value"] = value_text(record[name])
             cells["Equation"] = record.get(f"{name}_radius") or key.equation
@@ -156,9 +151,8 @@ def drawn(
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     for i, heading in enumerate(headings):
-        is_number = i in numbers
-        justify: Any = "right" if is_number else "left"
-        table.add_column(Text(printable(heading)), justify=justify, no_wrap=is_number)
+        justify: Any = "right" if i in numbers else "left"
+        table.add_column(Text(printable(heading)), justify=justify, no_wrap=i in numbers)
     texts = [[x if isinstance(x, Text) else Text(printable(x)) for x in row] for row in rows]
     columns = list(zip(*texts, strict=True))
     spaces = 3 * (len(headings) - 1)
@@ -184,29 +178,23 @@ def short(value: float) -> str:
     return f"{value:.1e}"
 
 
-_LEAST_EXPONENT = -4
-"""Bound below which numbers have an exponent, as they do if a rounded digit is before the point."""
-
-
 def uncertain_text(value: float | str, std: float) -> str:
     """Return a number with its standard uncertainty, such as 0.4293(48) or 73.9(1.2).
 
     The uncertainty is rounded by the rule of the Particle Data Group.  It has two digits if its
-    first three are at most 354, and one digit up to 949; beyond, it is rounded up to 1000.  A
-    number without uncertainty is written in full.  A value with more digits than a double has is
-    given as a text.
+    first three are at most 354, and one digit up to 949; beyond, it is rounded up to 1000.  Numbers
+    below 1e-4, or rounded before the point, have an exponent.  A number without uncertainty is
+    written in full.  A value with more digits than a double has is given as a text.
     """
     if not std:
         return double_text(float(value))
-    with localcontext() as context:
-        context.prec = 800
-        context.rounding = ROUND_HALF_EVEN
+    with localcontext(prec=800, rounding=ROUND_HALF_EVEN):
         exact = Decimal(repr(std))
         leading = exact.adjusted()
         last = leading - 1 if int(exact.scaleb(2 - leading)) <= 354 else leading
         number, spread = (Decimal(str(x)).quantize(Decimal(1).scaleb(last)) for x in (value, std))
         leading = max(x.adjusted() for x in (number, spread) if x)
-        shift = 0 if leading >= _LEAST_EXPONENT and last <= 0 else leading
+        shift = 0 if leading >= -4 and last <= 0 else leading
         places = max(shift - last, 0)
         number, spread = number.scaleb(-shift), spread.scaleb(-shift)
         inside = f"{spread:.{places}f}" if spread >= 1 else f"{spread.scaleb(places):.0f}"

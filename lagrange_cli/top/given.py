@@ -79,12 +79,9 @@ class Given(NamedTuple):
         numbers = overridden(self.body, kept)
         exact = exact or (self.si and bool(STANDS_FOR.keys() & numbers))  # then rounded once
         try:
-            return Top(
-                **{
-                    key: x if exact or x in STEADY_WORDS else checked_double(key, x)
-                    for key, x in numbers.items()
-                }
-            )
+            for key, x in numbers.items() if not exact else ():
+                numbers[key] = x if x in STEADY_WORDS else checked_double(key, x)
+            return Top(**numbers)
         except LagtopError as error:
             moments = [name for name in ("A", "C") if name in self.missing]
             if moments and error.key in {"A", "C"}:

@@ -67,10 +67,8 @@ class EvenPoints(Points):
         """Raise LagtopError for more than 1e9 points."""
         if count > MOST_POINTS:
             size = Context(prec=4, traps=[]).create_decimal(count)
-            raise LagtopError(
-                f"must have at most 1e9 rows, got {size:.4g} "
-                "(take a larger step or a smaller count)"
-            )
+            remedy = "take a larger step or a smaller count"
+            raise LagtopError(f"must have at most 1e9 rows, got {size:.4g} ({remedy})")
         self.start, self.step, self.count = start, step, count
 
     def __str__(self) -> str:
@@ -158,8 +156,5 @@ def check_reach(name: str, points: Points, limit: float) -> None:
     """Raise LagtopError if a point is farther from 0 than the limit."""
     farthest = max(points.bounds(), key=abs)
     if abs(farthest) > limit:
-        raise LagtopError(
-            f"{name} must be within 2^50 periods = {limit:.3g} of 0, got {farthest} "
-            "(or use digits=N)",
-            name,
-        )
+        wanted = f"within 2^50 periods = {limit:.3g} of 0"
+        raise LagtopError(f"{name} must be {wanted}, got {farthest} (or use digits=N)", name)

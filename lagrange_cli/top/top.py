@@ -116,10 +116,8 @@ class Top:
             object.__setattr__(self, name, inputs.get(name))
         if self.A_cm is not None:
             self._derive("A", float(self.exact("A")))
-        twice = 2 * self.exact("A")
-        _require(
-            twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, "no rigid body has more"
-        )
+        twice, remedy = 2 * self.exact("A"), "no rigid body has more"
+        _require(twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, remedy)
         if word:
             from .derived import steady_rate_of  # for few tops only
 

@@ -56,9 +56,8 @@ UNITS: dict[str, Unit] = {
 }
 """The known units by name."""
 SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "°": "deg"}
-SPELLINGS |= dict.fromkeys(("degree", "degrees", "Grad"), "deg") | dict.fromkeys(
-    ("radian", "radians"), "rad"
-)
+SPELLINGS |= dict.fromkeys(("degree", "degrees", "Grad"), "deg")
+SPELLINGS |= dict.fromkeys(("radian", "radians"), "rad")
 """Other spellings of units."""
 EXAMPLES = {"mass": "kg or g", "mass len²": "kg*m^2 or g*cm^2", "len": "m or cm", "time": "s or ms"}
 EXAMPLES |= {"len/time²": "m/s^2 or cm/s^2", "rad/time": "rad/s or rpm"}
@@ -120,9 +119,8 @@ def _meant(name: str, text: str) -> str:
 def conversion(key: str, unit: str, wanted: str | None = None) -> tuple[Fraction, str]:
     """Return the factor that converts the quantity `key` from a unit to `wanted` in SI, and that.
 
-    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`; by default that of the input
-    or the time `key`.  A tilt stays in degrees if its unit contains pi, and in radians otherwise.
-    No unit is kept.  Raises LagtopError for a unit of other dimensions.
+    `wanted` is a unit such as `rad/time` or `deg`; by default that of the input or the time `key`.
+    A tilt stays in degrees if its unit contains pi, and in radians otherwise.  Raises LagtopError.
     """
     if not unit:
         return Fraction(1), ""

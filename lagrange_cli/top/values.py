@@ -75,8 +75,7 @@ def parse_value(
     """Read the input or quantity `key`: a number, or what `parse` makes of the text.
 
     `uncertain` allows an uncertainty, `steady` allows `STEADY_WORDS`, and `wanted` is the unit of
-    the result.  Raises LagtopError if `parse` does, with the whole text in place of the number, for
-    a bad uncertainty, and for a unit of other dimensions.
+    the result.  Raises LagtopError, also if `parse` does.
     """
     number, unit = split_unit(text)
     if steady and number in STEADY_WORDS:
@@ -151,10 +150,9 @@ def split_unit(text: str) -> tuple[str, str]:
 
 
 def value_of(name: str, given: Any) -> Value:
-    """Return a number or an array of Python as a value.
+    """Return a number, also of the package uncertainties, or an array of Python as a value.
 
-    Numbers of the package uncertainties are accepted.  Raises LagtopError for an uncertainty that
-    is not finite.
+    Raises LagtopError.
     """
     if isinstance(given, Value):
         return given
@@ -205,11 +203,8 @@ def _ends(text: str, parts: Sequence[str], read: Read) -> Span:
 
 
 def parse_number_or_span(text: str, read: Read = parse_number) -> Fraction | Span:
-    """Return a number, or an interval `[log:]from:to` whose second end is the larger one.
-
-    Raises LagtopError for anything else.
-    """
-    _check_marks(text, "")
+    """Return a number, or an interval `[log:]from:to` that ascends.  Raises LagtopError."""
+    _check_range(text, "60:80 rpm")
     if ":" not in text:
         return read(text)
     ends = text.removeprefix(LOG).split(":")
@@ -224,8 +219,7 @@ def parse_number_or_span(text: str, read: Read = parse_number) -> Fraction | Spa
 def parse_range(text: str, read: Read = parse_number) -> Points:
     """Return the points of `start:stop:count` or, with equal ratios, of `log:start:stop:count`.
 
-    Raises LagtopError for anything else, for a count of 1 between different ends, and for a
-    logarithmic range over 0.
+    Raises LagtopError, also for one point between different ends, and a logarithmic range over 0.
     """
     parts = text.removeprefix(LOG).split(":")
     if len(parts) != 3:
@@ -233,10 +227,9 @@ def parse_range(text: str, read: Read = parse_number) -> Points:
     (first, last, logarithmic), count = _ends(text, parts, read), parse_number(parts[2])
     if count.denominator != 1 or not 1 <= count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {quoted(text)}")
-    if count == 1 and first != last:
+    if (size := int(count)) == 1 and first != last:
         wanted = "must have a count of 2 or more between different ends"
         raise LagtopError(f"{wanted}, got {quoted(text)}")
-    size = int(count)
     if logarithmic:
         return LogPoints(first, last, size)
     return EvenPoints(first, (last - first) / max(size - 1, 1), size)
@@ -244,19 +237,15 @@ def parse_range(text: str, read: Read = parse_number) -> Points:
 
 def parse_values(text: str, read: Read = parse_number) -> Points:
     """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
-    _check_marks(text, ":count")
+    _check_range(text, "60:80:3 rpm")
     if ":" in text:
         return parse_range(text, read)
     return ListedPoints([read(part) for part in text.split(",")])
 
 
-def _check_marks(text: str, count: str) -> None:
-    """Raise LagtopError for a range without colons, or with a unit in front of its last number.
-
-    `count` is what a range has after its two ends.
-    """
-    if ends := re.fullmatch(rf"\s*({_DECIMAL})\s*(?:-|\.\.+|…)\s*({_DECIMAL})\s*", text):
-        raise LagtopError(f"must be a range {ends[1]}:{ends[2]}{count}, got {quoted(text)}")
-    if re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
-        wanted = f"must have its unit once, at the end, as in '60:80{count and ':3'} rpm'"
+def _check_range(text: str, example: str) -> None:
+    """Raise LagtopError for a range without colons, or with a unit in front of its last number."""
+    lacks_colons = re.fullmatch(rf"\s*{_DECIMAL}\s*(?:-|\.\.+|…)\s*{_DECIMAL}\s*", text)
+    if lacks_colons or re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
+        wanted = f"must be a number or a range with its unit once, at the end, as in '{example}'"
         raise LagtopError(f"{wanted}, got {quoted(text)}")

@@ -186,7 +186,7 @@ def test_logarithmic_points_have_equal_ratios() -> None:
         "0:1:1e10": "must have a whole count of 1 to 1e9 in its range",
         "0:x:2": "must be a finite decimal number, got 'x'",
         "log:0:1:3": "must have two ends of one sign, not 0, in a log: range",
-        "60rpm:80rpm:3": "must have its unit once, at the end, as in '60:80:3 rpm', got",
+        "60rpm:80rpm:3": "must be a number or a range with its unit once, at the end, as in",
     }.items(),
 )
 def test_bad_ranges(text: str, wrong: str) -> None:
