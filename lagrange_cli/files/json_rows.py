@@ -36,7 +36,6 @@ def _once(pairs: list[tuple[str, Any]]) -> None:
 
 
 def _keys_in(value: Any) -> int:
-    """Return the number of keys in a JSON value."""
     if isinstance(value, dict):
         return len(value) + sum(_keys_in(x) for x in value.values() if isinstance(x, dict | list))
     return sum(map(_keys_in, value)) if isinstance(value, list) else 0

@@ -137,10 +137,7 @@ def rows_of(given: Quantities, rows: slice | NDArray[np.intp]) -> dict[str, Arra
 
 
 def quantities_of(t: ArrayLike, arrays: Mapping[str, ArrayLike]) -> dict[str, Array]:
-    """Return times and arrays of quantities, with a row for each time; a masked element is NaN.
-
-    Raises LagtopError for an array of another shape.
-    """
+    """Return times and arrays with a row for each; a masked element is NaN.  Raises LagtopError."""
     block = {"t": doubles_of("t", t).reshape(-1, 1)}
     for key, array in arrays.items():
         masked = isinstance(array, np.ma.MaskedArray) and array.dtype.kind in "iuf"

@@ -114,10 +114,9 @@ def of_scipy(form: str, *given: Any) -> Array:
 
 
 def of_matrix(rows: Array) -> tuple[Array, Array]:
-    """Return the rotations nearest to matrices, given row by row, and the distance of each matrix.
+    """Return the rotations nearest to matrices, given row by row, and the greatest |R R^T - 1|.
 
-    The distance is the greatest element of |R R^T - 1|. The rotation is NaN for a matrix that is
-    not a rotation, such as a reflection.
+    The rotation is NaN for a matrix that is not a rotation, such as a reflection.
     """
     matrices = rows.reshape(-1, 3, 3)
     gram = np.einsum("nij,nkj->nik", matrices, matrices)

@@ -123,7 +123,6 @@ class Table:
         return ((number, cells[index]) for number, cells in self._checked_rows())
 
     def _checked_rows(self) -> Iterator[tuple[int, list[Any]]]:
-        """Yield the numbers of the rows and their cells.  Raises DataError."""
         for number, row in self.rows:
             try:
                 cells = self.cells(row)
@@ -181,7 +180,6 @@ class Table:
         return NumericColumns(values, np.isnan(values) & np.signbit(values) & bool(columns), lines)
 
     def _one_by_one(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
-        """Return columns of numbers.  Raises DataError with the place of another cell."""
         values, empty, lines = array("d"), bytearray(), array("q")
         for number, cells in self._checked_rows():
             lines.append(number)
@@ -376,7 +374,6 @@ def _splits(text: str, decimal: str = "") -> dict[str, list[str]]:
 
 
 def _are_numbers(cells: Sequence[str]) -> bool:
-    """Return whether all cells are numbers or empty."""
     return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x)
 
 

@@ -136,15 +136,11 @@ class TopsFile(NamedTuple):
         try:
             number = self.table.number(cell)
         except LagtopError as error:
-            wrong = str(error)
-            if isinstance(cell, str) and re.search(r"\d\s*(\(\d|±|\+/?-)", cell):
-                wrong = f"must have no uncertainty, got {quoted(cell)}: loop over solve"
-            raise LagtopError(f"{name} {wrong}") from None
+            raise LagtopError(f"{name} {error}") from None
         return checked_double(name, number * self.units[name].number)
 
 
 def _array(values: list[Any]) -> Array:
-    """Return numbers as an array of doubles, or of objects if words are among them."""
     words = any(isinstance(x, str) for x in values)
     return np.array(values, dtype=object if words else np.float64)
 
@@ -196,7 +192,6 @@ def _column_of(heading: str) -> tuple[str, str]:
 
 
 def _known_inputs(headings: Sequence[str]) -> int:
-    """Return the number of inputs that some headings name."""
     return sum(_column_of(x)[0] in {*INPUTS, TILT} for x in headings)
 
 

@@ -82,7 +82,6 @@ def _shown(value: Any) -> str | None:
 
 
 def _json_rows(columns: BlockColumns, names: Sequence[str]) -> list[bytes]:
-    """Return a JSON object per row."""
     lists = chain.from_iterable(
         [x] if isinstance(x, Sequence) else x.reshape(len(x), -1).T.tolist() for x in columns
     )

@@ -19,10 +19,9 @@ DELAY = 1.0
 
 
 def printable(text: str, kept: str = "\n") -> str:
-    """Return a text without the characters that control a terminal, except those that are `kept`.
+    """Return a text whose characters that control a terminal are escapes, except the `kept` ones.
 
-    Control characters and marks that change the direction of writing become escapes, such as
-    `\\x1b`.  File names and data may hold any of them.
+    Marks that change the direction of writing are among them.
     """
     if text.isprintable():
         return text
@@ -76,9 +75,9 @@ def with_progress(
 ) -> Iterator[Item]:
     """Yield the parts as they arrive, with a line on standard error if it is a terminal.
 
-    `size` gives the items of a part, and `total` the items of all parts; without a total it is
-    summed over the parts if these are a sequence, and unknown otherwise.  The line appears after a
-    second, is removed while a part is written, and vanishes at the end.
+    `size` gives the items of a part, and `total` the items of all parts, by default their sum if
+    the parts are a sequence.  The line appears after a second, and is removed while a part is
+    written and at the end.
     """
     if not is_terminal(sys.stderr):
         yield from parts

@@ -14,14 +14,7 @@ from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from ..arithmetic.enclosures import (
-    at_precision,
-    equal_digits,
-    exact,
-    root,
-    settled,
-    sign_to,
-)
+from ..arithmetic.enclosures import at_precision, equal_digits, exact, root, settled, sign_to
 from ..arithmetic.numbers import Real
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
@@ -62,13 +55,9 @@ class Tilt(NamedTuple):
 
     def doubles(self) -> tuple[float, ...]:
         """Return sine and cosine of the tilt and of half the tilt, as doubles."""
-        half = Tilt(*(x and x / 2 for x in self))
-
-        def values() -> tuple[float, ...]:
-            exact_values = *self.sine_and_cosine(), *half.sine_and_cosine()
-            return tuple(float(x.mid()) for x in exact_values)
-
-        return at_precision(40, values)
+        tilts = self, Tilt(*(x and x / 2 for x in self))
+        found = at_precision(40, lambda: [x for tilt in tilts for x in tilt.sine_and_cosine()])
+        return tuple(float(x.mid()) for x in found)
 
     def sign(self, polynomial: fmpq_poly, equal: int) -> int:
         """Return the sign of a polynomial in the cosine; 0 if `equal` digits leave it open."""
@@ -85,10 +74,7 @@ def rational(x: Fraction | float) -> fmpq:
 
 
 def moment(inputs: Mapping[str, Real]) -> Fraction:
-    """Return the moment about the pivot, A = A_cm + m s^2 (Steiner's theorem), exactly.
-
-    Raises LagtopError for a negative A_cm.
-    """
+    """Return the moment about the pivot, A = A_cm + m s^2, exactly.  Raises LagtopError."""
     A_cm, m, s = (Fraction(inputs[name]) for name in ("A_cm", "m", "s"))
     if A_cm < 0:
         raise LagtopError(f"A_cm must be >= 0, got {float(A_cm)}", "A_cm")
@@ -162,10 +148,7 @@ def rates_of(top: Any) -> SteadyRates:
 
 
 def steady_rate_of(top: Any, word: str) -> float:
-    """Return the rate of steady precession that a word names, rounded to the nearest double.
-
-    Raises LagtopError for an unknown word, and for a top that has no such rate.
-    """
+    """Return the rate of steady precession that a word names as a double.  Raises LagtopError."""
     if word not in STEADY_WORDS:
         wrong = f"psidot0 must be a real number, steady or steady-fast, got {quoted(word)}"
     elif top.thetadot0:

@@ -91,8 +91,7 @@ class Given(NamedTuple):
 
     def placed(self, error: LagtopError) -> LagtopError:
         """Return an error with the file and the line of its input, unless an option gives it."""
-        from_option = self.file is None or error.key in self.options
-        return error if from_option or self.file is None else self.file.error(error)
+        return error if self.file is None or error.key in self.options else self.file.error(error)
 
 
 def gather(
@@ -149,10 +148,9 @@ def read_scene(
 
 
 def have_units(values: Mapping[str, Value], *, asked: bool = False) -> bool:
-    """Return whether inputs have units, apart from a tilt.
+    """Return whether inputs have units; a tilt, a time and a zero need none.
 
-    A tilt, a time and a zero need no unit.  Raises LagtopError for another input without a unit if
-    some have one, or if units are `asked` for.
+    Raises LagtopError for another input without a unit if some have one or units are `asked` for.
     """
     named = {name: x for name, x in values.items() if not name.startswith(TILT)}
     united = [name for name, x in named.items() if x.unit]

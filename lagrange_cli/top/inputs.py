@@ -105,8 +105,7 @@ def one_of_each(given: Iterable[str]) -> None:
 def from_example(given: Mapping[str, Any]) -> dict[str, float]:
     """Return the missing inputs of an incomplete body by key, with their defaults.
 
-    If all given body inputs are 0, none is missing, because zeros fit any units: no gravity, or the
-    mass centre at the pivot.
+    None is missing if all given body inputs are 0, because zeros fit any units.
     """
     own = {"A" if name == "A_cm" else name for name in given} & BODY.keys()
     if all(isinstance(given.get(name), int | float | Fraction) and not given[name] for name in own):
@@ -128,10 +127,7 @@ def warn_of(missing: Mapping[str, float], stacklevel: int) -> None:
 
 
 def checked_double(key: str, value: Real) -> float:
-    """Return an input rounded to the nearest double.
-
-    Raises LagtopError beyond the range of doubles, and for anything but a real number.
-    """
+    """Return an input as the nearest double.  Raises LagtopError, also beyond their range."""
     try:
         if not is_real(value):
             raise TypeError

@@ -95,7 +95,6 @@ class SceneFile:
 
 
 def _value(key: str, value: object) -> Value:
-    """Return the value of a key: a number, or a text with a unit or an uncertainty."""
     if key not in SCENE_KEYS:
         meant, known = suggestion(key, SCENE_KEYS), ", ".join(SCENE_KEYS)
         raise LagtopError(f"unknown key {quoted(key)}{meant} (known: {known})")

@@ -199,10 +199,7 @@ class Top:
         return -1 if self.theta0_deg == 180 else 0
 
     def caveat(self) -> str | None:
-        """Return a line on a body that can be computed but not built, or None.
-
-        A disc passes if its A is correct to rounding.
-        """
+        """Return a line on a body that cannot be built, or None; A may be off by its rounding."""
         A, offset = self.exact("A"), Fraction(self.m) * Fraction(self.s) ** 2
         limit, rounding = 2 * (A - offset), A * _EPS
         if limit + rounding <= 0:

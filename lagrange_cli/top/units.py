@@ -77,10 +77,7 @@ _ASKED = {
 
 
 def unit_of_text(text: str) -> Unit:
-    """Return the product of units that a text names, such as `kg*m^2`, `kg m²`, `kg m2` or `1/s`.
-
-    Raises LagtopError for an unknown unit, with the nearest name and the known ones.
-    """
+    """Return the product of units in a text: `kg*m^2`, `kg m²` or `1/s`.  Raises LagtopError."""
     text = text.strip().translate(_RAISED)
     ticks = _TICKS.match(text)
     found, place = Unit(Fraction(ticks[0] if ticks else 1)), ticks.end() if ticks else 0
@@ -104,10 +101,7 @@ def is_unit(text: str) -> bool:
 
 
 def _meant(name: str, text: str) -> str:
-    """Return a hint with the unit that was meant, such as rpm for RPM or kg*m^2 for kgm^2.
-
-    If none is similar, all are listed.
-    """
+    """Return a hint with the unit that was meant, such as kg*m^2 for kgm^2, or with all units."""
     for i in range(1, len(name)):
         if {name[:i], name[i:]} <= UNITS.keys():
             return f" (write {text.replace(name, f'{name[:i]}*{name[i:]}')})"

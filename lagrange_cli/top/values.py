@@ -135,9 +135,8 @@ def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
 def split_unit(text: str) -> tuple[str, str]:
     """Return the number part of an input text and its unit, empty if it has none.
 
-    The unit begins at the first letter that is not the e of an exponent.  A text without a digit
-    before its first letter, such as `nan`, has no unit.  A range or a list has its unit at the end,
-    after a number: no colon and no comma follows or precedes it.
+    The unit begins at the first letter after a digit that is not the e of an exponent.  That of a
+    range or a list is at its end: no colon and no comma follows or precedes it.
     """
     text = text.strip()
     found = _UNIT.search(text, len(LOG) if text.startswith(LOG) else 0)

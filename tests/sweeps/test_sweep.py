@@ -188,7 +188,7 @@ def test_rows_of_json(lagtop: Lagtop) -> None:
         *2 * [None],
         "line 3: r0 must be a finite number, got true",
     ]
-    assert "r0 must have no uncertainty, got '500(5)': loop over solve" in rows[3]["error"]
+    assert "r0 must be a finite decimal number, got '500(5)'" in rows[3]["error"]
     assert result.exit_code == 1
 
 
