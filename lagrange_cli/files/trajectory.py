@@ -18,7 +18,6 @@ import numpy as np
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError, UnavailableError
 from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
-from ..names import repeated
 from ..top.ranges import ListedPoints
 from .columns import (
     NAMING,
@@ -164,8 +163,6 @@ def _csv_of_parquet(content: bytes, name: str) -> bytes:
         raise UnavailableError(f"{name}: Parquet needs pyarrow: pip install pyarrow") from None
     try:
         file = parquet.ParquetFile(BytesIO(content))
-        if twice := repeated(file.schema_arrow.names):
-            raise ValueError(f"two columns are named {twice!r}")
         is_number = types.is_floating, types.is_integer
         names = [x.name for x in file.schema_arrow if any(y(x.type) for y in is_number)]
         size = file.metadata.num_rows * len(names)

@@ -156,7 +156,7 @@ def test_a_file_of_too_many_lines_or_values_is_refused(
     monkeypatch.setattr(text_tables, "_LONGEST_LINE", 9)
     for text, wrong in {
         "#\n" * 4 + "t\n0.5\n": "a file must have at most 5 lines: split it",
-        "t\n0.50000000\n": "line 2: a line must have at most 9 characters",
+        "t\n0.50000000\n": "line 2: a row must have at most 9 characters",
         '[{"t":0.5},{},{},{},{}]': "characters and 3 values: write one object per line",
     }.items():
         path.write_text(text)

@@ -147,7 +147,7 @@ def twice() -> bytes:
             "a workbook, an archive, Parquet or an array of NumPy is no text: save it as CSV",
         ),
         (b"PAR1", "bad Parquet file"),
-        (twice(), "bad Parquet file: two columns are named 'theta'"),
+        (twice(), "must name each quantity once, got 'theta' and 'theta'"),
         (b"t,theta (furlongs)\n0,0\n", ": theta must have a unit such as deg or rad, got the"),
         (b"t,x [m],y [m],z [cm]\n0,0,0,0\n", ": the parts of position must have one unit, got 'x"),
         (b"t,q_w (m),q_x (m),q_y (m),q_z (m)\n", ": quaternion must have no unit, got 'm'"),
