@@ -163,10 +163,10 @@ def compare(
         raise LagtopError(f"max_error must be > 0, got {max_error}", "max_error")
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
     rows = quantities_of(t, given)
-    times, rows["missing"] = rows["t"][:, 0], 0 * rows["t"]
-    steps, is_finite = np.diff(times), times.size and np.isfinite(times).all()
-    if not is_finite or not ((steps >= 0).all() or (steps <= 0).all()):
-        raise LagtopError("t must have finite times that increase, or decrease, by rows", "t")
+    times, rows["missing"] = rows["t"][:, 0], np.zeros_like(rows["t"])
+    steps = np.diff(times)
+    if not times.size or not ((steps >= 0).all() or (steps <= 0).all()):
+        raise LagtopError("t must have times that increase, or decrease, from row to row", "t")
     for key, x in given.items():
         if isinstance(x, np.ma.MaskedArray):
             rows["missing"] += np.ma.getmaskarray(x).reshape(rows[key].shape).any(1, keepdims=True)

@@ -229,6 +229,8 @@ def test_mirrored_motions_have_two_names() -> None:
     assert first.verdict == "fine"
     turned = compare(top, T, quaternion=wxyz(turn * Rotation.from_euler("z", 1)))
     assert "r0 has the wrong sign" in (turned.cause or "")
+    back = compare(top.replace(r0=-60), -T, quaternion=wxyz(turn))
+    assert (back.cause or "").startswith("time runs backwards")
 
 
 def test_no_part_is_explained_by_what_spoils_the_attitude() -> None:

@@ -300,8 +300,10 @@ def test_starts_on_the_vertical() -> None:
         ({"theta": THETA, "align": ["left"]}, "align left need the axis or the whole attitude"),
         ({"axis": Q[:, 1:], "align": "axis=y"}, "align axis the whole attitude: omit them"),
         ({"rates": RATES, "align": ["up=y", "start"]}, "align up and align left need the axis"),
-        ({"t": [0, 1, 0.5], "theta": [0.1] * 3}, "t must have finite times that increase"),
-        ({"t": [], "theta": np.ma.masked_array([])}, "t must have finite times"),
+        ({"t": [0, 1, 0.5], "theta": [0.1] * 3}, "t must have times that increase"),
+        ({"t": [0, math.inf], "theta": [0.1] * 2}, "t must be finite and within"),
+        ({"t": math.nan, "theta": 0.1}, "t must be finite and within"),
+        ({"t": [], "theta": np.ma.masked_array([])}, "t must have times"),
         ({"theta": THETA, "max_error": math.nan}, "max_error must be > 0, got nan"),
     ],
 )
