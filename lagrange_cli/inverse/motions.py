@@ -8,7 +8,7 @@ are exact to about 1e-11 rad away from the separatrix, far below the noise of an
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import ellipj, ellipk, ellipkinc, elliprf, elliprj
+from scipy.special import ellipj, ellipk, ellipkinc, elliprj
 
 from ..arithmetic.types import Array
 
@@ -60,9 +60,10 @@ def angles(states: Array, t: Array) -> Array:
     quarter = ellipk(m)
     first = np.arctan2(np.sqrt(below), np.sqrt(above))
     first = np.where(theta_rate > 0, -first, first)
-    argument = ellipkinc(first, m) + speed * t
-    periods = np.round(argument / (2 * quarter))
-    sn, _, _, phase = ellipj(argument - 2 * quarter * periods, m)
+    begin = ellipkinc(first, m)
+    periods = np.round((begin + speed * t) / (2 * quarter))
+    argument = begin + speed * t - 2 * quarter * periods
+    sn, _, _, phase = ellipj(argument, m)
     down, up = 2 * np.sin(theta / 2) ** 2, 2 * np.cos(theta / 2) ** 2  # 1 - u and 1 + u
     momenta = psi_rate * sine**2 + b * np.stack([-down, up])  # N and S
     # 1 - u1 and 1 + u2 may be tiny: the cubic at u = 1 and -1 gives them without a difference
@@ -71,7 +72,8 @@ def angles(states: Array, t: Array) -> Array:
     at_u2, at_u1 = np.stack([down + below, near_south]), np.stack([near_north, up + above])
     n = np.stack([swing, -swing]) / at_u2
     at_end, at_start, at_quarter = (
-        third_kind(x, m, n, at_u1 / at_u2) for x in (phase, first, np.pi / 2)
+        third_kind(*x, m, n, at_u1 / at_u2)
+        for x in ((phase, argument), (first, begin), (np.pi / 2, quarter))
     )
     grown = at_end - at_start + 2 * periods * at_quarter
     north, south = momenta / at_u2 * grown / (2 * speed)
@@ -79,16 +81,15 @@ def angles(states: Array, t: Array) -> Array:
     return np.stack([tilt, south - north, south + north])
 
 
-def third_kind(phase: Array | float, m: Array, n: Array, rest: Array) -> Array:
+def third_kind(phase: Array | float, first_kind: Array, m: Array, n: Array, rest: Array) -> Array:
     """Return the integral of 1/((1 - n sin^2) sqrt(1 - m sin^2)) up to |phase| <= pi/2.
 
-    Rest is 1 - n > 0.  Carlson's functions give the integral.
+    Rest is 1 - n > 0, and `first_kind` the integral of the first kind, without the factor with n.
+    Carlson's R_J gives the difference.
     """
     s, x = np.sin(phase), np.cos(phase) ** 2
-    y = 1 - m * s * s
-    more = elliprj(x, y, 1.0, x + rest * s * s)
-    integral: Array = s * elliprf(x, y, 1.0) + n / 3 * s**3 * more
-    return integral
+    found: Array = first_kind + n / 3 * s**3 * elliprj(x, 1 - m * s * s, 1.0, x + rest * s * s)
+    return found
 
 
 @np.errstate(all="ignore")
@@ -110,5 +111,5 @@ def nutating(
     south = signs[0] * np.sqrt(a * (1 + u1) * (1 + u2) * (2 + north2 * height))
     north = signs[1] * np.sqrt(a * north1 * north2 * north2 * height)
     ends = (south, u2 - u1, 1 + u1, 1 + u2), (north, u1 - u2, north1, north2)
-    grown = sum(p / y * third_kind(np.pi / 2, m, dx / y, x / y) for p, dx, x, y in ends)
+    grown = sum(p / y * third_kind(np.pi / 2, quarter, m, dx / y, x / y) for p, dx, x, y in ends)
     return a, (south - north) / 2, (south + north) / 2, grown / (2 * quarter)
