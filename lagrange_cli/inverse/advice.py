@@ -22,8 +22,10 @@ from .signals import noise_of, oscillation_in, signals_in
 _AXES = ("x", "y", "-x", "-y", "-z")
 _ROWS = 250
 """Rows at which axes are compared."""
-_CALMER = 0.7
-"""Noise of harmonics in another frame, over that in the given one, from which a fit is tried."""
+_OTHER_AXIS, _CALMER, _OUTLYING, _NOISY = 0.35, 0.1, 30.0, 2.0
+"""A fit is only tried if harmonics leave less noise, by this difference of logarithms: per angle in
+another frame, in a part or in windows, and over the share of outliers without them; another meaning
+of angles, if the residuals are so much larger than the differences between neighbours."""
 _HELD, _RELEASED, _STILL = 12, 6.0, 3.5
 """Least number of rows before a release, the standard deviations that show it, and the standard
 deviation of the rows before it, over the noise of neighbours, from which these move too."""
@@ -48,18 +50,22 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
         yield f"t has {seen} values in {recording.t.size} rows: give it more digits"
+    noise = _calmness(recording)
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if 0 < len(wrong) <= _FEW * recording.t.size:
         rest = recording.rows(~np.isin(recording.t, [*wrong]))
-        if _is_good(rest, body):
+        least = _OUTLYING * len(wrong) / recording.t.size
+        if noise - _calmness(rest) > least and _is_good(rest, body):
             shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
             yield f"leave out the rows at t = {shortened(shown)}"
-    if (row := release(recording)) and _is_good(recording.part(slice(row, None)), body):
+    free = recording.part(slice(row := release(recording), None))
+    if row and noise - _calmness(free) > _CALMER and _is_good(free, body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
-    others = _other_angles(replace(recording, sigma={}))
+    is_wrong = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
+    others = _other_angles(replace(recording, sigma={})) if is_wrong else ()
     yield from (words for other, words in others if _is_good(other, known))
-    yield from _decays(recording, body, outcome)
+    yield from _decays(recording, body, outcome, noise)
     if outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]:
         yield "a recording must last for a period of the nutation"
     start = [x for x in ("theta0", "psidot0") if x in known]
@@ -91,7 +97,7 @@ def _frames(recording: Recording, known: Known) -> Iterator[str]:
     tried += [("axis", x) for x in _AXES] * (recording.kind == "attitude")
     noise = {one: _calmness(reoriented(few, **dict([one]))) for one in tried}
     best = min(noise, key=lambda one: noise[one])
-    is_calmer = noise[best] < _calmness(few) + len(few.angles) * math.log(_CALMER)
+    is_calmer = _calmness(few) - noise[best] > _OTHER_AXIS * len(few.angles)
     for word, axis in [*[best] * is_calmer, ("up", "-z")]:
         if _is_good(reoriented(recording, **{word: axis}), known):
             what = "is the figure axis" if word == "axis" else "of the data points up"
@@ -145,7 +151,7 @@ def release(recording: Recording) -> int:
     return row if _HELD < row < recording.t.size - 2 * _HELD else 0
 
 
-def _decays(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
+def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
     """Yield the number of windows that are good and show a decay, or a decay within windows."""
     shown = ""
     for count in _WINDOWS:
@@ -155,28 +161,36 @@ def _decays(recording: Recording, known: Known, outcome: Outcome) -> Iterator[st
             parts, fits = recording.windows(count), list[Outcome]()
         except LagtopError:  # of rows that are not even
             break
-        for i in (0, count // 2, -1):
-            found = _tried(parts[i], known, CHANCE / count)
+        three = [parts[i] for i in (0, count // 2, -1)]
+        if noise - sum(map(_calmness, three)) / len(three) < _CALMER:
+            return
+        for part in three:
+            found = _tried(part, known, CHANCE / count)
             if found is None:
                 return
             fits.append(found)
-            if found.verdict != GOOD and (shown or "phi" not in recording.angles):
+            if found.verdict != GOOD and (shown or not _is_closer(found, outcome)):
                 break
         else:
             if decay := decay_of(fits):  # all three windows are good
                 if decay.time:
                     yield f"the spin decays: use window={count}"
                 return
-            shown = shown or _loss(outcome, fits)
+            if not shown and all(_is_closer(x, outcome) for x in fits):
+                shown = _loss(fits)
     yield from [f"the spin decays: {shown}, and within each window"] * bool(shown)
 
 
-def _loss(whole: Outcome, fits: Sequence[Outcome]) -> str:
-    """Return a steady loss of spin from window to window in words, if there is one."""
+def _is_closer(part: Outcome, whole: Outcome) -> bool:
+    """Return whether a window shows the spin much better than the whole recording."""
     spin = whole.recording.spin_channel
-    most = _CLOSER * whole.residuals[spin].rms
-    if any("r0" not in x.numbers or x.residuals[spin].rms > most for x in fits):
-        return ""
+    if "r0" not in part.numbers or spin not in part.residuals:
+        return False
+    return part.residuals[spin].rms <= _CLOSER * whole.residuals[spin].rms
+
+
+def _loss(fits: Sequence[Outcome]) -> str:
+    """Return a steady loss of spin from window to window in words, if there is one."""
     first, middle, last = (x.numbers["r0"] for x in fits)
     lost = abs(first.value) - abs(last.value)
     if lost < _LOST * math.hypot(first.own_std, last.own_std):

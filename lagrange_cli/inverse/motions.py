@@ -72,8 +72,8 @@ def angles(states: Array, t: Array) -> Array:
     at_u2, at_u1 = np.stack([down + below, near_south]), np.stack([near_north, up + above])
     n = np.stack([swing, -swing]) / at_u2
     at_end, at_start, at_quarter = (
-        third_kind(*x, m, n, at_u1 / at_u2)
-        for x in ((phase, argument), (first, begin), (np.pi / 2, quarter))
+        third_kind(x, y, m, n, at_u1 / at_u2)
+        for x, y in ((phase, argument), (first, begin), (np.pi / 2, quarter))
     )
     grown = at_end - at_start + 2 * periods * at_quarter
     north, south = momenta / at_u2 * grown / (2 * speed)

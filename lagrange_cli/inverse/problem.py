@@ -310,7 +310,7 @@ class Minimum:
         """
         recording = problem.recording
         problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
-        x, cost = problem.solve(start, STEPS)
+        x, cost = problem.solve(start, STEPS // 3)
         present = recording.present
         share = present.sum() * recording.rows_per_bin
         share = share / max(present.sum() - problem.count, 1)
@@ -321,7 +321,7 @@ class Minimum:
             problem.sizes = size * factors
             if done:
                 break
-            x, cost = problem.solve(x, STEPS // 4)
+            x, cost = problem.solve(x, STEPS // 6)
         slopes = problem.slopes(x, problem.weighted)
         size = np.linalg.norm(slopes, axis=0) + 1e-300
         _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)

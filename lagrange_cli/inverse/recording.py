@@ -161,7 +161,8 @@ class Recording:
             raise LagtopError(f"window must be at least 2, got {count}", "window")
         number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
         rows = [np.flatnonzero(number == i) for i in range(count)]
-        if (least := min(x.size for x in rows)) < LEAST_ROWS:
+        seen = [np.isfinite(y) for y in self.angles.values()]
+        if (least := min(int(y[x].sum()) for x in rows for y in seen)) < LEAST_ROWS:
             wanted = f"{LEAST_ROWS} rows or more in each window"
             raise LagtopError(f"window must leave {wanted}, got {least}: use fewer", "window")
         return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]

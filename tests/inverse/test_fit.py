@@ -552,7 +552,7 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (
             f"{SAMPLE} --window 100",
             2,
-            "--window must leave 12 rows or more in each window, got 1",
+            "--window must leave 12 rows or more in each window, got 0",
         ),
         (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
         (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),
@@ -694,6 +694,13 @@ def test_another_meaning_of_angles_is_named(meaning: str) -> None:
     else:
         seen["theta"] = math.pi / 2 - seen["theta"]
     assert meaning in fitted(t, seen).hints[-1]
+
+
+def test_an_angle_of_few_rows_has_no_windows() -> None:
+    t, seen = recorded("theta", "psi", rows=400, seconds=6, noise=0.1, seed=8)
+    recording = recording_from(t, theta=seen["theta"], psi=np.where(t < 1, seen["psi"], np.nan))
+    with pytest.raises(LagtopError, match="12 rows or more in each window, got 0"):
+        recording.windows(12)
 
 
 def test_rounded_times_are_named() -> None:
