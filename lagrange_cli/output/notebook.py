@@ -55,7 +55,7 @@ def record_html(caption: str, record: Mapping[str, Any], keys: Mapping[str, Key]
 
 
 def html_table(caption: str, rows: Iterable[Sequence[Any]]) -> str:
-    """Return rows as an HTML table; a cell is empty for None."""
-    texts = (["" if x is None else escape(str(x)) for x in row] for row in rows)
+    """Return rows as an HTML table."""
+    texts = ([escape(str(x)) for x in row] for row in rows)
     lines = "".join(f"<tr><td>{'</td><td>'.join(row)}</td></tr>" for row in texts)
     return f"<table><caption>{escape(caption)}</caption>{lines}</table>"

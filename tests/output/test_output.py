@@ -99,6 +99,9 @@ def test_a_table_cuts_no_digit_however_narrow_the_terminal() -> None:
         assert digits <= set(shown.split()), width
     wide = record_text(record, shown_keys(), None)
     assert max(map(len, wide.splitlines())) <= 80
+    groups = [x.group for x in shown_keys().values()]
+    assert all(wide.splitlines().count(x) <= 1 for x in groups)
+    assert groups[0] in wide.splitlines()
 
 
 def test_brackets_in_cells_are_no_markup_and_control_characters_are_escaped() -> None:
