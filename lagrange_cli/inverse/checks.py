@@ -26,7 +26,7 @@ _ABOVE, _ROUNDING = 6.0, 1e-10
 _OUTLIER = 15.0
 """Least residual of an outlier, over the standard deviation of the
 others, which the median estimates."""
-_ROWS_PER_LAG, _LAGS, _WEAK = 4.0, 12, 0.1
+_ROWS_PER_LAG, _LAGS, _WEAK = 2.0, 12, 0.1
 """Least number of rows per period over the reach of a correlation, the longest reach of noise, and
 a correlation that is none."""
 _COARSE, _WITHIN = 0.6, 0.75
