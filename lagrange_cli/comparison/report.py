@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from ..file_bytes import shown_path, utf8_path
@@ -17,8 +18,8 @@ from ..solver.solve import Motion
 from .compare import COMPARISON_KEYS, LIMIT, Comparison, Convergence
 from .differences import Alignment, Run
 
-_WRONG_NORM = 1e-6
-"""The least distance of a norm from 1 that is said."""
+_WRONG_NORM, _FEW = 1e-6, 0.03
+"""The least distance of a norm from 1 that is said, and the largest share of rows that are few."""
 _COLUMNS = (
     Field("file", "file", one_line, is_text=True),
     Field("step", "step", "{:g}".format),
@@ -109,11 +110,22 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
         remedy = f" ({x.remedy})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
         yield f"{words}: {x.cause}{remedy}. {error}."
+    elif rows := _few_rows(x, limit):
+        yield rows
     elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (
         found and found.converges
     ):
         hint = ": compare runs with other step sizes" * (x.verdict == "drifts")
         yield f"None of the known causes explains the error{hint}."
+
+
+def _few_rows(x: Comparison, limit: float) -> str:
+    """Return which rows are off if they are few and the last row is not among them."""
+    wrong = np.flatnonzero(x.error > limit)
+    if not 0 < wrong.size <= _FEW * x.rows or not x.error[-1] <= limit:
+        return ""
+    shown = shortened(", ".join(f"{t:.6g}" for t in x.t[wrong]))
+    return f"The limit is exceeded in only {wrong.size} of {x.rows} rows, at t = {shown}."
 
 
 def sentence(x: Comparison) -> str:

@@ -50,6 +50,13 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert "rad off, its rates by 2.1e-07 (relative)." in strict.stdout
 
 
+def test_a_few_wrong_rows_are_named(lagtop: Lagtop, tmp_path: Path) -> None:
+    t, states = rk4(Body.of(TOP), 2e-3, 0.5)
+    states[[70, 71]] = states[[170, 171]]
+    shown = lagtop("compare", write(tmp_path / "x.csv", (t, states)), *OPTIONS).stdout
+    assert "The limit is exceeded in only 2 of 251 rows, at t = 0.14, 0.142.\n" in shown
+
+
 def test_the_worked_example_is_not_assumed_in_silence(lagtop: Lagtop, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("t,theta\n0,30\n")
     done = lagtop("compare", tmp_path / "run.csv")
