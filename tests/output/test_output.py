@@ -23,6 +23,7 @@ from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
 from lagrange_cli.output.formats import block_text, write
+from lagrange_cli.output.notebook import HasRecord
 from lagrange_cli.output.report import Field, Report, drawn, record_text, uncertain_text
 from lagrange_cli.solver.keys import shown_keys
 
@@ -136,6 +137,19 @@ def test_a_motion_is_a_table_in_a_notebook() -> None:
     rows = {row[0].text: [x.text for x in row] for row in table.iter("tr")}
     assert rows["m"] == ["m", "m", "mass", "1587.0", "mass"]
     assert "path" not in rows  # it is None
+
+
+class Result(HasRecord):
+    verdict = "good"
+
+    def record(self) -> dict[str, Any]:
+        return {"m": 1.0, "remark": None}
+
+
+def test_a_result_is_a_table_in_a_notebook() -> None:
+    table = "<table><caption>good</caption><tr><td>m</td><td>1.0</td></tr></table>"
+    assert Result()._repr_html_() == table
+    assert Result().to_dict() == {"m": 1.0, "remark": None}
 
 
 # files
