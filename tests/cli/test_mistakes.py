@@ -11,6 +11,7 @@ MISTAKES = {
     "solve|--m|2|kg": "put a value with its unit in quotes: --m '2 kg'",
     "solve|--theta0|0.5|rad": "put a value with its unit in quotes: --theta0 '0.5 rad'",
     "solve|--r0|50|rad/s": "put a value with its unit in quotes: --r0 '50 rad/s'",
+    "solve|--get|K|--derivation": "use --get or --derivation, not both",
     "solve|r0=50": "an input is not a scene: write --r0 50",
     "solve|rpm.toml": 'line 2, column 9) (write r0 = "50 rpm")',
     "solve|comma.toml": "(write a decimal point, not a comma)",
