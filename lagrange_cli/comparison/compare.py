@@ -301,6 +301,8 @@ def convergence(results: Sequence[Comparison], limit: float) -> Convergence | No
         said = f"The error does not fall with the step: {why}."
         return Convergence(errors, said, converges=min(errors) <= limit)
     usable = (error >= ROUNDING) & (error < LOST_PHASE)
+    if len({*step[usable]}) < 2:
+        usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
     x, y = np.log(step[usable]), np.log(error[usable])
     order = float(np.polyfit(x, y, 1)[0]) if len({*x}) > 1 else None
     if order is None or np.ptp(np.diff(y) / np.diff(x)) > _SPREAD or order < LEAST_ORDER:
