@@ -78,10 +78,14 @@ class Residuals:
 
     @cached_property
     def reach(self) -> int:
-        """The number of rows after which residuals do not correlate, 1 for white noise."""
+        """The number of rows after which residuals do not correlate, 1 for white noise.
+
+        They may not correlate for as many rows again: an oscillation passes through 0.
+        """
         rest = np.abs(self.correlations[1 : max(self.y.size // 4, 2)])
-        near = np.flatnonzero(rest < max(2 / math.sqrt(self.y.size), _WEAK))
-        return int(near[0]) + 1 if near.size else self.y.size
+        large = rest >= max(2.5 / math.sqrt(self.y.size), _WEAK)
+        found = (n for n in range(1, rest.size + 1) if not large[n - 1 : 2 * n - 1].any())
+        return next(found, self.y.size)
 
     def widening(self, chance: float = CHANCE) -> float:
         """Return the factor of standard deviations for correlated noise, at least 1.

@@ -194,7 +194,7 @@ class Problem:
         self, x: Array, function: Callable[[Array], Array], *, central: bool = True
     ) -> Array:
         """Return the derivatives of a function of many tops by the parameters, in the last axis."""
-        least = np.array([1.0 if name in BESIDE_POLE else _LEAST_SIZE for name in self.names])
+        least = np.array([0.03 if name in BESIDE_POLE else _LEAST_SIZE for name in self.names])
         steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), least)
         steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
         below = x - np.diag(steps) if central else x[np.newaxis]
@@ -202,12 +202,18 @@ class Problem:
         return np.asarray((found[: x.size] - found[x.size :]).T / ((1 + central) * steps))
 
     def solve(
-        self, x: Array, steps: int, function: Callable[[Array], Array] | None = None
+        self,
+        x: Array,
+        steps: int,
+        function: Callable[[Array], Array] | None = None,
+        *,
+        central: bool = False,
     ) -> tuple[Array, float]:
         """Return the least squares from one start by the method of Levenberg and Marquardt.
 
         They are the parameters and half the sum of squares after at most `steps` evaluations.  The
-        `function` returns the weighted residuals of many tops.
+        `function` returns the weighted residuals of many tops; `central` are the differences that
+        give its slopes.
         """
         weighted = function or self.weighted
         low = np.array([{"a": 1e-30, "theta0": _POLE}.get(name, -np.inf) for name in self.names])
@@ -215,7 +221,7 @@ class Problem:
         found = least_squares(
             lambda at: weighted(np.clip(at, low, high)[np.newaxis])[0],
             np.clip(x, low, high),
-            lambda at: self.slopes(np.clip(at, low, high), weighted, central=False),
+            lambda at: self.slopes(np.clip(at, low, high), weighted, central=central),
             method="lm",
             x_scale="jac",
             max_nfev=steps,
@@ -310,7 +316,7 @@ class Minimum:
         """
         recording = problem.recording
         problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
-        x, cost = problem.solve(start, STEPS // 3)
+        x, cost = problem.solve(start, STEPS if is_final else STEPS // 3, central=is_final)
         present = recording.present
         share = present.sum() * recording.rows_per_bin
         share = share / max(present.sum() - problem.count, 1)
@@ -321,7 +327,7 @@ class Minimum:
             problem.sizes = size * factors
             if done:
                 break
-            x, cost = problem.solve(x, STEPS // 6)
+            x, cost = problem.solve(x, STEPS // 4 if is_final else STEPS // 6, central=is_final)
         slopes = problem.slopes(x, problem.weighted)
         size = np.linalg.norm(slopes, axis=0) + 1e-300
         _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
@@ -384,10 +390,13 @@ class Minimum:
         return {key: x for key, x in numbers.items() if np.isfinite(x).all()}
 
     def differs(self, other: Minimum) -> bool:
-        """Return whether this is another top: in a or b."""
-        rows = [i for i, name in enumerate(self.problem.names) if name in {"a", "b"}]
-        near = _APART * np.linalg.norm(self.spread, axis=1) + 1e-6 * np.abs(self.x)
-        return bool(np.any((np.abs(self.x - other.x) > near)[rows]))
+        """Return whether this is another top: in a or b, whose sign changes in a mirror image."""
+        problem, x, y = self.problem, self.x, other.x
+        rows = [i for i, name in enumerate(problem.names) if name in {"a", "b"}]
+        if problem.recording.is_mirrored is not other.problem.recording.is_mirrored:
+            x, y = np.abs(x), np.abs(y)
+        near = _APART * np.linalg.norm(self.spread, axis=1) + 1e-6 * np.abs(x)
+        return bool(np.any((np.abs(x - y) > near)[rows]))
 
 
 def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:

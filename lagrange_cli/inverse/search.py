@@ -140,7 +140,12 @@ def best_fit(
 def _noise(recording: Recording, signals: Mapping[str, Signal]) -> _Noise:
     """Return the step between values, and the noise of neighbours, of each channel."""
     if recording.kind != "angles":
-        return dict.fromkeys(recording.channels, (0.0, math.inf))
+        tilt, turn = (
+            x[recording.present[0]] for x in (recording.angles["theta"], recording.angles["psi"])
+        )
+        axis = np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)
+        both = dict.fromkeys(("theta", "across"), (0.0, max(map(neighbour_noise, axis))))
+        return {x: both.get(x, (0.0, math.inf)) for x in recording.channels}
     found = {}
     for name in recording.channels:
         values = recording.angles[name][np.isfinite(recording.angles[name])]
@@ -263,7 +268,8 @@ def _chosen(
     """Return the best minimum, a rival that is another top, and its mirror image.
 
     Minima that differ by whole turns of the spin per row are one.  Of two directions of psi that
-    explain the recording as well, the recorded one is taken, unless its spin is much faster.
+    explain the recording as well, the recorded one is taken, unless its spin is much faster.  A
+    mirror image whose a or b has another size is a rival, too.
     """
     slow = sorted((_slowest(x, turn) for x in minima), key=lambda x: x.badness)
     likely = [x for x in slow if x.badness < slow[0].badness + _LIKELY]
@@ -272,7 +278,7 @@ def _chosen(
     if turned * _FASTER < plain:
         ways.reverse()
     best, image = (x[0] if x else None for x in ways)
-    return best, next((x for x in ways[0] if best and x.differs(best)), None), image
+    return best, next((x for x in ways[0] + ways[1] if best and x.differs(best)), None), image
 
 
 def _slowest(found: Minimum, turn: float) -> Minimum:
