@@ -9,7 +9,7 @@ none is determined, a steady precession is fitted.  All of this is in units of t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from operator import itemgetter
 from typing import NamedTuple
@@ -31,6 +31,7 @@ from .signals import (
     neighbour_noise,
     noise_of,
     oscillation_in,
+    passes_pole,
     signals_in,
     step_between,
 )
@@ -116,7 +117,11 @@ def best_fit(
     is_steady = not steady.failures()
     is_coarse = any(x.is_coarse for x in steady.residuals.values())
     if visible and lasts and not (is_steady and is_coarse):
-        found = _nutation(recording, known, frequency, noise, radians=radians)
+        both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
+        for form, of_form in [*_as_axis(recording, signals, noise), (recording, noise)]:
+            found = _nutation(form, known, frequency, of_form, radians=radians, both=both)
+            if found is not None and not (found.faults or found.misfits):
+                break
         if found is not None:
             found.chance = chance
             outcome = steady if is_steady and (found.faults or found.misfits) else found
@@ -155,15 +160,36 @@ def _noise(recording: Recording, signals: Mapping[str, Signal]) -> _Noise:
     return {x: (step or coarsest, noise) for x, (step, noise) in found.items()}
 
 
+def _as_axis(
+    recording: Recording, signals: Mapping[str, Signal], noise: _Noise
+) -> Iterator[tuple[Recording, _Noise]]:
+    """Yield angles as an axis or an attitude, and their noise, if the axis may pass a pole.
+
+    The noise of psi and phi grows without bound there, unless sigma says otherwise.
+    """
+    angles = recording.angles.keys()
+    if recording.kind != "angles" or recording.sigma or not {"theta", "psi"} <= angles:
+        return
+    if passes_pole(signals["theta"]):
+        whole = replace(recording, kind="attitude" if "phi" in angles else "axis")
+        alias = {"across": "psi", "along": "phi"}
+        yield whole, {x: noise[alias.get(x, x)] for x in whole.channels}
+
+
 def _nutation(
-    recording: Recording, known: Known, frequency: float, noise: _Noise, *, radians: bool
+    recording: Recording,
+    known: Known,
+    frequency: float,
+    noise: _Noise,
+    *,
+    radians: bool,
+    both: bool,
 ) -> Outcome | None:
-    """Return the best fit of a nutation; None without a start."""
+    """Return the best fit of a nutation, with `both` directions of psi; None without a start."""
     scale = 1 / frequency
     given, known = known, scaled_known(known, scale)
     floors = np.array([noise[x][0] / math.sqrt(12) + _LEAST_SIGMA for x in recording.channels])
     scaled = replace(recording, t=recording.t / scale)
-    both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
     ways = [Data.of(x, floors) for x in (scaled, scaled.mirrored)[: 1 + both]]
     turn = ways[0].turn
     for is_free in (True, False)[: 1 + bool(known)]:

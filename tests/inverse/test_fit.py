@@ -324,6 +324,30 @@ def test_a_top_that_starts_on_a_pole_is_fitted(seed: int) -> None:
 
 
 @pytest.mark.slow
+def test_noise_of_psi_and_phi_may_grow_beside_a_pole() -> None:
+    """A tracker sees the axis, whose noise turns psi and phi by large angles near the pole."""
+    import fuzz_fits
+
+    case, rng = fuzz_fits.drawn(106, look="pole"), np.random.default_rng(1)
+    seen: Any = dict(case.arrays)
+    turned = rng.normal(scale=case.noise["theta"], size=case.t.size) / np.sin(seen["theta"])
+    seen["psi"] = seen["psi"] + turned
+    seen["phi"] = seen["phi"] - turned * np.cos(seen["theta"])
+    outcome = fit(case.t, **seen)
+    assert (outcome.verdict, outcome.recording.kind) == ("good", "attitude")
+    pulls = fuzz_fits.pulls(outcome, case, mirrored=False)
+    assert all(abs(x) < fuzz_fits.FAR for x in pulls.values()), pulls
+
+
+def test_an_oscillation_is_no_noise_that_ends_where_it_does_not_correlate() -> None:
+    t, white = np.arange(400.0), np.random.default_rng(1).normal(size=400)
+    smooth = np.convolve(white, np.ones(5) / 5, mode="same")
+    assert Residuals(t, white).reach <= 2
+    assert 4 <= Residuals(t, smooth).reach <= 6
+    assert Residuals(t, np.sin(0.9 * t) + white / 10).reach == t.size
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["angles", "quaternion"])
 def test_a_decay_within_each_window_is_named(kind: str) -> None:
     rng, t = np.random.default_rng(12), np.linspace(0, 6, 1441)
