@@ -120,10 +120,11 @@ def best_fit(
         both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
         for form, of_form in [*_as_axis(recording, signals, noise), (recording, noise)]:
             found = _nutation(form, known, frequency, of_form, radians=radians, both=both)
-            if found is not None and not (found.faults or found.misfits):
-                break
+            if found is not None:
+                found.chance = chance
+                if not (found.faults or found.misfits):
+                    break
         if found is not None:
-            found.chance = chance
             outcome = steady if is_steady and (found.faults or found.misfits) else found
     low, chi2 = outcome.chi2_bounds[0], outcome.chi2_dof
     if chi2 is not None and chi2 < low:
