@@ -187,7 +187,7 @@ def compared(
     then the top is right.  Raises LagtopError for bad step sizes, DataError for times that are
     too late in a file.
     """
-    if step_sizes and (len(step_sizes) != len(runs) or not min(step_sizes) > 0):
+    if step_sizes and (len(step_sizes) != len(runs) or not all(x > 0 for x in step_sizes)):
         wanted = f"one number > 0 per trajectory ({len(runs)})"
         raise LagtopError(f"step_sizes must have {wanted}, got {step_sizes}", "step_sizes")
     exact, steps = ExactMotion(motion), step_sizes or repeat(None)

@@ -23,9 +23,10 @@ _AXES = ("x", "y", "-x", "-y", "-z")
 _ROWS = 250
 """Rows at which axes are compared."""
 _OTHER_AXIS, _CALMER, _OUTLYING, _NOISY = 0.35, 0.1, 30.0, 2.0
-"""A fit is only tried if harmonics leave less noise, by this difference of logarithms: per angle in
-another frame, in a part or in windows, and over the share of outliers without them; another meaning
-of angles, if the residuals are so much larger than the differences between neighbours."""
+"""When a trial fit is worth its time.  Harmonics of the nutation must leave less noise; the least
+differences of its logarithm are those per angle in another frame, in a part or in windows, and
+without outliers over their share of the rows.  Other meanings of the angles are tried if the
+residuals are larger than the differences between neighbours by the last factor."""
 _HELD, _RELEASED, _STILL = 12, 6.0, 3.5
 """Least number of rows before a release, the standard deviations that show it, and the standard
 deviation of the rows before it, over the noise of neighbours, from which these move too."""

@@ -61,8 +61,9 @@ def angles(states: Array, t: Array) -> Array:
     first = np.arctan2(np.sqrt(below), np.sqrt(above))
     first = np.where(theta_rate > 0, -first, first)
     begin = ellipkinc(first, m)
-    periods = np.round((begin + speed * t) / (2 * quarter))
-    argument = begin + speed * t - 2 * quarter * periods
+    argument = begin + speed * t
+    periods = np.round(argument / (2 * quarter))
+    argument = argument - 2 * quarter * periods
     sn, _, _, phase = ellipj(argument, m)
     down, up = 2 * np.sin(theta / 2) ** 2, 2 * np.cos(theta / 2) ** 2  # 1 - u and 1 + u
     momenta = psi_rate * sine**2 + b * np.stack([-down, up])  # N and S

@@ -22,8 +22,9 @@ _SHARE = 0.05
 """Share of a parameter in a direction that is not determined, from which it is not either."""
 _LEAST, _FASTEST = 2.0, 1e6
 """Standard deviations by which a > 0, and the largest b^2/a at which a is determined."""
-_STEP, _SHORT_STEP, _LEAST_SIZE = 1e-6, 1e-7, 1e-3
-"""Steps of central and of forward differences, over the size of a parameter, and its least size."""
+_STEP, _SHORT_STEP, _LEAST_SIZE, _LEAST_PLACE = 1e-6, 1e-7, 1e-3, 0.03
+"""Steps of central and of forward differences, over the size of a parameter, and its least size,
+also beside a pole."""
 _IN_PHASE = 0.7
 """Largest rms residual of the spin, in radians, of a motion that may be out of phase."""
 STEPS = 60
@@ -97,10 +98,10 @@ class Problem:
         """The number of parameters without a prior."""
         self.names = [*names, *self.stds]
 
-    def of(self, recording: Recording, sizes: Array | None = None) -> Problem:
-        """Return the same problem for another form of the recording."""
+    def of(self, recording: Recording, sizes: Array | None = None, pole: int = 0) -> Problem:
+        """Return the same problem for another form of the recording, or of a start at a pole."""
         sizes = self.sizes if sizes is None else sizes
-        known, free, turns, pole = self.inputs, self.free, self.turns, self.pole
+        known, free, turns, pole = self.inputs, self.free, self.turns, pole or self.pole
         return Problem(recording, known, sizes, free=free, turns=turns, pole=pole)
 
     @property
@@ -150,7 +151,7 @@ class Problem:
         v |= {"along": distance * math.cos(turn), "across": distance * math.sin(turn)}
         v |= {"speed": speed, "psi_zero": v["psi_zero"] + turn}
         v["phi_zero"] -= pole * turn
-        problem = Problem(self.recording, self.inputs, self.sizes, free=self.free, pole=pole)
+        problem = self.of(self.recording, pole=pole)
         return problem, np.array([v[name] for name in problem.names])
 
     def angles(self, x: Array, t: Array) -> Array:
@@ -194,7 +195,9 @@ class Problem:
         self, x: Array, function: Callable[[Array], Array], *, central: bool = True
     ) -> Array:
         """Return the derivatives of a function of many tops by the parameters, in the last axis."""
-        least = np.array([0.03 if name in BESIDE_POLE else _LEAST_SIZE for name in self.names])
+        least = np.array(
+            [_LEAST_PLACE if name in BESIDE_POLE else _LEAST_SIZE for name in self.names]
+        )
         steps = (_STEP if central else _SHORT_STEP) * np.maximum(np.abs(x), least)
         steps = np.where(np.array(self.names) == "a", np.minimum(steps, np.abs(x) / 2), steps)
         below = x - np.diag(steps) if central else x[np.newaxis]

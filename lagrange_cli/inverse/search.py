@@ -18,6 +18,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import DataError
+from ..files import rotations
 from .checks import CHANCE, LARGEST, Residuals
 from .known import Known, compared, estimates, most_turns, scaled_known, time_power, whole_turns
 from .motions import STATE
@@ -120,12 +121,13 @@ def best_fit(
         both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
         for form, of_form in [*_as_axis(recording, signals, noise), (recording, noise)]:
             found = _nutation(form, known, frequency, of_form, radians=radians, both=both)
-            if found is not None:
-                found.chance = chance
-                if not (found.faults or found.misfits):
-                    break
-        if found is not None:
-            outcome = steady if is_steady and (found.faults or found.misfits) else found
+            if found is None:
+                continue
+            found.chance = chance
+            is_fit = not (found.faults or found.misfits)
+            outcome = steady if is_steady and not is_fit else found
+            if is_fit:
+                break
     low, chi2 = outcome.chi2_bounds[0], outcome.chi2_dof
     if chi2 is not None and chi2 < low:
         shown = f"chi2/dof = {chi2:.3g} is below {low:.3g}"
@@ -146,11 +148,9 @@ def best_fit(
 def _noise(recording: Recording, signals: Mapping[str, Signal]) -> _Noise:
     """Return the step between values, and the noise of neighbours, of each channel."""
     if recording.kind != "angles":
-        tilt, turn = (
-            x[recording.present[0]] for x in (recording.angles["theta"], recording.angles["psi"])
-        )
-        axis = np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)
-        both = dict.fromkeys(("theta", "across"), (0.0, max(map(neighbour_noise, axis))))
+        tilt, psi = (recording.angles[x][recording.present[0]] for x in ("theta", "psi"))
+        axis = rotations.axis_of(rotations.of_angles(tilt, np.zeros_like(tilt), psi))
+        both = dict.fromkeys(("theta", "across"), (0.0, max(map(neighbour_noise, axis.T))))
         return {x: both.get(x, (0.0, math.inf)) for x in recording.channels}
     found = {}
     for name in recording.channels:
