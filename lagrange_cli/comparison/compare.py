@@ -44,6 +44,9 @@ _RISES, _SPREAD = 1.2, 1.0
 _SURE = 2.0
 """Largest change of a difference from row to row, in radians, for whole turns to be counted."""
 
+_KEPT = {"t", "error", *ANGLES}
+"""Columns that are kept whole; only the extremes of the others are, to save memory."""
+
 
 def _key(meaning: str, default: Any = None) -> Any:
     """Return the field of a key of the record, with its meaning."""
@@ -215,7 +218,10 @@ def compared(
 def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
     try:
-        parts = [*blocks(exact, run)]
+        parts = [
+            {name: y if name in _KEPT else _extremes(y) for name, y in x.items()}
+            for x in blocks(exact, run)
+        ]
     except LagtopError as wrong:
         if "file" not in run.about or wrong.key != "t":
             raise
@@ -223,9 +229,9 @@ def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
     found = {name: np.concatenate([x.pop(name) for x in parts]) for name in [*parts[0]]}
     t, error, known = found.pop("t"), found["error"], dict[str, Any]()
     for name, values in found.items():
-        if (finite := values[np.isfinite(values)]).size:
-            first = finite[0] if name in CONSERVED else 0.0
-            greatest = abs(finite - first).max() / (first if name == "pivot_slip" else 1.0)
+        if (ends := _extremes(values)).size:
+            first = ends[0] if name in CONSERVED else 0.0
+            greatest = abs(ends - first).max() / (first if name == "pivot_slip" else 1.0)
             names = name, f"{name}_max", f"{name}_error_max"
             key = next(x for x in names if x in COMPARISON_KEYS)
             known[key] = float(greatest) if np.isfinite(greatest) else None
@@ -247,6 +253,12 @@ def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
         error=error,
         **known,
     )
+
+
+def _extremes(values: Array) -> Array:
+    """Return the first, the least and the greatest of the finite values, if there are any."""
+    finite = values[np.isfinite(values)]
+    return np.array([finite[0], finite.min(), finite.max()]) if finite.size else finite
 
 
 def _slope(t: Array, angle: Array) -> float | None:
