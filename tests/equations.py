@@ -4,28 +4,21 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import SimpleNamespace
 from typing import Any, ClassVar, NamedTuple
 
 import pytest
-from ours import ar
+from ours import ManyDigits, ar
 
-Pairs = list[tuple[Any, Any]]
-"""Left and right sides: one by our functions, the other independent of them."""
-Sides = Callable[..., Iterable[tuple[Any, Any]] | tuple[Any, Any]]
-"""The sides of an equation in one case: a pair, or several pairs that are not a tuple."""
-Cases = Callable[[], Iterable[tuple[Any, ...]]]
-"""Cases, such as a top and a time."""
+Cases = Callable[[], Iterable[Any]]
+"""Cases, such as a top at a time: objects whose attributes are names of the equation."""
 
 
-def once() -> list[tuple[()]]:
+def once() -> list[Any]:
     """Return the one case of an equation without parameters."""
-    return [()]
-
-
-def pairs(left: Iterable[Any], right: Iterable[Any]) -> Pairs:
-    """Return pairs of sides from two rows of numbers."""
-    return list(zip(left, right, strict=True))
+    return [SimpleNamespace()]
 
 
 PLACE = re.compile(
@@ -35,55 +28,78 @@ PLACE = re.compile(
 """How the number of an equation begins: with its place."""
 
 
-class Register:
-    """Equations as they hold, and as they are printed where that is wrong.
+class Scope(dict[str, Any]):
+    """The names of an equation: attributes of the case, of the module, and of a context."""
 
-    `test_sources.py` says which numbers must be in some register.
-    """
+    def __init__(self, *places: Any) -> None:
+        super().__init__()
+        self.places = places
 
-    def __init__(self) -> None:
-        self.holds: dict[str, Equation] = {}
-        self.fails: dict[str, Equation] = {}
-        self.misread: dict[str, Equation] = {}
-
-    def each(self, cases: Cases, holds: Mapping[str, Sides]) -> None:
-        """Register equations, by the number or the section where they stand, with their cases."""
-        _enter(self.holds, holds, cases)
-
-    def each_as_printed(self, cases: Cases, fails: Mapping[str, Sides]) -> None:
-        """Register equations as the text at hand prints them, whose sides do not agree.
-
-        If one equation has several errors, its number is followed by ", ..." after " as printed".
-        """
-        _enter(self.fails, fails, cases)
-
-    def misreadings(self, misread: Mapping[str, Sides]) -> None:
-        """Register other readings of blurred signs, whose sides do not agree."""
-        _enter(self.misread, misread, once)
+    def __missing__(self, name: str) -> Any:
+        """Look a name up, once."""
+        for place in self.places:
+            if (found := getattr(place, name, None)) is not None:
+                return self.setdefault(name, found)
+        raise KeyError(name)
 
 
 class Equation(NamedTuple):
-    """An equation with its cases."""
+    """An equation, or several that are separated by semicolons, with its cases."""
 
-    sides: Sides
+    text: str
     cases: Cases
+    places: tuple[Any, ...]
 
     def gaps(self) -> list[float]:
-        """Return how far the sides of each pair are apart; one without pairs is an error."""
+        """Return how far the sides are apart, in each case; sides that are rows, by pairs."""
         found = []
         for case in self.cases():
-            sides = self.sides(*case)
-            found += [gap(*pair) for pair in ([sides] if isinstance(sides, tuple) else sides)]
+            names = Scope(case, *self.places)
+            for equation in self.text.split("; "):
+                left, right = (eval(side, names) for side in equation.split(" = "))
+                rows = (
+                    zip(left, right, strict=True) if hasattr(left, "__iter__") else [(left, right)]
+                )
+                found += [gap(*pair) for pair in rows]
         assert found, "the equation compares nothing"
         return found
 
 
-def _enter(register: dict[str, Equation], equations: Mapping[str, Sides], cases: Cases) -> None:
-    """Register equations under numbers that are not taken yet."""
-    for number, sides in equations.items():
-        assert PLACE.match(number), f"{number} does not begin with a place in the source"
-        assert number not in register, f"{number} is registered twice"
-        register[number] = Equation(sides, cases)
+class Register:
+    """Equations as they hold, and as they are printed where that is wrong.
+
+    One side is by our functions, the other independent of them.  Names are those of the case, of
+    the module and of a context of mpmath.  `test_sources.py` says which numbers must be in some
+    register.
+    """
+
+    def __init__(self, module: str, context: ManyDigits = ar) -> None:
+        self.places = sys.modules[module], context
+        self.holds: dict[str, Equation] = {}
+        self.fails: dict[str, Equation] = {}
+        self.misread: dict[str, Equation] = {}
+
+    def each(self, cases: Cases, holds: Mapping[str, str]) -> None:
+        """Register equations, by the number or the section where they stand, with their cases."""
+        self._enter(self.holds, holds, cases)
+
+    def each_as_printed(self, cases: Cases, fails: Mapping[str, str]) -> None:
+        """Register equations as the text at hand prints them, whose sides do not agree.
+
+        If one equation has several errors, its number is followed by ", ..." after " as printed".
+        """
+        self._enter(self.fails, fails, cases)
+
+    def misreadings(self, misread: Mapping[str, str]) -> None:
+        """Register other readings of blurred signs, whose sides do not agree."""
+        self._enter(self.misread, misread, once)
+
+    def _enter(self, known: dict[str, Equation], new: Mapping[str, str], cases: Cases) -> None:
+        """Register equations under numbers that are not taken yet."""
+        for number, text in new.items():
+            assert PLACE.match(number), f"{number} does not begin with a place in the source"
+            assert number not in known, f"{number} is registered twice"
+            known[number] = Equation(text, cases, self.places)
 
 
 class EquationTests:

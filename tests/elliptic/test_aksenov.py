@@ -3,32 +3,36 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
-from itertools import chain
+from itertools import product
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import pytest
-from equations import EquationTests, Register, once, pairs, slightly_wrong
+from equations import EquationTests, Register, once, slightly_wrong
 from errata import misprints
 from ours import ar, fraction, incomplete_f, jacobi, nome, ours, quarter_period
 
 from lagrange_cli.elliptic.eta import EtaConstants, Quadrature, eta_columns, eta_constants
 from lagrange_cli.elliptic.functions import Functions
 
-aksenov = Register()
+aksenov = Register(__name__)
 MODULI = [ar.mpf(x) for x in ("0.03", "0.5", "0.9", "0.9999")]
 ARGUMENTS = [ar.mpf(x) for x in ("-2.3", "0.4", "1.7", "11")]
 
 
-def moduli() -> Iterable[tuple[Any, ...]]:
-    """Yield k, k^2 and K."""
-    return ((k, k**2, ar.ellipk(k**2)) for k in MODULI)
+def moduli() -> Iterator[SimpleNamespace]:
+    """Yield k, k^2, k' and K."""
+    for k in MODULI:
+        yield SimpleNamespace(k=k, m=k**2, k1=ar.sqrt(1 - k**2), K=ar.ellipk(k**2))
 
 
-def points() -> Iterable[tuple[Any, ...]]:
+def points() -> Iterator[SimpleNamespace]:
     """Yield k, k^2, u, and our am, sn, cn, dn."""
-    return ((k, k**2, u, *jacobi(u, k)) for k in MODULI for u in ARGUMENTS)
+    for k, u in product(MODULI, ARGUMENTS):
+        own = zip(("am", "sn", "cn", "dn"), jacobi(u, k), strict=True)
+        yield SimpleNamespace(k=k, m=k**2, u=u, **dict(own))
 
 
 def theirs(u: Any, m: Any) -> list[Any]:
@@ -67,8 +71,8 @@ def cross_ratios(roots: list[Any]) -> list[Any]:
     return [x, 1 / x, 1 - x, 1 / (1 - x), 1 - 1 / x, x / (x - 1)]
 
 
-def substituted() -> Iterator[tuple[Any, Any]]:
-    """Yield the integral between four real roots, and the moduli of two complex pairs."""
+def substituted() -> list[Any]:
+    """Return pairs: the integral between four real roots, and the moduli of two complex pairs."""
     a, b, c, d = roots = [ar.mpf(x) for x in ("2.1", "0.4", "-0.9", "-3")]
     m, y = cross_ratios(roots)[0], ar.mpf("1.3")
     phi = ar.asin(ar.sqrt((a - c) * (y - b) / ((a - b) * (y - c))))
@@ -78,64 +82,57 @@ def substituted() -> Iterator[tuple[Any, Any]]:
         return 2 / ar.sqrt((a - x) * (x - c) * (x - d))
 
     factor = 2 / ar.sqrt((a - c) * (b - d))
-    yield factor * incomplete_f(phi, ar.sqrt(m)), ar.quad(integrand, [0, ar.sqrt(y - b)])
     complex_roots = [ar.mpc(x, sign * y) for x, y in ((0.3, 1), (-0.8, 1.7)) for sign in (1, -1)]
-    yield from ((ar.im(x), 0) for x in cross_ratios(complex_roots))
+    found = [factor * incomplete_f(phi, ar.sqrt(m)), ar.quad(integrand, [0, ar.sqrt(y - b)])]
+    return found + [x for ratio in cross_ratios(complex_roots) for x in (ar.im(ratio), 0)]
+
+
+def at_quarters(k: Any, count: int) -> list[list[Any]]:
+    """Return our sn, cn, dn at -count K/2, ..., count K/2."""
+    K = ar.ellipk(k**2)
+    return [list(jacobi(i * K / 2, k)[1:]) for i in range(-count, count + 1)]
 
 
 aksenov.each(
     once,
     {
-        "section 3.1: a linear-fractional substitution": substituted,
-        "section 3.1: property 5": lambda: chain(
-            *(pairs(jacobi(u, 0), (u, ar.sin(u), ar.cos(u), 1)) for u in ARGUMENTS),
-            *(pairs(jacobi(u, 1)[1:], (ar.tanh(u), ar.sech(u), ar.sech(u))) for u in ARGUMENTS),
-        ),
+        "section 3.1: a linear-fractional substitution": "substituted()[::2] = substituted()[1::2]",
+        "section 3.1: property 5": "[jacobi(u, 0)[i] for u in ARGUMENTS for i in range(4)] = "
+        "[x for u in ARGUMENTS for x in (u, sin(u), cos(u), 1)]; "
+        "[jacobi(u, 1)[i] for u in ARGUMENTS for i in range(1, 4)] = "
+        "[x for u in ARGUMENTS for x in (tanh(u), sech(u), sech(u))]",
     },
 )
 aksenov.each(
     moduli,
     {
-        "(3.1.1)": lambda k, m, K: (jacobi(first_kind(ar.mpf("0.7"), m), k)[1], ar.mpf("0.7")),
-        "(3.1.2)": lambda k, m, K: [
-            (quarter_period(k), K),
-            *((incomplete_f(phi, k), ar.ellipf(phi, m)) for phi in (ar.mpf("0.7"), ar.mpf("4.4"))),
-        ],
-        "section 3.1: property 2": lambda k, m, K: [
-            (extreme(jacobi(i * K / 2, k)[name] for i in range(-5, 6)), value)
-            for extreme, values in ((min, (-1, -1, ar.sqrt(1 - m))), (max, (1, 1, 1)))
-            for name, value in enumerate(values, 1)
-        ],
-        "section 3.1: table 2": lambda k, m, K: [
-            pair
-            for i, values in enumerate([(0, 1, 1), (1, 0, 0), (0, -1, 1), (-1, 0, 0), (0, 1, 1)])
-            for pair in pairs(jacobi(i * K, k)[1:], (*values[:2], values[2] or ar.sqrt(1 - m)))
-        ],
-        "(3.1.6)": lambda k, m, K: (nome(k), ar.exp(-ar.pi * ar.ellipk(1 - m) / K)),
-        "(3.1.8)": lambda k, m, K: [(quarter_period(k), series("K", k, terms=600))] * (k < 0.99),
+        "(3.1.1)": "jacobi(first_kind(mpf('0.7'), m), k)[1] = mpf('0.7')",
+        "(3.1.2)": "quarter_period(k) = K; incomplete_f(mpf('0.7'), k) = ellipf(mpf('0.7'), m); "
+        "incomplete_f(mpf('4.4'), k) = ellipf(mpf('4.4'), m)",
+        "section 3.1: property 2": "map(min, *at_quarters(k, 5)) = (-1, -1, sqrt(1 - m)); "
+        "map(max, *at_quarters(k, 5)) = (1, 1, 1)",
+        "section 3.1: table 2": "[x for row in at_quarters(k, 8)[8::2] for x in row] = "
+        "[0, 1, 1, 1, 0, k1, 0, -1, 1, -1, 0, k1, 0, 1, 1]",
+        "(3.1.6)": "nome(k) = exp(-pi*ellipk(1 - m)/K)",
     },
+)
+aksenov.each(
+    lambda: list(moduli())[:3], {"(3.1.8)": "quarter_period(k) = series('K', k, terms=600)"}
 )
 aksenov.each(
     points,
     {
-        "(3.1.3)": lambda k, m, u, am, *_: (ar.ellipf(am, m), u),
-        "section 3.1: definitions of sn, cn, dn": lambda k, m, u, am, *found: [
-            *pairs(found, (ar.sin(am), ar.cos(am), ar.sqrt(1 - m * ar.sin(am) ** 2))),
-            *pairs(found, theirs(u, m)),
-        ],
-        "section 3.1: property 1": lambda k, m, u, am, sn, cn, dn: [
-            *pairs(jacobi(u + 2 * ar.ellipk(m), k), (am + ar.pi, -sn, -cn, dn)),
-            *pairs(jacobi(u + 4 * ar.ellipk(m), k)[1:], (sn, cn, dn)),
-        ],
-        "section 3.1: property 3": lambda k, m, u, am, sn, cn, dn: pairs(
-            jacobi(-u, k), (-am, -sn, cn, dn)
-        ),
-        "section 3.1: property 4": lambda k, m, u, am, sn, cn, dn: [
-            *((sn**2 + cn**2, 1), (dn**2 + m * sn**2, 1), (dn**2 - m * cn**2 + m, 1))
-        ],
-        "(3.1.4)": lambda k, m, u, am, sn, cn, dn: (sn, series("sn", k, u)),
-        "(3.1.5)": lambda k, m, u, am, sn, cn, dn: (cn, series("cn", k, u)),
-        "(3.1.7)": lambda k, m, u, am, *_: (am, series("am", k, u)),
+        "(3.1.3)": "ellipf(am, m) = u",
+        "section 3.1: definitions of sn, cn, dn": "sn = sin(am); cn = cos(am); "
+        "dn = sqrt(1 - m*sin(am)**2); (sn, cn, dn) = theirs(u, m)",
+        "section 3.1: property 1": "jacobi(u + 2*ellipk(m), k) = (am + pi, -sn, -cn, dn); "
+        "jacobi(u + 4*ellipk(m), k)[1:] = (sn, cn, dn)",
+        "section 3.1: property 3": "jacobi(-u, k) = (-am, -sn, cn, dn)",
+        "section 3.1: property 4": "sn**2 + cn**2 = 1; dn**2 + m*sn**2 = 1; "
+        "dn**2 - m*cn**2 + m = 1",
+        "(3.1.4)": "sn = series('sn', k, u)",
+        "(3.1.5)": "cn = series('cn', k, u)",
+        "(3.1.7)": "am = series('am', k, u)",
     },
 )
 
@@ -163,10 +160,11 @@ def eta_at(tau: Any) -> Any:
     return ours.evaluated(compute)
 
 
-def times() -> Iterable[tuple[Any, ...]]:
+def times() -> Iterator[SimpleNamespace]:
     """Yield tau, eta, and xi = sn(h1, k1) of (3.2.11) with its amplitude."""
-    found = ((tau, ar.ellipfun("sn", C.sigma1 * tau - K1, m=C.k1**2)) for tau in TAUS)
-    return ((tau, eta_at(tau), xi, ar.asin(xi)) for tau, xi in found)
+    for tau in TAUS:
+        xi = ar.ellipfun("sn", C.sigma1 * tau - K1, m=C.k1**2)
+        yield SimpleNamespace(tau=tau, eta=eta_at(tau), xi=xi, theta=ar.asin(xi))
 
 
 def to(angle: Any, integrand: Callable[[Any], Any]) -> Any:
@@ -187,82 +185,50 @@ def k2(sign: int) -> Any:
 aksenov.each(
     times,
     {
-        "(3.2.1)": lambda tau, eta, xi, theta: (
-            to(
-                ar.asin((eta - MIDDLE) / HALF),
-                lambda x: Q_**2 - (MIDDLE + HALF * ar.sin(x) - P_) ** 2,
-            ),
-            ar.sqrt(G_) * tau,
-        ),
-        "(3.2.2)": lambda tau, eta, xi, theta: (
-            (eta - MIDDLE) / HALF,
-            (C.m1 - C.m2 - (C.m1 + C.m2) * xi) / ((C.m1 - C.m2) * xi - C.m1 - C.m2),
-        ),
-        "(3.2.4)": lambda tau, eta, xi, theta: (
-            to(theta, lambda x: 1 + C.k**2 * ar.cos(x) ** 2),
-            ar.sqrt(G_ * C.m1 * C.m2) * tau,
-        ),
-        "(3.2.6)": lambda tau, eta, xi, theta: (eta, fractional(ar.sin(theta))),
-        "(3.2.7)": lambda tau, eta, xi, theta: [
-            (to(theta, lambda x: 1 - (C.k1 * ar.sin(x)) ** 2), C.sigma1 * tau),
-            (ar.ellipf(theta, C.k1**2) + K1, C.sigma1 * tau),
-        ],
-        "(3.2.9)": lambda tau, eta, xi, theta: (
-            eta,
-            fractional(ar.sin(jacobi(C.sigma1 * tau - K1, C.k1)[0])),
-        ),
-        "(3.2.11)": lambda tau, eta, xi, theta: (eta, fractional(xi)),
+        "(3.2.1)": "to(asin((eta - MIDDLE)/HALF), lambda x: "
+        "Q_**2 - (MIDDLE + HALF*sin(x) - P_)**2) = sqrt(G_)*tau",
+        "(3.2.2)": "(eta - MIDDLE)/HALF = "
+        "(C.m1 - C.m2 - (C.m1 + C.m2)*xi)/((C.m1 - C.m2)*xi - C.m1 - C.m2)",
+        "(3.2.4)": "to(theta, lambda x: 1 + C.k**2*cos(x)**2) = sqrt(G_*C.m1*C.m2)*tau",
+        "(3.2.6)": "eta = fractional(sin(theta))",
+        "(3.2.7)": "to(theta, lambda x: 1 - (C.k1*sin(x))**2) = C.sigma1*tau; "
+        "ellipf(theta, C.k1**2) + K1 = C.sigma1*tau",
+        "(3.2.9)": "eta = fractional(sin(jacobi(C.sigma1*tau - K1, C.k1)[0]))",
+        "(3.2.11)": "eta = fractional(xi)",
     },
 )
 aksenov.each(
     once,
     {
-        "(3.2.3)": lambda: [
-            (C.m1, ar.sqrt(Q_**2 - (DELTA - P_) ** 2)),
-            (C.m2, ar.sqrt(Q_**2 - (DELTA_STAR - P_) ** 2)),
-        ],
-        "(3.2.5)": lambda: (C.k**2, k2(1)),
-        "(3.2.8)": lambda: [
-            (C.k1**2, k2(1) / (1 + k2(1))),
-            (C.sigma1, ar.sqrt(G_ * C.m1 * C.m2 * (1 + k2(1)))),
-            (C.k1_prime**2, 1 - C.k1**2),
-        ],
-        "(3.2.10)": lambda: [
-            (eta_at(ar.mpf(0)), DELTA_STAR),
-            (eta_at(2 * K1 / C.sigma1), DELTA),
-            (C.period, 4 * K1 / C.sigma1),
-        ],
-        "(3.2.12)": lambda: [
-            (C.s, (C.m2 * DELTA - C.m1 * DELTA_STAR) / (C.m1 + C.m2)),
-            (C.d, (C.m2 - C.m1) / (C.m1 + C.m2)),
-            (C.gamma, (C.m1 * DELTA_STAR + C.m2 * DELTA) / (C.m1 + C.m2)),
-        ],
+        "(3.2.3)": "C.m1 = sqrt(Q_**2 - (DELTA - P_)**2); "
+        "C.m2 = sqrt(Q_**2 - (DELTA_STAR - P_)**2)",
+        "(3.2.5)": "C.k**2 = k2(1)",
+        "(3.2.8)": "C.k1**2 = k2(1)/(1 + k2(1)); C.sigma1 = sqrt(G_*C.m1*C.m2*(1 + k2(1))); "
+        "C.k1_prime**2 = 1 - C.k1**2",
+        "(3.2.10)": "eta_at(mpf(0)) = DELTA_STAR; eta_at(2*K1/C.sigma1) = DELTA; "
+        "C.period = 4*K1/C.sigma1",
+        "(3.2.12)": "C.s = (C.m2*DELTA - C.m1*DELTA_STAR)/(C.m1 + C.m2); "
+        "C.d = (C.m2 - C.m1)/(C.m1 + C.m2); "
+        "C.gamma = (C.m1*DELTA_STAR + C.m2*DELTA)/(C.m1 + C.m2)",
     },
 )
 
-two_real = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
+TWO_REAL = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
+"""Roots for which there is no real modulus."""
 aksenov.each_as_printed(
     once,
     {
-        "section 3.1: a linear-fractional substitution": lambda: [  # no real modulus
-            (ar.im(x), 0) for x in cross_ratios(two_real)
-        ],
-        "(3.1.6)": lambda: (nome(0.5), ar.exp(ar.pi * ar.ellipk(0.75) / ar.ellipk(0.25))),
-        "section 3.1: property 4": lambda: (
-            jacobi(1, 0.5)[3] ** 2 + jacobi(1, 0.5)[1] ** 2 / 4,
-            -1,
-        ),
+        "section 3.1: a linear-fractional substitution": "map(im, cross_ratios(TWO_REAL)) = 6*[0]",
+        "(3.1.6)": "nome(0.5) = exp(pi*ellipk(0.75)/ellipk(0.25))",
+        "section 3.1: property 4": "jacobi(1, 0.5)[3]**2 + jacobi(1, 0.5)[1]**2/4 = -1",
     },
 )
 aksenov.misreadings(
     {
-        "(3.2.5) as printed, the plus read as a minus": lambda: [
-            (x * C.k**2, x * k2(-1)) for x in [4 * C.m1 * C.m2 / (C.m1 - C.m2) ** 2]
-        ],
-        "(3.2.10) as printed, the minus read as a plus": lambda: (
-            eta_at(TAUS[0]),
-            fractional(ar.ellipfun("sn", C.sigma1 * TAUS[0] + K1, m=C.k1**2)),
-        ),
+        "(3.2.5) as printed, the plus read as a minus": "4*C.m1*C.m2/(C.m1 - C.m2)**2*C.k**2 = "
+        "4*C.m1*C.m2/(C.m1 - C.m2)**2*k2(-1)",
+        "(3.2.10) as printed, the minus read as a plus": "eta_at(TAUS[0]) = "
+        "fractional(ellipfun('sn', C.sigma1*TAUS[0] + K1, m=C.k1**2))",
     }
 )
 
