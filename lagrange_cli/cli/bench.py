@@ -53,8 +53,8 @@ def bench_command(
     formulas.  The column `setting` holds the tolerance of a method, or its number of steps per
     nutation period.  A * marks the front: no other row is both faster and more accurate.
 
-    Taylor's method needs heyoka, and MuJoCo its own package; bench names missing ones.  To check
-    a method of your own, write its trajectory to a file and use lagtop compare.
+    Taylor's method needs heyoka, and MuJoCo its own package; bench names missing packages.  To
+    check a method of your own, write its trajectory to a file and use lagtop compare.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
     from ..bench.work_precision import PERIODS, bench, methods_figure
@@ -90,7 +90,7 @@ def stability_command(
     near-steady, near-hanging and extreme-sizes.  Each has a fixed scene and random ones.  Errors
     are the greatest rotations (rad) from the exact attitude, over 1 and 100 nutation periods.
     `input rounding` is the rotation that half an ulp of each input causes: no method whose inputs
-    are doubles can do better.  A row shows the worst scene of its kind.
+    are doubles can guarantee less.  A row shows the worst scene of its kind.
 
     The exit code is 1 if an error of lagtop exceeds 100 times the input rounding.
     """

@@ -85,7 +85,9 @@ def write_functions(rows: Rows, count: int, out: Output) -> None:
     "[default: am]",
 )
 @opt.option(
-    "--param", type=opt.Parsed("V", _parse_parameter), help="For omega and pi, e.g. 0.2+0.7i."
+    "--param",
+    type=opt.Parsed("V", _parse_parameter),
+    help="Parameter of omega and pi, such as 0.2+0.7i.",
 )
 @opt.option(
     "--phi",

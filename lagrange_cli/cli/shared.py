@@ -222,7 +222,7 @@ def top(
             inputs = {x: value for x, value in given.items() if value is not None}
             inputs = {tilt_key(x, y, radians=rad): y for x, y in inputs.items()}
             for word in words if several else [words]:
-                if "CONDITION" not in argument:
+                if "CONDITION" not in argument and not ("KEY" in argument and word in names):
                     _check_word(word, inputs)
             if several:
                 scenes = [word for word in words if is_scene and is_scene(word)]

@@ -27,11 +27,11 @@ from .app import complain
 @opt.top()
 @opt.option("--get", type=opt.LIST, help="Print only the values of these keys, one per line.")
 @opt.option(
-    "--derivation", is_flag=True, help="Print the steps of section 8, after release from rest."
+    "--derivation", is_flag=True, help="Print the steps of Chrapan's section 8 (release from rest)."
 )
 @opt.digits(opt.MOST_RECORD_DIGITS)
 @opt.certify
-@opt.option("--budget", metavar="KEY", help="Print the share of each input in the uncertainty.")
+@opt.option("--budget", metavar="KEY", help="Print each input's share in the uncertainty of KEY.")
 @opt.output("table", "json", "csv", "ndjson")
 def solve_command(
     top: opt.TopOptions,

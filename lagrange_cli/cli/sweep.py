@@ -96,10 +96,10 @@ def sweep_command(
     A file of tops is CSV with a header, or JSON lines, with names such as r0.  Options and the
     scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
     unit: m [g].  If a top cannot be solved, the exit code is 1 and the column error gives the
-    reason.  For a grid with --keys, add error to the keys.
+    reason.  If you pass --keys for a grid, name error among them.
 
-    A top takes about 1 us.  Keys outside the record that are formulas of the inputs,
-    such as stability_factor, Lz and the steady rates, cost no more; others take about 1 ms.
+    A top takes about 1 us.  Further keys that are formulas of the inputs, such as stability_factor,
+    Lz and the steady rates, cost no more; other further keys take about 1 ms.
 
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.
@@ -166,7 +166,9 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
     kind=opt.values(parse_number_or_span),
     rate=opt.values(parse_number_or_span, steady=True),
 )
-@opt.option("--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60 or 20]")
+@opt.option(
+    "--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60, 20 for 1, 2, 3]"
+)
 @opt.keys
 @opt.output("csv", "ndjson", "json", "table", on_terminal="table")
 def find_command(

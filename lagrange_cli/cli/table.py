@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 @opt.option("--dt", type=opt.TIME, help="Time step, instead of --n.")
 @opt.option("--times", metavar="FILE", help="Read the times from a file, one per line.")
 @opt.decimal
-@opt.option("--columns", type=opt.LIST, help="See lagtop explain.  [default: t,theta,phi,psi]")
+@opt.option(
+    "--columns", type=opt.LIST, help="Columns: see lagtop explain.  [default: t,theta,phi,psi]"
+)
 @opt.option("--wrap", is_flag=True, help="Keep spin and precession in (-180, 180].")
 @opt.digits(opt.MOST_TABLE_DIGITS)
 @opt.certify

@@ -32,9 +32,9 @@ _TEXT = """
 a | a | 2mgs/A | 1/time² | (4,4) | 2*m*g*s/A
 b | b | C r0/A | 1/time | (4,5) | C*r0/A
 # Roots
-u1 | u1 | cos ϑ, highest | | (4,9)
+u1 | u1 | greatest cos ϑ | | (4,9)
    | (energy_constant - a*u1)*(1 - u1**2) = (momentum_constant - b*u1)**2 ~ roots[1]
-u2 | u2 | cos ϑ, lowest | | (4,9)
+u2 | u2 | least cos ϑ | | (4,9)
    | (energy_constant - a*u2)*(1 - u2**2) = (momentum_constant - b*u2)**2 ~ roots[0]
 u3 | u3 | third root | | (4,9)
    | (energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2 ~ u2 + wide/a
@@ -44,14 +44,16 @@ k | k | modulus | | (4,19) | sqrt((u1 - u2)/(u3 - u2)) ~ sqrt(m_k)
 k_prime | k' | complementary modulus | | (4,21) | sqrt((u3 - u1)/(u3 - u2)) ~ sqrt(m_k_prime)
 modular_angle_deg | arcsin k | modular angle | angle | (4,19) | asin(k) ~ atan2(k, k_prime)
 nome | q | nome | | (2,4) | exp(-pi*K_prime/K) ~ nome_of(k, k_prime)
-K | K | integral, first kind, k | | (5,1) | ellint_F(pi/2, k) ~ pi/(2*agm(1, k_prime))
-K_prime | K' | integral, first kind, k' | | (2,4) | ellint_F(pi/2, k_prime) ~ pi/(2*agm(1, k))
-   | if k > 0
-E | E | integral, second kind, k | | (7,3) | ellint_E(pi/2, k) ~ complete_E(k_prime)
+K | K | complete integral, first kind | | (5,1)
+   | ellint_F(pi/2, k) ~ pi/(2*agm(1, k_prime))
+K_prime | K' | complementary integral, first kind | | (2,4)
+   | ellint_F(pi/2, k_prime) ~ pi/(2*agm(1, k)) | if k > 0
+E | E | complete integral, second kind | | (7,3) | ellint_E(pi/2, k) ~ complete_E(k_prime)
 amplitude_deg | am α | amplitude of α | angle | (7,2)
-   | atan(sqrt((u3 - u2)/(1 + u2))) ~ atan2(sqrt(wide), sqrt(a*(1 + u2)))
+   | asin(sqrt((u3 - u2)/(u3 + 1))) ~ atan2(sqrt(wide), sqrt(a*(1 + u2)))
    | if the top is released from rest
-alpha | α | parameter | | (1,6) | ellint_F(amplitude, k_prime) | if the top is released from rest
+alpha | α | parameter of Chrapan's Π | | (1,6) | ellint_F(amplitude, k_prime)
+   | if the top is released from rest
 # Periods
 T_nutation | T | nutation period | time | (5,1) | 4*K/sqrt(a*(u3 - u2)) ~ 4*K/sqrt(wide)
    | if the top moves
@@ -60,19 +62,19 @@ T_spin | Tφ | mean spin period | time | §8 | 2*pi/abs(mean_spin_rate)
 T_precession | Tψ | mean precession period | time | §8 | 2*pi/abs(mean_precession_rate)
    | if the mean precession rate is not 0
 # Turning points
-u_quarter | u(T/4) | cos ϑ at T/4 | | (5,2) | u1 - (u1 - u2)*k_prime/(1 + k_prime)
-   | if the start is at u1
+u_quarter | u(T/4) | cos ϑ at T/4 | | (5,2)
+   | u3 - sqrt(u3 - u1)*sqrt(u3 - u2) ~ V | if the start is at u1
 theta_min_deg | ϑ min | least tilt | angle | (4,6) | acos(u1)
 theta_max_deg | ϑ max | greatest tilt | angle | (4,6) | acos(u2)
 # Mean rates
 mean_spin_rate | φ' mean | mean spin rate | rad/time | (6,3) | r0 - b - (P - Q)/(2*K) where P, Q
 mean_precession_rate | ψ' mean | mean precession rate | rad/time | (7,3) | (P + Q)/(2*K) where P, Q
 # Rates
-spin_rate_start | φ'(0) | spin rate at start | rad/time | (6,2) | r0 - psidot0*cos(theta0)
+spin_rate_start | φ'(0) | spin rate at the start | rad/time | (6,2) | r0 - psidot0*cos(theta0)
    | if the axis does not leave the vertical at the start
 spin_rate_half | φ'(T/2) | spin rate at T/2 | rad/time | (6,2) | r0 - U*precession_rate_half where U
    | if the axis is not vertical half a period after the start
-precession_rate_start | ψ'(0) | precession rate at start | rad/time | (4,7) | psidot0
+precession_rate_start | ψ'(0) | precession rate at the start | rad/time | (4,7) | psidot0
    | if the axis does not leave the vertical at the start
 precession_rate_half | ψ'(T/2) | precession rate at T/2 | rad/time | (4,7)
    | (momentum_constant - b*U)/(1 - U**2) where U
@@ -82,18 +84,18 @@ energy_without_spin | c1 | energy without the spin part | mass len²/time² | (4
    | A*(thetadot0**2 + psidot0**2*sin(theta0)**2)/2 + m*g*s*cos(theta0)
 Lz | c2 | vertical angular momentum | mass len²/time | (4,3)
    | A*psidot0*sin(theta0)**2 + C*r0*cos(theta0)
-energy_constant | α₄ | energy constant over A/2 | 1/time² | (4,4) | 2*energy_without_spin/A
-momentum_constant | β | momentum over A | 1/time | (4,5) | Lz/A
+energy_constant | α₄ | energy c1 over A/2 | 1/time² | (4,4) | 2*energy_without_spin/A
+momentum_constant | β | momentum c2 over A | 1/time | (4,5) | Lz/A
 discriminant | D | discriminant, (a (u3 - u2))² | 1/time⁴ | (4,10) | (a*(u3 - u2))**2 ~ wide**2
-f_upright | f(1) | u'² of (4,9) upright | 1/time² | (4,9)
+f_upright | f(1) | f(u) = u'² at u = 1 | 1/time² | (4,9)
    | -(momentum_constant - b)**2 ~ -beta_minus_b**2
-f_hanging | f(-1) | u'² of (4,9) hanging | 1/time² | (4,9)
+f_hanging | f(-1) | f(u) = u'² at u = -1 | 1/time² | (4,9)
    | -(momentum_constant + b)**2 ~ -beta_plus_b**2
-f_slope_u1 | f'(u1) | slope of (4,9) at u1 | 1/time² | (4,9)
+f_slope_u1 | f'(u1) | slope of f(u) at u1 | 1/time² | (4,9)
    | -a*(u1 - u2)*(u3 - u1) ~ -height*narrow
 u2_criterion | a u2 u3 | criterion for the sign of u2 | 1/time² | (4,12)
    | a*u2*u3 ~ u2*(wide + a*u2)
-spin_share | 1 - C/2A | steady share of the spin | | (6,1) | 1 - C/(2*A)
+spin_share | 1 - C/2A | factor of r0 in the mean spin rate | | (6,1) | 1 - C/(2*A)
 # Angles after half a period and after a period
 phi_half_deg | φ(T/2) | spin after half a period | angle | §6
    | integral(phidot, 0, T_nutation/2) ~ half[0]
@@ -106,51 +108,51 @@ psi_half_deg | ψ(T/2) | precession after half a period | angle | §7
 psi_period_deg | ψ(T) | precession after a period | angle | §7 | mean_precession_rate*T_nutation
    | if the top nutates
 # Mean rates of the quarters
-nutation_rate_upper | ϑ' 1st | mean rate, quarter after u1 | rad/time | §5
+nutation_rate_upper | ϑ' 1st | mean nutation rate, quarter after u1 | rad/time | §5
    | 4*(acos(V) - theta_min)/T_nutation where V | if the top nutates
-nutation_rate_lower | ϑ' 2nd | mean rate, quarter before u2 | rad/time | §5
+nutation_rate_lower | ϑ' 2nd | mean nutation rate, quarter before u2 | rad/time | §5
    | 4*(theta_max - acos(V))/T_nutation where V | if the top nutates
-spin_rate_upper | φ' 1st | mean rate, quarters at u1 | rad/time | §6
+spin_rate_upper | φ' 1st | mean spin rate, quarters at u1 | rad/time | §6
    | 4*integral(phidot, t1, t1 + T_nutation/4)/T_nutation ~ 4*quarter[0]/T_nutation
    | if the top nutates and does not pass over a pole
-spin_rate_lower | φ' 2nd | mean rate, quarters at u2 | rad/time | §6
+spin_rate_lower | φ' 2nd | mean spin rate, quarters at u2 | rad/time | §6
    | 2*mean_spin_rate - spin_rate_upper | if the top nutates and does not pass over a pole
-precession_rate_upper | ψ' 1st | mean rate, quarters at u1 | rad/time | §7
+precession_rate_upper | ψ' 1st | mean precession rate, quarters at u1 | rad/time | §7
    | 4*integral(psidot, t1, t1 + T_nutation/4)/T_nutation ~ 4*quarter[1]/T_nutation
    | if the top nutates and does not pass over a pole
-precession_rate_lower | ψ' 2nd | mean rate, quarters at u2 | rad/time | §7
+precession_rate_lower | ψ' 2nd | mean precession rate, quarters at u2 | rad/time | §7
    | 2*mean_precession_rate - precession_rate_upper
    | if the top nutates and does not pass over a pole
 # Steps of section 8 | if the top nutates after release from rest
-roots_sum | u3 + u2 | b²/a | | (4,11) | b**2/a
-roots_product | u3 u2 | b² u1/a - 1 | | (4,12) | b**2*u1/a - 1
-roots_sum_squared | (u3 + u2)² | square of the roots' sum | | §8 | roots_sum**2
+roots_sum | u3 + u2 | sum of u2 and u3 | | (4,11) | b**2/a
+roots_product | u3 u2 | product of u2 and u3 | | (4,12) | b**2*u1/a - 1
+roots_sum_squared | (u3 + u2)² | square of the sum | | §8 | roots_sum**2
 roots_product_fourfold | -4 u3 u2 | -4 times the product | | §8 | -4*roots_product
-roots_gap_squared | (u3 - u2)² | square of the distance | | §8
+roots_gap_squared | (u3 - u2)² | square of the difference | | §8
    | roots_sum_squared + roots_product_fourfold
-roots_gap | u3 - u2 | distance of the roots | | §8 | sqrt(roots_gap_squared)
-u3_twice | 2 u3 | roots' sum + distance | | §8 | roots_sum + roots_gap
-u2_twice | 2 u2 | roots' sum - distance | | §8 | roots_sum - roots_gap
-k_squared | k² | (u1 - u2)/(u3 - u2) | | (4,19) | (u1 - u2)/(u3 - u2)
-comodular_angle_deg | arcsin k' | complementary angle | angle | (4,21)
+roots_gap | u3 - u2 | difference of u3 and u2 | | §8 | sqrt(roots_gap_squared)
+u3_twice | 2 u3 | sum plus difference | | §8 | roots_sum + roots_gap
+u2_twice | 2 u2 | sum minus difference | | §8 | roots_sum - roots_gap
+k_squared | k² | square of the modulus | | (4,19) | (u1 - u2)/(u3 - u2)
+comodular_angle_deg | arcsin k' | complementary modular angle | angle | (4,21)
    | asin(k_prime) ~ atan2(k_prime, k)
-E_amplitude | E(am, k') | integral, second kind | | (7,1) | ellint_E(amplitude, k_prime)
+E_amplitude | E(am, k') | incomplete integral, second kind | | (7,1) | ellint_E(amplitude, k_prime)
 # Steady precession and elementary theory
 stability_factor | λ | stability factor C²r0²/(4Amgs) | | b²/2a | b**2/(2*a)
    | if there is a torque
 r0_sleeping | r0 sleeping | least r0 of a stable upright top | rad/time | 2√(Amgs)/C
    | 2*sqrt(A*m*g*s)/C
-steady_rate_slow | Ω slow | slow steady precession | rad/time | ϑ'' = 0
+steady_rate_slow | Ω slow | rate of slow steady precession | rad/time | ϑ'' = 0
    | m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2 ~ steady_rates[0]
    | if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees
-steady_rate_fast | Ω fast | fast steady precession | rad/time | ϑ'' = 0
+steady_rate_fast | Ω fast | rate of fast steady precession | rad/time | ϑ'' = 0
    | m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2 ~ steady_rates[1]
    | if |r0| >= r0_steady_min and the tilt is not 90 degrees
 r0_steady_min | r0 steady | least r0 of steady precession | rad/time | 2√(Amgs u0)/C
    | 2*sqrt(A*m*g*s*max(cos(theta0), 0))/C
-precession_rate_elementary | ψ' elementary | precession of a fast top | rad/time | mgs/(C r0)
+precession_rate_elementary | ψ' elementary | precession rate of a fast top | rad/time | mgs/(C r0)
    | m*g*s/(C*r0) | if r0 is not 0
-T_nutation_elementary | T elementary | nutation of a fast top | time | 2πA/(C r0)
+T_nutation_elementary | T elementary | nutation period of a fast top | time | 2πA/(C r0)
    | 2*pi*A/(C*abs(r0)) | if r0 is not 0
 # where
 P | | mean of (β - b)/(1 - u), times K | | (3,8)
@@ -160,7 +162,8 @@ Q | | mean of (β + b)/(1 + u), times K | | (3,8)
 U | | cos ϑ half a period after the start | |
    | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))
    ~ u2 + (u1 - cos(theta0))*wide/(wide + a*(u2 - cos(theta0)))
-V | | cos ϑ between two quarters | | (5,2) | u1 - (u1 - u2)*k_prime/(1 + k_prime)
+V | | cos ϑ between two quarters | | (5,2)
+   | u3 - sqrt(u3 - u1)*sqrt(u3 - u2) ~ u1 - height*k_prime/(1 + k_prime)
 nutation | | angle of the nutation | angle | | theta_max - theta_min
 excess | | excess of the mean rate over the elementary rate, in ppm | | §8
    | 1000000*(mean_precession_rate/precession_rate_elementary - 1)

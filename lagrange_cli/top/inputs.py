@@ -43,13 +43,13 @@ s | s | pivot to mass centre | distance from the pivot to the mass centre | 0 or
 g | g | gravity | gravitational acceleration | 0 or more | len/time² | 981
 r0 | r0 | total spin rate
     | total spin rate about the axis, phi' + psi' cos(theta) | | rad/time | 50
-phidot0 | φ'0 | spin rate at start
-    | spin rate at start | instead of r0 = phidot0 + psidot0 cos(theta0) | rad/time |
+phidot0 | φ'0 | spin rate at the start
+    | spin rate at the start | instead of r0 = phidot0 + psidot0 cos(theta0) | rad/time |
 theta0 | ϑ0 | tilt at the start
     | tilt from the upward vertical | 0 to 180 degrees | angle | 30
-thetadot0 | ϑ'0 | nutation rate at start | nutation rate at start | | rad/time | 0
-psidot0 | ψ'0 | precession rate at start
-    | precession rate at start | or the word steady (slow) or steady-fast, to keep the tilt
+thetadot0 | ϑ'0 | nutation rate at the start | nutation rate at the start | | rad/time | 0
+psidot0 | ψ'0 | precession rate at the start
+    | precession rate at the start | or the word steady (slow) or steady-fast, to keep the tilt
     | rad/time | 0
 """
 

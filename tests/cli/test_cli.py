@@ -45,9 +45,9 @@ def test_a_symbol_is_accepted_where_a_key_is(lagtop: Lagtop) -> None:
     assert lagtop(*radians, "ϑ max").stdout == lagtop(*radians, "theta_max_rad").stdout
     budget = lagtop("solve", "--r0", "50(1)", "--budget", "T")
     assert budget.stdout == lagtop("solve", "--r0", "50(1)", "--budget", "T_nutation").stdout
-    explained = lagtop("explain", "T", "Tψ", "E").stdout  # E is a key, and the symbol of two
+    explained = lagtop("explain", "T", "Tψ", "E", "m").stdout  # m is also a unit
     names = [line.partition(":")[0] for line in explained.splitlines() if not line.startswith(" ")]
-    assert list(filter(None, names)) == ["T_nutation", "T_precession", "E"]
+    assert list(filter(None, names)) == ["T_nutation", "T_precession", "E", "m"]
 
 
 @pytest.mark.parametrize("fmt", ["table", "csv"])
