@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from decimal import Decimal, getcontext, localcontext
+from decimal import Decimal, localcontext
 from fractions import Fraction
 
 import flint
@@ -34,7 +34,6 @@ from lagrange_cli.arithmetic.enclosures import (
     exact,
     kept,
     nearest,
-    pi_to,
     root,
     rounded,
     settled,
@@ -227,17 +226,6 @@ def test_digits_of_some_numbers(value: str, digits: int, text: str) -> None:
     assert text_of(Fraction(value), digits) == text
 
 
-def test_the_context_of_the_host_is_left_alone() -> None:
-    before = getcontext().copy()
-    settled("x", noisy(Fraction(1, 3)), None, 1200)
-    text_of(Fraction(1, 3), 30)
-    assert str(getcontext()) == str(before)
-    with localcontext() as context:
-        context.prec = 2
-        assert text_of(Fraction(1, 3), 20) == "0." + "3" * 20
-        assert text_of(Decimal("0.123456789"), 6) == "0.123457"
-
-
 def test_ends_are_decimals_outside_the_ball() -> None:
     for digits in (8, 40, 6000):
         ball = at_precision(digits, lambda: exact(Fraction(-(10**50), 7)))
@@ -258,13 +246,6 @@ def test_the_simplest_fraction_has_the_smallest_denominator() -> None:
         found = simplest_between(low, high)
         assert low <= found <= high
         assert found.denominator == first
-
-
-def test_pi_has_its_digits() -> None:
-    with mpmath.workdps(1010):
-        assert str(pi_to(1000).__float__()) == str(float(mpmath.pi))
-        numerator, denominator = pi_to(1000).as_integer_ratio()
-        assert abs(mpmath.mpf(numerator) / denominator / mpmath.pi - 1) < mpmath.mpf(10) ** -1000
 
 
 def fails(error: type[BaseException]) -> None:
@@ -426,37 +407,6 @@ def test_children_forked_while_a_thread_solves() -> None:
             stop.set()
         running.result()
         assert flint.ctx.prec == 77
-
-
-def test_numbers_do_not_depend_on_other_threads() -> None:
-    """Nor on a thread of the host that changes the precision of Arb all the time."""
-    stop = threading.Event()
-
-    def disturb() -> None:
-        while not stop.is_set():
-            with flint.ctx.workprec(60):
-                arb(3).sqrt()
-            flint.ctx.prec = 53
-
-    def number(x: int) -> tuple[float, str, int]:
-        found = settled("x", lambda _: arb(x).sqrt() / 7, None, 1200)
-        assert found is not None
-        small = sign_to(lambda _: (arb(x).sqrt() ** 2 - x) + exact(Fraction(1, 10**300)), 1200)
-        return found.value, found.radius, small
-
-    alone = [number(x) for x in range(2, 40)]
-    interval, host = sys.getswitchinterval(), flint.ctx.prec
-    sys.setswitchinterval(1e-6)
-    try:
-        with ThreadPoolExecutor(5) as pool:
-            host_thread = pool.submit(disturb)
-            together = [*pool.map(number, [*range(2, 40)] * 4)]
-            stop.set()
-            host_thread.result()
-    finally:
-        sys.setswitchinterval(interval)
-        flint.ctx.prec = host
-    assert together == alone * 4
 
 
 WITH_BALLS = ["solver/facts", "solver/numbers", "solver/attitude"]

@@ -236,6 +236,7 @@ BAD = {
     "--g -981": "(for upward gravity use 180 - theta0 and -r0)",
     "--C 80000": "C must be <= 2 A = 78064.0, got 80000.0 (no rigid body has more)",
     "--theta0 -1": "--theta0 must be in [0, 180], got -1.0",
+    "--theta0 0 --psidot0 1": "--psidot0 must be 0 if the axis is vertical, got 1.0",
     "--theta0 181": "--theta0 must be in [0, 180], got 181.0",
     "--theta0 3.15 --rad": "--theta0 must be in [0, pi rad], got 3.15",
     "--theta0 30rad": "--theta0 must be in [0, pi rad], got 30.0",
