@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from types import SimpleNamespace
 from typing import Any, ClassVar, NamedTuple
 
 import pytest
 from ours import ManyDigits, ar
+
+from lagrange_cli.top.inputs import declared
 
 Cases = Callable[[], Iterable[Any]]
 """Cases, such as a top at a time: objects whose attributes are names of the equation."""
@@ -44,9 +46,9 @@ class Scope(dict[str, Any]):
 
 
 class Equation(NamedTuple):
-    """An equation, or several that are separated by semicolons, with its cases."""
+    """An equation, or several, with its cases."""
 
-    text: str
+    texts: Sequence[str]
     cases: Cases
     places: tuple[Any, ...]
 
@@ -55,7 +57,7 @@ class Equation(NamedTuple):
         found = []
         for case in self.cases():
             names = Scope(case, *self.places)
-            for equation in self.text.split("; "):
+            for equation in self.texts:
                 left, right = (eval(side, names) for side in equation.split(" = "))
                 rows = (
                     zip(left, right, strict=True) if hasattr(left, "__iter__") else [(left, right)]
@@ -79,27 +81,25 @@ class Register:
         self.fails: dict[str, Equation] = {}
         self.misread: dict[str, Equation] = {}
 
-    def each(self, cases: Cases, holds: Mapping[str, str]) -> None:
-        """Register equations, by the number or the section where they stand, with their cases."""
-        self._enter(self.holds, holds, cases)
+    def enter(self, table: str) -> None:
+        """Register a table: a line for each equation, by its number or the section where it stands.
 
-    def each_as_printed(self, cases: Cases, fails: Mapping[str, str]) -> None:
-        """Register equations as the text at hand prints them, whose sides do not agree.
-
-        If one equation has several errors, its number is followed by ", ..." after " as printed".
+        Several equations of one line hold together, and an indented line continues the line before.
+        A line `# cases` names the function, such as `once`, of the cases of the lines below.
+        They hold, unless it ends with `: as printed`, or with `: misread` for other readings of
+        blurred signs.  If one equation has several errors, its number is followed by ", ..." after
+        " as printed".
         """
-        self._enter(self.fails, fails, cases)
-
-    def misreadings(self, misread: Mapping[str, str]) -> None:
-        """Register other readings of blurred signs, whose sides do not agree."""
-        self._enter(self.misread, misread, once)
-
-    def _enter(self, known: dict[str, Equation], new: Mapping[str, str], cases: Cases) -> None:
-        """Register equations under numbers that are not taken yet."""
-        for number, text in new.items():
+        kinds = {"": self.holds, "as printed": self.fails, "misread": self.misread}
+        known, cases = self.holds, once
+        for number, *equations in declared(table):
+            if number.startswith("# "):
+                name, _, kind = number[2:].partition(": ")
+                known, cases = kinds[kind], Scope(self.places[0], sys.modules[__name__])[name]
+                continue
             assert PLACE.match(number), f"{number} does not begin with a place in the source"
             assert number not in known, f"{number} is registered twice"
-            known[number] = Equation(text, cases, self.places)
+            known[number] = Equation(equations, cases, self.places)
 
 
 class EquationTests:

@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from equations import Register, once
+from equations import Register
 
 CHRAPAN = {"1": 8, "2": 11, "3": 8, "4": 34, "5": 3, "6": 6, "7": 5}
 """Number of the last equation of each section, (1,1) to (7,5)."""
@@ -43,4 +43,4 @@ def test_every_equation_of_the_sources_is_in_a_register(monkeypatch: pytest.Monk
 )
 def test_an_equation_without_a_place_is_refused(name: str) -> None:
     with pytest.raises(AssertionError, match="does not begin with a place"):
-        Register(__name__).each(once, {name: ""})
+        Register(__name__).enter(f"{name} | 1 = 1")
