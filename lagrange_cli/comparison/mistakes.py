@@ -100,7 +100,10 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
         "thetadot0 has the wrong sign": {"thetadot0": -rate},
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
-        **{f"g is {g} (or m or s is wrong by as much)": {"g": Fraction(g)} for g in _GRAVITY},
+        **{
+            f"g is {g} (or m or s is wrong by the same factor)": {"g": Fraction(g)}
+            for g in _GRAVITY
+        },
         "theta0 has the wrong sign": {"thetadot0": -rate} | both,
         "theta0 in degrees was taken as radians": {
             "theta0_rad": abs(folded),

@@ -87,7 +87,7 @@ def comparison_report(
     conditions = {
         "scene": motion.top.as_text(),
         "regime": motion.regime,
-        "errors": f"radians, for rates relative; greatest over all rows; fine up to {limit:g}",
+        "errors": f"in radians, relative for rates; greatest over all rows; fine up to {limit:g}",
     }
     lines = [line for x in results for line in _conclusions(x, limit, found)]
     if found is not None:
@@ -102,7 +102,7 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
     if x.rows_missing:
         yield f"{x.rows_missing} of {x.rows} rows have empty cells."
     if x.compared == "attitude" and (x.norm_error or 0.0) > _WRONG_NORM:
-        yield f"The norm of its quaternion or matrix is off 1 by up to {x.norm_error:.1e}."
+        yield f"The norm of its quaternion or matrix differs from 1 by up to {x.norm_error:.1e}."
     if (slip := x.pivot_slip or 0.0) > limit:
         yield f"The pivot slips: the mass centre's distance from it changes by up to {slip:.1%}."
     if x.cause is not None:

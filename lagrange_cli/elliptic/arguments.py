@@ -122,7 +122,7 @@ def parse_arguments(text: str) -> Arguments:
     if ":" in text:
         ends = [_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
         points = parse_range(text, lambda end: _multiple(end)[0])
-        mixed = "must have both ends in units of K or none"
+        mixed = "must have both ends in units of K, or neither"
     elif not set("ijIJ").isdisjoint(text):
         if "K" in text:
             raise LagtopError(f"must not contain K if numbers are complex, got {quoted(text)}")
@@ -131,7 +131,7 @@ def parse_arguments(text: str) -> Arguments:
     else:
         ends = [_multiple(part) for part in text.split(",")]
         points = ListedPoints([factor for factor, _ in ends])
-        mixed = "must be in units of K every time or never"
+        mixed = "must all be in units of K, or none"
     kinds = {is_multiple for factor, is_multiple in ends if factor}
     if len(kinds) > 1:
         raise LagtopError(f"{mixed}, got {quoted(text)}")

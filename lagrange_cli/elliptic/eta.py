@@ -32,8 +32,8 @@ CONSTANTS = """
 delta | δ | upper end of the band | | (3.2.1)
 delta_star | δ* | lower end of the band | | (3.2.1)
 p | p' | middle of the outer roots | | (3.2.1)
-q | q' | half the distance of the outer roots | | (3.2.1)
-q_imag | q'/i | the same for a complex pair | | (3.2.1)
+q | q' | half the distance between the outer roots | | (3.2.1)
+q_imag | q'/i | imaginary part of the outer roots | | (3.2.1)
 outer_root | | the finite outer root | |
 layout | | outer roots | |
 kind | | radicand | |
@@ -46,12 +46,12 @@ k_imag | k/i | imaginary modulus of (3.2.4) | | (3.2.5)
 k1 | k1 | modulus | | (3.2.8)
 k1_imag | k1/i | imaginary modulus | | (3.2.8)
 k1_prime | k1' | complementary modulus | |
-K1 | K1 | first kind, k1 | | (3.2.8)
+K1 | K1 | complete integral, first kind | | (3.2.8)
 sigma1 | σ1 | rate of the argument | 1/time | (3.2.8)
-s | s | amplitude of sn | | (3.2.12)
-d | d | of the denominator | | (3.2.12)
+s | s | coefficient of sn | | (3.2.12)
+d | d | coefficient of sn in the denominator | | (3.2.12)
 gamma | γ | shift | | (3.2.12)
-period | T | of η, 4 K1/σ1 | time | (3.2.10)
+period | T | period of η, 4 K1/σ1 | time | (3.2.10)
 tau3 | τ3 | -K1/σ1 | time | (3.2.10)
 """
 """Key, symbol, meaning, unit and equation of each constant; a line without `|` begins a group."""

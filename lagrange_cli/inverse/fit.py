@@ -43,7 +43,7 @@ def fit(
 ) -> Outcome:
     """Fit a top to a recording; the results are in `record()`.
 
-    Times have the shape (n,), angles too (radians, within whole turns, NaN where missing).  Instead
+    Times have the shape (n,), angles too (radians, up to whole turns, NaN where missing).  Instead
     of angles, pass the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to
     space, shape (n, 4).  `sigma` is a standard deviation in radians, or a mapping by channel; by
     default it is estimated from the residuals.  `known` are known inputs by key, which are tested

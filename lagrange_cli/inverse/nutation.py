@@ -117,8 +117,8 @@ def _faults(found: Minimum, *, is_even: bool) -> list[str]:
         faults.append(f"the recording does not determine {' and '.join(known)}")
     elif found.is_curved:
         faults.append(
-            "the recording hardly determines the top: within two standard deviations, chi^2 is no "
-            "parabola"
+            "the recording hardly determines the top: chi^2 is not parabolic within two standard "
+            "deviations"
         )
     if problem.spins and not found.unknown:
         ratio = values["b"] / (values["r0"] or math.inf)

@@ -244,11 +244,11 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
 def _faults(
     recording: Recording, turn: _Mean, r0: float, result: Outcome, frequency: float
 ) -> list[str]:
-    """Return why the motion is no steady precession, besides the residuals."""
+    """Return why the motion is not a steady precession, besides the residuals."""
     found = []
     for rest in result.residuals.values():
         if not rest.is_coarse and rest.structure(frequency) < CHANCE / 10:
-            found.append("the motion is no steady precession: the angles oscillate")
+            found.append("the motion is not a steady precession: the angles oscillate")
             break
     if "psi" not in recording.angles:
         found.append("no nutation is visible, and without psi no precession rate")

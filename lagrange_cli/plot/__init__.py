@@ -33,7 +33,7 @@ def draw(
     x: tuple[str, Any] | None = None,
     y: tuple[str, Any] | None = None,
 ) -> list[Axes]:
-    """Draw a kind of picture on axes, or on those of a new figure, and return the axes.
+    """Draw a kind of picture on axes, or on a new figure, and return the axes.
 
     `ax` is one Axes, or three for `angles`.  `t_max` is the last time.  A `map` shows a `key` of
     the record over `x` and `y`, each a pair of an input and an array of its values.
@@ -76,7 +76,7 @@ def draw(
 def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
     """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure.
 
-    Angles are in degrees, or in radians if the fit was made so.  Raises UnavailableError without
+    Angles are in degrees, or in radians if the fit has them.  Raises UnavailableError without
     matplotlib.
 
     >>> t = np.linspace(0, 2, 100)

@@ -55,7 +55,7 @@ class AngleStds:
         self.noise: dict[str, float] = {}
         """Sizes of the rounding errors of the derivatives, by input."""
         self.missing: set[str] = set()
-        """The inputs by which the angles have no derivative."""
+        """The inputs with respect to which the angles have no derivative."""
         self._beside: dict[str, list[tuple[Motion, float]]] = {}
         """Neighbours with their weights in derivatives, by input."""
         self._slopes: dict[str, list[float]] = {}

@@ -11,7 +11,7 @@ real part, and its argument cannot jump.  Equation numbers are Chrapan's.
 
 A course has the constants of one motion in one precision.  Among them are `spin` and `precession`,
 the mean rates, `unit`, a unit of time, and `start`, arg X and arg Y at t = 0 without their mean
-growth.  Its methods raise TooFewDigitsError if the precision does not decide them.
+growth.  Its methods raise TooFewDigitsError if the precision does not suffice.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Derivatives of the numbers and of the angles of a motion by the inputs of its top.
+"""Derivatives of the numbers and angles of a motion with respect to the inputs of its top.
 
 The record: each input is moved by 2^-200 of its size to either side, and the numbers have 140
 digits or more.  The difference quotient agrees with the derivative to some 60 digits.  If a
@@ -34,8 +34,8 @@ from .solve import Motion, solve
 
 DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK_KEYS]
 """The keys that have derivatives."""
-NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist beside it"
-"""The reason why a number of a motion has no derivative by some input."""
+NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist next to it"
+"""The reason why a number of a motion has no derivative with respect to some input."""
 
 _STEPS, _SHARP = (200, 1_000), 30
 """Binary orders of the steps to try, over the size of an input, and digits of a derivative."""
@@ -46,7 +46,7 @@ _CENTRAL, _AHEAD = {-1: -0.5, 0: 0.0, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}
 
 
 class Sensitivities(NamedTuple):
-    """Derivatives of the numbers of a record by the inputs; NaN if one does not exist."""
+    """Derivatives of the numbers of a record with respect to the inputs; NaN if undefined."""
 
     top: Top
     inputs: tuple[str, ...]
@@ -56,13 +56,13 @@ class Sensitivities(NamedTuple):
 
 
 def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivities:
-    """Return the derivatives of all numbers of the record of a top by all inputs, or of some keys.
+    """Return the derivatives of the numbers of a record, or of some keys, with respect to inputs.
 
     Keys of elementary theory have derivatives if they are named.  Each derivative is the nearest
-    double; below 1e-55 of the number over the input it may be 0.  Angles are in degrees, also in
-    derivatives by `theta0_rad`.  A derivative is one-sided if the input is at the end of its range,
+    double; below 1e-55 of the number over the input it may be 0.  Angles are in degrees, also if
+    the input is `theta0_rad`.  A derivative is one-sided if the input is at the end of its range,
     such as g = 0, and 0 if the input can have no other value.  It is NaN if the number has a kink
-    or a jump at this top, or does not exist beside it.  Raises LagtopError for an unknown key, and
+    or a jump at this top, or does not exist next to it.  Raises LagtopError for an unknown key, and
     OutOfRangeError for a derivative that no double holds.
 
     >>> sensitivities(Top(), ["T_nutation"]).derivatives["T_nutation"]["r0"]
@@ -79,14 +79,14 @@ def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivitie
 
 
 class Derivatives:
-    """Derivatives of the numbers of one motion by the inputs of its top."""
+    """Derivatives of the numbers of one motion with respect to the inputs of its top."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion, self.inputs = motion, inputs_of(motion.top)
         self.of, self.neighbours = cache(self._of), cache(self._neighbours)
 
     def nearest(self, key: str, name: str) -> float:
-        """Return the derivative of a number by an input as a double; NaN if there is none.
+        """Return the derivative of a key with respect to an input as a double, or NaN.
 
         Raises OutOfRangeError for a derivative beyond the doubles.
         """
@@ -95,7 +95,7 @@ class Derivatives:
             return math.nan
         if abs(found) < _LEAST_DOUBLE:
             return 0.0
-        nearest: float = rounded(f"the derivative of {key} by {name}", found, None)
+        nearest: float = rounded(f"the derivative of {key} with respect to {name}", found, None)
         return nearest
 
     def _neighbours(self, name: str, order: int = _STEPS[0]) -> tuple[Fraction, Neighbours]:
@@ -103,7 +103,7 @@ class Derivatives:
         return step, neighbours(self.motion, name, step)
 
     def _of(self, key: str, name: str) -> Fraction | None:
-        """Return the derivative of a number by an input to 30 digits; None if there is none."""
+        """Return the derivative of a key with respect to an input to 30 digits, or None."""
         quotients = (self._quotient(key, name, order) for order in _STEPS)
         return next((x for x in quotients if x is not None), None)
 

@@ -37,7 +37,7 @@ class Contribution(NamedTuple):
     value: float
     std: float
     sensitivity: float | None = None
-    """The derivative of the number by the input."""
+    """The derivative of the number with respect to the input."""
     contribution: float | None = None
     """The product of sensitivity and uncertainty, with its sign."""
     elasticity: float | None = None
@@ -64,7 +64,7 @@ class FirstOrder:
         return name in INPUT_KEYS or (name in DIFFERENTIABLE and self.motion.has(name))
 
     def slope(self, key: str, name: str) -> Fraction | None:
-        """Return the derivative of a key or input by a given input, or None."""
+        """Return the derivative of a key or input with respect to a given input, or None."""
         if key in self.derivatives.inputs:
             return Fraction(key == name)
         return self.derivatives.of(key, name)

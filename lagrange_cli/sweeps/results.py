@@ -44,7 +44,7 @@ class Results(dict[str, ResultColumn]):
     ) -> None:
         """Take columns of one shape, and the inputs that vary, as arrays that broadcast to it.
 
-        `index` is that of the pandas Series among the inputs.
+        `index` is the index of the pandas Series among the inputs.
         """
         super().__init__(columns)
         self.inputs, self.shape, self._index = dict(inputs), tuple(shape), index

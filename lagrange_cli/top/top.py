@@ -42,7 +42,7 @@ class BodyAndStart(NamedTuple):
 
 
 _EXAMPLE: Any = None
-"""The default of an input: that of the worked example."""
+"""The default of an input: its value in the worked example."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -55,18 +55,18 @@ class Top:
     taken exactly: a number that is not a double, such as Decimal("0.1"), is kept as a Fraction.
 
         m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
-        A_cm        in place of A: that moment about the centre of mass, A = A_cm + m s^2
+        A_cm        in place of A: the equatorial moment about the centre of mass, A = A_cm + m s^2
         s, g        distance from the pivot to the centre of mass, and gravity, >= 0
         r0          total spin rate: the constant angular velocity about the figure axis (any sign)
-        phidot0     in place of r0: the rate of the angle phi, r0 = phidot0 + psidot0 cos(theta0)
+        phidot0     in place of r0: the rate of phi at t = 0, r0 = phidot0 + psidot0 cos(theta0)
         theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
         theta0_rad  or the same in radians, 0 to pi; not both
         thetadot0   nutation rate at t = 0
         psidot0     precession rate at t = 0; "steady" or "steady-fast" is the exact rate of
                     smaller or larger size at which the tilt stays constant, for thetadot0 = 0
 
-    A and r0 that are derived from A_cm and phidot0 are the nearest doubles.  The motion is that of
-    the exact numbers, as it is for the word steady.  Raises LagtopError for a body or a start that
+    A and r0 that are derived from A_cm and phidot0 are the nearest doubles.  The motion is computed
+    from the exact numbers, also for the word steady.  Raises LagtopError for a body or a start that
     is impossible, TypeError for an unknown input.
 
     >>> top = Top(r0=60, theta0_deg=45)
@@ -138,7 +138,7 @@ class Top:
         return f"Top({', '.join(f'{name}={x!r}' for name, x in given.items())})"
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the inputs by key as given; of two that replace each other one is None."""
+        """Return the inputs by key as given; of two inputs that replace each other, one is None."""
         inputs = {name: getattr(self, name) for name in INPUTS}
         derived = {name: None for key, name in STANDS_FOR.items() if inputs[key] is not None}
         return inputs | derived | {"psidot0": self.steady_word or self.psidot0}

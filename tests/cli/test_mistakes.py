@@ -62,7 +62,7 @@ MISTAKES = {
     "sweep|--r0|60rpm:80rpm:3": "with its unit once, at the end, as in '60:80:3 rpm'",
     "table|--t-max|1e15": "--digits",
     "find|T_nutation=1": "unknown inputs as ranges, such as --r0 10:200, got 0",
-    "compare|book.xlsx": "an archive, Parquet or an array of NumPy is no text: save it as CSV",
+    "compare|book.xlsx": "but a workbook, an archive, Parquet or NumPy data: save it as CSV",
     "compare|bare.csv": "has no header: name its 2 columns, for example --columns t,quaternion",
     "compare|empty.csv": "psi is empty (psi): remove its columns",
     "compare|thousands.csv": "use --decimal point or --decimal comma",

@@ -37,7 +37,7 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert result.exit_code == 1
     assert result.stderr == f"Error: 1 of 2 trajectories failed; the first: {other}\n"
     assert "right.csv: fine, at most" in result.stdout
-    assert "The norm of its quaternion or matrix is off 1 by up to 1.0e-05." in result.stdout
+    assert "The norm of its quaternion or matrix differs from 1 by up to 1.0e-05." in result.stdout
     assert "Most likely cause: r0 has the wrong sign. With" in result.stdout
     rows = json.loads(lagtop("compare", right, other, *OPTIONS, "--format", "json").stdout)["rows"]
     assert [row["verdict"] for row in rows] == ["fine", "off from the start"]

@@ -41,8 +41,8 @@ JACOBI = [
     ("--k 0.8 --u 1 --n 2", "use --n or --u, not both"),
     # multiples of K
     ("--k 0.3 --u K/0", "--u must be a real multiple of K such as K, -2.5K, K/2 or 3K/4, got"),
-    ("--k 0.3 --u K,1", "--u must be in units of K every time or never, got 'K,1'"),
-    ("--k 0.3 --u 1:2K:3", "--u must have both ends in units of K or none"),
+    ("--k 0.3 --u K,1", "--u must all be in units of K, or none, got 'K,1'"),
+    ("--k 0.3 --u 1:2K:3", "--u must have both ends in units of K, or neither"),
     ("--k 0.3 --u 1e16K", "u in units of K must be within 2^50 periods = 2.25e+15 of 0"),
     ("--k 1 --u K", "--u must not contain K for k >= 1, where K is infinite or complex"),
     ("--k 1 --u 1e19 --digits 20", "the limits of --digits N: take a smaller argument"),

@@ -141,10 +141,10 @@ def twice() -> bytes:
         ),
         (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
         (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
-        (b"\x93NUMPY\x01\x00\xff\xff", "is no text: save it as CSV"),
+        (b"\x93NUMPY\x01\x00\xff\xff", "NumPy data: save it as CSV"),
         (
             b"PK\x03\x04",
-            "a workbook, an archive, Parquet or an array of NumPy is no text: save it as CSV",
+            "it is no text but a workbook, an archive, Parquet or NumPy data: save it as CSV",
         ),
         (b"PAR1", "bad Parquet file"),
         (twice(), "must name each quantity once, got 'theta' and 'theta'"),
