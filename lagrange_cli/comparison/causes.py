@@ -20,7 +20,7 @@ EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
 _PART = 0.3
 """Largest error that may remain if a cause explains a part."""
-_AS_GOOD, _ROUNDING = 10.0, 1e-9
+_AS_GOOD, _ROUNDING = 2.0, 1e-9
 """Factor between the remaining errors of two causes, and least error, that make no difference."""
 _FEW, _SOME, _LEAST = 12, 300, 3
 """Rows on which causes are tried first and then, and the least number of rows."""
@@ -43,17 +43,17 @@ def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
 
     A cause explains an error if it removes nine tenths.  Of those that bring the error below the
     limit, return the simplest that leaves about as little as the best.  If there is none, try two
-    causes at once.  Otherwise return the best cause, which explains a part and
-    spoils nothing.
+    causes at once, each of which must remove nine tenths.  Otherwise return the best cause, which
+    explains a part and spoils nothing.
     """
     search = _Search(exact, run, limit)
     if np.isfinite(search.errors(_NONE, _SOME)[0]).sum() < _LEAST:
         return []
-    found = next(filter(None, (search.best(x, limit) for x in search.groups())), [])
+    found = next(filter(None, (search.best(*x) for x in search.groups())), [])
     if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
         mirrored = search.aligned(search.mistakes, in_other=False)
         found = search.best([*found, *mirrored], limit)
-    parts = (x for x in next(search.groups()) if not search.spoils(x))
+    parts = (x for x in next(search.groups())[0] if not search.spoils(x))
     return found or search.best(parts, _PART)
 
 
@@ -64,7 +64,7 @@ class _Search:
         self.run, self.given, self.limit = run, exact, limit
         self.mistakes = mistakes(exact.motion.top, run)
         self.some, self.tilt = cache(self._some), cache(self._tilt)
-        self.enough = EXPLAINS * self.error(_NONE, _SOME)
+        self.enough = min(EXPLAINS * self.error(_NONE, _SOME), _PART)
 
     def _some(self, undo: Undo | None) -> Run:
         """Return some rows of the trajectory as it was meant."""
@@ -103,17 +103,23 @@ class _Search:
         whole = [x._replace(error=self.error(x)) for x in [*good[:1], *others[:1]]]
         return [x for x in whole if x.error <= enough]
 
-    def groups(self) -> Iterator[list[Cause]]:
-        """Yield groups of causes; each group is tried if the one before explains nothing."""
+    def groups(self) -> Iterator[tuple[list[Cause], float]]:
+        """Yield groups of causes, and the greatest error that each group may leave.
+
+        A group is tried if the one before explains nothing.
+        """
         tops = [x for x in self.mistakes if x.exact]
         early = 1 + self.mistakes.index(tops[0])
         same, other = (self.aligned([_NONE], in_other) for in_other in (False, True))
-        yield [*same, *self.mistakes[:early], *other, *self.mistakes[early:]]
+        yield [*same, *self.mistakes[:early], *other, *self.mistakes[early:]], self.limit
         if (self.errors(_NONE, _SOME)[0] > self.limit).any():  # not only the rates are wrong
-            yield self.shifts()
-            yield self.aligned(self.mistakes, in_other=False)
-            yield self.aligned(self.mistakes, in_other=True)
-            yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops]
+            span, two = float(np.ptp(self.run.t)), min(EXPLAINS * self.enough, self.limit)
+            near = max(self.given.motion.T_nutation or 0.0, 10 * span / self.run.t.size)
+            yield self.shifts(near), self.limit
+            yield self.shifts(span), self.limit
+            yield self.aligned(self.mistakes, in_other=False), two
+            yield self.aligned(self.mistakes, in_other=True), two
+            yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops], two
 
     def aligned(self, causes: Iterable[Cause], in_other: bool) -> list[Cause]:
         """Return each cause with the alignments under which the first row has the exact tilt."""
@@ -129,8 +135,8 @@ class _Search:
                     found.append(_named(align, exact, run).with_other(cause))
         return found
 
-    def shifts(self) -> list[Cause]:
-        """Return the shift of the clock that explains most."""
+    def shifts(self, reach: float) -> list[Cause]:
+        """Return the shift of the clock, at most about `reach`, that explains most."""
         few = self.run.few(20)
         if self.run.align.start:
             return []
@@ -141,9 +147,7 @@ class _Search:
             found = np.fmax.reduce(errors(self.given, few._replace(given=rows)))
             return np.asarray(np.fmax.reduce(found.reshape(shifts.size, -1), axis=1))
 
-        motion, best = self.given.motion, 0.0
-        longest = 0.3 / sizes(motion.top)[2]
-        reach = max(motion.T_nutation or 0.0, 10 * np.ptp(self.run.t) / self.run.t.size)
+        best, longest = 0.0, 0.3 / sizes(self.given.motion.top)[2]
         count = math.ceil(min(reach / longest, _MOST_SHIFTS))
         for step in longest / 10.0 ** np.arange(10):
             shifts = best + step * np.arange(-count, count + 1.0)

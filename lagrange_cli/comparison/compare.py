@@ -288,8 +288,9 @@ def convergence(results: Sequence[Comparison], limit: float) -> Convergence | No
     """Return how the errors of trajectories fall with their steps, or None for fewer than two.
 
     The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
-    rad, other than at its start.  Rounding errors are left out, because they grow with finer steps.
-    If the orders between neighbours differ by more than 1, there is no single order.
+    rad, other than at its start, but over two rows at least.  Rounding errors are left out, because
+    they grow with finer steps.  If the orders between neighbours differ by more than 1, there is no
+    single order.
     """
     if len({x.step for x in results}) < 2:
         return None
@@ -297,7 +298,8 @@ def convergence(results: Sequence[Comparison], limit: float) -> Convergence | No
         (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf))) for x in results
     ]
     lost = [int(np.searchsorted(error, LOST_PHASE)) for _, error in curves]
-    until = min((t[i - 1] for i, (t, _) in zip(lost, curves, strict=True) if i > 1), default=np.inf)
+    until = min((t[i - 1] for i, (t, _) in zip(lost, curves, strict=True) if i), default=np.inf)
+    until = max(until, *(t[:2].max() for t, _ in curves))
     errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
     step, error = np.array(sorted((x.step, y) for x, y in zip(results, errors, strict=True))).T
     rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)

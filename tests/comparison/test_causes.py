@@ -248,6 +248,29 @@ def test_no_part_is_explained_by_what_spoils_the_attitude() -> None:
     assert few.cause is None  # what remains is as large as the rates
 
 
+def test_the_clock_is_off_by_several_periods() -> None:
+    turn, _ = run("slim")
+    found = compare(TOPS["slim"], T[:-99], quaternion=wxyz(turn[99:]))
+    assert found.cause == "the clock is shifted by -0.495"
+
+
+def test_of_values_of_g_the_closest_is_named() -> None:
+    """The digits hide 0.03 % of g from the limit, but not from the search."""
+    turn, _ = run("toy")
+    found = compare(TOPS["toy"].replace(g=10), T, quaternion=wxyz(turn).round(4), max_error=3e-3)
+    assert found.cause == "g is 9.81 (or m or s is wrong by as much)"
+
+
+@pytest.mark.slow
+def test_two_causes_must_explain_more_than_one() -> None:
+    """A spin and angles in wrong units, which cancel, imitate another precession of a fast top."""
+    top = Top(m=0.03865, A=3.558e-4, C=2.711e-4, s=0.07512, g=9.81, r0=-234.8, theta0_deg=110)
+    t = np.linspace(0, 0.47, 200)
+    _, states = dop853(Body.of(top.replace(psidot0=-2.684)), t)
+    found = compare(top, t, psi=angles(Rotation.from_quat(states[:, :4], scalar_first=True))["psi"])
+    assert (found.verdict, found.cause) == ("drifts", None)
+
+
 def test_no_cause_is_named_for_few_rows() -> None:
     """Two rows can be explained by too many causes."""
     turn, _ = run("toy")

@@ -240,6 +240,17 @@ def test_how_errors_depend_on_the_step(
     assert found.order == (order and pytest.approx(order, abs=0.5))
 
 
+def test_a_step_that_loses_the_phase_at_once() -> None:
+    """The errors are compared at a time that all trajectories have, not at their start."""
+    steps = (0.1, 0.9), (0.05, 0.18), (0.025, 0.03)
+    times = [np.arange(0, 1, h) for h, _ in steps]
+    rows = zip(steps, times, strict=True)
+    found = convergence([Comparison(step=h, t=t, error=x * t / h) for (h, x), t in rows], 1e-3)
+    assert found
+    assert found.errors == pytest.approx([0.9, 0.36, 0.12])
+    assert found.converges
+
+
 @pytest.mark.parametrize(
     ("inputs", "end", "cause"),
     [
