@@ -177,6 +177,7 @@ def _option_meant(error: click.NoSuchOption) -> str:
         return f": put a command in front of it, as in lagtop solve --{name}"
     word = {"omega": "spin"}.get(name.lower(), name.lower())
     named = [f"--{key}" for key, x in DECLARED.items() if word in x.name.split()]
+    named += {"get": ["--keys"], "keys": ["--get"]}.get(word, [])
     if found := [x for x in named if x in known]:
         return f" (did you mean {' or '.join(map(repr, found))}?)"
     begun = [x for x in known if x[2].lower() == name[:1].lower()]  # --rad is not --format

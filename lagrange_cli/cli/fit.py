@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
     """Return a number, or the numbers of `theta=0.3,psi=0.5` by name."""
-    if not text[:1].isalpha():
+    if not text[:1].isalpha() and text.count(",") < 2:
         return opt.parse_positive(text)
     parts = [part.partition("=") for part in split_names(text)]
     if not all(value for *_, value in parts):

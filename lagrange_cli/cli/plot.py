@@ -85,8 +85,9 @@ def plot_command(
     kinds = _kinds([word for word in words if word in {*KINDS, SHEET}])
     scenes = [word for word in words if word not in {*KINDS, SHEET}]
     for word in scenes:
-        hint = suggestion(word, [*KINDS, SHEET, *scene_names()])
-        if hint and not (opt.is_scene(word) or exists(word)):
+        if not (opt.is_scene(word) or exists(word)):
+            known = [*KINDS, SHEET]
+            hint = suggestion(word, [*known, *scene_names()]) or f": draw {', '.join(known)}"
             raise LagtopError(f"{word!r} is neither a kind of picture nor a scene{hint}")
     if not (output or animate):
         raise LagtopError("nothing to do: give -o FILE.png or --animate FILE.gif")

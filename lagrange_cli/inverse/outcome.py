@@ -151,7 +151,12 @@ class Outcome(HasRecord):
             yield from rest.faults(name, self.frequency, self.chance)
         chi2, high = self.chi2_dof, self.chi2_bounds[1]
         if chi2 is not None and chi2 > high:
-            yield f"chi2/dof = {chi2:.3g} is above {high:.3g}: a different motion, or more noise"
+            sigma = self.recording.sigma
+            times, name = max((rest.rms / sigma[x], x) for x, rest in self.residuals.items())
+            yield (
+                f"chi2/dof = {chi2:.3g} is above {high:.3g}: a different motion, or more noise: "
+                f"the rms of {name} is {times:.3g} sigma"
+            )
 
     def failures(self) -> list[str]:
         """Return the reasons why the fit has failed, if there are any.
