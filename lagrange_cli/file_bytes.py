@@ -54,7 +54,7 @@ def _opened(path: str) -> Iterator[Any]:
         return
     if sys.stdin is None:
         raise OSError("it is closed: give a file in place of -")
-    with suppress(OSError):  # stand-ins of a test have no descriptor
+    with suppress(OSError, AttributeError):  # stand-ins of a test, Windows before Python 3.12
         os.set_blocking(sys.stdin.fileno(), True)
     yield sys.stdin.buffer
 

@@ -23,6 +23,14 @@ from lagrange_cli.cli.app import main
 ROOT = Path(__file__).parent.parent
 LAGTOP = [sys.executable, "-m", "lagrange_cli"]
 
+collect_ignore = [
+    f"{name}.py"
+    for name in "cli/test_examples cli/test_processes output/test_output sweeps/test_parts "
+    "sweeps/test_workers".split()
+    if os.name != "posix"
+]
+"""Tests of shells, signals, devices and links, which Windows lacks."""
+
 Lagtop = Callable[..., Result]
 Solved = Callable[..., dict[str, Any]]
 

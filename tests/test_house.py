@@ -28,7 +28,7 @@ FACE = {"__version__", "draw", "draw_outcome", "view"}
 def imports(path: Path) -> Iterator[tuple[str, ...]]:
     """Yield each name that a module imports from the package, by its parts."""
     here = path.relative_to(PACKAGE).parts
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom):
             module = tuple(filter(None, (node.module or "").split(".")))
             assert node.level or "lagrange_cli" not in module, f"{path}: use relative imports"
@@ -60,7 +60,7 @@ def test_only_the_command_line_names_options(path: Path) -> None:
     """A message of the library names arguments: `columns=t`; the command line makes options."""
     if path.relative_to(PACKAGE).parts[0] == "cli":
         return
-    tree = ast.parse(path.read_text())
+    tree = ast.parse(path.read_text(encoding="utf-8"))
     docs = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docs:

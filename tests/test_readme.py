@@ -37,6 +37,12 @@ READMES = sorted(
 """Every README of the project, also of the subpackages."""
 PAGES = [*READMES, *sorted((ROOT / "sample_inputs" / "tutorials").glob("*.md"))]
 
+
+def text_of(path: Path) -> str:
+    """Return the text of a page, also on a system with another encoding."""
+    return path.read_text(encoding="utf-8")
+
+
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
@@ -73,7 +79,7 @@ def name(path: Path) -> str:
 SESSIONS = [
     pytest.param(command, shown, id=f"{name(path)}: {command}"[:120])
     for path in PAGES
-    for command, shown in sessions(path.read_text())
+    for command, shown in sessions(text_of(path))
 ]
 
 
@@ -99,7 +105,7 @@ def test_session(command: str, shown: str) -> None:
 LINES = [
     pytest.param(line, id=f"{name(path)}: {line}"[:120])
     for path in PAGES
-    for block in re.findall(r"```sh\n(.*?)```", path.read_text(), re.DOTALL)
+    for block in re.findall(r"```sh\n(.*?)```", text_of(path), re.DOTALL)
     for line in block.splitlines()
     if line.startswith("lagtop ")
 ]
@@ -116,7 +122,7 @@ def test_line_without_output(line: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", PAGES, ids=name)
 def test_python_session(path: Path) -> None:
     assert len(SESSIONS) >= 10
-    result = doctest.testfile(str(path), module_relative=False)
+    result = doctest.testfile(str(path), module_relative=False, encoding="utf-8")
     assert result.attempted >= (5 if path == README else 0)
     assert result.failed == 0
 
@@ -182,14 +188,14 @@ TABLES: list[tuple[Callable[[], list[str]], str]] = [
 
 @pytest.mark.parametrize(("table", "folder"), TABLES)
 def test_table_that_is_made(table: Callable[[], list[str]], folder: str) -> None:
-    page = (ROOT / folder / "README.md").read_text()
+    page = text_of(ROOT / folder / "README.md")
     assert len(table()) > 3
     assert "\n".join(["", *table(), ""]) in page
     assert with_table(page, table()) == page
 
 
 def test_every_option_and_key_is_explained() -> None:
-    text = "\n".join(path.read_text() for path in READMES)
+    text = "\n".join(text_of(path) for path in READMES)
     context = click.Context(main)
     commands = [main.get_command(context, name) for name in main.list_commands(context)]
     options = {name for command in commands if command for p in command.params for name in p.opts}
@@ -202,26 +208,26 @@ def test_every_option_and_key_is_explained() -> None:
 
 
 def test_every_public_name_is_on_the_page_of_the_library() -> None:
-    words = set(re.findall(r"\w+", (ROOT / "lagrange_cli" / "README.md").read_text()))
+    words = set(re.findall(r"\w+", text_of(ROOT / "lagrange_cli" / "README.md")))
     assert {*lagrange_cli.__all__} - words == set()
 
 
 def test_ci_runs_the_test_command_of_the_readme() -> None:
-    assert (ROOT / ".ci" / "run").read_text().count("README.md") == 1
-    assert len(re.findall(r"```sh\n(python3 -m venv .*pytest.*)\n```", README.read_text())) == 1
+    assert text_of(ROOT / ".ci" / "run").count("README.md") == 1
+    assert len(re.findall(r"```sh\n(python3 -m venv .*pytest.*)\n```", text_of(README))) == 1
 
 
 def rewrite() -> None:
     """Put the real outputs, and the tables that are made, into every page."""
     for path in PAGES:
-        text = path.read_text()
+        text = text_of(path)
         for command, shown in sessions(text):
             if not shown.endswith("\n...\n"):
                 text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
         for table, folder in TABLES:
             if path.parent == ROOT / folder:
                 text = with_table(text, table())
-        path.write_text(text)
+        path.write_text(text, encoding="utf-8")
 
 
 def with_table(text: str, lines: list[str]) -> str:

@@ -422,7 +422,7 @@ EXACT = re.compile(
 
 @pytest.mark.parametrize("name", WITH_BALLS)
 def test_no_code_acts_on_an_undecided_comparison_of_balls(name: str) -> None:
-    tree = ast.parse((ROOT / "lagrange_cli" / f"{name}.py").read_text())
+    tree = ast.parse((ROOT / "lagrange_cli" / f"{name}.py").read_text(encoding="utf-8"))
     for node in ast.walk(tree):
         if isinstance(node, ast.Compare) and any(isinstance(x, ORDER) for x in node.ops):
             sides = [ast.unparse(x) for x in (node.left, *node.comparators)]

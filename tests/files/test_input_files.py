@@ -77,6 +77,11 @@ def test_standard_input_is_read_once(lagtop: Lagtop) -> None:
     assert "not both" in result.stderr
 
 
+def test_standard_input_on_windows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr("os.set_blocking")  # which it lacks before Python 3.12
+    assert lagtop("sweep", "-", "--keys", "K", input="r0\n0\n").exit_code == 0
+
+
 def test_files_without_inputs_or_tops_are_told(tmp_path: Path, lagtop: Lagtop) -> None:
     path, tops = scene(tmp_path, "# nothing yet\n"), tmp_path / "tops.csv"
     tops.write_text("r0\n")
