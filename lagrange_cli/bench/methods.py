@@ -42,7 +42,7 @@ Sample = Callable[[Array, float], Sampled]
 It may raise SlowError, or ArithmeticError if the method fails.
 """
 Slope = Callable[[float, Any], list[Any]]
-"""The derivative of p, q (body axes) and of the quaternion, by time and state."""
+"""The derivative of p, q (body axes) and of the quaternion, from time and state."""
 
 
 class Method(NamedTuple):
