@@ -135,7 +135,7 @@ def _naming_option(error: LagtopError, params: Sequence[click.Parameter]) -> str
     text, key, options = str(error), error.key or "", _options(params)
     if text.startswith(f"{key} ") and key in options:
         text = options[key] + text.removeprefix(key)
-        other = r"(?<= and )\w+(?= are both given)"
+        other = r"(?<= and )\w+(?= are both given)|(?<= >= )\w+(?= = )"
         text = re.sub(other, lambda found: options.get(found[0], found[0]), text)
     return with_options(text, params)
 

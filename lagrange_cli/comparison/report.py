@@ -47,7 +47,7 @@ def read(
     file = read_trajectory(path, columns, decimal)
     rows = file.values(radians=conventions.radians)
     if not len(rows["t"]):
-        raise DataError(f"{file.name}: t must have at least one row")
+        raise DataError(f"{file.name} must have at least one row of numbers")
     file.check_times(rows["t"][:, 0])
     begins, rows["t"] = float(rows["t"][0, 0]), file.elapsed.reshape(-1, 1)
     conventions = file.conventions(conventions)

@@ -34,7 +34,7 @@ from .solve import Motion, solve
 
 DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK_KEYS]
 """The keys that have derivatives."""
-NO_DERIVATIVE = "it has a kink or a jump at this top, or does not exist next to it"
+NO_DERIVATIVE = "there is a kink or a jump at this top, or no value next to it"
 """The reason why a number of a motion has no derivative with respect to some input."""
 
 _STEPS, _SHARP = (200, 1_000), 30

@@ -250,7 +250,7 @@ BAD_TIMES = {
     "--n 1.5": "--n must be a whole number, got '1.5'",
     "--dt 0": "--dt must be > 0, got 0.0",
     "--dt -0.1": "--dt must be > 0",
-    "--t-max -1": "--t-max must be >= t_min = 0.0, got -1.0",
+    "--t-max -1": "--t-max must be >= --t-min = 0.0, got -1.0",
     "--t-max 1 --dt 1e-10": "the grid of times must have at most 1e9 rows, got 1.000e+10",
     "--n 2e9": "--n must be in [1, 1000000000], got 2e9",
     "--n 3 --dt 1": "use --n or --dt, not both",

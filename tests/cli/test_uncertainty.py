@@ -160,13 +160,13 @@ def test_a_number_without_an_uncertainty_is_named(lagtop: Lagtop) -> None:
     upright = "--theta0", 0, "--thetadot0", "0(1)"
     result = lagtop("solve", *upright, "--get", "theta_max_deg")
     assert result.stdout == "0.0\n"
-    assert "no uncertainty of theta_max_deg: it has a kink" in result.stderr
+    assert "no uncertainty of theta_max_deg: there is a kink" in result.stderr
     refused = lagtop("solve", *upright, "--budget", "theta_max_deg")
     assert refused.exit_code == 1
     assert "no uncertainty of first order" in refused.stderr
     table = lagtop("table", "--theta0", "0(1)", "--t-max", 1, "--n", 2)
     assert table.stdout.endswith(",,,\n")
-    assert "no uncertainty of the angles: it has a kink" in table.stderr
+    assert "no uncertainty of the angles: there is a kink" in table.stderr
     by_spin = lagtop("table", "--theta0", 0, "--r0", "50(1)", "--t-max", 1, "--n", 2)
     assert by_spin.stdout.endswith(",0.0,57.2958,0.0\n")
     assert by_spin.stderr == ""

@@ -121,7 +121,7 @@ ROW = "t,theta\n0,30\n"
         ("t,theta\n0,x\n", "", 65, "standard input, line 2, column 2: theta must be a finite"),
         ("t,theta\n1e99,30\n", "", 65, "standard input: t must be finite and within 2^50 periods"),
         ("t,thetadot,phidot,psidot\n0,0,50,0\n", "", 65, "standard input: angle_rates must come"),
-        ("t,theta\n", "", 65, "standard input: t must have at least one row"),
+        ("t,theta\n", "", 65, "standard input must have at least one row"),
     ],
 )
 def test_bad_requests_get_one_line(

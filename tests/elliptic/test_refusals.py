@@ -48,7 +48,7 @@ JACOBI = [
     ("--k 1 --u 1e19 --digits 20", "the limits of --digits N: take a smaller argument"),
 ]
 ETA = [
-    ("--delta 0.2 --delta-star 0.5 --p 0 --q 2", "--delta must be >= delta_star = 0.5, got 0.2"),
+    ("--delta 0.2 --delta-star 0.5 --p 0 --q 2", "--delta must be >= --delta-star = 0.5, got 0.2"),
     ("--delta 1 --delta-star 0 --p 0 --q 0.5", "outside the band from delta* to delta, [0.0, 1.0]"),
     ("--delta 1 --delta-star 0 --p 0 --q -2", "--q must be >= 0, or imaginary (0.7i), got -2.0"),
     ("--delta 1 --delta-star 0 --p 0", "--p and --q belong together"),
