@@ -74,7 +74,7 @@ def plot_command(
 
     \b
     sphere  the path of the figure axis on the unit sphere, coloured by time
-    angles  tilt, precession, and the deviation of the spin from its mean rate
+    angles  tilt, precession, and the periodic part of the spin
     cubic   f(u), its roots, and the band of the motion
     phase   tilt rate against tilt, and the separatrix
     map     a key of the record over two inputs

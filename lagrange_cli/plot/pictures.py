@@ -251,7 +251,7 @@ def add_time_bar(axes: Sequence[Axes], label: str) -> None:
 
 
 def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
-    """Draw tilt, precession, and the deviation of the spin from its mean rate, over time."""
+    """Draw tilt, precession, and the periodic part of the spin, over time."""
     look, (factor, unit) = options.look, options.angle_unit
     t_max = last_time(motion, options.t_max, 3, 3)
     t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
@@ -259,7 +259,7 @@ def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     order, name, about, note = [0, 1, 2], "φ", "", ""
     if spin is not None:  # on the separatrix there is no mean rate
         phi, order, name = phi - spin * t, [0, 3, 2], "Δφ"
-        about = f"spin less its mean rate {spin:.4g} {options.unit('rad/time')}"
+        about = f"periodic part; mean rate {spin:.4g} {options.unit('rad/time')}"
     stds = [0 * t] * 3 if options.stds is None else options.stds(t)[order]
     if motion.regime in (Regime.SLEEPING, Regime.HANGING):
         note = "spin only: there is no precession"

@@ -146,7 +146,7 @@ def test_angles_are_drawn_with_mean_rates_and_periods() -> None:
     assert data(precession.get_lines()[0])[1] == pytest.approx(np.degrees(mean[1] * t))
     assert data(precession.get_lines()[1])[1] == pytest.approx(np.degrees(exact.psi))
     assert [x.get_ylabel() for x in (tilt, spin, precession)] == ["ϑ (deg)", "Δφ (deg)", "ψ (deg)"]
-    notes = ["", f"spin less its mean rate {mean[0]:.4g} rad/time"]
+    notes = ["", f"periodic part; mean rate {mean[0]:.4g} rad/time"]
     notes += [f"dashed: mean rate {mean[1]:.4g} rad/time"]
     assert [x.get_title("right") for x in (tilt, spin, precession)] == notes
     above: Any = tilt.child_axes[0]

@@ -4,7 +4,7 @@
 const at = Object.fromEntries([...document.querySelectorAll("[id]")].map((part) => [part.id, part]));
 const CURVES = {
   theta: ["ϑ", "ϑ (°)", "blue"],
-  phi: ["φ", "φ less its mean rate (°)", "red"],
+  phi: ["φ", "periodic part of φ (°)", "red"],
   psi: ["ψ", "ψ (°)", "green"],
 };
 const text = (x, digits = 7) => String(Number(x.toPrecision(digits))).replace(/-/g, "−");
