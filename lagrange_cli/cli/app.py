@@ -94,7 +94,7 @@ class LagtopGroup(click.Group):
             sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         try:
             _check_epoch()
-            if sys.stdout is None and {"-h", "--help", "--version"} & {*sys.argv}:
+            if sys.stdout is None and {"-h", "--help", "--version"} & {*(sys.argv[1:] or ["-h"])}:
                 raise CannotWriteError("cannot write standard output: it is closed")
             sys.exit(run(*args, **extra | {"standalone_mode": False}) or 0)
         except click.ClickException as error:

@@ -83,6 +83,7 @@ class Observed:
         return replace(self, **turned)
 
 
+@np.errstate(all="ignore")  # rows that are not finite raise no warnings
 def observe(given: Quantities, conventions: Conventions) -> Observed:
     """Return the motion from its quantities, with all angles in radians.
 

@@ -33,8 +33,9 @@ def product(first: Array, second: Array) -> Array:
 
 
 def directed(values: Array) -> Array:
-    """Return quaternions or vectors, with NaN for those of length 0, which have no direction."""
-    return np.where(np.linalg.norm(values, axis=-1, keepdims=True) > 0, values, np.nan)
+    """Return quaternions or vectors, with NaN for those of length 0 or inf: without direction."""
+    length = np.linalg.norm(values, axis=-1, keepdims=True)
+    return np.where((length > 0) & (length < np.inf), values, np.nan)
 
 
 def conjugate(rotation: Array) -> Array:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import io
 import logging
+import os
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..errors import CannotWriteError, LagtopError, UnavailableError
+from ..errors import LagtopError, UnavailableError
 from ..output.terminal import one_line
 
 if TYPE_CHECKING:
@@ -86,18 +87,16 @@ def check_picture(path: str, formats: tuple[str, ...], report: str = "-") -> str
     """Return the format that the name of a picture selects.
 
     Raises LagtopError for another extension, and if the `report` beside the picture has the same
-    name.  Raises CannotWriteError if the folder does not exist.
+    name.
     """
     suffix = Path(path).suffix.lower()[1:]
     if suffix not in formats:
         *others, last = (f".{each}" for each in formats)
         wanted = f"{', '.join(others)} or {last}"
         raise LagtopError(f"the name of a picture must end in {wanted}, got {path!r}")
-    if Path(path).resolve() == Path(report).resolve():
+    if os.path.realpath(path) == os.path.realpath(report):
         raise LagtopError(f"the picture must not be the file of the report, got {path!r}")
     require_matplotlib()
-    if not Path(path).resolve().parent.is_dir():
-        raise CannotWriteError(f"cannot write {path}: no such directory")
     return suffix
 
 

@@ -31,6 +31,7 @@ LOADED = {
 }
 """Command lines, and the heavy packages that each needs."""
 LINES = {
+    "": "",  # the help
     "solve": "solve",
     "table": "table --n 5",
     "sweep": "sweep --r0 1:9:5",
@@ -124,7 +125,7 @@ def test_streams_of_solve() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", ["", *COMMANDS])
 def test_streams_of_every_command(name: str) -> None:
     check_streams(LINES[name])
 

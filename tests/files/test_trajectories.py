@@ -347,3 +347,16 @@ def test_every_quantity_is_the_same_motion() -> None:
     for wrong in (Conventions("zyxw"), Conventions(euler="xxy"), Conventions(rates="world")):
         with pytest.raises(LagtopError, match="must be "):
             wrong.checked()
+
+
+@pytest.mark.parametrize("bad", [math.inf, math.nan, 1e200])
+@pytest.mark.parametrize("key", ["quaternion", "matrix", "rotvec", "axis", "position", "angles"])
+def test_a_row_that_is_not_finite_has_no_direction_and_raises_no_warning(
+    key: str, bad: float
+) -> None:
+    names = ["theta", "phi", "psi"] if key == "angles" else [key]
+    bad = math.inf if key == "angles" else bad
+    given = {name: np.full((1, QUANTITIES[name].size), bad) for name in names}
+    seen = observe({"t": np.zeros((1, 1)), **given}, Conventions())
+    seen = seen.turned(rotations.to_z("y"), rotations.to_z("x"))
+    assert np.isnan(seen.axis if seen.quaternion is None else seen.quaternion).all()

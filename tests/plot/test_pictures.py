@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Lagtop
+from conftest import Lagtop, assert_one_line
 from lagtop import LagtopError, Motion, Top, draw, read_scene, solve
 
 pytest.importorskip("matplotlib")
@@ -392,7 +392,7 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
     [
         (["sphere"], "nothing to do"),
         (["-o", "x.bmp"], "must end in .png, .svg or .pdf"),
-        (["-o", "none/x.png"], "no such directory"),
+        (["cubic", "-o", "none/x.png"], "none/x.png: No such file or directory"),
         (["sphere", "nosuch", "-o", "x.png"], "nosuch"),
         (["angle", "-o", "x.png"], "did you mean 'angles'?"),
         (["-o", "x.gif"], "write --animate x.gif instead of -o"),
@@ -427,3 +427,10 @@ def test_bad_requests_end_in_one_line(
     assert said in done.stderr
     assert done.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_to_itself_is_no_picture(lagtop: Lagtop, tmp_path: Path) -> None:
+    (loop := tmp_path / "loop.svg").symlink_to("loop.svg")
+    for line in ("plot cubic -o", "bench --n 3 --methods lagtop --plot"):
+        said = f"cannot write {loop}: Too many levels of symbolic links\n"
+        assert_one_line(lagtop(*line.split(), loop), 74, said)
