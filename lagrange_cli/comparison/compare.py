@@ -155,7 +155,7 @@ def compare(
     >>> found = compare(motion, t, theta=motion.angles(t).theta + 1e-4)
     >>> found.verdict, f"{found.error_max:.0e}", found.record()["rows"]
     ('fine', '1e-04', 50)
-    >>> figure, keys = found.plot(), found.to_dict().keys()
+    >>> figure = found.plot()
     """
     check_type("top", top, Top, Motion)
     given = {key: x for key, x in arrays.items() if x is not None}

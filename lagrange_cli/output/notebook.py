@@ -34,10 +34,6 @@ class HasRecord:
         """Return the results by key."""
         raise NotImplementedError
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the results by key, as `record` does."""
-        return self.record()
-
     def _repr_html_(self) -> str:
         """Return the results as a table for a notebook, without keys that have none."""
         record = self.record()

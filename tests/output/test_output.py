@@ -149,7 +149,6 @@ class Result(HasRecord):
 def test_a_result_is_a_table_in_a_notebook() -> None:
     table = "<table><caption>good</caption><tr><td>m</td><td>1.0</td></tr></table>"
     assert Result()._repr_html_() == table
-    assert Result().to_dict() == {"m": 1.0, "remark": None}
 
 
 # files
