@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from flint import acb, arb
@@ -74,10 +75,6 @@ class Ours:
         """Return am, sn, cn, dn."""
         return self.evaluated(lambda: tuple(self._functions(k).jacobi(self._point(u))))
 
-    def theta(self, ij: str, v: Any, k: Any) -> Any:
-        """Return Theta_ij(v)."""
-        return self.evaluated(lambda: self._functions(k).thetas(self._point(v))[ij])
-
     def zeta(self, ij: str, v: Any, k: Any) -> Any:
         """Return Z_ij(v)."""
         return self.evaluated(lambda: self._functions(k).zetas(self._point(v))[ij])
@@ -99,46 +96,23 @@ class Ours:
 
         return self.evaluated(lambda: values()[ij][which])
 
-    def quarter_period(self, k: Any) -> Any:
-        """Return K."""
-        return self._constant("K", k)
-
-    def second_kind(self, k: Any) -> Any:
-        """Return E."""
-        return self._constant("E", k)
-
-    def nome(self, k: Any) -> Any:
-        """Return q."""
-        return self._constant("nome", k)
-
-    def _constant(self, name: str, k: Any) -> Any:
+    def constant(self, name: str, k: Any) -> Any:
+        """Return K, E or the nome."""
         return self.evaluated(lambda: constants_of(self.modulus(k).reduced())[name])
 
-    def incomplete_f(self, phi: Any, k: Any) -> Any:
-        """Return F(phi, k) of an amplitude in radians."""
-        return self._integrals(phi, k)[0]
-
-    def incomplete_e(self, phi: Any, k: Any) -> Any:
-        """Return E(phi, k) of an amplitude in radians."""
-        return self._integrals(phi, k)[1]
-
-    def incomplete_pi(self, n: Any, phi: Any, k: Any) -> Any:
-        """Return Pi(n; phi | k) of an amplitude in radians."""
-        return self._integrals(phi, k, n)[2]
-
-    def _integrals(self, phi: Any, k: Any, n: Any = None) -> Any:
-        """Return F, E and Pi of an amplitude in radians."""
-        given, parameter = self.modulus(k), None if n is None else self.exact(n).real
+    def integral(self, which: int, phi: Any, k: Any) -> Any:
+        """Return F(phi, k), or E(phi, k) for `which` = 1, of an amplitude in radians."""
+        given = self.modulus(k)
 
         def compute() -> Any:
-            legendre = Legendre(given.reduced(), given.m, parameter)
+            legendre = Legendre(given.reduced(), given.m, None)
             return tuple(legendre.at(self.exact(phi), radians=True))
 
-        return self.evaluated(compute)
+        return self.evaluated(compute)[which]
 
 
 ours = Ours(ManyDigits(60))
 ar = ours.ar
-jacobi, theta, zeta, omega = ours.jacobi, ours.theta, ours.zeta, ours.omega
-pi_function, quarter_period, second_kind = ours.pi_function, ours.quarter_period, ours.second_kind
-nome, incomplete_f, incomplete_e = ours.nome, ours.incomplete_f, ours.incomplete_e
+jacobi, zeta, omega, pi_function = ours.jacobi, ours.zeta, ours.omega, ours.pi_function
+quarter_period, second_kind, nome = (partial(ours.constant, x) for x in ("K", "E", "nome"))
+incomplete_f, incomplete_e = partial(ours.integral, 0), partial(ours.integral, 1)
