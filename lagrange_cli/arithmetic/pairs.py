@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -79,7 +79,7 @@ class DoubleDouble:
     """The numbers high + low, where high is the double nearest to the sum.
 
     Sums, products, quotients and square roots are good to a few units of 2^-104 (relative to the
-    larger term of a sum).  `arrays.Pairs` is the arithmetic of these numbers.
+    larger term of a sum).
     """
 
     def __init__(self, high: Array, low: Array | None = None) -> None:
@@ -89,11 +89,6 @@ class DoubleDouble:
     def scaled(self, power: float) -> DoubleDouble:
         """Return the numbers times a power of two, exactly."""
         return DoubleDouble(self.high * power, self.low * power)
-
-    @classmethod
-    def stacked(cls, rows: Sequence[DoubleDouble]) -> DoubleDouble:
-        """Return several arrays stacked as the rows of one."""
-        return cls(np.stack([x.high for x in rows]), np.stack([x.low for x in rows]))
 
     @staticmethod
     def _like(x: DoubleDouble | float) -> DoubleDouble:

@@ -83,19 +83,6 @@ def assert_true(outcome: Outcome, truth: Mapping[str, float], *, least: int = 2)
 # Many tops at once
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_angles_of_many_tops_are_those_of_an_integrator(seed: int) -> None:
-    rng, t = np.random.default_rng(seed), np.linspace(0, 2, 40)
-    a, b = 10 ** rng.uniform(1, 2.5), rng.choice([-1, 1]) * 10 ** rng.uniform(0, 1.5)
-    theta, rate, turn = rng.uniform(0.01, 3.1), rng.normal(), rng.normal()
-    top = Top(m=1, s=1, g=a / 2, A=1, C=1, r0=b, theta0_rad=theta, thetadot0=rate, psidot0=turn)
-    states = np.array([[50.0, 3, 1, 0, 0], [a, b, theta, rate, turn]])
-    found, exact = angles(states, t)[:, 1], motion_of(top, t)
-    assert found[0] == pytest.approx(exact["theta"], abs=1e-9)
-    for i, name in ((1, "phi"), (2, "psi")):
-        assert np.exp(1j * found[i]) == pytest.approx(np.exp(1j * exact[name]), abs=1e-7)
-
-
 @pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
 def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[int, int]) -> None:
     one = np.array([0.5]), np.array([1.2]), 0.4, np.array([0.3]), signs
