@@ -94,7 +94,7 @@ QUANTITIES: dict[str, Callable[[State], Many]] = {
 }
 """Functions of the state: our angles, and what others print of the top of Bruels and others.
 
-u is the displacement of the mass centre, Rot are Tait-Bryan angles about x, y and z in turn.
+u is the displacement of the centre of mass, Rot are Tait-Bryan angles about x, y and z in turn.
 """
 
 

@@ -76,7 +76,7 @@ def plot_command(
     sphere  the path of the figure axis on the unit sphere, coloured by time
     angles  tilt, precession, and the periodic part of the spin
     cubic   f(u), its roots, and the band of the motion
-    phase   tilt rate against tilt, and the separatrix
+    phase   nutation rate against tilt, and the separatrix
     map     a key of the record over two inputs
     all     sphere, angles, cubic and phase on one sheet (default)
 

@@ -84,7 +84,7 @@ class Comparison(HasRecord):
         "greatest distance from 1 of the norm of a quaternion or axis, or of the matrix R R^T"
     )
     pivot_slip: float | None = _key(
-        "greatest change of the mass centre's distance from the pivot, over that in the first row"
+        "greatest change of the distance from pivot to centre of mass, over that in the first row"
     )
     energy_drift: float | None = _key("greatest change of energy, over its size at the start")
     Lz_drift: float | None = _key("greatest change of the vertical angular momentum, likewise")

@@ -197,10 +197,11 @@ def blocks(exact: ExactMotion, run: Run) -> Iterator[dict[str, Array]]:
 
     `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
     top.  `norm_error` is the distance of a norm from 1.  CONSERVED are the energy and Lz (4,2),
-    (4,3) over their sizes, and the distance of the mass centre from the pivot.  Quantities that are
-    not given are missing.  `error` is the error of the attitude, or else of the axis, the angles,
-    or the rates.  It is NaN in a row with a value that is not finite, unless only another quantity
-    has empty cells.  Raises LagtopError if the attitude is not complete enough for the alignment.
+    (4,3) over their sizes, and the distance of the centre of mass from the pivot.  Quantities that
+    are not given are missing.  `error` is the error of the attitude, or else of the axis, the
+    angles, or the rates.  It is NaN in a row with a value that is not finite, unless only another
+    quantity has empty cells.  Raises LagtopError if the attitude is not complete enough for the
+    alignment.
     """
     start = None
     for first in range(0, len(run.given["t"]), _BLOCK):

@@ -104,7 +104,7 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
     if x.compared == "attitude" and (x.norm_error or 0.0) > _WRONG_NORM:
         yield f"The norm of its quaternion or matrix differs from 1 by up to {x.norm_error:.1e}."
     if (slip := x.pivot_slip or 0.0) > limit:
-        yield f"The pivot slips: the mass centre's distance from it changes by up to {slip:.1%}."
+        yield f"The pivot slips: its distance from the centre of mass changes by up to {slip:.1%}."
     if x.cause is not None:
         words = "Partly explained" if x.explained == "partly" else "Most likely cause"
         remedy = f" ({x.remedy})" if x.remedy else ""

@@ -67,7 +67,7 @@ psi | angle | precession | psi, psi_deg, psi_rad, ψ, precession
 euler | angle | three angles of turns about coordinate axes | euler_0 ..., roll pitch yaw
 rotvec | rad | rotation vector from body to space, in radians | rotvec_x ..., rv0 rv1 rv2
 axis | | figure axis in space | axis_x axis_y axis_z
-position | m | mass centre in space, from the pivot; read if nothing above is given
+position | m | centre of mass in space, from the pivot; read if nothing above is given
     | x y z, com_x ..., tx ty tz
 rates | rad/time | angular velocity in radians per unit of time
     | p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz

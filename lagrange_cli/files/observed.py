@@ -65,7 +65,7 @@ class Observed:
     norm: Array | None = None
     """Distance of a quaternion's or an axis's norm from 1, or of a matrix from a rotation."""
     distance: Array | None = None
-    """Distance of the mass centre from the pivot."""
+    """Distance of the centre of mass from the pivot."""
 
     def turned(self, space: Array, body: Array) -> Observed:
         """Return the motion in other frames.

@@ -148,7 +148,7 @@ def compared(
     if name == "A" and WEIGHT <= known.keys():
         added = given[0] + known["m"][0] * known["s"][0] ** 2
         if abs(added - found[0]) <= CONTRADICTS * math.hypot(given[1], found[1]):
-            return far, False, f"{text}: it is about the mass centre, so give A_cm instead"
+            return far, False, f"{text}: it is about the centre of mass, so give A_cm instead"
     ratio = given[0] / found[0] if found[0] else math.inf
     for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
         if abs(ratio / factor - 1) < _ROUGHLY:

@@ -331,7 +331,7 @@ def cubic(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
 
 
 def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
-    """Draw the tilt rate against the tilt, and the separatrix."""
+    """Draw the nutation rate against the tilt, and the separatrix."""
     (ax,), look, (factor, unit) = axes, options.look, options.angle_unit
     _, theta, rate = sampled(motion, last_time(motion, None, 1, 1), ["theta", "thetadot"])
     ax.axhline(0.0, color=look.quiet, lw=0.9)
@@ -349,7 +349,7 @@ def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
         why = "without torque" if a == 0 else "the upright top is stable with this spin"
         ax.plot([], [], ls="none", label=f"no separatrix: {why}")
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
-    ax.set(xlabel=f"tilt ϑ ({unit})", ylabel=f"tilt rate ϑ̇ ({options.unit('rad/time')})")
+    ax.set(xlabel=f"tilt ϑ ({unit})", ylabel=f"nutation rate ϑ̇ ({options.unit('rad/time')})")
     ax.margins(0.06)
     ax.locator_params(axis="x", nbins=5)
     return "Nutation in the phase plane"

@@ -36,10 +36,11 @@ _TABLE = """
 m | m | mass | mass | positive | mass | 1587
 A | A | equatorial moment
     | equatorial moment about the pivot | positive | mass len² | 39032
-A_cm | A_cm | moment about the mass centre
-    | equatorial moment about the mass centre: A = A_cm + m s^2 | | mass len² |
+A_cm | A_cm | moment about the centre of mass
+    | equatorial moment about the centre of mass: A = A_cm + m s^2 | | mass len² |
 C | C | polar moment | polar moment of inertia | positive, at most 2A | mass len² | 17458
-s | s | pivot to mass centre | distance from the pivot to the mass centre | 0 or more | len | 4
+s | s | pivot to centre of mass
+    | distance from the pivot to the centre of mass | 0 or more | len | 4
 g | g | gravity | gravitational acceleration | 0 or more | len/time² | 981
 r0 | r0 | total spin rate
     | total spin rate about the axis, phi' + psi' cos(theta) | | rad/time | 50

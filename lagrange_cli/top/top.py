@@ -208,7 +208,7 @@ class Top:
             bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
         else:
             return None
-        return f"a rigid body with its mass centre at s has {bound}; computing anyway"
+        return f"a rigid body with its centre of mass at s has {bound}; computing anyway"
 
     def as_text(self) -> str:
         """Return the inputs as a text, such as `m=1587.0 A=39032.0`, without rates that are 0."""

@@ -322,7 +322,7 @@ def test_bad_line_of_times(lagtop: Lagtop) -> None:
 def test_a_body_that_cannot_be_built_is_computed(line: str, bound: str, lagtop: Lagtop) -> None:
     result = lagtop("solve", *line.split(), "--get", "regime")
     assert (result.exit_code, result.stdout) == (0, "regular\n")
-    assert f"Warning: a rigid body with its mass centre at s has {bound} " in result.stderr
+    assert f"Warning: a rigid body with its centre of mass at s has {bound} " in result.stderr
 
 
 def test_words_that_name_a_scene() -> None:

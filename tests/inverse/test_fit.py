@@ -664,7 +664,7 @@ def test_a_known_input_that_contradicts_the_recording_is_named(c: str, r0: str) 
 @pytest.mark.parametrize(
     ("known", "cause"),
     [
-        ({"A": 4.45e-3 - 0.5 * 0.08**2}, "it is about the mass centre, so give A_cm instead"),
+        ({"A": 4.45e-3 - 0.5 * 0.08**2}, "it is about the centre of mass, so give A_cm instead"),
         ({"C": 2.5e-3, "r0": 500.0}, "about 9.55 times as large: check the units, or omit C"),
         ({"C": 2.5e-3, "r0": 52.36, "psidot0": 1.0}, "omit psidot0"),
         ({"theta0_deg": 0.0}, "omit theta0"),

@@ -34,7 +34,7 @@ class Camera(NamedTuple):
 
 SMALL_TOP = Camera(
     *("recording.csv", TOP, 120, 2.0, (0.3, 0.5, 1.0)),
-    "# A top of 1.587 kg, its mass centre 0.04 m from the pivot; 120 frames a second.",
+    "# A top of 1.587 kg, its centre of mass 0.04 m from the pivot; 120 frames a second.",
 )
 WHEEL = Camera(
     "tutorials/wheel.csv",

@@ -1,4 +1,4 @@
-"""Bodies as they are measured: A about the mass centre, and the rate of phi in place of r0."""
+"""Bodies as they are measured: A about the centre of mass, and the rate of phi in place of r0."""
 
 from __future__ import annotations
 
