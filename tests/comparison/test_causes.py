@@ -68,7 +68,7 @@ def bodies(top: Top) -> dict[str, Body]:
         "g is 0": body._replace(torque=0.0),
         "g is 981": body._replace(torque=100 * body.torque),
         "g points upwards": body._replace(torque=-body.torque),
-        "g is 10 (or m or s is wrong by as": body._replace(torque=10 / 9.81 * body.torque),
+        "g is 10 (or m or s is wrong by the": body._replace(torque=10 / 9.81 * body.torque),
         "C is 2 % off": body._replace(C=1.02 * body.C),
         "m is 1 % off": body._replace(torque=1.01 * body.torque),
     }
@@ -172,7 +172,7 @@ def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
     assert (found.cause_error or 0) < 1e-5
 
 
-IN_FRAMES = ["A and C are exchanged", "(A + m s^2)", "g is 10 (or m or s is wrong by as"]
+IN_FRAMES = ["A and C are exchanged", "(A + m s^2)", "g is 10 (or m or s is wrong by the"]
 IN_FRAMES += ["r0 in rpm was taken as radians"]
 LEFT = "the frame is left-handed with {0} up, or has {0} down; ".format
 NAMES = {"up=y,left": LEFT("y"), "left": LEFT("z"), "axis=-z,up=-z": LEFT("z")}
@@ -258,7 +258,7 @@ def test_of_values_of_g_the_closest_is_named() -> None:
     """The digits hide 0.03 % of g from the limit, but not from the search."""
     turn, _ = run("toy")
     found = compare(TOPS["toy"].replace(g=10), T, quaternion=wxyz(turn).round(4), max_error=3e-3)
-    assert found.cause == "g is 9.81 (or m or s is wrong by as much)"
+    assert found.cause == "g is 9.81 (or m or s is wrong by the same factor)"
 
 
 @pytest.mark.slow
