@@ -320,15 +320,16 @@ def output(
     def decorate(function: F) -> F:
         @wraps(function)
         def run(output: str, fmt: str | None, **others: Any) -> None:
-            ending = extension(output)
+            ending, plain = extension(output), ("txt", *extensions)
             chosen = fmt or ending
-            if fmt is None and ending in {"", "txt", *extensions}:
+            if fmt is None and ending in {"", *plain}:
                 chosen = on_terminal if on_terminal and is_screen(output) else formats[0]
             elif fmt is None and (ending == "table" or ending not in formats):
                 name = click.get_current_context().command.name
+                endings = ", ".join([x for x in formats if x != "table"] + [*plain])
                 raise LagtopError(
-                    f"{name} cannot write {ending or output}: use {', '.join(formats)} as "
-                    f"extension of {quoted(output)}, or add --format"
+                    f"{name} cannot write {ending}: use {endings} as extension of "
+                    f"{quoted(output)}, or add --format"
                 )
             if chosen == "parquet":
                 _check_parquet(output, others)

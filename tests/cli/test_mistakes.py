@@ -46,6 +46,8 @@ MISTAKES = {
     "xyz": "Error: no such command: 'xyz': see lagtop --help",
     "help": "no such command: 'help' (did you mean '--help'?)",
     "version": "no such command: 'version' (did you mean '--version'?)",
+    "solve|-o|a.table": "solve cannot write table: use json, csv, ndjson, txt as extension of 'a.",
+    "fit|rec.csv|-o|a.tex": "fit cannot write tex: use csv, json, ndjson, txt, toml as extension",
     "solve|--get|T_nutation,|T_spin": "must be comma-separated names without blanks",
     "solve|--get|Tnutation": "did you mean 'T_nutation'",
     "solve|looping": "did you mean 'looping-top'",
