@@ -83,7 +83,7 @@ def decoded(content: bytes, name: str) -> str:
     Raises DataError for other bytes, with their line.
     """
     if content.startswith(_BINARY):
-        wrong = "it is no text but a workbook, an archive, Parquet or NumPy data: save it as CSV"
+        wrong = "it is not text but a workbook, an archive, Parquet or NumPy data: save it as CSV"
         raise DataError(f"{name}: {wrong}")
     try:
         text = content.decode("utf-16" if content[:2] in _UTF16 else "utf-8-sig")

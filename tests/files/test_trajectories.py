@@ -144,7 +144,7 @@ def twice() -> bytes:
         (b"\x93NUMPY\x01\x00\xff\xff", "NumPy data: save it as CSV"),
         (
             b"PK\x03\x04",
-            "it is no text but a workbook, an archive, Parquet or NumPy data: save it as CSV",
+            "it is not text but a workbook, an archive, Parquet or NumPy data: save it as CSV",
         ),
         (b"PAR1", "bad Parquet file"),
         (twice(), "must name each quantity once, got 'theta' and 'theta'"),
