@@ -139,5 +139,5 @@ def test_the_distributions_hold_what_they_should(distributions: Path) -> None:
 
 
 def test_the_citation_names_the_version() -> None:
-    citation = (ROOT / "lagrange_cli" / "CITATION.cff").read_text()
+    citation = (ROOT / "lagrange_cli" / "CITATION.cff").read_text(encoding="utf-8")
     assert f"\nversion: {lagtop.__version__}\n" in citation

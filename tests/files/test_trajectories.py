@@ -208,7 +208,7 @@ def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
 )
 def test_units_in_headings(text: str, found: dict[str, list[float]], tmp_path: Path) -> None:
     path = tmp_path / "file"
-    path.write_text(f"{text}\n")
+    path.write_text(f"{text}\n", "utf-8")
     values = read_trajectory(str(path)).values(radians=False)
     for key, exact in found.items():
         assert values[key][0] == pytest.approx(exact, rel=1e-15)

@@ -118,7 +118,7 @@ def test_r0_from_phidot0_with_units_is_rounded_once(lagtop: Lagtop) -> None:
 
 def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
     path = tmp_path / "scene.toml"
-    path.write_text("".join(f'{name} = "{text}"\n' for name, text in BODY.items()))
+    path.write_text("".join(f'{name} = "{text}"\n' for name, text in BODY.items()), "utf-8")
     with path.open("a") as file:
         file.write('r0 = "480rpm"\ntheta0 = "0.5 rad"\n')
     top = read_scene(str(path))
