@@ -158,17 +158,18 @@ def read_trajectory(
 def _csv_of_parquet(content: bytes, name: str) -> bytes:
     """Return the columns of numbers of a Parquet file as CSV."""
     try:
-        from pyarrow import csv, parquet, types
+        from pyarrow import BufferReader, csv, parquet, types
     except ImportError:
         raise UnavailableError(f"{name}: Parquet needs pyarrow: pip install pyarrow") from None
     try:
-        file = parquet.ParquetFile(BytesIO(content))
+        file = parquet.ParquetFile(BufferReader(content))
         is_number = types.is_floating, types.is_integer
         names = [x.name for x in file.schema_arrow if any(y(x.type) for y in is_number)]
         size = file.metadata.num_rows * len(names)
         if size > (most := LARGEST_FILE // _BYTES_OF_A_NUMBER):
             raise ValueError(f"it must have at most {most} numbers, has {size}")
-        csv.write_csv(file.read(columns=names), stream := BytesIO())
+        numbers = file.read(columns=names, use_threads=False)  # threads may abort at the exit
+        csv.write_csv(numbers, stream := BytesIO())
     except Exception as error:  # no library lists its exceptions
         why = shortened(" ".join(str(error).split()), 100) or type(error).__name__
         raise DataError(f"{name}: bad Parquet file: {why}") from None

@@ -164,7 +164,8 @@ def _write_parquet(stream: BinaryIO, names: Sequence[str], blocks: Iterable[byte
     import pyarrow as pa
     from pyarrow import parquet
 
-    tables = (parquet.read_table(BytesIO(block)) for block in blocks)
+    files = (parquet.ParquetFile(pa.BufferReader(block)) for block in blocks)
+    tables = (file.read(use_threads=False) for file in files)  # threads may abort at the exit
     first = next(tables, pa.table({name: pa.nulls(0) for name in names}))
     # closed in any case, because a writer that is collected later writes to a closed file
     with parquet.ParquetWriter(stream, first.schema) as writer:

@@ -8,6 +8,8 @@ import json
 import math
 import os
 import stat
+import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
@@ -297,3 +299,22 @@ def test_texts_in_a_table_are_one_printable_line_each() -> None:
     many = [block_text([np.zeros(4000)], ["a"], "table")] * 3
     with pytest.raises(LagtopError, match="format table shows at most 10000 rows, got more"):
         write(io.BytesIO(), ["a"], many, "table")
+
+
+@pytest.mark.slow
+def test_parquet_starts_no_thread(tmp_path: Path) -> None:
+    """The threads of pyarrow now and then abort the process at its end."""
+    if not os.path.isdir("/proc/self/task"):
+        pytest.skip("no list of threads")
+    code = f"""if True:
+        import os
+        import numpy as np
+        import pyarrow.csv, pyarrow.parquet
+        from lagrange_cli.files.trajectory import read_trajectory
+        from lagrange_cli.output.destination import Output
+        before = os.listdir("/proc/self/task")
+        Output({str(tmp_path / "x")!r}, "parquet").table(["t", "theta"], [np.ones((9, 2))] * 2)
+        assert len(read_trajectory({str(tmp_path / "x")!r}).elapsed) == 18
+        assert os.listdir("/proc/self/task") == before
+    """
+    subprocess.run([sys.executable, "-c", code], check=True)
