@@ -165,6 +165,10 @@ def _csv_of_parquet(content: bytes, name: str) -> bytes:
         file = parquet.ParquetFile(BufferReader(content))
         is_number = types.is_floating, types.is_integer
         names = [x.name for x in file.schema_arrow if any(y(x.type) for y in is_number)]
+        time = quantities_in(file.schema_arrow.names).get("t")
+        if time is not None and not known_quantities(names):
+            got = file.schema_arrow.types[time.columns[0]]
+            raise ValueError(f"t must be numbers, got {got}: convert it to doubles")
         size = file.metadata.num_rows * len(names)
         if size > (most := LARGEST_FILE // _BYTES_OF_A_NUMBER):
             raise ValueError(f"it must have at most {most} numbers, has {size}")

@@ -172,6 +172,11 @@ def test_a_parquet_file_beyond_the_limit_is_refused(
     columns = {"t": np.arange(rows), "note": words, "theta": np.zeros(rows)}
     parquet.write_table(pa.table(columns), path)
     assert read(path)["t"].size == rows
+    for times, kind in (([0, 1], pa.timestamp("ms")), (["0", "1"], pa.string())):
+        dated = pa.table({"note": [0.0, 1.0], "t": pa.array(times, kind), "theta": [1.0, 2.0]})
+        parquet.write_table(dated, tmp_path / "dated")
+        with pytest.raises(DataError, match=f"t must be numbers, got {kind}".replace("[", r"\[")):
+            read(tmp_path / "dated")
     monkeypatch.setattr(trajectory, "LARGEST_FILE", 300_000)
     with pytest.raises(DataError, match="must have at most 12500 numbers, has 20000"):
         read(path)
