@@ -166,8 +166,10 @@ def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
         starts = {"psi": psi, "phi": phi}.items()
         names = [" and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > 1e-3)]
     elif align[:3] != given[:3] and align.left:
-        words.append(Alignment(f"-{align.up}", f"-{align.up}", start=True, time=align.time))
-        names = [f"the frame is left-handed with {align.up} up, or has {align.up} down"]
+        names = [f"the frame is left-handed with {align.up} up"]
+        if run.few(1).observed().quaternion is not None:  # else the axis is not turned too
+            words.append(Alignment(f"-{align.up}", f"-{align.up}", start=True, time=align.time))
+            names[0] += f", or has {align.up} down"
     elif align[:3] != given[:3]:
         names = [f"{align.up} is up and the figure axis is the body's {align.axis} axis"]
     if align.time and not given.time:

@@ -216,6 +216,17 @@ def test_frames_are_named(words: str, frame: str, mistake: str, name: str) -> No
     assert name in (found.cause or "")
 
 
+@pytest.mark.parametrize("frame", ["up=y,left", "left"])
+@pytest.mark.parametrize(("key", "count"), [("matrix", 2), ("axis", 1)])
+def test_each_remedy_for_a_frame_works(key: str, count: int, frame: str) -> None:
+    """A frame with z down turns both z axes, but an axis alone only once."""
+    turn, rows = run("toy")[0].as_matrix(), np.array(FRAMES[frame])
+    given: Given = {key: rows @ turn @ rows.T if key == "matrix" else turn[:, :, 2] @ rows.T}
+    words = (compare(TOPS["toy"], T, **given).remedy or "").split(" or ")
+    typed = [compare(TOPS["toy"], T, **given, align=x.removeprefix("align=")) for x in words]
+    assert [x.verdict for x in typed] == ["fine"] * count
+
+
 def test_mirrored_motions_have_two_names() -> None:
     """Released from rest, a top with reversed spin moves as in a mirror."""
     top = Top(m=1.2, A=0.018, C=0.004, s=0.1, g=9.81, r0=60, theta0_deg=55)
