@@ -185,12 +185,6 @@ class Problem:
         value = self.values(x)
         return [(value[y] - self.known[y]) / std for y, std in self.stds.items()]
 
-    def noise(self, x: Array) -> Array:
-        """Return the logarithm of the noise that each top leaves, summed over the channels."""
-        mean = np.nanmean(self.residuals(x) ** 2, axis=2)
-        mean = mean + self.sizes**2 / self.recording.rows_per_bin
-        return np.asarray(np.nan_to_num(np.log(mean).sum(axis=1), nan=np.inf))
-
     def slopes(
         self, x: Array, function: Callable[[Array], Array], *, central: bool = True
     ) -> Array:
@@ -249,8 +243,11 @@ class Problem:
         x[names.index("phi_zero")] += float(np.angle(np.sum(np.exp(1j * (rest - rate * t)))))
         return x
 
-    def parameters_of(self, states: Array, spin: Signal | None, frequency: float) -> Array:
-        """Return the parameters of states, with the best zeros and spin rate of each."""
+    def started(self, states: Array, spin: Signal | None) -> tuple[Array, Array]:
+        """Return the parameters of states, with the best zeros and spin rate of each.
+
+        The second array is the logarithm of the noise that they leave, summed over the channels.
+        """
         known, seen, t = self.known, self.recording.angles, self.recording.t
         value: dict[str, Any] = {**known, **dict(zip(STATE, states.T, strict=True))}
         theta, phi, psi = angles(states, t)
@@ -260,22 +257,26 @@ class Problem:
             elif "phidot0" in known:
                 r0 = known["phidot0"] + value["psidot0"] * np.cos(value["theta0"])
             else:
-                r0 = self._spin_rates(value["b"], phi, spin, frequency)
+                r0 = self._spin_rates(value["b"], phi, spin)
             value["r0"] = r0
-            turned = seen["phi"] - phi - np.outer(r0 - self.turns - value["b"], t)
-            value["phi_zero"] = _mean_angle(turned)
+            phi = phi + np.outer(r0 - self.turns - value["b"], t)
+            value["phi_zero"] = _mean_angle(seen["phi"] - phi)
+            phi = phi + value["phi_zero"][:, np.newaxis]
         if "psi" in seen:
             value["psi_zero"] = _mean_angle(seen["psi"] - psi, np.sin(theta))
+            psi = psi + value["psi_zero"][:, np.newaxis]
+        rest = np.nanmean(self.recording.residuals(theta, phi, psi) ** 2, axis=2)
+        noise = np.log(rest + self.sizes**2 / self.recording.rows_per_bin).sum(axis=1)
         rows = [np.broadcast_to(value[name], len(states)) for name in self.names]
-        return np.stack(rows, axis=-1)
+        return np.stack(rows, axis=-1), np.nan_to_num(noise, nan=np.inf)
 
-    def _spin_rates(self, b: Array, phi: Array, spin: Signal, frequency: float) -> Array:
+    def _spin_rates(self, b: Array, phi: Array, spin: Signal) -> Array:
         """Return the spin rates that explain phi best; next to a pole it may jump by turns."""
         t, seen = self.recording.t, self.recording.angles["phi"]
         around = t - t.mean()
         shown = np.interp(t, spin.t, spin.y) + spin.rate * t
         r0 = b + (shown - phi) @ around / (around @ around)
-        rates = r0 + 2 * math.pi * frequency * np.array([[0.0], [1.0], [-1.0]])
+        rates = r0 + 2 * math.pi * np.array([[0.0], [1.0], [-1.0]])  # in units of the period
         fits = []
         for rate in rates:
             wave = np.exp(1j * (seen - phi - np.outer(rate - b, t)))
@@ -301,6 +302,8 @@ class Minimum:
     """Parameters that the recording does not determine."""
     is_curved: bool = False
     """Whether chi^2 is no parabola within two standard deviations."""
+    is_hopeless: bool = False
+    """Whether no motion of a top is near the recording."""
 
     @classmethod
     def of(

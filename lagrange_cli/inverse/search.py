@@ -41,8 +41,8 @@ from .steady import steady_outcome
 
 _FEW_ROWS, _ROWS = 12, 50
 """Rows at which all starts are compared, then the best."""
-_KEPT, _BLOCK, _STARTS = 1500, 2000, 20
-_ROUNDS = ((100, 6, 8), (300, 12, 3), (300, 30, 3))
+_KEPT, _BLOCK, _STARTS = 1500, 2000, 12
+_ROUNDS = ((60, 6, 5), (150, 12, 3), (300, 15, 3))
 """Rows and steps of the first least squares, and the number of ends that are kept, by round."""
 _ALIKE = 0.02
 """Relative difference of a and b below which two starts are the same."""
@@ -198,7 +198,8 @@ def _nutation(
         if found is not None:
             way = ways[found.problem.recording.is_mirrored]
             factors = _widening(found, way)
-            found = Minimum.of(found.problem, found.x, floors, factors, is_final=True)
+            is_final = not found.is_hopeless
+            found = Minimum.of(found.problem, found.x, floors, factors, is_final=is_final)
             found = _slowest(found, turn)
             if not found.unknown:
                 break
@@ -275,7 +276,7 @@ def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:
             end, cost = few.solve(x, steps)
             if (phased := few.rephased(end)) is not end:
                 end, cost = min((end, cost), few.solve(phased, steps), key=itemgetter(1))
-            found[problem.recording.is_mirrored, f"{cost:.6g}"] = cost, data, problem, end
+            found[problem.recording.is_mirrored, f"{cost:.4g}"] = cost, data, problem, end
         ends = sorted(found.values(), key=itemgetter(0))[:kept]
     minima: list[Minimum] = []
     for cost, data, problem, end in ends:
@@ -283,7 +284,7 @@ def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:
         rms = np.sqrt(np.nanmean(few.residuals(end[np.newaxis]) ** 2, axis=2))
         is_hopeless = rms.max() > LARGEST or 2 * cost > _HOPELESS * few.recording.present.sum()
         if is_hopeless and not minima:
-            return [Minimum.of(few, end, data.floors)]
+            return [replace(Minimum.of(few, end, data.floors), is_hopeless=True)]
         if cost <= _COMPARABLE * ends[0][0]:
             minima.append(Minimum.of(problem.of(data.fine), end, data.floors))
     return minima
@@ -395,7 +396,7 @@ def _best_starts(
     for data in ways:
         problem = Problem(data.coarse, known, data.sizes, free=free)
         fixed = problem.known
-        states = starts(data.signals, 1.0, fixed.get("theta0"))
+        states = starts(data.signals, fixed.get("theta0"))
         for name in fixed.keys() & {*STATE}:
             states[:, STATE.index(name)] = fixed[name]
         if "r0" in fixed or problem.is_even:  # r0 has the sign of b
@@ -403,15 +404,16 @@ def _best_starts(
         for count in (_FEW_ROWS, _ROWS) if len(states) > _KEPT else (_ROWS,):
             few = problem.thinned(count)
             blocks = np.array_split(states, len(states) // _BLOCK + 1)
-            x = np.concatenate([few.parameters_of(y, data.signals.get("phi"), 1.0) for y in blocks])
-            score = np.concatenate([few.noise(y) for y in np.array_split(x, len(blocks))])
-            order = np.argsort(score)[:_KEPT]
+            found = [few.started(y, data.signals.get("phi")) for y in blocks]
+            x, noise = (np.concatenate(y) for y in zip(*found, strict=True))
+            order = np.argsort(noise)[:_KEPT]
             states = states[order]
-        tried += [(float(score[i]), data, problem, x[i]) for i in order]
-    kept: list[tuple[Data, Problem, Array]] = []
-    for size, data, problem, x in sorted(tried, key=itemgetter(0)):
-        near = _ALIKE * (np.abs(x[:2]) + 1e-300)
-        is_new = all(p is not problem or np.any(np.abs(x - y)[:2] > near) for _, p, y in kept)
-        if is_new and len(kept) < _STARTS and math.isfinite(size):
-            kept.append((data, problem, x))
-    return [(data, *problem.beside_pole(x)) for data, problem, x in kept]
+        x, noise = x[order], noise[order]
+        for _ in range(_STARTS):
+            if not x.size or not np.isfinite(noise[0]):
+                break
+            tried.append((float(noise[0]), data, problem, x[0]))
+            is_new = np.any(np.abs(x - x[0])[:, :2] > _ALIKE * np.abs(x[0, :2]), axis=1)
+            x, noise = x[is_new], noise[is_new]
+    best = sorted(tried, key=itemgetter(0))[:_STARTS]
+    return [(data, *problem.beside_pole(x)) for _, data, problem, x in best]

@@ -27,31 +27,31 @@ _POLE = 1e-4
 """Least distance of a start from a pole, in radians."""
 
 
-def starts(signals: Mapping[str, Signal], frequency: float, tilt: float | None) -> Array:
-    """Return states of tops, shape (tops, 5), that nutate as the signals do.
+def starts(signals: Mapping[str, Signal], tilt: float | None) -> Array:
+    """Return states of tops, shape (tops, 5), that nutate as the signals do, with the period 1.
 
     `tilt` is the tilt in the first row, if it is known.
     """
-    period, shown = 1 / frequency, signals.get("theta")
-    least, greatest, at_start = _turning_points(shown, frequency) if shown else (*_grid(), None)
+    shown = signals.get("theta")
+    least, greatest, at_start = _turning_points(shown) if shown else (*_grid(), None)
     jumps = shown is not None and passes_pole(shown)
     rates: list[float] = []
     if "psi" in signals:
         spin = signals["psi"]
-        mean = spin.rate + spin.finest(frequency)[0][1] / spin.t[-1]
+        mean = spin.rate + spin.finest(1.0)[0][1] / spin.t[-1]
         turns = (0, -1, 1) if shown else (0,)  # unknown if the axis passes next to a pole
-        rates = [mean + i * 2 * math.pi * frequency for i in turns]
+        rates = [mean + i * 2 * math.pi for i in turns]
     found: list[Array] = []
     pair = least[:, np.newaxis], greatest[:, np.newaxis]
     for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-        tops = nutating(*pair, period, _HEIGHTS, signs)
+        tops = nutating(*pair, 1.0, _HEIGHTS, signs)
         for rate in rates:
             off = tops[3] - rate
             row, i = np.nonzero(off[:, :-1] * off[:, 1:] <= 0)
             share = off[row, i] / (off[row, i] - off[row, i + 1])
             height = _HEIGHTS[i] ** (1 - share) * _HEIGHTS[i + 1] ** share
             ends = least[row], greatest[row]
-            found.append(np.stack([*ends, *nutating(*ends, period, height, signs)[:3]]))
+            found.append(np.stack([*ends, *nutating(*ends, 1.0, height, signs)[:3]]))
         if not rates or jumps:
             found.append(np.stack(np.broadcast_arrays(*pair, *tops[:3])).reshape(5, -1))
     low, high, a, b, beta = np.concatenate(found, axis=1)
@@ -76,14 +76,14 @@ def starts(signals: Mapping[str, Signal], frequency: float, tilt: float | None) 
     return np.asarray(both[np.isfinite(both).all(axis=1)])
 
 
-def _turning_points(tilt: Signal, frequency: float) -> tuple[Array, Array, Array]:
+def _turning_points(tilt: Signal) -> tuple[Array, Array, Array]:
     """Return pairs of turning points near those of the harmonics, and cosines at the start.
 
     An axis that comes near a pole may pass over it, and begin beside it.
     """
-    factors, _ = tilt.finest(frequency)
-    phases, order = np.linspace(0, 1 / frequency, 720), factors.size // 2
-    wave = factors @ tilt.basis(phases, np.array([frequency]), order)[0]
+    factors, _ = tilt.finest(1.0)
+    phases, order = np.linspace(0, 1, 720), factors.size // 2
+    wave = factors @ tilt.basis(phases, np.array([1.0]), order)[0]
     ends = np.arccos(np.clip([wave.max(), wave.min()], -1, 1))
     seen = np.arccos([tilt.y.max(), tilt.y.min()])
     room = math.pi - seen[1]
