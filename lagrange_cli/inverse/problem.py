@@ -322,6 +322,7 @@ class Minimum:
         """
         recording = problem.recording
         problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
+        problem, start = problem.beside_pole(start)
         x, cost = problem.solve(start, STEPS if is_final else STEPS // 3, central=is_final)
         present = recording.present
         share = present.sum() * recording.rows_per_bin

@@ -50,14 +50,16 @@ _HOPELESS, _COMPARABLE, _LIKELY = 50.0, 5.0, 16.0
 """Mean square of weighted residuals that no top explains, the factor of chi^2 above the least one
 beyond which a start is dropped, and the difference of -2 log(likelihood) below which two tops
 explain a recording equally well."""
-_COARSE, _FINE, _LEAST_BINS, _MOST_ROWS = 20, 40, 600, 3000
+_COARSE, _FINE, _LEAST_BINS, _MOST_ROWS, _MOST_LEAPING = 20, 40, 600, 3000, 20_000
 """Bins per nutation period for the starts and for the fit, their least number, and the number of
-rows up to which the fit uses all of them."""
+rows up to which the fit uses all of them, also if an angle leaps within bins."""
 _SURE = 2.0
 """Standard deviations from which b has a sign, and r0 with it."""
 _FASTER = 3.0
 """Ratio of spin rates from which the slower one tells the direction of psi."""
 _LEAST_SIGMA = 1e-12
+_NEAREST = 3.0
+"""Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
 _FILTERED = 1e-4
 """Share of the nutation that a filter takes away, from which a note says so."""
 _Noise = Mapping[str, tuple[float, float]]
@@ -119,7 +121,7 @@ def best_fit(
     is_coarse = any(x.is_coarse for x in steady.residuals.values())
     if visible and lasts and not (is_steady and is_coarse):
         both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
-        for form, of_form in [*_as_axis(recording, signals, noise), (recording, noise)]:
+        for form, of_form in _forms(recording, signals, noise):
             found = _nutation(form, known, frequency, of_form, radians=radians, both=both)
             if found is None:
                 continue
@@ -161,20 +163,25 @@ def _noise(recording: Recording, signals: Mapping[str, Signal]) -> _Noise:
     return {x: (step or coarsest, noise) for x, (step, noise) in found.items()}
 
 
-def _as_axis(
+def _forms(
     recording: Recording, signals: Mapping[str, Signal], noise: _Noise
 ) -> Iterator[tuple[Recording, _Noise]]:
-    """Yield angles as an axis or an attitude, and their noise, if the axis may pass a pole.
+    """Yield the forms in which a recording is fitted, and their noise.
 
-    The noise of psi and phi grows without bound there, unless sigma says otherwise.
+    Angles of an axis that may pass a pole are an axis or an attitude first: the noise of psi and
+    phi grows without bound there, unless sigma says otherwise.  Else the rows next to the pole show
+    neither.
     """
-    angles = recording.angles.keys()
-    if recording.kind != "angles" or recording.sigma or not {"theta", "psi"} <= angles:
-        return
-    if passes_pole(signals["theta"]):
-        whole = replace(recording, kind="attitude" if "phi" in angles else "axis")
-        alias = {"across": "psi", "along": "phi"}
-        yield whole, {x: noise[alias.get(x, x)] for x in whole.channels}
+    angles = recording.angles
+    if recording.kind == "angles" and "theta" in angles and passes_pole(signals["theta"]):
+        if not recording.sigma and "psi" in angles:
+            whole = replace(recording, kind="attitude" if "phi" in angles else "axis")
+            alias = {"across": "psi", "along": "phi"}
+            yield whole, {x: noise[alias.get(x, x)] for x in whole.channels}
+        is_seen = np.sin(angles["theta"]) > _NEAREST * noise["theta"][1]
+        found = {x: y if x == "theta" else np.where(is_seen, y, np.nan) for x, y in angles.items()}
+        recording = replace(recording, angles=found)
+    yield recording, noise
 
 
 def _nutation(
@@ -199,7 +206,10 @@ def _nutation(
             way = ways[found.problem.recording.is_mirrored]
             factors = _widening(found, way)
             is_final = not found.is_hopeless
-            found = Minimum.of(found.problem, found.x, floors, factors, is_final=is_final)
+            problem = found.problem
+            if way.fine.rows_per_bin > 1 and not way.fine.present.all():  # bins hide leaps
+                problem = problem.of(way.recording.thinned(_MOST_LEAPING))
+            found = Minimum.of(problem, found.x, floors, factors, is_final=is_final)
             found = _slowest(found, turn)
             if not found.unknown:
                 break
@@ -271,7 +281,8 @@ def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:
     ends = [(0.0, *x) for x in _best_starts(ways, known, free=free)]
     for rows, steps, kept in _ROUNDS:
         found = {}
-        for _, data, problem, x in ends:
+        for _, data, other, start in ends:
+            problem, x = other.beside_pole(start)
             few = problem.thinned(rows)
             end, cost = few.solve(x, steps)
             if (phased := few.rephased(end)) is not end:
@@ -297,7 +308,8 @@ def _chosen(
 
     Minima that differ by whole turns of the spin per row are one.  Of two directions of psi that
     explain the recording as well, the recorded one is taken, unless its spin is much faster.  A
-    mirror image whose a or b has another size is a rival, too.
+    mirror image whose a or b has another size is a rival, too, unless its spin is much faster than
+    one that is slow.
     """
     slow = sorted((_slowest(x, turn) for x in minima), key=lambda x: x.badness)
     likely = [x for x in slow if x.badness < slow[0].badness + _LIKELY]
@@ -306,7 +318,10 @@ def _chosen(
     if turned * _FASTER < plain:
         ways.reverse()
     best, image = (x[0] if x else None for x in ways)
-    return best, next((x for x in ways[0] + ways[1] if best and x.differs(best)), None), image
+    slow_spin = min(plain, turned)
+    is_open = 2 * (1 + _FASTER) * slow_spin >= turn
+    others = [x for x in ways[1] if is_open or abs(x.values["r0"]) < _FASTER * slow_spin]
+    return best, next((x for x in ways[0] + others if best and x.differs(best)), None), image
 
 
 def _slowest(found: Minimum, turn: float) -> Minimum:
@@ -416,4 +431,4 @@ def _best_starts(
             is_new = np.any(np.abs(x - x[0])[:, :2] > _ALIKE * np.abs(x[0, :2]), axis=1)
             x, noise = x[is_new], noise[is_new]
     best = sorted(tried, key=itemgetter(0))[:_STARTS]
-    return [(data, *problem.beside_pole(x)) for _, data, problem, x in best]
+    return [x[1:] for x in best]
