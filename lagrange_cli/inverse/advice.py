@@ -29,8 +29,8 @@ without outliers over their share of the rows.  Other meanings of the angles are
 residuals are larger than the differences between neighbours by the last factor."""
 _HELD, _RELEASED, _STILL = 12, 6.0, 3.5
 """Least number of rows before a release, the standard deviations that show it, and the standard
-deviation of the rows before it, over the noise of neighbours, from which these move too."""
-_WINDOWS = (12, 32)
+deviation of the rows before it, over the noise of neighbours, above which these rows move too."""
+_WINDOWS = (5, 12, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
@@ -47,10 +47,10 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     if outcome.contradictions:
         return
     yield from _frames(recording, body)
-    if not outcome.misfits:
+    if all(x.startswith("chi2") for x in outcome.misfits):  # the noise is not as sigma says
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
-        yield f"t has {seen} values in {recording.t.size} rows: give it more digits"
+        yield f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
     noise = _calmness(recording)
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if 0 < len(wrong) <= _FEW * recording.t.size:
@@ -62,7 +62,7 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     free = recording.part(slice(row := release(recording), None))
     if row and noise - _calmness(free) > _CALMER and _is_good(free, body):
         at = recording.t_start + float(recording.t[row])
-        yield f"the top is held until about t = {at:.4g}: cut the rows before the release"
+        yield f"the top is held until about t = {at:.4g}: leave out the rows before the release"
     is_wrong = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
     others = _other_angles(replace(recording, sigma={})) if is_wrong else ()
     yield from (words for other, words in others if _is_good(other, known))
@@ -120,7 +120,7 @@ def _other_angles(recording: Recording) -> Iterator[tuple[Recording, str]]:
     larger = {x: np.degrees(y) for x, y in angles.items()}
     if all(np.nanmax(np.abs(x)) <= 2 * np.pi for x in larger.values()):
         wrapped = {x: y if x == "theta" else within_half_turn(y) for x, y in larger.items()}
-        words = "the angles are in radians: name their columns so, as theta_rad"
+        words = "the angles are in radians: give their columns names such as theta_rad"
         yield replace(recording, angles=wrapped), words
     if "theta" in angles and np.nanmax(angles["theta"]) <= np.pi / 2:
         from_horizontal = {**angles, "theta": np.pi / 2 - angles["theta"]}

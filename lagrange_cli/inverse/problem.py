@@ -82,7 +82,7 @@ class Problem:
         self.is_moment_known = "A" in has or "A_cm" in has
         self.spins = "phi" in seen or bool({"r0", "phidot0"} & has)
         self.is_even = seen == {"theta"} and self.known.get("psidot0") == 0 and not self.spins
-        """Whether the opposite b leaves the same tilt."""
+        """Whether b and -b give the same tilt."""
         self.has_torque = WEIGHT <= has and self.is_moment_known and not free
         self.is_tied = (
             self.spins and "C" in has and (self.is_moment_known or WEIGHT <= has) and not free
@@ -181,14 +181,14 @@ class Problem:
         return rows
 
     def priors(self, x: Array) -> list[Array]:
-        """Return the distances of uncertain inputs from what is known of them, in sigmas."""
+        """Return the distances of uncertain inputs from their known values, in sigmas."""
         value = self.values(x)
         return [(value[y] - self.known[y]) / std for y, std in self.stds.items()]
 
     def slopes(
         self, x: Array, function: Callable[[Array], Array], *, central: bool = True
     ) -> Array:
-        """Return the derivatives of a function of many tops by the parameters, in the last axis."""
+        """Return the derivatives of a function with respect to the parameters, in the last axis."""
         least = np.array(
             [_LEAST_PLACE if name in BESIDE_POLE else _LEAST_SIZE for name in self.names]
         )
@@ -301,7 +301,7 @@ class Minimum:
     unknown: list[str]
     """Parameters that the recording does not determine."""
     is_curved: bool = False
-    """Whether chi^2 is no parabola within two standard deviations."""
+    """Whether chi^2 is not parabolic within two standard deviations."""
     is_hopeless: bool = False
     """Whether no motion of a top is near the recording."""
 

@@ -61,7 +61,7 @@ _LEAST_SIGMA = 1e-12
 _NEAREST = 3.0
 """Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
 _FILTERED = 1e-4
-"""Share of the nutation that a filter takes away, from which a note says so."""
+"""Least share of the nutation, lost to a filter, that a note reports."""
 _Noise = Mapping[str, tuple[float, float]]
 
 
@@ -138,11 +138,11 @@ def best_fit(
     if widest > 1 and outcome.verdict != FAILED:
         note = (
             "the residuals correlate from row to row (smoothed data, or an encoder): standard "
-            f"deviations are {widest:.2g} times as large"
+            f"deviations are multiplied by {widest:.2g}"
         )
         lost = max(rest.lost(frequency) for rest in outcome.residuals.values())
         if lost > _FILTERED:
-            note += f"; if a filter did that, the nutation is {100 * lost:.2g} % too small"
+            note += f"; if a filter smoothed the data, the nutation is {100 * lost:.2g} % too small"
         outcome.notes.append(note)
     return outcome
 
@@ -260,10 +260,10 @@ def _assumed(found: Minimum, faster: float, turns: float, turn: float) -> list[s
             f"psi may count in the other direction, if the spin makes {faster:.2g} turns per row"
         )
     if turns > 0.5:
-        how = "the one that C selects" if found.problem.is_tied else "the slowest possible rate"
+        how = "rate that C selects" if found.problem.is_tied else "slowest possible rate"
         notes.append(
-            f"the spin exceeds half a turn per row: r0 is known up to multiples of {turn:.6g}, and "
-            f"is {how}"
+            "the spin exceeds half a turn per row: r0 is known only up to multiples of "
+            f"{turn:.6g}; the {how} is reported"
         )
     return notes
 

@@ -111,13 +111,12 @@ def mean_rate(t: Array, y: Array, frame: float) -> float:
 def binned(recording: Recording, signals: Mapping[str, Signal], most: int) -> Recording:
     """Return the recording averaged over at most about `most` bins of equally many rows.
 
-    A recording with missing cells is thinned instead.  Angles have no whole turns removed.
+    A bin with a missing cell is missing.  If most are, the recording is thinned instead.  Angles
+    have no whole turns removed.
     """
     size = -(-recording.t.size // most)
     if size == 1:
         return recording
-    if not recording.present.all():
-        return recording.rows(np.arange(0, recording.t.size, size))
     starts = np.arange(0, recording.t.size - size + 1, size)
 
     def mean(x: Array) -> Array:
@@ -126,13 +125,18 @@ def binned(recording: Recording, signals: Mapping[str, Signal], most: int) -> Re
     t, angles = mean(recording.t), {}
     for name, values in recording.angles.items():
         one = signals.get(name)
-        y = values if name == "theta" or one is None else one.y
+        y = values.copy()
+        if name != "theta" and one is not None:
+            y[np.isfinite(values)] = one.y
         blocks = y[: starts.size * size].reshape(-1, size)
         ends = blocks[:, : max(size // 4, 1)].mean(axis=1) - blocks[:, -(size // 4 or 1) :].mean(1)
         rate = 0.0 if name == "theta" or one is None else one.rate
         angles[name] = np.where(np.abs(ends) > _JUMP, np.nan, blocks.mean(axis=1)) + rate * t
     spread = np.sqrt(np.maximum(mean(recording.t**2) - t**2, 0))
-    return replace(recording, t=t, angles=angles, spread=spread, rows_per_bin=size, position=None)
+    whole = replace(recording, t=t, angles=angles, spread=spread, rows_per_bin=size, position=None)
+    if whole.present.mean() < recording.present.mean() / 2:
+        return recording.rows(np.arange(0, recording.t.size, size))
+    return whole
 
 
 def oscillation_in(signals: Mapping[str, Signal]) -> tuple[float, bool]:

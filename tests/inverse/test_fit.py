@@ -691,7 +691,7 @@ def test_a_filter_is_said_to_make_the_nutation_smaller() -> None:
     t, seen = recorded("theta", "psi", rows=242, noise=0.5, seed=8)
     smooth = {x: np.convolve(np.unwrap(y), np.ones(3) / 3, "valid") for x, y in seen.items()}
     outcome = fitted(t[1:-1], smooth)
-    (note,) = [x for x in outcome.notes if "if a filter did that, the nutation is" in x]
+    (note,) = [x for x in outcome.notes if "if a filter smoothed the data, the nutation is" in x]
     share = float(note.rpartition("nutation is ")[2].partition("%")[0]) / 100
     step = 2 * math.pi * float(t[1]) / outcome.numbers["T_nutation"].value
     assert share == pytest.approx(step**2 / 3, rel=0.5)
@@ -717,7 +717,7 @@ def test_an_angle_of_few_rows_has_no_windows() -> None:
 def test_rounded_times_are_named() -> None:
     t, seen = recorded("theta", "psi", rows=120, noise=0.1, seed=8)
     outcome = fitted(np.floor(10 * t), seen)
-    assert outcome.hints == ["t has 10 values in 120 rows: give it more digits"]
+    assert outcome.hints == ["t has only 10 values in 120 rows: write it with more digits"]
 
 
 def test_a_known_tilt_that_is_wrong_is_questioned() -> None:
