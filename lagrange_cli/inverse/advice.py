@@ -20,6 +20,7 @@ from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
 _AXES = ("x", "y", "-x", "-y", "-z")
+_MEANINGS = {"up": "of the data points up", "axis": "is the figure axis"}
 _ROWS = 250
 """Rows at which axes are compared."""
 _OTHER_AXIS, _CALMER, _OUTLYING, _NOISY = 0.35, 0.1, 30.0, 2.0
@@ -30,7 +31,7 @@ residuals are larger than the differences between neighbours by the last factor.
 _HELD, _RELEASED, _STILL = 12, 6.0, 3.5
 """Least number of rows before a release, the standard deviations that show it, and the standard
 deviation of the rows before it, over the noise of neighbours, above which these rows move too."""
-_WINDOWS = (5, 12, 32)
+_WINDOWS = (5, 10, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
@@ -90,19 +91,21 @@ def _tried(recording: Recording, known: Known, chance: float = CHANCE) -> Outcom
 
 
 def _frames(recording: Recording, known: Known) -> Iterator[str]:
-    """Yield the axis of space or of the body in whose frame a top explains the motion."""
-    if recording.kind == "angles":
+    """Yield the axes of space and of the body in whose frame a top explains the motion."""
+    if recording.kind == "angles" or recording.is_turned:
         return
     few = recording.thinned(_ROWS)
-    tried = [("up", x) for x in _AXES]
-    tried += [("axis", x) for x in _AXES] * (recording.kind == "attitude")
-    noise = {one: _calmness(reoriented(few, **dict([one]))) for one in tried}
-    best = min(noise, key=lambda one: noise[one])
-    is_calmer = _calmness(few) - noise[best] > _OTHER_AXIS * len(few.angles)
-    for word, axis in [*[best] * is_calmer, ("up", "-z")]:
-        if _is_good(reoriented(recording, **{word: axis}), known):
-            what = "is the figure axis" if word == "axis" else "of the data points up"
-            yield f"the {axis} axis {what}: use align={word}={axis}"
+    tried = [{"up": x} for x in _AXES]
+    if recording.kind == "attitude":
+        tried += [{"axis": x} for x in _AXES] + [{"up": x, "axis": x} for x in ("x", "y")]
+    noise = [_calmness(reoriented(few, **one)) for one in tried]
+    best = tried[int(np.argmin(noise))]
+    opposite = {word: x[1:] if x.startswith("-") else f"-{x}" for word, x in best.items()}
+    is_calmer = _calmness(few) - min(noise) > _OTHER_AXIS * len(few.angles)
+    for one in [*[best, opposite] * is_calmer, {"up": "-z"}]:
+        if _is_good(reoriented(recording, **one), known):
+            words = " and ".join(f"the {x} axis {_MEANINGS[word]}" for word, x in one.items())
+            yield f"{words}: use align={','.join(f'{word}={x}' for word, x in one.items())}"
 
 
 def _calmness(recording: Recording) -> float:
@@ -118,7 +121,8 @@ def _other_angles(recording: Recording) -> Iterator[tuple[Recording, str]]:
     if recording.kind != "angles":
         return
     larger = {x: np.degrees(y) for x, y in angles.items()}
-    if all(np.nanmax(np.abs(x)) <= 2 * np.pi for x in larger.values()):
+    bounded = [larger["theta"]] if "theta" in larger else larger.values()
+    if all(np.nanmax(np.abs(x)) <= 2 * np.pi for x in bounded):
         wrapped = {x: y if x == "theta" else within_half_turn(y) for x, y in larger.items()}
         words = "the angles are in radians: give their columns names such as theta_rad"
         yield replace(recording, angles=wrapped), words
@@ -153,33 +157,33 @@ def release(recording: Recording) -> int:
 
 
 def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
-    """Yield the number of windows that are good and show a decay, or a decay within windows."""
-    shown = ""
-    for count in _WINDOWS:
-        if count * _ROWS_PER_WINDOW > recording.t.size:
-            break
+    """Yield the number of windows that are all good and show a decay, or a decay within windows."""
+    counts = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size]
+    for count in counts:
         try:
             parts, fits = recording.windows(count), list[Outcome]()
         except LagtopError:  # of rows that are not even
-            break
+            return
         three = [parts[i] for i in (0, count // 2, -1)]
         if noise - sum(map(_calmness, three)) / len(three) < _CALMER:
-            return
+            continue
         for part in three:
             found = _tried(part, known, CHANCE / count)
             if found is None:
                 return
             fits.append(found)
-            if found.verdict != GOOD and (shown or not _is_closer(found, outcome)):
+            if found.verdict != GOOD and (count != counts[-1] or not _is_closer(found, outcome)):
                 break
-        else:
-            if decay := decay_of(fits):  # all three windows are good
-                if decay.time:
-                    yield f"the spin decays: use window={count}"
+        if all(x.verdict == GOOD for x in fits):
+            decay = decay_of(fits)
+            if decay is None or decay.time is None:
                 return
-            if not shown and all(_is_closer(x, outcome) for x in fits):
-                shown = _loss(fits)
-    yield from [f"the spin decays: {shown}, and within each window"] * bool(shown)
+            every = (_tried(part, known, CHANCE / count) for part in parts)
+            if all(found is not None and found.verdict == GOOD for found in every):
+                yield f"the spin decays: use window={count}"
+                return
+        if count == counts[-1] and len(fits) == len(three) and (shown := _loss(fits)):
+            yield f"the spin decays: {shown}, and within each window"
 
 
 def _is_closer(part: Outcome, whole: Outcome) -> bool:

@@ -36,9 +36,9 @@ _DERIVED = (
     *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
     *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
 )
-_UNSURE = 0.1
-"""Standard deviation of the tilt over its distance from a pole, beyond which the precession in the
-first row is not determined."""
+_UNSURE, _OPEN = 0.1, 0.25
+"""Standard deviations of the tilt over its distance from a pole, beyond which the precession in the
+first row is not determined, and beyond which the sign of the nutation rate is not."""
 _IMPROVED = 0.999
 """Standard deviation of a known input after the fit, over the given one, from which it is new."""
 
@@ -65,8 +65,9 @@ def nutating_outcome(
     )
     hidden = {x for x, y in zip(names, stds, strict=True) if y > _IMPROVED * given.get(x, math.inf)}
     tilt, (factor, angle) = found.values["theta0"], angle_unit(radians=radians)
-    if pairs.get("theta0", (0.0, 0.0))[1] > _UNSURE * min(tilt, math.pi - tilt):
-        hidden |= {"psidot0", "psi_zero", "phi_zero"}
+    nearness = pairs.get("theta0", (0.0, 0.0))[1] / min(tilt, math.pi - tilt)
+    hidden |= {"psidot0", "psi_zero", "phi_zero"} if nearness > _UNSURE else set()
+    hidden |= {"thetadot0"} if nearness > _OPEN else set()
     numbers = {}
     for name, (value, *spreads) in pairs.items():
         if name in hidden or not spreads[0]:  # without a spread, known inputs determine it

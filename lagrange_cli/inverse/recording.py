@@ -67,6 +67,8 @@ class Recording:
     """Standard deviations of the times of the rows of which each row is the mean."""
     rows_per_bin: int = 1
     """The number of rows of which each row is the mean."""
+    is_turned: bool = False
+    """Whether `up` or `axis` has turned its frame."""
 
     @property
     def channels(self) -> list[str]:
@@ -256,7 +258,7 @@ def recording_of(
     raw = Recording("", t, 0.0, kind, angles, {}, position)
     unit = unit_in_radians(radians=conventions.radians)
     spread = {name: x * unit for name, x in _sigma(raw, sigma).items()}
-    return replace(raw, sigma=spread).part(order)
+    return replace(raw, sigma=spread, is_turned=(up, axis) != ("z", "z")).part(order)
 
 
 def _check_times(where: str, t: Array) -> None:

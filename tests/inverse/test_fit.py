@@ -367,7 +367,7 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     del seen["phi"]
     outcome = fitted(t, seen)
     assert outcome.verdict == "failed"
-    assert "the spin decays: use window=12" in outcome.failure()
+    assert "the spin decays: use window=10" in outcome.failure()
     windows = fit_windows(
         recording_from(t, theta=seen["theta"], psi=seen["psi"]), 12, known_inputs(LAB, {})
     )
