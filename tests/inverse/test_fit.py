@@ -302,12 +302,28 @@ def test_an_outlier_is_named() -> None:
 
 
 @pytest.mark.parametrize(
-    "seed", [106, *(pytest.param(x, marks=pytest.mark.slow) for x in (14, 111, 118))]
+    "seed", [106, *(pytest.param(x, marks=pytest.mark.slow) for x in (14, 102, 111, 118, 126))]
 )
 def test_a_top_that_starts_on_a_pole_is_fitted(seed: int) -> None:
     import fuzz_fits
 
     assert fuzz_fits.checked(seed, look="pole").fate == "right, good"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("seed", "fate"),
+    [
+        (70101, "wrong, failed"),  # one phi at a pole would determine all
+        (50132, "wrong, failed"),  # a mirror image has another a
+        (70204, "right, good"),  # a mirror image would need a turn per row
+        (70117, "right, good"),  # bins hide leaps of psi
+    ],
+)
+def test_fates_of_recordings_near_a_pole_or_with_a_mirror_image(seed: int, fate: str) -> None:
+    import fuzz_fits
+
+    assert fuzz_fits.checked(seed).fate == fate
 
 
 @pytest.mark.slow
@@ -379,6 +395,13 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     assert decay.quantity == "b"
 
 
+def _of_engine(seen: Mapping[str, Array]) -> Array:
+    """Return quaternions with y as the figure axis, in a space whose y axis points up."""
+    turns = Rotation.from_euler("ZXZ", np.stack([seen["psi"], seen["theta"], seen["phi"]], 1))
+    frame = Rotation.from_matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])
+    return np.asarray((frame * turns * frame.inv()).as_quat(scalar_first=True))
+
+
 @pytest.mark.parametrize(
     ("make", "reason"),
     [
@@ -392,6 +415,16 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
                 "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, ::-1]
             },
             "use align=up=x",
+        ),
+        (
+            lambda rng, t: {
+                "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, [1, 2, 0]]
+            },
+            "the y axis of the data points up: use align=up=y",
+        ),
+        (
+            lambda rng, t: {"quaternion": _of_engine(slowed(1e9, t))},
+            "the y axis is the figure axis: use align=up=y,axis=y",
         ),
     ],
 )
@@ -700,8 +733,8 @@ def test_a_filter_is_said_to_make_the_nutation_smaller() -> None:
 @pytest.mark.parametrize("meaning", ["radians", "elevation"])
 def test_another_meaning_of_angles_is_named(meaning: str) -> None:
     t, seen = recorded("theta", "psi", rows=120, noise=0.1, seed=8)
-    if meaning == "radians":  # read as degrees
-        seen = {x: np.radians(y) for x, y in seen.items()}
+    if meaning == "radians":  # read as degrees, with precession that has grown
+        seen = {x: np.radians(y + 20 * (x == "psi")) for x, y in seen.items()}
     else:
         seen["theta"] = math.pi / 2 - seen["theta"]
     assert meaning in fitted(t, seen).hints[-1]
