@@ -38,10 +38,10 @@ _GAIN = 1e-7
 """Relative gain at which the least squares end."""
 _APART = 4.0
 """Standard deviations between different tops."""
-_CURVED, _BENT, _BROKEN, _STIFF = 2.0, 2.0, 6.0, 100.0
-"""Standard deviations at which chi^2 is compared with a parabola, the factors above it that show a
-bent valley and, on both sides, one without a floor, and the weight of the distance at which the
-floor is searched."""
+_CURVED, _FAR_ALONG, _BENT, _BROKEN, _STIFF = 2.0, 2.5, 2.0, 6.0, 100.0
+"""Standard deviations at which chi^2 is compared with a parabola, how many times as far a bent
+valley is followed, the factors above the parabola that show such a valley and, on both sides, one
+without a floor, and the weight of the distance at which the floor is searched."""
 _SHAPE_ROWS = 300
 """Rows that show the shape of chi^2."""
 
@@ -410,8 +410,9 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
     """Return factors by which the axes of a covariance are too short, at least 1.
 
     Two standard deviations away on either side, chi^2 should have grown by 4.  If it grows by much
-    more, the valley of chi^2 is bent, and its floor is followed.  If there is none on either side,
-    the covariance is wrong, as the second number says.  Chi^2 is that of the change of the motion.
+    more, the valley of chi^2 is bent, and its floor is followed, also to five standard deviations,
+    as it may become flatter.  If there is none on either side, the covariance is wrong, as the
+    second number says.  Chi^2 is that of the change of the motion.
     """
     few = problem.thinned(_SHAPE_ROWS)
     few = few.of(few.recording, few.sizes * math.sqrt(few.rows / problem.rows))
@@ -423,13 +424,16 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
     ends = x + _CURVED * np.concatenate([spread.T, -spread.T])
     grown = np.sum(change(ends) ** 2, axis=1).reshape(2, -1)
     for side, axis in zip(*np.nonzero(grown > _BENT * _CURVED**2), strict=True):
-        wanted, row = _CURVED * (1 - 2 * side), rows[axis]
+        end = x
+        for times in (1.0, _FAR_ALONG):
+            wanted, row = times * _CURVED * (1 - 2 * side), rows[axis]
 
-        def held(at: Array, row: Array = row, wanted: float = wanted) -> Array:
-            return np.column_stack([change(at), _STIFF * ((at - x) @ row - wanted)])
+            def held(at: Array, row: Array = row, wanted: float = wanted) -> Array:
+                return np.column_stack([change(at), _STIFF * ((at - x) @ row - wanted)])
 
-        end, _ = few.solve(x + wanted * spread[:, axis], STEPS // 3, held)
-        grown[side, axis] = float(np.sum(change(end[np.newaxis]) ** 2))
+            end, _ = few.solve(end + wanted / times * spread[:, axis], STEPS // 3, held)
+            size = float(np.sum(change(end[np.newaxis]) ** 2)) / times**2
+            grown[side, axis] = size if times == 1 else min(size, grown[side, axis])
     least = np.maximum(grown.min(axis=0, initial=math.inf), 0.04)
     factors = np.sqrt(np.clip(_CURVED**2 / least, 1.0, 100.0))
     return np.asarray(factors), bool(np.any(grown.min(axis=0) > _BROKEN * _CURVED**2))
