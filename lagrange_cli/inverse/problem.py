@@ -265,7 +265,7 @@ class Problem:
         if "psi" in seen:
             value["psi_zero"] = _mean_angle(seen["psi"] - psi, np.sin(theta))
             psi = psi + value["psi_zero"][:, np.newaxis]
-        rest = np.nanmean(self.recording.residuals(theta, phi, psi) ** 2, axis=2)
+        rest = mean_squares(self.recording.residuals(theta, phi, psi))
         noise = np.log(rest + self.sizes**2 / self.recording.rows_per_bin).sum(axis=1)
         rows = [np.broadcast_to(value[name], len(states)) for name in self.names]
         return np.stack(rows, axis=-1), np.nan_to_num(noise, nan=np.inf)
@@ -282,6 +282,12 @@ class Problem:
             wave = np.exp(1j * (seen - phi - np.outer(rate - b, t)))
             fits.append(np.abs(np.nansum(wave, axis=1)) * (1.05 if rate is rates[0] else 1.0))
         return np.asarray(rates[np.argmax(fits, axis=0), np.arange(b.size)])
+
+
+def mean_squares(rest: Array) -> Array:
+    """Return the mean squares of residuals over times, 0 for a channel without any."""
+    count = np.maximum(np.isfinite(rest).sum(axis=-1), 1)
+    return np.asarray(np.nansum(rest**2, axis=-1) / count)
 
 
 def _mean_angle(turned: Array, weights: Array | float = 1.0) -> Array:
@@ -329,7 +335,7 @@ class Minimum:
         share = share / max(present.sum() - problem.count, 1)
         for _ in range(0 if recording.sigma else 3):
             rest = np.where(present, problem.residuals(x[np.newaxis])[0], np.nan)
-            size = np.maximum(np.sqrt(np.nanmean(rest**2, axis=1) * share), floors)
+            size = np.maximum(np.sqrt(mean_squares(rest) * share), floors)
             done = np.allclose(size * factors, problem.sizes, rtol=1e-3)
             problem.sizes = size * factors
             if done:

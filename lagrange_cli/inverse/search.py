@@ -24,8 +24,8 @@ from .known import Known, compared, estimates, most_turns, scaled_known, time_po
 from .motions import STATE
 from .nutation import nutating_outcome
 from .outcome import FAILED, Outcome
-from .problem import STEPS, Minimum, Problem
-from .recording import Recording
+from .problem import STEPS, Minimum, Problem, mean_squares
+from .recording import LEAST_ROWS, Recording
 from .signals import (
     Signal,
     binned,
@@ -180,7 +180,8 @@ def _forms(
             yield whole, {x: noise[alias.get(x, x)] for x in whole.channels}
         is_seen = np.sin(angles["theta"]) > _NEAREST * noise["theta"][1]
         found = {x: y if x == "theta" else np.where(is_seen, y, np.nan) for x, y in angles.items()}
-        recording = replace(recording, angles=found)
+        if min(int(np.isfinite(y).sum()) for y in found.values()) >= LEAST_ROWS:
+            recording = replace(recording, angles=found)
     yield recording, noise
 
 
@@ -292,7 +293,7 @@ def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:
     minima: list[Minimum] = []
     for cost, data, problem, end in ends:
         few = problem.thinned(rows)
-        rms = np.sqrt(np.nanmean(few.residuals(end[np.newaxis]) ** 2, axis=2))
+        rms = np.sqrt(mean_squares(few.residuals(end[np.newaxis])))
         is_hopeless = rms.max() > LARGEST or 2 * cost > _HOPELESS * few.recording.present.sum()
         if is_hopeless and not minima:
             return [replace(Minimum.of(few, end, data.floors), is_hopeless=True)]

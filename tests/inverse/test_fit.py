@@ -310,6 +310,12 @@ def test_a_top_that_starts_on_a_pole_is_fitted(seed: int) -> None:
     assert fuzz_fits.checked(seed, look="pole").fate == "right, good"
 
 
+def test_a_tilt_that_stays_at_a_pole_is_no_top() -> None:
+    t, rng = np.linspace(0, 3, 90), np.random.default_rng(5)
+    swing = np.abs(0.02 * np.sin(9 * t)) + np.abs(rng.normal(scale=0.02, size=90))
+    assert fit(t, theta=swing, phi=3 * t, psi=2 * np.sin(9 * t)).verdict == "failed"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "fate"),
