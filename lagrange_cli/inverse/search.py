@@ -41,7 +41,7 @@ from .steady import steady_outcome
 
 _FEW_ROWS, _ROWS = 12, 50
 """Rows at which all starts are compared, then the best."""
-_KEPT, _BLOCK, _STARTS = 1500, 2000, 12
+_KEPT, _BLOCK, _STARTS = 1500, 2000, 20
 _ROUNDS = ((60, 6, 5), (150, 12, 3), (300, 15, 3))
 """Rows and steps of the first least squares, and the number of ends that are kept, by round."""
 _ALIKE = 0.02
@@ -50,7 +50,7 @@ _HOPELESS, _COMPARABLE, _LIKELY = 50.0, 5.0, 16.0
 """Mean square of weighted residuals that no top explains, the factor of chi^2 above the least one
 beyond which a start is dropped, and the difference of -2 log(likelihood) below which two tops
 explain a recording equally well."""
-_COARSE, _FINE, _LEAST_BINS, _MOST_ROWS, _MOST_LEAPING = 20, 40, 600, 3000, 20_000
+_COARSE, _FINE, _LEAST_BINS, _MOST_ROWS, _MOST_LEAPING = 20, 40, 600, 3000, 6000
 """Bins per nutation period for the starts and for the fit, their least number, and the number of
 rows up to which the fit uses all of them, also if an angle leaps within bins."""
 _SURE = 2.0
@@ -288,7 +288,7 @@ def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:
             end, cost = few.solve(x, steps)
             if (phased := few.rephased(end)) is not end:
                 end, cost = min((end, cost), few.solve(phased, steps), key=itemgetter(1))
-            found[problem.recording.is_mirrored, f"{cost:.4g}"] = cost, data, problem, end
+            found[problem.recording.is_mirrored, f"{cost:.6g}"] = cost, data, problem, end
         ends = sorted(found.values(), key=itemgetter(0))[:kept]
     minima: list[Minimum] = []
     for cost, data, problem, end in ends:
