@@ -164,7 +164,7 @@ def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) 
             parts, fits = recording.windows(count), list[Outcome]()
         except LagtopError:  # of rows that are not even
             return
-        three = [parts[i] for i in (0, count // 2, -1)]
+        three = [parts.pop(i) for i in (-1, count // 2, 0)][::-1]
         if noise - sum(map(_calmness, three)) / len(three) < _CALMER:
             continue
         for part in three:
@@ -178,8 +178,8 @@ def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) 
             decay = decay_of(fits)
             if decay is None or decay.time is None:
                 return
-            every = (_tried(part, known, CHANCE / count) for part in parts)
-            if all(found is not None and found.verdict == GOOD for found in every):
+            others = (_tried(part, known, CHANCE / count) for part in parts)
+            if all(found is not None and found.verdict == GOOD for found in others):
                 yield f"the spin decays: use window={count}"
                 return
         if count == counts[-1] and len(fits) == len(three) and (shown := _loss(fits)):

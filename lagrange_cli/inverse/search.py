@@ -205,12 +205,11 @@ def _nutation(
         found, rival, image = _chosen(_minima(ways, known, free=is_free), turn)
         if found is not None:
             way = ways[found.problem.recording.is_mirrored]
-            factors = _widening(found, way)
-            is_final = not found.is_hopeless
-            problem = found.problem
+            factors, problem = _widening(found, way), found.problem
             if way.fine.rows_per_bin > 1 and not way.fine.present.all():  # bins hide leaps
                 problem = problem.of(way.recording.thinned(_MOST_LEAPING))
-            found = Minimum.of(problem, found.x, floors, factors, is_final=is_final)
+            if not found.is_hopeless:
+                found = Minimum.of(problem, found.x, floors, factors, is_final=True)
             found = _slowest(found, turn)
             if not found.unknown:
                 break
