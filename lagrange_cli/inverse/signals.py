@@ -17,8 +17,9 @@ from scipy.optimize import minimize_scalar
 from ..arithmetic.types import Array
 from .recording import Recording, are_whole
 
-_MOST_ROWS, _STEP, _ROWS_PER_PERIOD = 700, 0.12, 2.2
-"""Rows of the search for a frequency, its step over the inverse duration, and its end."""
+_MOST_ROWS, _STEP, _EXACT, _ROWS_PER_PERIOD = 700, 0.12, 1e-5, 2.2
+"""Rows of the search for a frequency, its step and its precision over the inverse duration, and its
+end."""
 _CELLS, _MOST_CELLS = 8, 1 << 20
 """Cells per frame, and their greatest number, for the spectrum of an angle at uneven times."""
 _CLEAR = (9.0, 5.5)
@@ -190,7 +191,8 @@ def _best_frequency(used: list[Signal]) -> tuple[float, float, float]:
     refined = []
     for i in dips[np.argsort(found[dips])][:4].tolist():
         how = {"bounds": (tried[i - 1], tried[i + 1]), "args": (order_at(float(tried[i + 1])),)}
-        refined.append(minimize_scalar(lambda *at: noise(*at)[0], method="bounded", **how))
+        exact = {"method": "bounded", "options": {"xatol": _EXACT / span}}
+        refined.append(minimize_scalar(lambda *at: noise(*at)[0], **how, **exact))
     if not refined:
         return 1 / span, -1.0, span
     least = min(float(x.fun) for x in refined)
