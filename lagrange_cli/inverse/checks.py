@@ -83,7 +83,9 @@ class Residuals:
         They may not correlate for as many rows again: an oscillation passes through 0.
         """
         rest = np.abs(self.correlations[1 : max(self.y.size // 4, 2)])
-        large = rest >= max(2.5 / math.sqrt(self.y.size), _WEAK)
+        nearer = np.cumsum(rest[:_LAGS] ** 2) - rest[:_LAGS] ** 2  # as in Bartlett's formula
+        nearer = np.pad(nearer, (0, rest.size - nearer.size), mode="edge")
+        large = rest >= np.maximum(2.5 * np.sqrt((1 + 2 * nearer) / self.y.size), _WEAK)
         found = (n for n in range(1, rest.size + 1) if not large[n - 1 : 2 * n - 1].any())
         return next(found, self.y.size)
 
@@ -129,9 +131,9 @@ class Residuals:
         factors, _, count, _ = np.linalg.lstsq(basis, y, rcond=1e-6)
         shown = basis @ factors
         explained, rest = float(shown @ shown), Residuals(t, y - shown, self.step)
-        noise = max((rest.rms * rest.widening(chance)) ** 2 * y.size, 1e-12 * explained)
-        dof = x.size - count
-        return float(fdtrc(count, dof, explained / count / (noise / dof)))
+        dof = max(x.size / rest.widening(chance) ** 2 - count, 1.0)
+        noise = max(float(rest.y @ rest.y), 1e-12 * explained) / dof
+        return float(fdtrc(count, dof, explained / count / noise))
 
     def faults(self, name: str, frequency: float, chance: float) -> Iterator[str]:
         """Yield why the residuals are not noise.

@@ -148,7 +148,7 @@ class Outcome(HasRecord):
                 off, at = abs(rest.y[row]) * scale, self.recording.t_start + rest.t[row]
                 yield f"{name} is {off:.3g} {unit} off at t = {at:.6g}, far more than elsewhere"
         for name, rest in self.residuals.items():
-            yield from rest.faults(name, self.frequency, self.chance)
+            yield from rest.faults(name, self.frequency, self.chance / len(self.residuals))
         chi2, high = self.chi2_dof, self.chi2_bounds[1]
         if chi2 is not None and chi2 > high:
             sigma = self.recording.sigma
