@@ -27,7 +27,7 @@ CONTRADICTS = 3.0
 """Standard deviations from which a known input contradicts the recording."""
 _MOST_TURNS, _APART = 10, 6.0
 """A known C selects among spins that differ by whole turns per row: the most turns, and the least
-distance of the values of C that these spins have, in standard deviations of C."""
+distance of these spins in standard deviations."""
 _UNITS, _ROUGHLY = (2 * math.pi, 30 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7), 0.02
 """Factors between units, in either direction, and how close a contradiction is to them."""
 _RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
@@ -122,7 +122,7 @@ def estimates(
             r0 = np.full_like(r0, known["r0"][0])
         elif spins:
             wanted = float((v["b"] * moment)[0]) / known["C"][0]
-            r0 = _nearest(r0, wanted, turn, most_turns(known["C"]))
+            r0 = _nearest(r0, wanted, turn) if abs(wanted) <= _MOST_TURNS * turn else r0
         found["C"] = v["b"] * moment / r0
     return found
 
@@ -160,24 +160,20 @@ def compared(
     return far, False, f"{text}: omit {name}{check}"
 
 
-def most_turns(C: tuple[float, float]) -> float:
-    """Return the turns per row up to which a known C, with its uncertainty, selects a spin.
+def selects_any(turns: float, spread: float) -> bool:
+    """Return whether several spins that differ by whole turns per row meet a known C.
 
-    Among faster spins, one would meet any C.
+    `turns` are those per row of the spin that C implies, and `spread` is their relative standard
+    deviation.  A C that implies more than _MOST_TURNS is wrong.
     """
-    return min(_MOST_TURNS, abs(C[0]) / (_APART * C[1]) if C[1] else math.inf)
+    return 0.5 < turns <= _MOST_TURNS and turns * spread * _APART > 1
 
 
-def whole_turns(rate: float, wanted: float, turn: float, most: float = math.inf) -> float:
-    """Return the whole turns per row that bring a rate next to a wanted one.
-
-    They are 0 if the wanted rate makes more than `most` turns per row.
-    """
-    if not turn or abs(wanted) > most * turn:
-        return 0.0
-    return turn * round((wanted - rate) / turn)
+def whole_turns(rate: float, wanted: float, turn: float) -> float:
+    """Return the whole turns per row that bring a rate next to a wanted one."""
+    return turn * round((wanted - rate) / turn) if turn else 0.0
 
 
-def _nearest(rate: Array, given: float, turn: float, most: float = math.inf) -> Array:
+def _nearest(rate: Array, given: float, turn: float) -> Array:
     """Return rates that are shifted together by whole turns to be nearest to a given one."""
-    return rate + whole_turns(float(rate[0]), given, turn, most)
+    return rate + whole_turns(float(rate[0]), given, turn)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,9 @@ _POLE, _FAR = 1e-9, 1e3
 """Least distance from a pole, and weighted residual of a motion that does not exist."""
 _GAIN = 1e-7
 """Relative gain at which the least squares end."""
+_LEG, _LEAPS, _AHEAD, _SETTLED, _HOPELESS = 30, 8, 3.0, 0.02, 5.0
+"""For a fit that moves slowly along a bent valley: evaluations of one leg, how often it leaps ahead
+and how many times as far, and the gain of chi^2/2, and its size per number, that end this."""
 _APART = 4.0
 """Standard deviations between different tops."""
 _CURVED, _FAR_ALONG, _BENT, _BROKEN, _STIFF = 2.0, 2.5, 2.0, 6.0, 100.0
@@ -228,6 +232,19 @@ class Problem:
         )
         return np.clip(found.x, low, high), float(found.cost)
 
+    def walked(self, x: Array) -> Array:
+        """Return parameters near the least squares, also at the far end of a bent valley.
+
+        The method of Levenberg and Marquardt moves slowly along it, so that points ahead are tried.
+        """
+        x, cost = self.solve(x, _LEG)
+        for _ in range(_LEAPS):
+            last, (x, least) = x, self.solve(x, _LEG)
+            if cost - least < _SETTLED or least > _HOPELESS * self.recording.present.sum():
+                break
+            x, cost = min((x, least), self.solve(x + _AHEAD * (x - last), _LEG), key=itemgetter(1))
+        return x
+
     def rephased(self, x: Array) -> Array:
         """Return parameters whose r0 is right to a turn over the recording, if it is free."""
         names, recording = self.names, self.recording
@@ -329,6 +346,8 @@ class Minimum:
         recording = problem.recording
         problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
         problem, start = problem.beside_pole(start)
+        if is_final:
+            start = problem.walked(start)
         x, cost = problem.solve(start, STEPS if is_final else STEPS // 3, central=is_final)
         present = recording.present
         share = present.sum() * recording.rows_per_bin

@@ -20,7 +20,7 @@ from ..arithmetic.types import Array
 from ..errors import DataError
 from ..files import rotations
 from .checks import CHANCE, LARGEST, Residuals
-from .known import Known, compared, estimates, most_turns, scaled_known, time_power, whole_turns
+from .known import Known, compared, estimates, scaled_known, selects_any, time_power, whole_turns
 from .motions import STATE
 from .nutation import nutating_outcome
 from .outcome import FAILED, Outcome
@@ -215,7 +215,10 @@ def _nutation(
                 break
     if found is None:
         return None
+    known = _usable(found, known, turn)
     notes, texts, distances = _against_known(found, known, turn, scale)
+    if "C" in given.keys() - known.keys():
+        notes.append("known C is not used: it does not show how many turns per row the spin makes")
     if found.problem.free and known and not texts:
         found = _constrained(found, known, turn, floors, factors)
     is_sure = abs(found.values["b"]) > _SURE * found.std("b")
@@ -288,7 +291,10 @@ def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:
             if (phased := few.rephased(end)) is not end:
                 end, cost = min((end, cost), few.solve(phased, steps), key=itemgetter(1))
             found[problem.recording.is_mirrored, f"{cost:.6g}"] = cost, data, problem, end
-        ends = sorted(found.values(), key=itemgetter(0))[:kept]
+        order = sorted(found.values(), key=itemgetter(0))
+        ends = order[:kept]
+        kinds = {end[2].recording.is_mirrored for end in ends}  # directions of psi
+        ends += [x for x in order if x[2].recording.is_mirrored not in kinds][:1]
     minima: list[Minimum] = []
     for cost, data, problem, end in ends:
         few = problem.thinned(rows)
@@ -337,6 +343,23 @@ def _slowest(found: Minimum, turn: float) -> Minimum:
     return found.turned(rate - v["r0"]) if rate != v["r0"] else found
 
 
+def _moment(v: Mapping[str, float]) -> float:
+    """Return A from the values of a minimum, NaN if it is not determined."""
+    return v.get("A", v.get("m", math.nan) * v.get("g", 1) * v.get("s", 1) * 2 / v["a"])
+
+
+def _usable(found: Minimum, known: Known, turn: float) -> Known:
+    """Return the known inputs without a C that does not select one of the spins that look alike."""
+    v, names = found.values, found.problem.names
+    is_spin_seen = turn and "r0" in names and not {"r0", "phidot0"} & known.keys()
+    if not is_spin_seen or "C" not in known:
+        return known
+    parts = [known["C"], known.get("A", (1.0, 0.0)), *((v[x], found.std(x)) for x in ("a", "b"))]
+    spread = math.hypot(*(std / (value or 1e-300) for value, std in parts))
+    turns = abs(v["b"] * _moment(v) / known["C"][0]) / turn
+    return {x: y for x, y in known.items() if x != "C" or not selects_any(turns, spread)}
+
+
 def _against_known(
     found: Minimum, known: Known, turn: float, scale: float
 ) -> tuple[list[str], list[str], dict[str, float]]:
@@ -375,16 +398,15 @@ def _constrained(
     """Return the minimum with all known inputs, from the one without them."""
     old, v = found.problem, found.values
     problem = Problem(old.recording, known, old.sizes, turns=old.turns, pole=old.pole)
-    moment = v.get("A", v.get("m", math.nan) * v.get("g", 1) * v.get("s", 1) * 2 / v["a"])
     if turn and "r0" in old.names:
-        wanted, most = v["r0"], math.inf
+        wanted = v["r0"]
         if "r0" in known:
             wanted = known["r0"][0]
         elif "phidot0" in known:
             wanted = known["phidot0"][0] + v["psidot0"] * math.cos(v["theta0"])
         elif problem.is_tied:
-            wanted, most = v["b"] * moment / known["C"][0], most_turns(known["C"])
-        shift = whole_turns(v["r0"], wanted, turn, most)
+            wanted = v["b"] * _moment(v) / known["C"][0]
+        shift = whole_turns(v["r0"], wanted, turn)
         problem.turns += shift
         v["r0"] += shift
     x = np.array([problem.known.get(name, v.get(name, 0.0)) for name in problem.names])

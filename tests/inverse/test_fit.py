@@ -324,9 +324,12 @@ def test_a_tilt_that_stays_at_a_pole_is_no_top() -> None:
         (50132, "failed"),  # a mirror image has another a
         (70204, "good"),  # a mirror image would need a turn per row
         (70117, "good"),  # bins hide leaps of psi
+        (90130, "good"),  # the mirror image is as near, with a turn per row
+        (90536, "good"),  # the valley of chi^2 is long and bent
+        (90690, "good"),  # C does not show how many turns the spin makes
     ],
 )
-def test_verdicts_near_a_pole_or_with_a_mirror_image(seed: int, verdict: str) -> None:
+def test_verdicts_near_a_pole_in_a_bent_valley_or_with_another_top(seed: int, verdict: str) -> None:
     import fuzz_fits
 
     result = fuzz_fits.checked(seed)
@@ -355,7 +358,7 @@ def test_an_oscillation_is_no_noise_that_ends_where_it_does_not_correlate() -> N
     smooth = np.convolve(white, np.ones(5) / 5, mode="same")
     assert Residuals(t, white).reach <= 2
     assert 4 <= Residuals(t, smooth).reach <= 6
-    assert Residuals(t, np.sin(0.9 * t) + white / 10).reach == t.size
+    assert Residuals(t, np.sin(0.9 * t) + white / 10).reach > t.size / 5
 
 
 @pytest.mark.slow
@@ -525,6 +528,9 @@ def test_noise_hardly_ever_fails_a_test() -> None:
     wave = Residuals(t, rng.normal(size=90) + 1.5 * np.sin(2 * math.pi * 22.25 * t))
     assert abs(wave.autocorrelation) < 0.2  # four rows per period
     assert next(wave.faults("x", 22.25, CHANCE)).endswith("they drift or oscillate")
+    smooth = [np.convolve(rng.normal(size=304), np.ones(5) / 5, "valid") for _ in range(300)]
+    faults = [any(Residuals(np.arange(300.0), y).faults("x", 0.05, CHANCE)) for y in smooth]
+    assert sum(faults) <= 6
     drift = Residuals(t, rng.normal(size=90) + 3 * t * np.sin(8 * math.pi * t))
     assert any(drift.faults("x", 4.0, CHANCE))
     low, high = chi2_bounds(100)
@@ -781,12 +787,13 @@ def test_known_inputs_that_agree_and_a_nutation_of_a_steady_precession() -> None
 
 
 @pytest.mark.parametrize(
-    "scale", [1e7, *(pytest.param(x, marks=pytest.mark.slow) for x in (1e-9, 1e3))]
+    "scale", [1e-9, *(pytest.param(x, marks=pytest.mark.slow) for x in (1e7, 1e3))]
 )
 def test_any_unit_of_time(scale: float) -> None:
     t, seen = recorded("theta", "psi", seed=8)
     one, other = fitted(t, seen), fitted(t / scale, seen)
     assert other.verdict == "good"
+    assert other.frequency / scale == pytest.approx(one.frequency, rel=1e-6)
     for key, power in (("a", 2), ("b", 1), ("theta0_deg", 0), ("T_nutation", -1)):
         found, std = other.numbers[key][:2]
         assert found == pytest.approx(one.numbers[key].value * scale**power, abs=0.02 * std)

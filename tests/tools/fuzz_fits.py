@@ -320,6 +320,8 @@ def pulls(outcome: Any, case: Drawn, *, mirrored: bool) -> dict[str, float]:
         "psidot0": sign * top.psidot0 * unit,
         "b/a": sign * top.b / top.a / unit,
     }
+    if mirrored and case.look == "pole":  # a pass of the pole may count as a turn of the spin
+        del truth["r0"]
     if outcome.verdict == "good, no nutation":
         truth |= {x: y * (unit if "rate" in x else 1.0) for x, y in case.means.items()}
         truth["mean_precession_rate"] *= sign
