@@ -73,6 +73,13 @@ class LagtopGroup(click.Group):
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
 
+    def make_context(self, *args: Any, **extra: Any) -> click.Context:
+        """Parse the arguments, and print the help or the version."""
+        try:
+            return super().make_context(*args, **extra)
+        except BrokenPipeError:
+            _die_by("SIGPIPE", 141)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; an error about an argument names its option."""
         try:

@@ -158,8 +158,8 @@ def release(recording: Recording) -> int:
 
 def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
     """Yield the number of windows that are all good and show a decay, or a decay within windows."""
-    counts = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size]
-    for count in counts:
+    lost = ""
+    for count in [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size]:
         try:
             parts, fits = recording.windows(count), list[Outcome]()
         except LagtopError:  # of rows that are not even
@@ -172,8 +172,10 @@ def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) 
             if found is None:
                 return
             fits.append(found)
-            if found.verdict != GOOD and (count != counts[-1] or not _is_closer(found, outcome)):
+            if found.verdict != GOOD and not _is_closer(found, outcome):
                 break
+        else:
+            lost = _loss(fits) or lost
         if all(x.verdict == GOOD for x in fits):
             decay = decay_of(fits)
             if decay is None or decay.time is None:
@@ -182,23 +184,27 @@ def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) 
             if all(found is not None and found.verdict == GOOD for found in others):
                 yield f"the spin decays: use window={count}"
                 return
-        if count == counts[-1] and len(fits) == len(three) and (shown := _loss(fits)):
-            yield f"the spin decays: {shown}, and within each window"
+    if lost:
+        yield f"the spin decays: {lost}, and within each window"
 
 
 def _is_closer(part: Outcome, whole: Outcome) -> bool:
-    """Return whether a window shows the spin much better than the whole recording."""
+    """Return whether a window shows the spin much better than the whole recording.
+
+    If the spin is not recorded, the precession shows it.
+    """
     spin = whole.recording.spin_channel
-    if "r0" not in part.numbers or spin not in part.residuals:
-        return False
-    return part.residuals[spin].rms <= _CLOSER * whole.residuals[spin].rms
+    key, names = ("r0", [spin]) if spin in whole.residuals else ("b", ["psi", "across"])
+    rms = [(part.residuals[x].rms, whole.residuals[x].rms) for x in names if x in whole.residuals]
+    return key in part.numbers and all(x <= _CLOSER * y for x, y in rms)
 
 
 def _loss(fits: Sequence[Outcome]) -> str:
     """Return a steady loss of spin from window to window in words, if there is one."""
-    first, middle, last = (x.numbers["r0"] for x in fits)
+    name = "r0" if all("r0" in x.numbers for x in fits) else "b"
+    first, middle, last = (x.numbers[name] for x in fits)
     lost = abs(first.value) - abs(last.value)
     if lost < _LOST * math.hypot(first.own_std, last.own_std):
         return ""
     is_steady = _STEADILY < (abs(first.value) - abs(middle.value)) / lost < 1 - _STEADILY
-    return f"r0 falls from {first} to {last}" * is_steady
+    return f"{name} falls from {first} to {last}" * is_steady

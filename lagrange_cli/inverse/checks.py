@@ -113,14 +113,14 @@ class Residuals:
         step = float(self.t[-1] - self.t[0]) / self.y.size
         return max((2 * math.pi * frequency * step) ** 2 * variance / 2, 0.0)
 
-    def structure(self, frequency: float, chance: float = CHANCE) -> float:
-        """Return the probability that noise resembles a drifting oscillation as much.
+    def structure(self, frequency: float, chance: float = CHANCE) -> tuple[float, float]:
+        """Return how much a drifting oscillation exceeds noise, and the probability of noise.
 
         An F test of three harmonics of a frequency, times 1, t and t^2, against the rest, which
         may be correlated from row to row.
         """
         if self.rms < max(_ROUNDING, self.step / 100):
-            return 1.0
+            return 1.0, 1.0
         size = -(-self.t.size // 4000)
         t, y = (x[: x.size // size * size].reshape(-1, size).mean(1) for x in (self.t, self.y))
         x = 2 * t / max(float(t[-1]), 1e-300) - 1
@@ -133,7 +133,8 @@ class Residuals:
         explained, rest = float(shown @ shown), Residuals(t, y - shown, self.step)
         dof = max(x.size / rest.widening(chance) ** 2 - count, 1.0)
         noise = max(float(rest.y @ rest.y), 1e-12 * explained) / dof
-        return float(fdtrc(count, dof, explained / count / noise))
+        ratio = explained / count / noise
+        return ratio, float(fdtrc(count, dof, ratio))
 
     def faults(self, name: str, frequency: float, chance: float) -> Iterator[str]:
         """Yield why the residuals are not noise.
@@ -153,7 +154,7 @@ class Residuals:
             yield alike
         elif correlation > bound and self.reach > min(rows_per_period / _ROWS_PER_LAG, _LAGS):
             yield f"{alike}, noise by at most {bound:.2f}"
-        elif self.structure(frequency, chance) < chance:
+        elif self.structure(frequency, chance)[1] < chance:
             yield f"{shown}: they drift or oscillate"
 
 

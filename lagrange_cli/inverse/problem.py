@@ -42,10 +42,11 @@ _LEG, _LEAPS, _AHEAD, _SETTLED, _HOPELESS = 30, 8, 3.0, 0.02, 5.0
 and how many times as far, and the gain of chi^2/2, and its size per number, that end this."""
 _APART = 4.0
 """Standard deviations between different tops."""
-_CURVED, _FAR_ALONG, _BENT, _BROKEN, _STIFF = 2.0, 2.5, 2.0, 6.0, 100.0
+_CURVED, _FAR_ALONG, _BENT, _BROKEN, _STIFF, _ASIDE = 2.0, 2.5, 2.0, 6.0, 100.0, 5.0
 """Standard deviations at which chi^2 is compared with a parabola, how many times as far a bent
 valley is followed, the factors above the parabola that show such a valley and, on both sides, one
-without a floor, and the weight of the distance at which the floor is searched."""
+without a floor, the weight of the distance at which the floor is searched, and the standard
+deviations by which a or b may be off a straight valley."""
 _SHAPE_ROWS = 300
 """Rows that show the shape of chi^2."""
 
@@ -348,11 +349,12 @@ class Minimum:
         problem, start = problem.beside_pole(start)
         if is_final:
             start = problem.walked(start)
-        x, cost = problem.solve(start, STEPS if is_final else STEPS // 3, central=is_final)
+        most = STEPS if is_final or recording.sigma else STEPS // 3
+        x, cost = problem.solve(start, most, central=is_final)
         present = recording.present
         share = present.sum() * recording.rows_per_bin
         share = share / max(present.sum() - problem.count, 1)
-        for _ in range(0 if recording.sigma else 3):
+        for _ in range(0 if recording.sigma else 8):
             rest = np.where(present, problem.residuals(x[np.newaxis])[0], np.nan)
             size = np.maximum(np.sqrt(mean_squares(rest) * share), floors)
             done = np.allclose(size * factors, problem.sizes, rtol=1e-3)
@@ -436,12 +438,14 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
 
     Two standard deviations away on either side, chi^2 should have grown by 4.  If it grows by much
     more, the valley of chi^2 is bent, and its floor is followed, also to five standard deviations,
-    as it may become flatter.  If there is none on either side, the covariance is wrong, as the
-    second number says.  Chi^2 is that of the change of the motion.
+    as it may become flatter.  If there is none on either side, or if a or b is far aside on it, the
+    covariance is wrong, as the second number says.  Chi^2 is that of the change of the motion.
     """
     few = problem.thinned(_SHAPE_ROWS)
     few = few.of(few.recording, few.sizes * math.sqrt(few.rows / problem.rows))
     rows, at_x = np.linalg.pinv(spread), few.weighted(x[np.newaxis])
+    stds, is_far = np.linalg.norm(spread, axis=1) + 1e-300, False
+    shown = [i for i, name in enumerate(problem.names) if name in {"a", "b"}]
 
     def change(at: Array) -> Array:
         return few.weighted(at) - at_x
@@ -458,7 +462,9 @@ def _curvature(problem: Problem, x: Array, spread: Array) -> tuple[Array, bool]:
 
             end, _ = few.solve(end + wanted / times * spread[:, axis], STEPS // 3, held)
             size = float(np.sum(change(end[np.newaxis]) ** 2)) / times**2
+            off = np.abs(end - x - wanted * spread[:, axis]) / stds
+            is_far |= bool(np.any(off[shown] > times * _ASIDE))
             grown[side, axis] = size if times == 1 else min(size, grown[side, axis])
     least = np.maximum(grown.min(axis=0, initial=math.inf), 0.04)
     factors = np.sqrt(np.clip(_CURVED**2 / least, 1.0, 100.0))
-    return np.asarray(factors), bool(np.any(grown.min(axis=0) > _BROKEN * _CURVED**2))
+    return np.asarray(factors), is_far or bool(np.any(grown.min(axis=0) > _BROKEN * _CURVED**2))

@@ -276,7 +276,13 @@ def _widening(found: Minimum, data: Data) -> Array:
     one = data.recording
     rows = found.problem.of(one).residuals(found.x[np.newaxis])[0]
     channels = zip(rows, one.present, data.floors * math.sqrt(12), strict=True)
-    return np.array([Residuals(one.t[x], y[x], step).widening() for y, x, step in channels])
+    factors = []
+    for y, x, step in channels:
+        rest = Residuals(one.t[x], y[x], step)
+        excess, chance = rest.structure(1.0) if rest.is_coarse else (1.0, 1.0)
+        repeated = math.sqrt(excess) if chance < CHANCE else 1.0  # in each period, by an encoder
+        factors.append(max(rest.widening(), repeated))
+    return np.array(factors)
 
 
 def _minima(ways: Sequence[Data], known: Known, *, free: bool) -> list[Minimum]:

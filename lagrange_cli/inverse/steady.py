@@ -199,7 +199,10 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
             return found, []
         moment = v["A_cm"] + v["m"] * v["s"] ** 2 if "A_cm" in v else v.get("A", 1.0)
         ratios = [v["C"] / moment] * 2 if "C" in v and is_moment_known else [least, most]
-        ends = [along / (found["r0"] * x) * (is_sure or x != most) for x in ratios]
+        slowest = found["r0"]
+        if not is_sure and "phi" in v:  # psi may count in the other direction
+            slowest = math.copysign(min(abs(slowest), abs(v["phi"] - along)), slowest)
+        ends = [along / (slowest * x) * (is_sure or x != most) for x in ratios]
         if is_exact:
             ends = []
             found["b/a"] = 1 / (2 * turn) + along * moment / (2 * v["m"] * v["g"] * v["s"])
@@ -247,7 +250,7 @@ def _faults(
     """Return why the motion is not a steady precession, besides the residuals."""
     found = []
     for rest in result.residuals.values():
-        if not rest.is_coarse and rest.structure(frequency) < CHANCE / 10:
+        if not rest.is_coarse and rest.structure(frequency)[1] < CHANCE / 10:
             found.append("the motion is not a steady precession: the angles oscillate")
             break
     if "psi" not in recording.angles:

@@ -362,17 +362,21 @@ def test_an_oscillation_is_no_noise_that_ends_where_it_does_not_correlate() -> N
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["angles", "quaternion"])
+@pytest.mark.parametrize("kind", ["angles", "quaternion", "axis"])
 def test_a_decay_within_each_window_is_named(kind: str) -> None:
     rng, t = np.random.default_rng(12), np.linspace(0, 6, 1441)
     seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=t.size) for x, y in slowed(27, t).items()}
     if kind == "quaternion":
         turns = Rotation.from_euler("ZXZ", np.stack([seen[x] for x in ("psi", "theta", "phi")], 1))
         seen = {kind: turns.as_quat(scalar_first=True)}
+    elif kind == "axis":
+        seen = {kind: axis_of(seen["theta"], seen["psi"])}
     failure = fitted(t, seen).failure()
-    found = re.search(r"the spin decays: r0 falls from (\d+).* to (\d+).*within each", failure)
+    found = re.search(r"the spin decays: (r0|b) falls from (\d+).* to (\d+).*within each", failure)
     assert found, failure
-    assert [int(x) for x in found.groups()] == pytest.approx([52, 52 * math.exp(-6 / 27)], abs=2)
+    first = TRUTH["b" if kind == "axis" else "r0"]
+    shown = [int(x) for x in found.groups()[1:]]
+    assert shown == pytest.approx([first, first * math.exp(-6 / 27)], abs=2)
 
 
 def test_a_release_is_seen_beside_missing_cells() -> None:
