@@ -136,6 +136,10 @@ def test_precisions_with_too_few_digits_are_passed_over() -> None:
             raise TooFewDigitsError
         return exact(0.5)
 
+    found = settled("x", lambda digits: arb(0.5, 2.0 ** -(60 * digits // 38)), None, 1200)
+    assert found is not None
+    assert isinstance(found.exact, arb)
+    assert found.bits == 85 <= found.exact.rel_accuracy_bits()
     assert value_of(settled("x", late, None, 1200)) == 0.5
     assert asked == sorted(asked)
     assert [digits >= 200 for digits in asked][-2:] == [False, True]
@@ -294,7 +298,13 @@ def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept() -> 
             intervals.append(sys.getswitchinterval())
             if len(seen) < 3:
                 flint.ctx.prec = 60
+            if len(seen) == 2:  # a question that is open only because of the disturbance
+                raise TooFewDigitsError
             return arb(2).sqrt()
+
+        def wished() -> None:
+            flint.ctx.prec = 61
+            fails(ZeroDivisionError)
 
         found = at_precision(50, disturbed)
         assert len(set(seen)) == 1
@@ -303,6 +313,11 @@ def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept() -> 
         assert flint.ctx.prec == 60
         assert intervals == sorted(intervals)
         assert intervals[2] > interval == sys.getswitchinterval()
+        assert at_precision(50, sys.getswitchinterval, alone=True) > 100 * interval
+        assert interval == sys.getswitchinterval()
+        with pytest.raises(ZeroDivisionError):
+            at_precision(50, wished)
+        assert flint.ctx.prec == 61
 
 
 @pytest.mark.parametrize("taken_back", [False, True])
