@@ -10,7 +10,9 @@ import numpy as np
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
+from ..files import rotations
 from ..files.rotations import within_half_turn
+from ..names import ANGLES
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
@@ -95,17 +97,30 @@ def _frames(recording: Recording, known: Known) -> Iterator[str]:
     if recording.kind == "angles" or recording.is_turned:
         return
     few = recording.thinned(_ROWS)
+    least = _calmness(few) - _OTHER_AXIS * len(few.angles)
+    if recording.kind == "attitude":
+        last = _scalar_last(recording)
+        if _calmness(last.thinned(_ROWS)) < least and _is_good(last, known):
+            where = "on the command line, quaternion_order=xyzw"
+            yield f"the quaternion is in the order x, y, z, w: give w first ({where})"
     tried = [{"up": x} for x in _AXES]
     if recording.kind == "attitude":
         tried += [{"axis": x} for x in _AXES] + [{"up": x, "axis": x} for x in ("x", "y")]
     noise = [_calmness(reoriented(few, **one)) for one in tried]
     best = tried[int(np.argmin(noise))]
     opposite = {word: x[1:] if x.startswith("-") else f"-{x}" for word, x in best.items()}
-    is_calmer = _calmness(few) - min(noise) > _OTHER_AXIS * len(few.angles)
-    for one in [*[best, opposite] * is_calmer, {"up": "-z"}]:
+    for one in [*[best, opposite] * (min(noise) < least), {"up": "-z"}]:
         if _is_good(reoriented(recording, **one), known):
             words = " and ".join(f"the {x} axis {_MEANINGS[word]}" for word, x in one.items())
+            if one == {"up": "-z"} and recording.kind == "axis":
+                words += ", or the marker is opposite to the centre of mass"
             yield f"{words}: use align={','.join(f'{word}={x}' for word, x in one.items())}"
+
+
+def _scalar_last(recording: Recording) -> Recording:
+    """Return the recording of an attitude whose quaternions were given in the order x, y, z, w."""
+    read = rotations.of_angles(*(recording.angles[name] for name in ANGLES))
+    return replace(recording, angles=rotations.angles_of(np.roll(read, 1, axis=-1)))
 
 
 def _calmness(recording: Recording) -> float:

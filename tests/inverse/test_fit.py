@@ -410,6 +410,12 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     assert decay.quantity == "b"
 
 
+def _of_body(seen: Mapping[str, Array]) -> Array:
+    """Return quaternions in the order w, x, y, z."""
+    turns = Rotation.from_euler("ZXZ", np.stack([seen["psi"], seen["theta"], seen["phi"]], 1))
+    return np.asarray(turns.as_quat(scalar_first=True))
+
+
 def _of_engine(seen: Mapping[str, Array]) -> Array:
     """Return quaternions with y as the figure axis, in a space whose y axis points up."""
     turns = Rotation.from_euler("ZXZ", np.stack([seen["psi"], seen["theta"], seen["phi"]], 1))
@@ -440,6 +446,14 @@ def _of_engine(seen: Mapping[str, Array]) -> Array:
         (
             lambda rng, t: {"quaternion": _of_engine(slowed(1e9, t))},
             "the y axis is the figure axis: use align=up=y,axis=y",
+        ),
+        (
+            lambda rng, t: {"quaternion": np.roll(_of_body(slowed(1e9, t)), -1, axis=1)},
+            "the quaternion is in the order x, y, z, w: give w first",
+        ),
+        (
+            lambda rng, t: {"axis": -axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])},
+            "or the marker is opposite to the centre of mass: use align=up=-z",
         ),
     ],
 )
