@@ -173,8 +173,8 @@ def release(recording: Recording) -> int:
 
 def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
     """Yield the number of windows that are all good and show a decay, or a decay within windows."""
-    lost = ""
-    for count in [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size]:
+    counts, lost = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size], ""
+    for count in counts:
         try:
             parts, fits = recording.windows(count), list[Outcome]()
         except LagtopError:  # of rows that are not even
@@ -187,7 +187,7 @@ def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) 
             if found is None:
                 return
             fits.append(found)
-            if found.verdict != GOOD and not _is_closer(found, outcome):
+            if found.verdict != GOOD and (count != counts[-1] or not _is_closer(found, outcome)):
                 break
         else:
             lost = _loss(fits) or lost

@@ -37,9 +37,10 @@ _POLE, _FAR = 1e-9, 1e3
 """Least distance from a pole, and weighted residual of a motion that does not exist."""
 _GAIN = 1e-7
 """Relative gain at which the least squares end."""
-_LEG, _LEAPS, _AHEAD, _SETTLED, _HOPELESS = 30, 8, 3.0, 0.02, 5.0
-"""For a fit that moves slowly along a bent valley: evaluations of one leg, how often it leaps ahead
-and how many times as far, and the gain of chi^2/2, and its size per number, that end this."""
+_WALKED, _LEG, _LEAPS, _AHEAD, _SETTLED, _HOPELESS = 1500, 30, 8, 3.0, 0.02, 5.0
+"""For a fit that moves slowly along a bent valley: the most rows, evaluations of one leg, how often
+it leaps ahead and how many times as far, and the gain of chi^2/2, and its size per number, that end
+this."""
 _APART = 4.0
 """Standard deviations between different tops."""
 _CURVED, _FAR_ALONG, _BENT, _BROKEN, _STIFF, _ASIDE = 2.0, 2.5, 2.0, 6.0, 100.0, 5.0
@@ -348,7 +349,7 @@ class Minimum:
         problem = problem.of(recording, problem.sizes * (factors if recording.sigma else 1.0))
         problem, start = problem.beside_pole(start)
         if is_final:
-            start = problem.walked(start)
+            start = problem.thinned(_WALKED).walked(start)
         most = STEPS if is_final or recording.sigma else STEPS // 3
         x, cost = problem.solve(start, most, central=is_final)
         present = recording.present
