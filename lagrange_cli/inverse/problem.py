@@ -37,7 +37,7 @@ _POLE, _FAR = 1e-9, 1e3
 """Least distance from a pole, and weighted residual of a motion that does not exist."""
 _GAIN = 1e-7
 """Relative gain at which the least squares end."""
-_WALKED, _LEG, _LEAPS, _AHEAD, _SETTLED, _HOPELESS = 1500, 30, 8, 3.0, 0.02, 5.0
+_WALKED, _LEG, _LEAPS, _AHEAD, _SETTLED, _HOPELESS = 1000, 30, 8, 3.0, 0.02, 5.0
 """For a fit that moves slowly along a bent valley: the most rows, evaluations of one leg, how often
 it leaps ahead and how many times as far, and the gain of chi^2/2, and its size per number, that end
 this."""

@@ -50,9 +50,9 @@ _HOPELESS, _COMPARABLE, _LIKELY = 50.0, 5.0, 16.0
 """Mean square of weighted residuals that no top explains, the factor of chi^2 above the least one
 beyond which a start is dropped, and the difference of -2 log(likelihood) below which two tops
 explain a recording equally well."""
-_COARSE, _FINE, _LEAST_BINS, _MOST_ROWS, _MOST_LEAPING = 20, 40, 600, 3000, 6000
+_COARSE, _FINE, _LEAST_BINS, _MOST_ROWS = 20, 40, 600, 3000
 """Bins per nutation period for the starts and for the fit, their least number, and the number of
-rows up to which the fit uses all of them, also if an angle leaps within bins."""
+rows up to which the fit uses all of them, and of those it uses if an angle leaps within bins."""
 _SURE = 2.0
 """Standard deviations from which b has a sign, and r0 with it."""
 _FASTER = 3.0
@@ -207,7 +207,7 @@ def _nutation(
             way = ways[found.problem.recording.is_mirrored]
             factors, problem = _widening(found, way), found.problem
             if way.fine.rows_per_bin > 1 and not way.fine.present.all():  # bins hide leaps
-                problem = problem.of(way.recording.thinned(_MOST_LEAPING))
+                problem = problem.of(way.recording.thinned(_MOST_ROWS))
             if not found.is_hopeless:
                 found = Minimum.of(problem, found.x, floors, factors, is_final=True)
             found = _slowest(found, turn)
