@@ -41,7 +41,9 @@ from .steady import steady_outcome
 
 _FEW_ROWS, _ROWS = 12, 50
 """Rows at which all starts are compared, then the best."""
-_KEPT, _BLOCK, _STARTS = 1500, 2000, 20
+_KEPT, _BLOCK, _STARTS, _BLIND_STARTS = 1500, 2000, 20, 80
+"""Starts that are scored at more rows, at once, and from which least squares begin, also if the
+tilt is not recorded."""
 _ROUNDS = ((60, 6, 5), (150, 12, 3), (300, 15, 3))
 """Rows and steps of the first least squares, and the number of ends that are kept, by round."""
 _ALIKE = 0.02
@@ -117,18 +119,15 @@ def best_fit(
     noise = _noise(recording, signals)
     steady = steady_outcome(recording, known, signals, noise, frequency, radians=radians)
     steady.chance, outcome = chance, steady
-    is_steady = not steady.failures()
-    is_coarse = any(x.is_coarse for x in steady.residuals.values())
-    if visible and lasts and not (is_steady and is_coarse):
+    if visible and lasts and steady.failures():
         both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
         for form, of_form in _forms(recording, signals, noise):
             found = _nutation(form, known, frequency, of_form, radians=radians, both=both)
             if found is None:
                 continue
             found.chance = chance
-            is_fit = not (found.faults or found.misfits)
-            outcome = steady if is_steady and not is_fit else found
-            if is_fit:
+            outcome = found
+            if not (found.faults or found.misfits):
                 break
     low, chi2 = outcome.chi2_bounds[0], outcome.chi2_dof
     if chi2 is not None and chi2 < low:
@@ -436,6 +435,7 @@ def _best_starts(
     Starts are scored by the logarithm of the noise that they leave.
     """
     tried: list[tuple[float, Data, Problem, Array]] = []
+    most = _STARTS if "theta" in ways[0].signals else _BLIND_STARTS
     for data in ways:
         problem = Problem(data.coarse, known, data.sizes, free=free)
         fixed = problem.known
@@ -452,11 +452,11 @@ def _best_starts(
             order = np.argsort(noise)[:_KEPT]
             states = states[order]
         x, noise = x[order], noise[order]
-        for _ in range(_STARTS):
+        for _ in range(most):
             if not x.size or not np.isfinite(noise[0]):
                 break
             tried.append((float(noise[0]), data, problem, x[0]))
             is_new = np.any(np.abs(x - x[0])[:, :2] > _ALIKE * np.abs(x[0, :2]), axis=1)
             x, noise = x[is_new], noise[is_new]
-    best = sorted(tried, key=itemgetter(0))[:_STARTS]
+    best = sorted(tried, key=itemgetter(0))[:most]
     return [x[1:] for x in best]

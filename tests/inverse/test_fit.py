@@ -326,6 +326,7 @@ def test_a_tilt_that_stays_at_a_pole_is_no_top() -> None:
         (70117, "good"),  # bins hide leaps of psi
         (90130, "good"),  # the mirror image is as near, with a turn per row
         (90536, "good"),  # the valley of chi^2 is long and bent
+        (93495, "good, no nutation"),  # a nutation that noise resembles
         (90690, "good"),  # C does not show how many turns the spin makes
     ],
 )
