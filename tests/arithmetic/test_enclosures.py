@@ -144,8 +144,15 @@ def test_precisions_with_too_few_digits_are_passed_over() -> None:
     assert asked == sorted(asked)
     assert [digits >= 200 for digits in asked][-2:] == [False, True]
     assert decided(lambda digits: digits, 1200, digits=90, lost=16) == 128
+    intervals = []
+
+    def open_for_ever(_: int) -> arb:
+        intervals.append(sys.getswitchinterval())
+        return between(-1, 1)
+
     with pytest.raises(LagtopError, match=r"^a sign cannot be .* with 300 digits"):
-        sign_to(lambda _: between(-1, 1), 300)
+        sign_to(open_for_ever, 300)
+    assert [x > 0.1 for x in intervals] == [False] * 3 + [True] * 4  # the last ones run alone
 
 
 def test_equal_digits_grow_with_inputs_and_output() -> None:

@@ -24,7 +24,7 @@ def test_pairs_of_doubles_compute_in_30_digits() -> None:
         for _ in range(2)
     )
     for compute in (operator.add, operator.sub, operator.mul, operator.truediv):
-        for one, other in ((x, y), (x, 0.3), (0.3, y)):
+        for one, other in ((x, y), (x, 0.3), (0.3, y), (x, 0.25)):
             pairs = zip(exact(one), exact(other), exact(compute(one, other)), strict=True)
             assert all(abs(compute(a, b) - found) < Fraction(1, 2**100) for a, b, found in pairs)
     roots = zip(exact(abs(x)), exact(abs(x).sqrt()), strict=True)
