@@ -265,6 +265,19 @@ def test_the_clock_is_off_by_several_periods() -> None:
     assert found.cause == "the clock is shifted by -0.495"
 
 
+def test_degrees_that_are_less_than_a_turn_and_a_radian() -> None:
+    """A tilt of 7 rad leans to the same side as a tilt of 7 - 2 pi rad."""
+    top, name = TOPS["toy"].replace(theta0_deg=7), "theta0 in degrees was taken as radians"
+    _, states = dop853(bodies(top)[name], T, 1e-10)
+    assert compare(top, T, quaternion=states[:, :4]).cause == name
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("us", 1e6), ("ns", 1e9), ("minutes", 1 / 60)])
+def test_units_of_time_are_named(unit: str, factor: float) -> None:
+    found = compare(TOPS["toy"], T * factor, **attitude(run("toy")[0]))
+    assert (found.cause, (found.cause_error or 1) < 1e-5) == (f"t is in {unit}", True)
+
+
 def test_of_values_of_g_the_closest_is_named() -> None:
     """The digits hide 0.03 % of g from the limit, but not from the search."""
     turn, _ = run("toy")
@@ -285,5 +298,6 @@ def test_two_causes_must_explain_more_than_one() -> None:
 def test_no_cause_is_named_for_few_rows() -> None:
     """Two rows can be explained by too many causes."""
     turn, _ = run("toy")
-    late = Rotation.from_euler("z", 1) * turn[:2]
-    assert compare(TOPS["toy"], T[:2], quaternion=wxyz(late)).cause is None
+    late = wxyz(Rotation.from_euler("z", 1) * turn[:3])
+    causes = [compare(TOPS["toy"], T[:n], quaternion=late[:n]).cause for n in (2, 3)]
+    assert causes == [None, "psi starts at 57.3 degrees"]

@@ -55,6 +55,8 @@ def test_keys_of_quantities_that_are_not_given_are_none() -> None:
         assert (found.error_max or 0) < 2e-12  # worst seen: 9.8e-13 rad
         errors = [key for key, x in found.record().items() if "_error_" in key and x is not None]
         assert " ".join(x.removesuffix("_error_max") for x in errors) == known
+    at_rest = compare(Top(r0=0, g=0), 0, rates=[[0.25, 0, 0]])
+    assert at_rest.rates_error_max == 0.25
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e-4, 3.0])
@@ -67,6 +69,7 @@ def test_an_error_of_known_size_is_measured(size: float) -> None:
     assert (*found, tilted.theta_error_max) == pytest.approx([size] * 5, abs=2e-12)
     assert max(spun.psi_error_max or 0, spun.axis_error_max or 0) < 2e-12
     assert (tilted.verdict == "fine") == (size < 1e-3)
+    assert (spun.cause, turned.cause) == (None, None)  # no cause is sought below the limit
     assert compare(TOP, T, theta=THETA - size, max_error=3.1).verdict == "fine"
 
 
