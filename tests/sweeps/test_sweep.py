@@ -51,6 +51,8 @@ def test_a_steady_top_per_row(lagtop: Lagtop) -> None:
     for row in (slow, fast):
         motion = solve(Top(r0=float(row["r0"]), psidot0="steady"))
         assert float(row["psidot0"]) == pytest.approx(motion.top.psidot0, rel=1e-15)
+    mixed = table(lagtop("sweep", "-", *keys, input=f"{cells}70,2\n").stdout)
+    assert [mixed[2], mixed[3]["psidot0"], mixed[3]["error"]] == [fast, "2.0", ""]
 
 
 def test_a_number_smaller_than_all_doubles_is_missing_and_named() -> None:

@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 from conftest import LAGTOP, Lagtop, assert_gone, assert_one_line, joined, process, wait_until
 
+from lagrange_cli.cli.sweep import _parse_jobs
 from lagrange_cli.errors import UnavailableError
 from lagrange_cli.sweeps import workers
 from lagrange_cli.sweeps.workers import in_order
@@ -30,6 +31,14 @@ def test_invalid_numbers_of_jobs_are_refused(text: str, lagtop: Lagtop) -> None:
     result = lagtop("sweep", f"--jobs={text}")
     assert_one_line(result, 2, "--jobs must be auto or in [1, 1024], got")
     assert len(result.stderr) < 200
+
+
+def test_auto_is_a_process_per_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Some systems cannot list the cores of one process, and some cannot count cores."""
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    for cores, jobs in ((3, 3), (None, 1)):
+        monkeypatch.setattr(os, "cpu_count", lambda cores=cores: cores)
+        assert _parse_jobs("auto") == jobs
 
 
 def test_results_and_errors_of_two_processes() -> None:

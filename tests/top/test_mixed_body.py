@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import warnings
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -58,9 +59,9 @@ def test_parts_of_a_body_are_named_where_they_were_given(
     path.write_text("".join(f"{name} = {x}\n" for name, x in inputs.items()))
     arrays: dict[str, Any] = {name: np.array([x, x]) for name, x in inputs.items()}
     for ask in (
-        lambda: Top(**inputs),
-        lambda: read_scene(str(path)),
-        lambda: sweep(keys=["m"], **arrays),
+        partial(Top, **inputs),
+        partial(read_scene, str(path)),
+        partial(sweep, keys=["m"], **arrays),
     ):
         with pytest.warns(MixedBodyWarning, match=said) as caught:
             ask()

@@ -58,6 +58,7 @@ def test_the_steady_motion_is_that_of_the_exact_root() -> None:
     assert word.top != double.top
     assert pickle.loads(pickle.dumps(word.top)) == word.top == Top(**word.top.as_dict())
     assert "psidot0='steady'" in repr(word.top)
+    assert Top(r0=0, g=0, psidot0="steady").psidot0 == 0
 
 
 @pytest.mark.parametrize(
