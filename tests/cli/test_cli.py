@@ -9,6 +9,8 @@ import math
 import random
 import re
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from conftest import ROOT, Lagtop, Solved, assert_one_line
@@ -17,7 +19,9 @@ from scenes import SAMPLES
 
 from lagrange_cli import errors
 from lagrange_cli.cli.app import NAMES as COMMANDS
+from lagrange_cli.cli.fit import _write as write_fits
 from lagrange_cli.cli.shared import is_scene
+from lagrange_cli.output.destination import Output
 from lagrange_cli.output.report import record_text
 from lagrange_cli.solver.columns import COLUMNS
 from lagrange_cli.solver.keys import KEYS as SHOWN
@@ -323,6 +327,15 @@ def test_a_body_that_cannot_be_built_is_computed(line: str, bound: str, lagtop: 
     result = lagtop("solve", *line.split(), "--get", "regime")
     assert (result.exit_code, result.stdout) == (0, "regular\n")
     assert f"Warning: a rigid body with its centre of mass at s has {bound} " in result.stderr
+    assert (
+        Top(m=0.1, A=0.3, C=0.4, s=1, g=9.81).caveat() is None
+    )  # C <= 2 (A - m s^2) up to rounding
+
+
+def test_one_window_of_a_fit_is_a_record_in_json(tmp_path: Path) -> None:
+    outcome: Any = SimpleNamespace(record=lambda: {"a": 1.5}, notes=[])
+    write_fits([outcome], "", "", Output(str(path := tmp_path / "fit"), "json"))
+    assert path.read_text() == '{"a":1.5}\n'
 
 
 def test_words_that_name_a_scene() -> None:

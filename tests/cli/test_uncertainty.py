@@ -216,6 +216,8 @@ def test_an_uncertainty_beyond_the_doubles_is_null_or_refused(lagtop: Lagtop) ->
     record = lagtop(*top, "1e-160+/-1", "--format", "json")
     assert json.loads(record.stdout)["u3_std"] is None
     assert f"Warning: {line}" in record.stderr
+    alone = lagtop(*top, "1e-160+/-1", "--get", "u3_std").stderr
+    assert alone.endswith("Error: u3_std is undefined, as the warning says\n")
     budget = lagtop(*top, "1e-160+/-1", "--budget", "u3")
     assert (budget.exit_code, budget.stderr.splitlines()[-1]) == (2, f"Error: {line}")
 

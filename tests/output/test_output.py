@@ -78,7 +78,14 @@ def test_numbers_that_are_written_out_keep_their_digits() -> None:
     assert text_of("ndjson", ["a"]) == ""
 
 
-RECORD = {"name": 'a "b"\\\tθ', "a": 1e-7, "b": None, "c": NumberText("1.50"), "u": {"x": "y"}}
+RECORD = {
+    "name": 'a "b"\\\tθ',
+    "quoted": 'a "b"',
+    "a": 1e-7,
+    "b": None,
+    "c": NumberText("1.50"),
+    "u": {"x": "y"},
+}
 
 
 def test_a_record_in_json_and_csv(tmp_path: Path) -> None:
@@ -89,6 +96,9 @@ def test_a_record_in_json_and_csv(tmp_path: Path) -> None:
     assert json.loads(text) == RECORD | {"c": 1.5}
     Output(str(path), "csv").record({x: RECORD[x] for x in "abc"}, dict)
     assert path.read_text() == "a,b,c\n1e-7,,1.50\n"
+    for names, header in (((), "c,a"), ("xy", "x,y")):
+        Output(str(path), "csv").rows([RECORD], ["c", "a"], names)
+        assert path.read_text() == f"{header}\n1.50,1e-7\n"
 
 
 # tables and reports
@@ -105,6 +115,13 @@ def test_a_table_cuts_no_digit_however_narrow_the_terminal() -> None:
     groups = [x.group for x in shown_keys().values()]
     assert all(wide.splitlines().count(x) <= 1 for x in groups)
     assert groups[0] in wide.splitlines()
+
+
+def test_a_cell_that_is_wrapped_moves_the_rows_below_it() -> None:
+    for width in (7, 9):
+        shown = drawn(["a", "b"], [["x y z", "1"], ["w", "2"]], (), width).splitlines()[2:]
+        rows = [["x", "y", "1"], ["z"], ["w", "2"]] if width == 7 else [["x", "y", "z", "1"]]
+        assert [line.split() for line in shown][: len(rows)] == rows
 
 
 def test_brackets_in_cells_are_no_markup_and_control_characters_are_escaped() -> None:
@@ -223,13 +240,19 @@ def test_messages_are_one_printable_line() -> None:
     hostile = "a\x1b[31m\x9b\x7f\u202e\u200b\udcff\n b"
     assert terminal.one_line(hostile) == "a\\x1b[31m\\x9b\\x7f\\u202e\\u200b\\udcff b"
     long = terminal.one_line("x" * 50_000)
-    assert len(long) <= terminal.MOST_CHARACTERS
+    assert terminal.MOST_CHARACTERS - 20 < len(long) <= terminal.MOST_CHARACTERS
     assert "characters ...]" in long
 
 
 class Screen(io.StringIO):
     def isatty(self) -> bool:
         return True
+
+
+def test_only_standard_output_may_be_a_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    for stream, found in ((Screen(), [True, False]), (io.StringIO(), [False, False])):
+        monkeypatch.setattr("sys.stdout", stream)
+        assert [terminal.is_screen(path) for path in ("-", "a.csv")] == found
 
 
 def test_progress_is_a_line_that_vanishes(monkeypatch: pytest.MonkeyPatch) -> None:
