@@ -200,10 +200,6 @@ class _Motion:
         self.tilts = [mp.acos(x) for x in (self.u1, self.middle, self.u2)]
         self.at_u1 = u0 == (1 if self.steady_tilt else self.u1)
 
-    def first(self, sn2: Many, m: Many) -> Many:
-        """Return F with the parameter m, from sn^2."""
-        return mp.sqrt(sn2) * mp.elliprf(1 - sn2, 1 - m * sn2, 1)
-
     def third(self, pole: int, sn2: Many, cn2: Many, dn2: Many) -> Many:
         """Return the integral of dw (1 + u2 pole)/(1 + u pole), from w = 0 at u2."""
         x1, x2 = self.gaps[pole]
@@ -279,7 +275,14 @@ class _Motion:
             rate = (self.beta - b * half) / (1 - half**2)
             found |= {"precession_rate_half": rate, "spin_rate_half": r0 - half * rate}
         if released and self.nutates:
-            found |= self.section_8(u3)
+            found |= {"roots_sum": u3 + u2, "roots_product": u3 * u2, "roots_gap": u3 - u2}
+            found |= {f"{key}_squared": found[key] ** 2 for key in ("roots_sum", "roots_gap")}
+            found |= {
+                "roots_product_fourfold": -4 * u3 * u2,
+                "u3_twice": 2 * u3,
+                "u2_twice": 2 * u2,
+            }
+            found["k_squared"] = self.k2
         with mp.workdps(self.digits):
             found |= self.integrals(k, kc, released, has_half)
         if self.vertical:
@@ -290,16 +293,6 @@ class _Motion:
         if not a:
             found |= {"u2_criterion": None if self.vertical else u2 * (self.wide + a * u2)}
         return found
-
-    def section_8(self, u3: Many) -> dict[str, Many]:
-        """Return the steps of section 8."""
-        u2 = self.u2
-        return {
-            **{"roots_sum": u3 + u2, "roots_product": u3 * u2, "roots_gap": u3 - u2},
-            **{"roots_sum_squared": (u3 + u2) ** 2, "roots_product_fourfold": -4 * u3 * u2},
-            **{"roots_gap_squared": (u3 - u2) ** 2, "u3_twice": 2 * u3, "u2_twice": 2 * u2},
-            "k_squared": self.k2,
-        }
 
     def integrals(self, k: Many, kc: Many, released: bool, has_half: bool) -> dict[str, Many]:
         """Return the numbers that need integrals."""
@@ -348,7 +341,7 @@ class _Motion:
             found["spin_rate_lower"] = 2 * rates[0] - 4 * phi / T
             found["precession_rate_lower"] = 2 * rates[1] - 4 * psi / T
         if has_half:
-            found |= dict(zip(("phi_half_rad", "psi_half_rad"), self.half(whole, T), strict=True))
+            _, found["phi_half_rad"], found["psi_half_rad"], _ = self.angles(T / 2)
         if released:
             low = self.a * self.gaps[1][1]
             sin2, cos2 = wide / (wide + low), low / (wide + low)
@@ -358,27 +351,6 @@ class _Motion:
             found["E_amplitude"] = found["alpha"] - self.kc2 * sine**3 / 3 * mp.elliprd(*at)
             found["comodular_angle_rad"] = mp.atan2(kc, k)
         return found
-
-    def half(self, whole: Mapping[int, Many], T: Many) -> tuple[Many, Many]:
-        """Return the growth of phi and psi in the half period after the start.
-
-        The start has the argument w, positive while the tilt decreases; then it is w + K.
-        """
-        u0, u1, u2, narrow, wide = self.u0, self.u1, self.u2, self.narrow, self.wide
-        sn2, cn2 = (u0 - u2) / (u1 - u2), (u1 - u0) / (u1 - u2)
-        dn2 = self.kc2 + self.k2 * cn2
-        later = cn2 / dn2, self.kc2 * sn2 / dn2, self.kc2 / dn2  # sn^2, cn^2, dn^2 of w + K
-        falls = self.fall > 0 or (not self.fall and self.at_u1)  # w < 0
-        integrals = {}
-        for pole in (1, -1):
-            if self.passes(pole):
-                integrals[pole] = mp.mpf(falls == (pole > 0))
-                continue
-            start, end = self.third(pole, sn2, cn2, dn2), self.third(pole, *later)
-            integrals[pole] = start + end if falls else whole[pole] - start - end
-        assert narrow >= 0
-        assert wide > 0
-        return self.half_sums(integrals, T / 2)
 
     def angles(self, t: Many) -> Angles:
         """Return tilt, spin, precession and nutation rate at a time."""
