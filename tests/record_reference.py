@@ -371,7 +371,8 @@ class _Motion:
                 mp.atan(ratio * mp.tanh(h)) - mp.atan(ratio * mp.tanh(h0))
             )
         else:  # over the lower pole
-            psi = mp.pi * (mp.sign(h) - mp.sign(h0)) / 2 if h0 else mp.mpf(0)
+            sides = mp.sign(h0) or mp.sign(-self.fall)  # a start on the pole is before or after it
+            psi = mp.pi * (mp.sign(h) - sides) / 2
         above = (1 - u2) * mp.sech(h) ** 2
         theta = 2 * mp.asin(mp.sqrt(above / 2))
         slope = -2 * above * mp.tanh(h) * rate / mp.sin(theta)

@@ -96,6 +96,11 @@ EVERY_KIND: dict[str, dict[str, Any]] = {
     "separatrix": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5, "thetadot0": 0.5},
     "next to it": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5, "thetadot0": 0.5 + 1e-13},
     "separatrix in a plane": UNIT | {"A": 2, "r0": 0, "theta0_deg": 90, "thetadot0": 1},
+    **{
+        f"separatrix from the bottom, {kick}": UNIT
+        | {"r0": 0, "theta0_deg": 180, "thetadot0": kick}
+        for kick in (2, -2)
+    },
     "separatrix from the level": UNIT | {"r0": -1, "theta0_deg": 90, "psidot0": -1, "thetadot0": 1},
     "steady": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5},
     "nearly steady": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5 + 1e-12},

@@ -11,6 +11,7 @@ import math
 import random
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from typing import Any
 
 import mpmath
 import pytest
@@ -137,7 +138,7 @@ def leaning(theta0_deg: float) -> dict[str, float]:
 
 
 RANDOM = random.Random(180)
-TURNING: dict[str, tuple[dict[str, float], list[float], float]] = {
+TURNING: dict[str, tuple[dict[str, Any], list[float], float]] = {
     "one frame is circular": ({"r0": 60.0}, [], 3),
     "both frames are theta functions": ({}, [], 3),
     "any start": ({"psidot0": 20.0, "thetadot0": 1.0}, [], 3),
@@ -177,6 +178,19 @@ TURNING: dict[str, tuple[dict[str, float], list[float], float]] = {
         [*beside(2.2915591431742084), *beside(-2.2915591431742084)],
         4,
     ),
+    # roots that are 1e-51 apart: 40 digits decide no mean rate
+    "a start with many digits": (
+        UNIT | {"r0": 1, "theta0_deg": 90, "thetadot0": 1, "psidot0": 1 + Fraction(1, 10**51)},
+        *([0.3, 77.7], 2),
+    ),
+    # on one side of the pole phi = psi = r0 t/2, and on the other both are half a turn off
+    **{
+        f"from the pole at {rate}": (
+            {"m": 1, "A": 2, "C": 2, "s": 1, "g": 0, "r0": 1.5, "theta0_deg": 0, "thetadot0": rate},
+            *([5e-324, 1e-230, -1e-230], 2),
+        )
+        for rate in (1e-100, 1e-7, -1e-100)
+    },
     **{
         f"leap at T/2, r0 = {r0}": (UNIT | {"r0": r0, "theta0_deg": tilt}, [], 4)
         for r0, tilt in ((1e-30, 90), (-1e-14, 60), (1e-18, 150))

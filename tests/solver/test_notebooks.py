@@ -11,6 +11,7 @@ import pytest
 from lagtop import LagtopError, Top, compare, fit, solve
 from matplotlib.figure import Figure
 from scenes import EVERY_KIND
+from scipy.spatial.transform import Rotation
 
 from lagrange_cli.errors import UnavailableError
 
@@ -33,6 +34,19 @@ def test_the_swing_gives_the_tilt(fall: Fraction) -> None:
     assert u == pytest.approx(motion.table(t, ["u"])["u"], abs=1e-14)
     assert swing.lowest * fall > 0
     assert solve(Top()).swing is None
+
+
+def test_rotations_and_axes_are_those_of_the_angles() -> None:
+    """They are intrinsic rotations about z, x and z by psi, theta and phi."""
+    theta, phi, psi = MOTION.angles(TIMES)
+    turned = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=-1))
+    assert (MOTION.rotation(TIMES) * turned.inv()).magnitude().max() < 1e-14
+    assert MOTION.axis(TIMES[:, np.newaxis]) == pytest.approx(
+        turned.apply([0, 0, 1])[:, np.newaxis], abs=1e-14
+    )
+    assert MOTION.rotation(0.0).apply([1, 0, 0]) == pytest.approx([1, 0, 0], abs=4e-16)
+    with pytest.raises(LagtopError, match=r"t must be .* one dimension, got the shape \(1, 3\)"):
+        MOTION.rotation([TIMES])
 
 
 def test_a_motion_draws_on_axes() -> None:
