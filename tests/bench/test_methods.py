@@ -1,21 +1,27 @@
-"""Each method against the exact motion, and SciPy's rows by equations of their own."""
+"""Each method against the exact motion, SciPy's rows by equations of their own, the reference."""
 
 from __future__ import annotations
 
 import math
+import random
 import sys
+from fractions import Fraction
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from engines import Body
+from hard_scenes import HARD_KINDS, nutating
 from lagtop import LagtopError, Top, solve
 from scipy.integrate import solve_ivp
 
 from lagrange_cli.bench.measure import measure, task_of
 from lagrange_cli.bench.methods import METHODS, Sampled, SlowError, fixed_steps
+from lagrange_cli.bench.reference import Reference, rotation_angle
 from lagrange_cli.bench.stability import motions
 from lagrange_cli.bench.work_precision import bench
+from lagrange_cli.solver.tables import ProvedTable
 
 START = {"m": 1.2, "A": 0.03, "C": 0.02, "s": 0.1, "g": 9.81}
 START |= {"r0": 40.0, "theta0_deg": 50.0, "thetadot0": -2.0, "psidot0": 3.0}
@@ -112,3 +118,28 @@ def test_scipy_runs_as_in_a_plain_call(name: str) -> None:
         lambda _, y: body.slope(y), (0, 1.5), body.state, name, times, rtol=1e-7, atol=1e-7
     )
     assert run(name, 1e-7, times)[1] == pytest.approx(plain.nfev, rel=0.05)
+
+
+# The reference in 50 digits, and the definition of error
+
+
+@pytest.mark.parametrize("kind", [*HARD_KINDS, "generic by phidot0"])
+def test_attitudes_agree_with_the_reference(kind: str) -> None:
+    """Legendre's third integral from the lowest point, and theta functions from the highest."""
+    kind, _, spin = kind.partition(" by ")
+    scene = nutating(kind, random.Random(2))
+    top = Top(**({spin: scene.pop("r0")} if spin else {}), **scene)
+    reference = Reference(top)
+    t = 3.7 * float(reference.T)
+    row = ProvedTable(solve(top), ["quaternion"], 40).row(Fraction(t))
+    assert rotation_angle([x.value for x in row], reference.attitude(t)) < 1e-20
+
+
+def test_the_error_is_the_angle_of_a_rotation() -> None:
+    turned = [math.cos(5e-13), 0.0, math.sin(5e-13), 0.0]
+    start = tuple(map(mpmath.mpf, (1, 0, 0, 0)))
+    assert rotation_angle(turned, start) == pytest.approx(1e-12, rel=1e-12)
+    assert rotation_angle([-2 * x for x in turned], start) == pytest.approx(1e-12, rel=1e-12)
+    assert rotation_angle([0.0, 1.0, 0.0, 0.0], start) == pytest.approx(math.pi)
+    assert rotation_angle([math.nan, 1.0, 0.0, 0.0], start) == math.inf
+    assert rotation_angle(start, start) == 0

@@ -17,16 +17,20 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+import orjson
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from lagtop import LagtopError, Top, solve
 
-from lagrange_cli.arithmetic.text import NumberText
+from lagrange_cli.arithmetic.text import NumberText, double_text, value_text
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
 from lagrange_cli.output.formats import block_text, write
 from lagrange_cli.output.notebook import HasRecord
 from lagrange_cli.output.report import Field, Report, drawn, record_text, uncertain_text
+from lagrange_cli.output.text import csv_text
 from lagrange_cli.solver.keys import shown_keys
 
 NAMES = ["a", "text", 'b,"', "c", "more"]
@@ -76,6 +80,17 @@ def test_numbers_that_are_written_out_keep_their_digits() -> None:
     assert text_of("csv", ["a", "b"]) == "a,b\n"
     assert text_of("json", ["a"]) == "[]\n"
     assert text_of("ndjson", ["a"]) == ""
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_double_has_one_text_in_every_format(x: float) -> None:
+    text = double_text(x)
+    assert text.encode() == orjson.dumps(x)
+    assert text == value_text(x) == csv_text(x)
+    assert f"{text}\n".encode() == block_text([np.array([[x]])], ["x"], "csv")
+    assert f'{{"x":{text}}}\n'.encode() == block_text([np.array([[x]])], ["x"], "ndjson")
+    assert math.copysign(1, float(text)) == math.copysign(1, x)
+    assert float(text) == x
 
 
 RECORD = {

@@ -119,18 +119,6 @@ def test_the_formula_with_numbers_gives_the_number(name: str) -> None:
     assert checked >= len(keys) / 3
 
 
-def test_a_formula_is_shown_in_symbols_and_with_numbers() -> None:
-    (row,) = explanations(solve(Top()), ["T_nutation"])
-    assert row.formula == "4 K/√(a (u3 - u2))"
-    assert row.numbers == "4·1.9298/√(319.091·(1.29042 - 0.276952))"
-    assert row.value == solve(Top()).T_nutation
-    (root,) = explanations(solve(Top()), ["u2_twice"])
-    assert root.formula == "(u3 + u2) - (u3 - u2)"
-    (tilt,) = explanations(solve(Top()), ["spin_rate_start"])
-    assert tilt.formula == "r0 - ψ'0 cos(ϑ0)"
-    assert tilt.numbers == "50 - 0·cos(30°)"
-
-
 def test_a_missing_number_has_a_reason() -> None:
     (period,) = explanations(solve(Top(theta0_deg=0)), ["T_nutation"])
     assert (period.value, period.numbers) == (None, "")

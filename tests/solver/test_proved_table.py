@@ -10,7 +10,8 @@ import mpmath
 import pytest
 from conftest import Lagtop
 from lagtop import Top, solve
-from scenes import UNIT
+from record_reference import reference_state
+from scenes import EVERY_KIND, UNIT
 
 from lagrange_cli.solver.tables import ProvedTable
 
@@ -105,21 +106,10 @@ def test_the_separatrix_is_decided_at_once_at_any_time(lagtop: Lagtop) -> None:
     assert shown.stdout.splitlines()[1:] == ["180.0,180.0,1.0,-1.0"]
 
 
-def test_what_time_alone_makes_small_is_not_zero(lagtop: Lagtop) -> None:
-    """On the separatrix the nutation rate falls as exp(-rate t), here by 5,000 digits.
-
-    With h = rate t + h0 it is -2 rate Y sech h tanh h/sqrt(X^2 + Y^2 tanh^2 h), by mpmath.
-    """
-    top = "--m 1 --A 1 --C 1 --s 1 --g 1 --r0 1.5 --theta0 60 --thetadot0 .5 --psidot0 1".split()
-    args = [*top, "--t-min", "1e4", "--n", "1", "--digits", "10", "--columns", "thetadot"]
-    motion = solve(Top(m=1, A=1, C=1, s=1, g=1, r0=1.5, theta0_deg=60, thetadot0=0.5, psidot0=1))
+def test_what_time_alone_makes_small_is_not_zero() -> None:
+    """On the separatrix the nutation rate falls as exp(-rate t), here by 2,800 digits."""
+    motion = solve(Top(**EVERY_KIND["separatrix"]))
     assert motion.regime == "separatrix"
-    with mpmath.workdps(60):
-        # a = 2, b = 3/2, energy = 1: u2 = 1/8 by (4,9), and rate^2 = a (1 - u2)/4
-        X, Y = mpmath.mpf(3) / 4, mpmath.sqrt(mpmath.mpf(7)) / 4
-        rate = Y
-        h = -mpmath.acosh(Y / mpmath.sin(mpmath.pi / 6)) + rate * 10000
-        exact = 2 * rate * Y * mpmath.sech(h) * mpmath.tanh(h)
-        exact = -exact / mpmath.sqrt(X**2 + (Y * mpmath.tanh(h)) ** 2)
-        text = mpmath.nstr(exact, 10, min_fixed=-5, max_fixed=16)
-    assert lagtop("table", *args, "--format", "csv").stdout == f"thetadot\n{text}\n"
+    (found,) = ProvedTable(motion, ["thetadot"], 10).row(Fraction(10_000))
+    exact = reference_state(motion.top.as_dict(), 10_000).thetadot
+    assert abs(mpmath.mpf(found.value) / exact - 1) < 1e-9

@@ -1,8 +1,7 @@
-"""The words for a rate of steady precession, `steady` and `steady-fast`."""
+"""The words for a rate of steady precession; `solver/test_digits` checks the numbers."""
 
 from __future__ import annotations
 
-import math
 import pickle
 from fractions import Fraction
 from typing import Any
@@ -11,41 +10,20 @@ import pytest
 from lagtop import LagtopError, Regime, Top, solve
 from scenes import UNIT
 
-from lagrange_cli.solver.columns import COLUMNS
-from lagrange_cli.solver.keys import all_keys
 from lagrange_cli.solver.tables import ProvedTable
 
-DIGITS = 50
-WORDS = {"steady": "steady_rate_slow", "steady-fast": "steady_rate_fast"}
 
-
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", ["steady", "steady-fast"])
 @pytest.mark.parametrize(
-    "inputs",
-    [
-        {"r0": 60.0, "theta0_deg": 30.0},
-        {"r0": -60.0, "theta0_rad": 0.5},
-        {"r0": 3, "theta0_deg": 120, **UNIT},
-        {"r0": 0.5, "theta0_deg": 100, **UNIT},
-        {"r0": 5, "theta0_deg": 40, **UNIT, "g": 0},
-    ],
+    "inputs", [{"r0": -60.0, "theta0_rad": 0.5}, UNIT | {"r0": 5, "theta0_deg": 40, "g": 0}]
 )
 def test_the_tilt_of_a_steady_precession_stays_exactly(inputs: Any, word: str) -> None:
-    top = Top(**inputs, psidot0=word)
-    motion = solve(top)
-    rate = getattr(solve(Top(**inputs)), WORDS[word])
+    motion = solve(Top(**inputs, psidot0=word))
     assert motion.regime is (Regime.TORQUE_FREE if inputs.get("g") == 0 else Regime.STEADY)
-    assert (motion.mean_precession_rate, float(top.psidot0)) == (rate, rate)
-    assert motion.theta_min_deg == motion.theta_max_deg
-    a, b, cos = motion.a or 0, motion.b or 0, math.cos(math.radians(motion.theta_min_deg or 0))
-    assert cos * rate**2 + a / 2 == pytest.approx(b * rate, rel=1e-12)
-    record = motion.record(keys=all_keys(), digits=30, radii=True)
-    assert record["psidot0"] == word
-    assert len(record["mean_precession_rate"].replace("-", "").replace(".", "").lstrip("0")) <= 30
-    table = ProvedTable(motion, list(COLUMNS), DIGITS, radians=True)
+    assert motion.record(digits=30)["psidot0"] == word
+    table = ProvedTable(motion, ["theta", "u", "energy", "Lz"], 50, radians=True)
     late, start = ([x.value for x in table.row(Fraction(t))] for t in (10**6, 0))
-    same = [i for i, name in enumerate(table.header) if name in {"theta_rad", "u", "energy", "Lz"}]
-    assert [late[i] for i in same] == [start[i] for i in same]
+    assert late == start
 
 
 def test_the_steady_motion_is_that_of_the_exact_root() -> None:
