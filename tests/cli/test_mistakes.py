@@ -68,9 +68,7 @@ MISTAKES = {
     "sweep|--r0|60rpm:80rpm:3": "with its unit once, at the end, as in '60:80:3 rpm'",
     "table|--t-max|1e15": "--digits",
     "find|T_nutation=1": "unknown inputs as ranges, such as --r0 10:200, got 0",
-    "compare|book.xlsx": "but a workbook, an archive, Parquet or NumPy data: save it as CSV",
     "compare|bare.csv": "has no header: name its 2 columns, for example --columns t,quaternion",
-    "compare|empty.csv": "psi is empty (psi): remove its columns",
     "compare|thousands.csv": "use --decimal point or --decimal comma",
 }
 """Words of a command line, and the remedy."""
@@ -78,11 +76,9 @@ FILES = {
     "rpm.toml": "m = 2\nr0 = 50 rpm\n",
     "comma.toml": "m = 1,5\n",
     "quotes.toml": 'r0 = "3"\n',
-    "book.xlsx": "PK\x03\x04",
     "bare.csv": "0 1\n",
     "recording.csv": "t,theta\n0,30\n1,31\n",
     "long.csv": "t,theta\n" + "0,30\n" * 4000,
-    "empty.csv": "t,theta,psi\n0,30,\n1,31,\n",
     "thousands.csv": "t;theta\n1,234;30\n",
 }
 

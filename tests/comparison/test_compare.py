@@ -311,6 +311,8 @@ def test_starts_on_the_vertical() -> None:
         ({}, "compare must be given an attitude"),
         ({"angle_rates": RATES}, "angle_rates must come with an attitude or a part of it"),
         ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
+        ({"euler": PHI, "euler_sequence": "xxy"}, "euler_sequence must be "),
+        ({"rates": RATES, "rates_frame": "world"}, "rates_frame must be "),
         ({"quaternion": Q, "align": ["up=w"]}, "align must be among axis=y"),
         ({"theta": THETA, "align": ["left"]}, "align left need the axis or the whole attitude"),
         ({"axis": Q[:, 1:], "align": "axis=y"}, "align axis the whole attitude: omit them"),

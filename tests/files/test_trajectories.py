@@ -38,14 +38,10 @@ def read(path: Path | str, columns: list[str] | None = None) -> dict[str, Any]:
     return found
 
 
-def columns_of_parquet(path: Path) -> None:
+def test_parquet_is_read(tmp_path: Path) -> None:
     numbers = dict(zip(["t", "qw", "qx", "qy", "qz"], DATA.T, strict=True))
     table = pa.table({"note": ["x"] * ROWS, **numbers})
-    parquet.write_table(table, path, row_group_size=7)
-
-
-def test_parquet_is_read(tmp_path: Path) -> None:
-    columns_of_parquet(tmp_path / "a")
+    parquet.write_table(table, tmp_path / "a", row_group_size=7)
     found = read(tmp_path / "a")
     with_commas = read_trajectory(str(tmp_path / "a"), None, ",")
     assert np.array_equal(with_commas.values(radians=True)["t"], found["t"])
@@ -277,82 +273,18 @@ def test_conventions_and_masks_of_a_trajectory(tmp_path: Path) -> None:
     assert np.isnan(quantities_of([0, 1], {"theta": masked})["theta"]).ravel().tolist() == [0, 1]
 
 
-def test_rotations_are_those_of_scipy() -> None:
-    rng = np.random.default_rng(2)
-    theta, phi, psi = rng.uniform(0, PI, 9), *rng.uniform(-PI, PI, (2, 9))
-    exact = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=1))
-    other, vectors = Rotation.random(9, rng), rng.normal(size=(9, 3))
-    found, second = rotations.of_angles(theta, phi, psi), other.as_quat(scalar_first=True)
-    for ours, scipys in (
-        (rotations.product(found, 3 * second), exact * other),
-        (rotations.of_matrix(exact.as_matrix().reshape(9, 9))[0], exact),
-        (rotations.of_scipy("euler", "XYZ", exact.as_euler("XYZ")), exact),
-        (rotations.of_scipy("rotvec", exact.as_rotvec()), exact),
-        (rotations.about_z(psi), Rotation.from_rotvec([[0, 0, x] for x in psi])),
-    ):
-        assert rotations.angle_between(ours, scipys.as_quat(scalar_first=True)).max() < 1e-7
-    angles = exact.inv() * other
-    assert rotations.angle_between(found, second) == pytest.approx(angles.magnitude())
-    axis = exact.apply([0, 0, 1])
-    assert rotations.axis_of(found) == pytest.approx(axis)
-    assert rotations.rotated(2 * found, vectors) == pytest.approx(exact.apply(vectors))
-    between = rotations.angle_between_vectors(vectors, rotations.rotated(second, vectors))
-    cosines = np.sum(vectors * other.apply(vectors), axis=1) / np.sum(vectors**2, axis=1)
-    assert np.cos(between) == pytest.approx(cosines)
-    for name, angle in {"theta": theta, "phi": phi, "psi": psi}.items():
-        off = rotations.angles_of(found)[name] - angle
-        assert rotations.within_half_turn(off) == pytest.approx(0, abs=1e-12)
-        if name != "phi":
-            assert rotations.angles_of_axis(axis)[name] == pytest.approx(angle)
-    for word, start in {"x": [1, 0, 0], "-y": [0, -1, 0], "-z": [0, 0, -1], "z": [0, 0, 1]}.items():
-        turned = rotations.rotated(rotations.to_z(word), np.array([start]))
-        assert turned == pytest.approx(np.array([[0, 0, 1]]))
-    ahead = rotations.of_angles(theta + 1e-7, phi + 2e-7, psi - 3e-7)
-    turn = rotations.product(rotations.conjugate(found), ahead)
-    rates = rotations.body_rates(theta, phi, np.full(9, 1.0), np.full(9, 2.0), np.full(9, -3.0))
-    assert 2e7 * turn[:, 1:] == pytest.approx(np.stack(rates, axis=1), abs=1e-5)
-
-
-def test_every_quantity_is_the_same_motion() -> None:
-    rng = np.random.default_rng(3)
-    angles = {"theta": rng.uniform(0.1, 3, 5), "phi": rng.uniform(-3, 3, 5), "psi": np.ones(5)}
-    turn, rates = rotations.of_angles(**angles), rng.normal(size=(5, 3))
-    exact, time = Rotation.from_quat(turn, scalar_first=True), {"t": np.arange(5.0)[:, np.newaxis]}
-    parts = {name: x[:, np.newaxis] for name, x in angles.items()}
-    for given, how in (
-        ({"quaternion": turn}, Conventions()),
-        ({"quaternion": turn[:, [1, 2, 3, 0]]}, Conventions("xyzw")),
-        ({"matrix": exact.as_matrix().reshape(5, 9)}, Conventions()),
-        (parts, Conventions()),
-        ({"euler": exact.as_euler("ZYX")}, Conventions(euler="ZYX")),
-        ({"rotvec": exact.as_rotvec()}, Conventions()),
-    ):
-        seen = observe({**time, **given, "rates": rates}, how.checked())
-        assert seen.quaternion is not None
-        assert rotations.angle_between(seen.quaternion, turn).max() < 1e-7
-        assert (seen.body_rates is rates, seen.axis, seen.angles) == (True, None, {})
-    axis = rotations.axis_of(turn)
-    seen = observe({**time, "position": 2 * axis, "rates": rates}, Conventions(rates="space"))
-    assert (seen.space_rates is rates, seen.body_rates, seen.quaternion) == (True, None, None)
-    assert seen.distance == pytest.approx(2)
-    assert seen.axis == pytest.approx(2 * axis)
-    fallen = observe(
-        {**time, "axis": 1.5 * axis * np.array([[1], [0], [1], [1], [1]])}, Conventions()
-    )
-    assert fallen.norm == pytest.approx([0.5, -1, 0.5, 0.5, 0.5])
-    assert fallen.axis is not None
-    assert np.isnan(fallen.axis).any(axis=1).tolist() == [False, True, False, False, False]
-    tilt = {"theta": parts["theta"]}
-    assert observe({**time, **tilt, "position": axis}, Conventions()).angles.keys() == {"theta"}
-    turned = observe({**time, **parts, "angle_rates": rates}, Conventions())
-    assert turned.body_rates == pytest.approx(
-        np.stack(rotations.body_rates(angles["theta"], angles["phi"], *rates.T), axis=1)
-    )
-    with pytest.raises(LagtopError, match="angle_rates must come with an attitude or a part"):
-        observe({**time, "angle_rates": rates}, Conventions())
-    for wrong in (Conventions("zyxw"), Conventions(euler="xxy"), Conventions(rates="world")):
-        with pytest.raises(LagtopError, match="must be "):
-            wrong.checked()
+def test_rates_of_angles_turn_the_body() -> None:
+    """`comparison` tests all other quantities, as trajectories of integrators."""
+    rng, step = np.random.default_rng(2), 1e-6
+    angles, rates = rng.uniform(0.1, 3, (9, 3)), np.array([[1.0, 2.0, -3.0]] * 9)
+    ahead = [(angles + h * rates)[:, [2, 0, 1]] for h in (-step, step)]
+    before, after = (Rotation.from_euler("ZXZ", x) for x in ahead)
+    parts = dict(zip(("theta", "phi", "psi"), np.split(angles, 3, axis=1), strict=True))
+    given = {"t": np.arange(9.0)[:, np.newaxis], "angle_rates": rates}
+    exact = (before.inv() * after).as_rotvec() / (2 * step)
+    assert observe(given | parts, Conventions()).body_rates == pytest.approx(exact, abs=1e-8)
+    tilt = given | {"theta": parts["theta"], "position": after.apply([0, 0, 4])}
+    assert observe(tilt, Conventions()).angles.keys() == {"theta"}
 
 
 @pytest.mark.parametrize("bad", [math.inf, math.nan, 1e200])
