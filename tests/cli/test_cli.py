@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from conftest import ROOT, Lagtop, Solved, assert_one_line
 from lagtop import Top, solve
@@ -66,42 +67,9 @@ def test_an_undefined_key_does_not_suppress_the_others(lagtop: Lagtop, fmt: str)
     assert (alone.exit_code, alone.stdout, alone.stderr) == (1, "", found.stderr)
 
 
-def test_json_has_the_keys_in_order(solved: Solved) -> None:
+def test_json_and_csv_have_the_keys_in_order(lagtop: Lagtop, solved: Solved) -> None:
     assert list(solved()) == [*KEYS, "summary"]
-
-
-def test_csv_and_json_carry_the_same_doubles(lagtop: Lagtop, solved: Solved) -> None:
-    text = lagtop("solve", "--r0", "0", "--format", "csv").stdout
-    header, cells = csv.reader(io.StringIO(text))
-    record = solved("--r0", "0")
-    assert header == [key for key in record if key != "summary"] == KEYS
-    for key, cell in zip(header, cells, strict=True):
-        value = record[key]
-        if isinstance(value, float):
-            assert float(cell) == value, key
-        else:
-            assert cell == (value or ""), key
-
-
-def test_radians_rename_and_convert(solved: Solved) -> None:
-    degrees, radians = solved(), solved("--rad", "--theta0", "0.5235987755982988")
-    assert [key.replace("_deg", "_rad") for key in KEYS] == list(radians)[:-1]
-    assert radians["theta_max_rad"] == pytest.approx(math.radians(degrees["theta_max_deg"]))
-    assert radians["theta_min_rad"] == radians["theta0_rad"] == 0.5235987755982988
-    assert radians["T_nutation"] == pytest.approx(degrees["T_nutation"], rel=1e-14)
-
-
-def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> None:
-    shown = lagtop("solve").stdout
-    words = set(shown.split())
-    numbers = [x for key, x in solved().items() if key != "summary" and x is not None]
-    assert {str(value) for value in numbers} <= words
-    assert "…" not in shown
-    assert max(map(len, shown.splitlines())) <= 80
-    groups = dict.fromkeys(key.group for name, key in SHOWN.items() if name != "remark")
-    order = [shown.index(f"\n{group}\n") for group in groups]
-    assert order == sorted(order)
-    assert {key for key, value in solved().items() if value is not None} - words == {"summary"}
+    assert lagtop("solve", "--format", "csv").stdout.splitlines()[0] == ",".join(KEYS)
 
 
 def test_a_wide_table_has_the_names_too() -> None:
@@ -126,20 +94,12 @@ def test_tables_of_ordinary_tops_fit_80_columns(lagtop: Lagtop) -> None:
         assert max(map(len, shown.stdout.splitlines())) <= 80, options
 
 
-@pytest.mark.parametrize(("r0", "regime"), [(50, "sleeping, unstable"), (60, "sleeping")])
-def test_the_table_says_whether_a_sleeping_top_is_stable(
-    lagtop: Lagtop, r0: int, regime: str
-) -> None:
-    words = ["solve", "--theta0", "0", "--r0", str(r0)]
-    (line,) = (x for x in lagtop(*words).stdout.splitlines() if x.startswith("regime"))
-    assert line.removeprefix("regime").strip() == regime
-    assert '"regime":"sleeping"' in lagtop(*words, "--format", "json").stdout
-
-
-def test_the_remark_stands_below_the_table(lagtop: Lagtop) -> None:
-    shown = lagtop("solve", "--theta0", "0").stdout
-    assert shown.endswith("\n\nonly phi + psi is defined; unstable (lambda = b^2/2a < 1)\n")
-    assert max(map(len, shown.splitlines())) <= 80
+def test_the_table_says_whether_a_sleeping_top_is_stable(lagtop: Lagtop) -> None:
+    for r0, regime in ((50, "sleeping, unstable"), (60, "sleeping")):
+        shown = lagtop("solve", "--theta0", 0, "--r0", r0).stdout
+        (line,) = (x for x in shown.splitlines() if x.startswith("regime"))
+        assert line.removeprefix("regime").strip() == regime
+        assert shown.splitlines()[-2:] == ["", solve(Top(theta0_deg=0, r0=r0)).remark]
 
 
 SAMPLE_REGIMES = {
@@ -153,12 +113,6 @@ SAMPLE_REGIMES = {
 """The regimes of shipped scenes that are not regular."""
 
 
-def test_get_with_digits_and_radians(lagtop: Lagtop) -> None:
-    result = lagtop("solve", "--get", "theta_max_rad", "--rad", "--theta0", "1", "--digits", "25")
-    table = lagtop("solve", "--rad", "--theta0", "1", "--digits", "25", "--format", "json").stdout
-    assert f'"theta_max_rad":{result.stdout.strip()},' in table
-
-
 def test_several_values(lagtop: Lagtop) -> None:
     record = solve(Top(r0=40)).record()
     keys = ["path", "T_nutation", "Lz", "theta0_deg"]
@@ -170,15 +124,10 @@ def test_several_values(lagtop: Lagtop) -> None:
 # table
 
 
-def test_table_agrees_with_the_library(lagtop: Lagtop) -> None:
-    angles = solve(Top(r0=20)).angles([0.0, 0.5, 1.0])
-    shown = rows(lagtop("table", "--r0", "20", "--t-max", "1", "--n", "3", "--rad").stdout)
-    for i, row in enumerate(shown):
-        assert row[1:] == [angle[i] for angle in angles]
-
-
 def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
     plain = rows(lagtop("table", "--t-max", "2").stdout)
+    exact = np.stack(solve(Top()).angles([row[0] for row in plain]), axis=1)
+    assert np.radians([row[1:] for row in plain]) == pytest.approx(exact, rel=4e-16, abs=0)
     objects = json.loads(lagtop("table", "--t-max", "2", "--format", "json").stdout)
     assert [list(item.values()) for item in objects] == plain
     assert list(objects[0]) == ["t", "theta_deg", "phi_deg", "psi_deg"]
@@ -217,43 +166,34 @@ def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Pat
     assert [row[0] for row in rows(from_file)] == [0.3, -100, 0.1]
 
 
-def test_wrap(lagtop: Lagtop) -> None:
-    wrapped = rows(lagtop("table", "--t-max", "5", "--wrap").stdout)
-    assert all(-180 < angle <= 180 for row in wrapped for angle in row[2:])
-
-
 # errors
 
 BAD = {
     "--r0 nan": "--r0 must be a finite decimal number, got 'nan'",
-    "--r0 inf": "--r0 must be a finite decimal number, got 'inf'",
     "--r0 1e400": "--r0 must be at most 1.8e308 in size, got 1e400",
     "--r0 1e-400": "--r0 must be 0 or at least 5e-324 in size, got 1e-400",
     "--r0 ٣": "--r0 must be a finite decimal number, got '٣'",
     "--r0 0x10": "--r0 must have a unit such as rad/s or rpm, got the unit 'x10'",
     "--psidot0 Steady": "--psidot0 must be a number, steady or steady-fast, got 'Steady'",
-    "--psidot0 slow": "--psidot0 must be a number, steady or steady-fast, got 'slow'",
     "--m 0": "Error: --m must be > 0, got 0.0\n",
-    "--A -1": "A must be > 0, got -1.0",
     "--C 0": "C must be > 0, got 0.0",
     "--s -1": "s must be >= 0, got -1.0",
     "--g -981": "(for upward gravity use 180 - theta0 and -r0)",
     "--C 80000": "C must be <= 2 A = 78064.0, got 80000.0 (no rigid body has more)",
-    "--theta0 -1": "--theta0 must be in [0, 180], got -1.0",
     "--theta0 0 --psidot0 1": "--psidot0 must be 0 if the axis is vertical, got 1.0",
     "--theta0 181": "--theta0 must be in [0, 180], got 181.0",
     "--theta0 3.15 --rad": "--theta0 must be in [0, pi rad], got 3.15",
     "--theta0 30rad": "--theta0 must be in [0, pi rad], got 30.0",
     "--format xml": "'xml' is not one of ",
+    "--digits 1001": "--digits must be ",
+    "--digits 2.5": "--digits must be ",
     "a.toml b.toml": "unexpected extra argument (b.toml): see lagtop",
 }
 BAD_TIMES = {
     "--columns psi_deg": "got 'psi_deg' (did you mean 'psi'?)",
     "--n 0": "--n must be in [1, 1000000000], got 0",
-    "--n -3": "--n must be in [1, 1000000000], got -3",
     "--n 1.5": "--n must be a whole number, got '1.5'",
     "--dt 0": "--dt must be > 0, got 0.0",
-    "--dt -0.1": "--dt must be > 0",
     "--t-max -1": "--t-max must be >= --t-min = 0.0, got -1.0",
     "--t-max 1 --dt 1e-10": "the grid of times must have at most 1e9 rows, got 1.000e+10",
     "--n 2e9": "--n must be in [1, 1000000000], got 2e9",
@@ -273,9 +213,7 @@ OTHERS = {
     "solve --get a,k,a": "Error: --get must not repeat a name, got 'a' twice\n",
     "solve --get period": "(did you mean 'T_nutation', 'T_spin' or 'T_precession'?)",
     "solve --get precession": f"(did you mean {_RATES}?)",
-    "solve --get nutation_period": "(did you mean 'T_nutation'?)",
     "solve --get theta_max": "(did you mean 'theta_max_deg'?)",
-    "solve --get mean_spin": "(did you mean 'mean_spin_rate'?)",
     "sweep --keys x": "Error: --keys must be among 77 names, got 'x': regime, a",
     "jacobi --k 0.8 --format parquet": "--format parquet holds tables: use json or csv",
     "jacobi --k 0.8 --u i,K": "--u must not contain K if numbers are complex",
@@ -310,14 +248,6 @@ def test_the_record_of_a_steady_top_is_a_file_of_tops(fmt: str, lagtop: Lagtop) 
     *_, regime, period, error = result.stdout.splitlines()[1].split(",")
     assert (regime, error) == ("steady precession", "")
     assert float(period) == pytest.approx(0.4637087134781949, rel=2e-15)
-
-
-def test_bad_line_of_times(lagtop: Lagtop) -> None:
-    result = lagtop("table", "--times", "-", input="0\n1\nsoon\n")
-    assert result.exit_code == 65
-    assert result.stdout == ""
-    assert "standard input, line 3: the time must be a finite decimal number" in result.stderr
-    assert "at least one time" in lagtop("table", "--times", "-", input="").stderr
 
 
 @pytest.mark.parametrize(

@@ -28,15 +28,20 @@ def dicts(text: str) -> list[dict[str, str]]:
 
 
 def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
+    """They are rounded as the Particle Data Group does."""
     rng = random.Random(1)
+    pairs = [(5.0, x) for x in (0.1, 0.3549, 0.355, 0.9494, 0.95, 0.9949)]
+    pairs += [(0.0, 0.02), (2e150, 1e145)]
     for _ in range(500):
         value = rng.choice([-1, 1]) * 10 ** rng.uniform(-8, 9)
-        std = abs(value) * 10 ** rng.uniform(-13, 2)
+        pairs.append((value, abs(value) * 10 ** rng.uniform(-13, 2)))
+    for value, std in pairs:
         text = uncertain_text(value, std)
         assert text == f"{uncertainties.ufloat(value, std):S}", text
         read, other = parse_value("m", text, uncertain=True), uncertainties.ufloat_fromstr(text)
         assert float(read.number) == pytest.approx(other.n, rel=1e-15)
         assert float(read.std or 0) == pytest.approx(other.s, rel=1e-12)
+    assert [uncertain_text(5.0, 0.0), uncertain_text(2e300, 1e295)] == ["5.0", "2.000000(10)e+300"]
 
 
 def test_an_uncertainty_on_request_is_in_every_format(lagtop: Lagtop) -> None:

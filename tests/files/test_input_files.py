@@ -71,12 +71,6 @@ def test_invalid_scene_files_are_refused(
     assert len(result.stderr) < 500 + len(path)
 
 
-def test_standard_input_is_read_once(lagtop: Lagtop) -> None:
-    result = lagtop("table", "-", "--times", "-", input="r0 = 1\n")
-    assert_one_line(result, 2, "")
-    assert "not both" in result.stderr
-
-
 def test_standard_input_on_windows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr("os.set_blocking")  # which it lacks before Python 3.12
     assert lagtop("sweep", "-", "--keys", "K", input="r0\n0\n").exit_code == 0
@@ -112,11 +106,16 @@ def test_a_file_that_cannot_be_read_ends_with_65(
     assert_one_line(lagtop(*line.split()), 65, f"{name}: Is a directory: pass a file")
 
 
-# Times
-
-
-def test_a_time_out_of_reach(tmp_path: Path, lagtop: Lagtop) -> None:
-    path = tmp_path / "times.txt"
-    path.write_text("1\n2\n1e30\n")
-    result = lagtop("table", "--times", path)
-    assert_one_line(result, 65, f"{path}: t must be finite and within 2^50 periods")
+@pytest.mark.parametrize(
+    ("words", "text", "code", "message"),
+    [
+        ("table - --times -", "r0 = 1\n", 2, "standard input holds the scene or --times, not both"),
+        ("table --times -", "1\n1e30\n", 65, "standard input: t must be finite and within 2^50 p"),
+        ("table --times -", "0\n1\nsoon\n", 65, "standard input, line 3: the time must be a fin"),
+        ("table --times -", "", 65, "standard input must hold at least one time, got none"),
+    ],
+)
+def test_standard_input_that_is_refused(
+    words: str, text: str, code: int, message: str, lagtop: Lagtop
+) -> None:
+    assert_one_line(lagtop(*words.split(), input=text), code, message)
