@@ -11,10 +11,8 @@ from pathlib import Path
 
 import pytest
 from conftest import Lagtop, Solved, assert_one_line
-from lagtop import Top, solve
 
 from lagrange_cli.output.report import uncertain_text
-from lagrange_cli.solver.derivatives import Derivatives
 from lagrange_cli.top.values import parse_value
 
 uncertainties = pytest.importorskip("uncertainties")
@@ -64,23 +62,6 @@ def test_the_record_carries_uncertainties(lagtop: Lagtop, solved: Solved) -> Non
     assert "1587.0(2.0)" in shown
     radians = solved(*BODY, "--rad", "--theta0", "0.5(1)")
     assert radians["theta_min_rad_std"] == pytest.approx(0.1)
-
-
-def test_measured_inputs_hand_their_uncertainty_on() -> None:
-    """A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0): differences of both."""
-    given = {"m": 2.0, "A_cm": 3.0, "s": 0.5, "phidot0": 4.0, "psidot0": 1.5, "theta0_deg": 50.0}
-    top = Top(C=1, g=1, **given)
-    derivatives = Derivatives(solve(top))
-    inputs = "m A_cm C s g phidot0 theta0_deg thetadot0 psidot0"
-    assert derivatives.inputs == tuple(inputs.split())
-    for name, value in given.items():
-        ahead = Top(C=1, g=1, **(given | {name: value + 1e-6}))
-        for solved in ("A", "r0"):
-            slope = (getattr(ahead, solved) - getattr(top, solved)) / 1e-6
-            assert derivatives.nearest(solved, name) == pytest.approx(slope, abs=1e-5), (
-                name,
-                solved,
-            )
 
 
 def test_a_budget_adds_up(lagtop: Lagtop) -> None:

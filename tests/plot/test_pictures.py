@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop
 from lagtop import LagtopError, Motion, Top, draw, read_scene, solve
 
 pytest.importorskip("matplotlib")
@@ -397,10 +397,8 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
 @pytest.mark.parametrize(
     ("args", "said"),
     [
-        (["sphere"], "nothing to do"),
         (["-o", "x.bmp"], "must end in .png, .svg or .pdf"),
         (["cubic", "-o", "none/x.png"], "none/x.png: No such file or directory"),
-        (["sphere", "nosuch", "-o", "x.png"], "nosuch"),
         (["angle", "-o", "x.png"], "did you mean 'angles'?"),
         (["-o", "x.gif"], "write --animate x.gif instead of -o"),
         (["sphere", "-o", "x.png", "--key", "a"], "need map"),
@@ -409,7 +407,6 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
         (["map", "-o", "x.png", "--x", "m=1:2:3 kg", "--r0", "50"], "--r0 must have a unit"),
         (["map", "-o", "x.png", "--x", "m=1:2:3 s"], "--x must have a unit such as kg or g"),
         (["map", "-o", "x.png", "--x", "q0=1:2:3"], "--x must be among"),
-        (["map", "-o", "x.png", "--x", "r0=9:2:3"], "start < stop"),
         (["map", "-o", "x.png", "--x", "theta0=1:9:3"], "two inputs"),
         (["map", "-o", "x.png", "--g", "0", "--key", "u3"], "undefined"),
         (["sphere", "-o", "x.png", "--camera", "1,2,3"], "--camera must be"),
@@ -420,7 +417,6 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
         (["sphere", "--animate", "x.avi"], "must end in .gif or .mp4"),
         (["sphere", "--animate", "x.gif", "--duration", "500"], "duration must be in"),
         (["sphere", "looping-top", "wavy-top", "--animate", "x.gif"], "films one scene"),
-        (["view"], "nothing to do"),
         (["view", "-o", "top.pdf"], "must be a file that ends in .html"),
         (["view", "-o", "top.html", "--r0", "1e40"], "r0 must be from 1e-30 to 1e30"),
     ],
@@ -434,10 +430,3 @@ def test_bad_requests_end_in_one_line(
     assert said in done.stderr
     assert done.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_link_to_itself_is_no_picture(lagtop: Lagtop, tmp_path: Path) -> None:
-    (loop := tmp_path / "loop.svg").symlink_to("loop.svg")
-    for line in ("plot cubic -o", "bench --n 3 --methods lagtop --plot"):
-        said = f"cannot write {loop}: Too many levels of symbolic links\n"
-        assert_one_line(lagtop(*line.split(), loop), 74, said)

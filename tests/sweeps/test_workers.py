@@ -66,18 +66,6 @@ def test_bytes_are_those_of_one_process(jobs: str, tmp_path: Path) -> None:
     assert joined(tmp_path / "parts") == process(*grid).stdout
 
 
-@pytest.mark.slow
-def test_no_module_of_the_current_folder_is_run(tmp_path: Path) -> None:
-    script = "from lagrange_cli.__main__ import main; main()"
-    names = "signal pickle socket selectors tempfile logging random struct lagrange_cli".split()
-    for name in names:
-        (tmp_path / f"{name}.py").write_text(f"open('RAN-{name}', 'w')\nraise SystemExit\n")
-    line = [sys.executable, "-P", "-c", script, "sweep", "--r0", "1:9:20000", "--keys", "r0"]
-    done = subprocess.run([*line, "--jobs", "2"], cwd=tmp_path, capture_output=True, check=False)
-    assert (done.returncode, done.stderr, done.stdout.count(b"\n")) == (0, b"", 20_001)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(f"{x}.py" for x in names)
-
-
 def workers_of(process: int) -> list[int]:
     """Return the processes that share the work of a process."""
     children = Path(f"/proc/{process}/task").glob("*/children")  # of each thread

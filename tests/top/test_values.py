@@ -108,24 +108,6 @@ def test_objects_that_are_no_input_are_refused(given: Any, wrong: str) -> None:
     assert found.value.key == "m"
 
 
-@pytest.mark.parametrize(
-    ("key", "text", "found"),
-    [
-        ("m", "500(2) g", Value(Fraction(1, 2), "mass", Fraction(2, 1000))),
-        ("C", "3 g cm²", Value(Fraction(3, 10**7), "mass len²")),
-        ("theta0", "0.25 turn", Value(Fraction(90), "deg")),
-        ("theta0", "500(1) mrad", Value(Fraction(1, 2), "rad", Fraction(1, 1000))),
-        ("t_max", "2 min", Value(Fraction(120), "time")),
-        ("psidot0", "steady", Value("steady")),
-        ("r0", "50", Value(Fraction(50))),
-    ],
-)
-def test_a_number_with_a_unit_is_converted_when_it_is_read(
-    key: str, text: str, found: Value
-) -> None:
-    assert parse_value(key, text, uncertain=True, steady=True) == found
-
-
 # Ranges
 
 
