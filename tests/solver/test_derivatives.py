@@ -80,6 +80,12 @@ def test_derivatives_of_a_record_in_radians() -> None:
         assert by == pytest.approx(slopes(top, name, values, Fraction(1, 10**9)), rel=1e-8)
 
 
+def test_derivatives_are_by_the_inputs_that_were_given() -> None:
+    top = Top(m=2, A_cm=3, C=1, s=0.5, g=1, phidot0=4, psidot0=1.5, theta0_deg=50)
+    inputs = "m A_cm C s g phidot0 theta0_deg thetadot0 psidot0"
+    assert sensitivities(top, ["a"]).inputs == tuple(inputs.split())
+
+
 def test_a_kink_has_no_derivative() -> None:
     found = sensitivities(Top(**SCENES["steady"]), ["theta_max_deg", "T_nutation"]).derivatives
     assert math.isnan(found["theta_max_deg"]["r0"])
