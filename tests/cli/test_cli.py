@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import math
 import random
 import re
 from pathlib import Path
@@ -231,14 +230,6 @@ def test_bad_input(line: str, message: str, lagtop: Lagtop) -> None:
     result = lagtop(*line.split())
     assert_one_line(result, 2, "")
     assert message in result.stderr
-
-
-def test_options_win_over_the_file(solved: Solved, tmp_path: Path) -> None:
-    path = tmp_path / "scene.toml"
-    path.write_text("r0 = 7\ntheta0_rad = 1.0\nm = 1_500\n")
-    record = solved(path, "--r0", "8", "--theta0", "20")
-    assert (record["r0"], record["theta0_deg"], record["m"]) == (8, 20, 1500)
-    assert solved(path)["theta0_deg"] == pytest.approx(math.degrees(1))
 
 
 @pytest.mark.parametrize("fmt", ["csv", "ndjson"])

@@ -257,10 +257,6 @@ def test_unix_times_keep_their_digits(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("heading", "found"),
     [
-        ("t [ms]", ("t", "ms")),
-        ("theta (deg)", ("theta", "deg")),
-        ("ϑ (°)", ("theta", "deg")),
-        ("r0 rev/min", ("r0", "rev/min")),
         ("φ'0 [rad/s]", ("phidot0", "rad/s")),
         ("ψ\u0307", ("psidot", "")),
         ("ϑ₀ (degrees)", ("theta0", "deg")),

@@ -20,6 +20,7 @@ import pytest
 from conftest import ROOT
 from hard_scenes import HARD_KINDS, in_doubles
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
+from scipy.spatial.transform import Rotation
 
 from lagrange_cli.plot.style import DARK, LIGHT
 from lagrange_cli.solver.summary import PHRASES, summary
@@ -83,23 +84,14 @@ def times_of(motion: Motion) -> list[float]:
     return [x * unit for x in PERIODS]
 
 
-def attitude(theta: float, phi: float, psi: float) -> Any:
-    """Return the quaternion of the Euler angles."""
-    cos, sin = math.cos(theta / 2), math.sin(theta / 2)
-    plus, minus = (psi + phi) / 2, (psi - phi) / 2
-    up, side = [math.cos(plus), math.sin(plus)], [math.cos(minus), math.sin(minus)]
-    return np.array([cos * up[0], sin * side[0], sin * side[1], cos * up[1]])
-
-
 def errors(motions: Sequence[Motion]) -> list[tuple[float, bool]]:
     """Return the greatest error of the attitude of each motion, and whether it is a sketch."""
     found = []
     for motion, page in zip(motions, computed(motions), strict=True):
-        exact = np.stack(motion.angles(times_of(motion)), axis=1)
-        shown = np.array(page["angles"], float)  # null is NaN
-        pairs = [(attitude(*x), attitude(*y)) for x, y in zip(exact, shown, strict=True)]
-        away = (2 * min(np.linalg.norm(x - y), np.linalg.norm(x + y)) for x, y in pairs)
-        found.append((float(max(away)), page["isSketch"]))
+        theta, phi, psi = np.array(page["angles"], float).T  # null is NaN
+        shown = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=1))
+        away = (motion.rotation(times_of(motion)) * shown.inv()).magnitude().max()
+        found.append((float(away), page["isSketch"]))
     return found
 
 
