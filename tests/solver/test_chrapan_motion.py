@@ -87,12 +87,6 @@ def cubic(now: Moment, u: Any) -> Any:
     return now.a * (now.u1 - u) * (u - now.u2) * (now.u3 - u)
 
 
-def slope_of_cubic(now: Moment, u: Any) -> Any:
-    """Return the central difference of f."""
-    h = ar.mpf(10) ** -45
-    return (cubic(now, u + h) - cubic(now, u - h)) / (2 * h)
-
-
 def start(now: Moment) -> Any:
     """Return u1 of the start."""
     return ar.cos(ar.radians(now.motion.motion.top.theta0_deg))
@@ -118,18 +112,6 @@ def printed_six(now: Moment) -> list[Any]:
     south = [J * ar.sqrt(u3 - u1), ar.sqrt(u3 + 1), ar.sqrt(1 + u2)]
     north = [ar.sqrt(u3 - u1), J * ar.sqrt(u3 - 1), ar.sqrt(1 - u2)]
     return [x / ar.sqrt(1 + u1) for x in south] + [x / ar.sqrt(1 - u1) for x in north]
-
-
-def signed_six(now: Moment) -> list[Any]:
-    """Return them with the signs that they have."""
-    return [s * x for s, x in zip((1, 1, 1, -1, 1, -1), printed_six(now), strict=True)]
-
-
-def squares(now: Moment) -> list[Any]:
-    """Return the squares of sn, cn, dn at alpha1 and at alpha2, from the roots (4 i)."""
-    u1, u2, u3 = now.u1, now.u2, now.u3
-    south = [x / (1 + u1) for x in (u1 - u3, u3 + 1, 1 + u2)]
-    return south + [x / (1 - u1) for x in (u3 - u1, 1 - u3, 1 - u2)]
 
 
 def quotient(now: Moment, v: Any) -> Any:
@@ -190,16 +172,13 @@ def steady(now: Moment) -> Any:
     return now.r0 * (1 - now.C / (2 * now.A)) * now.t
 
 
-def arccot(now: Moment) -> Any:
-    """Return the arccot of (6,1) from u, its roots positive as the text has them."""
-    above, below = (now.u3 - now.u) * (now.u - now.u2), (now.u3 + now.u2) * (now.u1 - now.u)
-    return ar.acot(ar.sqrt(above / below))
+def arccot(now: Moment, sign: Any = 1) -> Any:
+    """Return the arccot of (6,1) from u, its roots positive as the text has them.
 
-
-def signed_arccot(now: Moment) -> Any:
-    """Return the arccot of (6,4), negative roots in the second half of a period."""
+    In (6,4) they are negative in the second half of a period.
+    """
     above, below = (now.u3 - now.u) * (now.u - now.u2), (now.u3 + now.u2) * (now.u1 - now.u)
-    return ar.atan2(ar.sqrt(below), ar.sign(now.T / 2 - now.t) * ar.sqrt(above))
+    return ar.atan2(ar.sqrt(below), sign * ar.sqrt(above))
 
 
 def drift(now: Moment) -> Any:
@@ -268,7 +247,7 @@ section 4 e: the discriminant | (a*(u3 - u2))**2 = discriminant(now)
     | sign(discriminant(now) - (b**2 - 2*a)**2) = 1
 section 4 e: f and its slope at 1, -1 and u1 | cubic(now, 1) = -(b*(start(now) - 1))**2
     | cubic(now, -1) = -(b*(start(now) + 1))**2
-    | slope_of_cubic(now, start(now)) = -a*(1 - start(now)**2)
+    | diff(lambda u: cubic(now, u), start(now)) = -a*(1 - start(now)**2)
 (4,11) | u3 + u2 = b**2/a
 section 4 f: sum of products | u1*u2 + u1*u3 - u2*u3 = 1
 (4,12) | u2*u3 = b**2/a*u1 - 1
@@ -315,7 +294,8 @@ section 4 i: precession by Pi01 and the values at its parameters
     | weighted(now)[0] - weighted(now)[1] = psi
 section 4 l: spin by Pi01 and the values at its parameters | r0*t + sum(weighted(now)) = phi
 # tops
-section 4 i: sn, cn, dn of the parameters | six = signed_six(now)
+section 4 i: sn, cn, dn of the parameters
+    | six = [s*x for s, x in zip((1, 1, 1, -1, 1, -1), printed_six(now))]
     | [x**2 for x in six] = [x**2 for x in printed_six(now)]
 line before (4,27) | six[0]/(six[1]*six[2]) = quotient(now, J*alpha)
     | quotient(now, J*alpha) = J*sqrt((u3 - u1)*(1 + u1)/((u3 + 1)*(1 + u2)))
@@ -329,13 +309,14 @@ section 4 g: the modulus, and its complement greater than 1 | kappa = J*k/k_prim
 section 4 h: quarter periods of the imaginary modulus | k_prime*K = ellipk(kappa2)
     | k_prime*(K_prime - J*K) = ellipk(1/k_prime**2)
 section 4 i: squares of sn, cn, dn at both parameters
-    | squares(now) = [x**2 for v in parameters for x in ours.jacobi(v, kappa)[1:]]
+    | [x**2 for x in printed_six(now)] =
+      [x**2 for v in parameters for x in ours.jacobi(v, kappa)[1:]]
 section 4 g: sn, cn, dn of the imaginary modulus anywhere
     | [ellipfun(x, alpha*(3 + 4*J)/10, m=-(k/k_prime)**2) for x in ('sn', 'cn', 'dn')] =
       ours.jacobi(alpha*(3 + 4*J)/10, kappa)[1:]
 section 4 j: the second parameter is iK' further, the product is 1
     | parameters[1] - parameters[0] = J*ellipk(1/k_prime**2) | kappa2*(six[0]*six[3])**2 = 1
-    | kappa2*squares(now)[0]*squares(now)[3] = 1
+    | kappa2*(printed_six(now)[0]*printed_six(now)[3])**2 = 1
 section 4 j: sn, cn, dn of i alpha for the real modulus
     | [x**2 for x in ours.jacobi(J*alpha, k)[1:]] = [x/(1 + u2) for x in (u2 - u3, u3 + 1, 1 + u1)]
 # tops: as printed
@@ -384,7 +365,7 @@ section 5: quarters of the nutation
 # first_half
 (6,1) from u, in the first half of a period | phi = steady(now) + sigma*arccot(now)
 # first_period
-(6,4) | dphi = sigma*(signed_arccot(now) - pi*t/T)
+(6,4) | dphi = sigma*(arccot(now, sign(T/2 - t)) - pi*t/T)
 (7,4) | dpsi = sigma*(pi*t/T - waves)
 # early_and_far
 (6,5) | dphi = at(tau).dphi | dpsi = at(tau).dpsi
