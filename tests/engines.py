@@ -74,16 +74,12 @@ def rk4(body: Body, h: float, end: float) -> Run:
     return _stepped(body, h, end, step)
 
 
-def semi_implicit_euler(body: Body, h: float, end: float) -> Run:
-    """Return a trajectory by the method of game engines, of order 1."""
+def euler(body: Body, h: float, end: float) -> Run:
+    """Return a trajectory by Euler's method, of order 1, with quaternions of norm 1."""
 
     def step(y: Array) -> Array:
-        rates = y[4:] + h * body.slope(y)[4:]
-        angle = h * np.linalg.norm(rates)
-        (w, *v), a = y[:4], np.cos(angle / 2)
-        b = np.sin(angle / 2) / np.linalg.norm(rates) * rates
-        turned = a * np.array(v) + w * b + np.cross(v, b)
-        return np.concatenate([[w * a - v @ b], turned, rates])
+        y = y + h * body.slope(y)
+        return np.concatenate([y[:4] / np.linalg.norm(y[:4]), y[4:]])
 
     return _stepped(body, h, end, step)
 
