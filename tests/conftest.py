@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import compileall
+import csv
+import io
 import json
 import os
 import signal
@@ -79,6 +81,17 @@ def assert_one_line(result: Result, code: int, message: str) -> None:
     assert (result.exit_code, result.stdout) == (code, "")
     assert result.stderr.startswith(f"Error: {message}")
     assert result.stderr.count("\n") == 1
+
+
+def dicts(text: str) -> list[dict[str, str]]:
+    """Return the rows of CSV by column."""
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def columns_of(text: str) -> dict[str, list[str]]:
+    """Return the columns of a CSV by their headings."""
+    rows = dicts(text)
+    return {name: [row[name] for row in rows] for name in rows[0]}
 
 
 def process(*args: str, check: bool = True, **extra: Any) -> subprocess.CompletedProcess[bytes]:

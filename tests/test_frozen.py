@@ -8,9 +8,7 @@ A key that is null in the lists `keys` and `radian_keys` is not compared.
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 import json
 from decimal import Decimal
 from fractions import Fraction
@@ -18,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Lagtop, Solved
+from conftest import Lagtop, Solved, columns_of
 from lagtop import Top, sensitivities, solve
 
 from lagrange_cli.top.inputs import STANDS_FOR
@@ -80,12 +78,6 @@ def options_of(inputs: dict[str, Any]) -> list[str]:
     for key, x in inputs.items():
         options.append(f"--{names.get(key, key)}={x if isinstance(x, str) else Decimal(x)}")
     return options
-
-
-def columns_of(text: str) -> dict[str, list[str]]:
-    """Return the columns of a CSV by their headings."""
-    header, *rows = csv.reader(io.StringIO(text))
-    return dict(zip(header, map(list, zip(*rows, strict=True)), strict=True))
 
 
 def test_tables(lagtop: Lagtop, tmp_path: Path) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import random
 import re
@@ -13,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ROOT, Lagtop, Solved, assert_one_line
+from conftest import ROOT, Lagtop, Solved, assert_one_line, dicts
 from lagtop import Top, solve
 from scenes import SAMPLES
 
@@ -36,7 +34,7 @@ KEYS = """
 
 
 def rows(text: str) -> list[list[float]]:
-    return [list(map(float, row)) for row in list(csv.reader(io.StringIO(text)))[1:]]
+    return [list(map(float, row.values())) for row in dicts(text)]
 
 
 # solve
@@ -296,8 +294,7 @@ def test_help_shows_the_defaults_of_the_inputs(lagtop: Lagtop) -> None:
 
 
 def test_explain_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
-    listed = lagtop("explain", "--format", "csv").stdout
-    names = [row["name"] for row in csv.DictReader(io.StringIO(listed))]
+    names = [row["name"] for row in dicts(lagtop("explain", "--format", "csv").stdout)]
     assert sorted(names) == sorted([*all_keys(), *COLUMNS])
     assert lagtop("explain", "remark").stdout == f"remark: {SHOWN['remark'].meaning}\n"
     assert "pseudo-regular" in lagtop("explain", "remark", "fast-gyroscope").stdout
@@ -308,7 +305,7 @@ def test_scenes_are_found_by_name(
 ) -> None:
     by_file = {path.stem: solved(path) for path in SAMPLES}
     monkeypatch.chdir(tmp_path)
-    listed = csv.DictReader(io.StringIO(lagtop("scenes", "--format", "csv").stdout))
+    listed = dicts(lagtop("scenes", "--format", "csv").stdout)
     assert [row["name"] for row in listed] == sorted(by_file)
     for name, record in by_file.items():
         assert solved(name) == record

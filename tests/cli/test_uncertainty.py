@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import random
 from pathlib import Path
 
 import pytest
-from conftest import Lagtop, Solved, assert_one_line
+from conftest import Lagtop, Solved, assert_one_line, dicts
 
 from lagrange_cli.output.report import uncertain_text
 from lagrange_cli.top.values import parse_value
@@ -18,11 +16,6 @@ from lagrange_cli.top.values import parse_value
 uncertainties = pytest.importorskip("uncertainties")
 
 BODY = ["--m", "1587(2)", "--A", "39032", "--C", "17458", "--s", "4.00(1)", "--g", "981 ± 0.1 %"]
-
-
-def dicts(text: str) -> list[dict[str, str]]:
-    """Return the rows of CSV by column."""
-    return list(csv.DictReader(io.StringIO(text)))
 
 
 def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
@@ -234,7 +227,11 @@ def test_tables_report_misleading_uncertainties_and_those_of_waves(lagtop: Lagto
     table = ["--t-max", 3, "--n", 4, "--columns", "t,theta,dphi,dpsi"]
     fine = lagtop("table", "--r0", "50.00(1)", "--theta0", "30.00(1)", *table)
     assert fine.stderr == ""
-    assert list(dicts(fine.stdout)[0])[4:] == ["theta_deg_std", "dphi_deg_std", "dpsi_deg_std"]
+    assert list(dicts(fine.stdout)[0])[4:] == [
+        "theta_deg_std",
+        "dphi_deg_std",
+        "dpsi_deg_std",
+    ]
     released = lagtop("table", "--thetadot0", "0+/-1", *table)
     assert "uncertainties of theta, dphi" in released.stderr
     # a wave keeps its size, and its band follows the phase: the spread of the mean rate is left out

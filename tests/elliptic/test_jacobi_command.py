@@ -9,7 +9,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from conftest import Lagtop
+from conftest import Lagtop, columns_of
 from lagtop import LagtopError
 
 from lagrange_cli.elliptic.arguments import ExactComplex, parse_arguments
@@ -21,8 +21,7 @@ def cells(lagtop: Lagtop, args: str) -> dict[str, list[str]]:
     """Return the cells of a CSV table by column."""
     shown = lagtop("jacobi", *args.split(), "--format", "csv")
     assert shown.exit_code == 0, shown.stderr
-    header, *lines = (line.split(",") for line in shown.stdout.splitlines())
-    return dict(zip(header, map(list, zip(*lines, strict=True)), strict=True))
+    return columns_of(shown.stdout)
 
 
 @DIGITS

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import Lagtop
+from conftest import Lagtop, assert_one_line
 
 JACOBI = [
     # real functions
@@ -61,6 +61,5 @@ def test_bad_input_is_refused_in_a_line(
     command: str, args: str, message: str, lagtop: Lagtop
 ) -> None:
     result = lagtop(command, *args.split(), "--format", "json")
-    assert (result.exit_code, result.stdout) == (2, "")
+    assert_one_line(result, 2, "")
     assert message in result.stderr
-    assert result.stderr.count("\n") == 1

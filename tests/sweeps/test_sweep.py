@@ -13,16 +13,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop, assert_one_line, dicts
 from lagtop import Top, solve, sweep
 
 from lagrange_cli.sweeps.records import column_keys
-
-Record = dict[str, Any]
-
-
-def table(text: str) -> list[Record]:
-    return list(csv.DictReader(io.StringIO(text)))
 
 
 def test_a_steady_top_per_row(lagtop: Lagtop) -> None:
@@ -31,13 +25,13 @@ def test_a_steady_top_per_row(lagtop: Lagtop) -> None:
     grid = lagtop("sweep", "--r0=-60,50,70", "--psidot0", "steady", *keys)
     cells = "r0,psidot0\n-60,steady\n50,steady\n70,steady\n"
     assert lagtop("sweep", "-", *keys, input=cells).stdout.replace("line 3: ", "") == grid.stdout
-    slow, absent, fast = table(grid.stdout)
+    slow, absent, fast = dicts(grid.stdout)
     assert absent["error"].startswith("psidot0 cannot be steady: |r0| must be at least 52.5611")
     assert [absent["T_nutation"], slow["error"], fast["error"]] == ["", "", ""]
     for row in (slow, fast):
         motion = solve(Top(r0=float(row["r0"]), psidot0="steady"))
         assert float(row["psidot0"]) == pytest.approx(motion.top.psidot0, rel=1e-15)
-    mixed = table(lagtop("sweep", "-", *keys, input=f"{cells}70,2\n").stdout)
+    mixed = dicts(lagtop("sweep", "-", *keys, input=f"{cells}70,2\n").stdout)
     assert [mixed[2], mixed[3]["psidot0"], mixed[3]["error"]] == [fast, "2.0", ""]
 
 
@@ -95,7 +89,7 @@ def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
     exact = sweep(r0=np.repeat(np.arange(0, 61, 10), 2), theta0_deg=np.tile([0, 30], 7))
     objects = json.loads(lagtop(*grid, "json").stdout)
     assert objects == [json.loads(line) for line in lagtop(*grid, "ndjson").stdout.splitlines()]
-    for i, (row, cells) in enumerate(zip(objects, table(lagtop(*grid, "csv").stdout), strict=True)):
+    for i, (row, cells) in enumerate(zip(objects, dicts(lagtop(*grid, "csv").stdout), strict=True)):
         assert list(row) == list(cells) == column_keys()
         for key, value in row.items():
             assert cells[key] == ("" if value is None else str(value))
@@ -135,7 +129,7 @@ def test_sweeps_that_are_refused(options: str, code: int, message: str, lagtop: 
     assert_one_line(lagtop("sweep", *options.split(), input="r0\n1\n"), code, message)
 
 
-def test_rows_of_csv(tmp_path: Path, lagtop: Lagtop) -> None:
+def test_dicts(tmp_path: Path, lagtop: Lagtop) -> None:
     file = tmp_path / "tops.csv"
     file.write_bytes(
         b"\xef\xbb\xbfname,r0,theta0_deg,T_nutation\r\n"
@@ -148,7 +142,7 @@ def test_rows_of_csv(tmp_path: Path, lagtop: Lagtop) -> None:
         "Error: 4 of 6 tops have an error; the first: line 4: r0 must be a finite decimal number, "
         "got '5_0' (leave out the underscores)\n"
     )
-    rows = table(result.stdout)
+    rows = dicts(result.stdout)
     assert [row["name"] for row in rows] == ['a, "b"', "=x", "c", "d", "", "f"]
     where = ["", *(f"line {i}" for i in range(4, 8)), ""]
     assert [row["error"].partition(":")[0] for row in rows] == where
