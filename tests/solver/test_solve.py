@@ -1,4 +1,7 @@
-"""What is said of a motion: a sentence for each regime, with its numbers, and remarks."""
+"""What `solve` prints: a sentence for each regime, remarks, and further keys on request.
+
+`test_digits` checks the keys as the nearest doubles.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,14 @@ import re
 
 import mpmath
 import pytest
-from conftest import Lagtop
-from lagtop import Top, solve
+from chrapan_top import ar
+from conftest import Lagtop, assert_one_line
+from errata import FIGURES, round_alike, true_values
+from lagtop import LagtopError, Top, solve
 from record_reference import reference_record
 from scenes import UNIT
 
+from lagrange_cli.solver.keys import FURTHER_KEYS, derivation_keys
 from lagrange_cli.solver.summary import summary
 
 SENTENCES = {
@@ -97,3 +103,44 @@ def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
             f"pseudo-regular precession: nutates by {float(nods):.3g} deg in {float(period):.3g} "
             f"time; the mean rate is {where} mgs/(C r0) = {float(rate):.3g} rad/time"
         )
+
+
+# Further keys: where they are accepted, and the worked example
+
+
+def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
+    """To the digits printed, where the print is right; the others are the true ones."""
+    header, cells = lagtop("solve", "--derivation", "--format", "csv").stdout.splitlines()
+    assert header.startswith("m,A,C,s,g,r0,theta0_deg,a,")  # as section 8 begins
+    assert cells.startswith("1587.0,39032.0,17458.0,4.0,981.0,50.0,30.0,319.0914")
+    assert header.split(",") == derivation_keys()
+    steps = dict(zip(derivation_keys(), cells.split(","), strict=True))
+    assert {x.key for x in FIGURES} == set(derivation_keys()[7:])
+    right, values = 0, true_values()
+    with ar.workdps(40):
+        for figure in FIGURES:
+            true = round_alike(values[figure.key], figure.text)
+            assert round_alike(ar.mpf(steps[figure.key]), figure.text) == true, figure.name
+            right += true == figure.text
+    assert (right, len(FIGURES)) == (16, 30)
+
+
+@pytest.mark.parametrize("options", ["--g 0", "--theta0 0", "--thetadot0 1", "--psidot0 2"])
+def test_what_has_no_derivation_says_so(lagtop: Lagtop, options: str) -> None:
+    found = lagtop("solve", "--derivation", *options.split())
+    assert_one_line(found, 1, "--derivation needs a top that nutates after")
+
+
+def test_a_record_has_them_only_when_they_are_asked_for(lagtop: Lagtop) -> None:
+    motion = solve(Top())
+    assert not set(motion.record()) & set(FURTHER_KEYS)
+    assert motion.record(keys=["Lz", "a"]) == {"a": motion.a, "Lz": motion.Lz}
+    assert motion.record(keys=["psi_half_rad"], radians=True) == {
+        "psi_half_rad": pytest.approx(1.715080720900244, rel=1e-15)
+    }
+    assert lagtop("solve", "--get", "Lz").stdout == f"{motion.Lz}\n"
+    digits = lagtop("solve", "--get", "phi_half_rad", "--rad", "--digits", "25")
+    assert digits.exit_code == 0
+    assert set(FURTHER_KEYS) <= set(dir(motion))
+    with pytest.raises(LagtopError, match="keys must not repeat a name, got 'Lz' twice"):
+        motion.record(keys=["Lz", "Lz"])
