@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 from conftest import Lagtop, Solved, columns_of
-from lagtop import Top, sensitivities, solve
+from lagtop import LagtopError, Motion, Top, sensitivities, solve
 
 from lagrange_cli.top.inputs import STANDS_FOR
 
@@ -26,6 +26,9 @@ DIGEST = "14add8e54000a42963c8300aaf7af9e2f6af434a2df9c83e3f558e337516e039"
 FROZEN: dict[str, Any] = json.loads(PATH.read_bytes())
 KEYS: list[str | None] = FROZEN["keys"]
 
+HAIR = Fraction(1, 10**29)
+"""Relative error of a number with 30 digits, rounded up."""
+LARGEST, SMALLEST = Fraction(2) ** 1024, Fraction(1, 2**1074)
 RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
 ANGLES = ("theta", "phi", "psi", "dphi", "dpsi")
 
@@ -46,6 +49,21 @@ def top_of(inputs: dict[str, Any]) -> Top:
         STANDS_FOR[name]: getattr(top, STANDS_FOR[name]) for name in STANDS_FOR.keys() & inputs
     }
     return top.replace(**derived)  # at that time A and r0 were rounded to doubles
+
+
+def assert_double(motion: Motion, key: str, text: str | None) -> None:
+    """Check that a number of a motion is its 30 digits, rounded to the nearest double."""
+    exact = Fraction(text or 0)
+    if exact and not SMALLEST <= abs(exact) < LARGEST:
+        with pytest.raises(LagtopError):
+            getattr(motion, key)
+        return
+    value = getattr(motion, key)
+    if value is None or text is None:
+        assert value is text, (key, motion.top)
+    elif value != float(exact):  # perhaps almost midway between two doubles
+        near = {float(exact * (1 - HAIR)), float(exact * (1 + HAIR))}
+        assert value in near, (key, motion.top, text)
 
 
 def numbers_of(entry: dict[str, Any]) -> dict[str, str | None]:
@@ -69,6 +87,15 @@ def test_records(share: int) -> None:
             found = motion.record(digits=30, radians=True, keys=radian_keys)
             known = zip(FROZEN["radian_keys"], entry["radians"], strict=True)
             assert found == {key: x for key, x in known if key}, entry["top"]
+
+
+@pytest.mark.parametrize("share", SHARES)
+def test_doubles(share: int) -> None:
+    """Each number of a motion is the nearest double to the number with 30 digits."""
+    for entry in FROZEN["records"][share::4]:
+        motion = solve(top_of(entry["top"]))
+        for key, text in numbers_of(entry).items():
+            assert_double(motion, key, text)
 
 
 def options_of(inputs: dict[str, Any]) -> list[str]:
