@@ -221,6 +221,7 @@ def test_order_of_convergence(method: Any, steps: list[float], order: int) -> No
         ([0.2, 0.2, 0.2], None, "not fall with the step: this is the motion of another top"),
         ([2.9e-2, 2.2e-3, 3.5e-3], None, "2.2e-03 to 3.5e-03 as the step falls from 0.002 to"),
         ([1.5e-7, 1.6e-2, 4e-5], None, "from 1.5e-07 to 1.6e-02 as the step falls from 0.004 to"),
+        ([1e-3, 0.0, 0.0], None, "falls with the step, but shows no single order"),
         ([1e-1, 1e-2, 2.5e-6], None, "falls with the step, but shows no single order"),
     ],
 )
