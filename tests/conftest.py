@@ -27,7 +27,7 @@ LAGTOP = [sys.executable, "-m", "lagrange_cli"]
 
 collect_ignore = [
     f"{name}.py"
-    for name in "cli/test_examples cli/test_processes output/test_output sweeps/test_parts "
+    for name in "cli/test_processes output/test_output sweeps/test_parts "
     "sweeps/test_workers".split()
     if os.name != "posix"
 ]

@@ -277,11 +277,8 @@ class _Motion:
         if released and self.nutates:
             found |= {"roots_sum": u3 + u2, "roots_product": u3 * u2, "roots_gap": u3 - u2}
             found |= {f"{key}_squared": found[key] ** 2 for key in ("roots_sum", "roots_gap")}
-            found |= {
-                "roots_product_fourfold": -4 * u3 * u2,
-                "u3_twice": 2 * u3,
-                "u2_twice": 2 * u2,
-            }
+            found["roots_product_fourfold"] = -4 * found["roots_product"]
+            found |= {f"{key}_twice": 2 * found[key] for key in ("u3", "u2")}
             found["k_squared"] = self.k2
         with mp.workdps(self.digits):
             found |= self.integrals(k, kc, released, has_half)

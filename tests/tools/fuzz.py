@@ -158,7 +158,7 @@ def check_attitudes(tally: Tally, motion: Motion, exact: Numbers, times: list[fl
     for t, *computed in zip(times, *columns.values(), strict=True):
         true = reference_columns(motion.top.as_dict(), t)
         with mpmath.workdps(60):
-            away = rotation_angle(computed, [true[name] for name in columns])
+            away = rotation_angle(computed, tuple(true[name] for name in columns))
             turns = mpmath.mpf(t) / exact["T_nutation"]
             tau = float((turns - mpmath.nint(turns)) * exact["T_nutation"])
         show = typed("table", motion.top, f"--columns quaternion --t-min {t!r} --n 1")
