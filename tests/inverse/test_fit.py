@@ -189,6 +189,12 @@ def test_the_sample_gives_the_body() -> None:
     exact = solve(recordings.TOP)
     keys = ["T_nutation", "mean_precession_rate", "mean_spin_rate", "theta_max_deg"]
     assert_true(outcome, {key: getattr(exact, key) for key in keys}, least=4)
+    for curve in outcome.curves():
+        model, seen = np.interp(curve.t, curve.fine_t, curve.curve), np.isfinite(curve.data)
+        off = curve.data - curve.residual - model
+        assert off[seen] == pytest.approx(0, abs=0.05)
+        rms = np.degrees(outcome.residuals[curve.name].rms)
+        assert np.sqrt(np.mean(curve.residual[seen] ** 2)) == pytest.approx(rms)
     count = sum(x.y.size for x in outcome.residuals.values())
     assert outcome.dof == count - 8  # a, b, r0, three of the start, two zeros
     assert "11 % too small" in outcome.numbers["precession_rate_elementary"].meaning

@@ -1,0 +1,159 @@
+"""Parts of a fit, each against numbers that are known before: starts, bins, noise, means, decay."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from engines import Body, dop853
+from lagtop import Top, fit, solve
+from scipy.spatial.transform import Rotation
+
+from lagrange_cli.inverse.checks import CHANCE, Residuals
+from lagrange_cli.inverse.decay import decay_of
+from lagrange_cli.inverse.outcome import Number
+from lagrange_cli.inverse.recording import recording_from
+from lagrange_cli.inverse.signals import (
+    binned,
+    mean_rate,
+    neighbour_noise,
+    oscillation_in,
+    signals_in,
+    step_between,
+)
+from lagrange_cli.inverse.starts import starts
+
+BODY = {"m": 0.5, "A": 4.45e-3, "C": 2.5e-3, "s": 0.08, "g": 9.81}
+
+
+@pytest.mark.parametrize(
+    ("names", "known", "close"),
+    [("theta psi", False, 0.02), ("theta", False, 0.25), ("psi", True, 0.45), ("phi psi", 0, 0.4)],
+)
+@pytest.mark.parametrize("start", [{"thetadot0": 4, "psidot0": 3}, {"psidot0": -2}])
+@pytest.mark.parametrize("r0", [52.0, -70.0])
+def test_some_start_is_close_to_the_top(
+    names: str, known: bool, close: float, start: dict[str, float], r0: float
+) -> None:
+    top = Top(**BODY, r0=r0, theta0_deg=65, **start)
+    motion = solve(top)
+    period, t = motion.T_nutation, np.linspace(0, 5.3, 300)
+    turns = Rotation.from_quat(dop853(Body.of(top), t * period)[1][:, :4], scalar_first=True)
+    psi, theta, phi = turns.as_euler("ZXZ").T
+    seen = {"theta": theta, "psi": psi, "phi": phi}
+    signals = signals_in(recording_from(t, **{x: seen[x] for x in names.split()}))
+    frequency, is_visible = oscillation_in(signals)
+    assert is_visible
+    assert frequency == pytest.approx(1, abs=2e-3)
+    found = starts(signals, math.radians(65) if known else None)
+    rates = [top.thetadot0 * period, top.psidot0 * period]
+    exact = np.array([motion.a * period**2, motion.b * period, math.radians(65), *rates])
+    if names == "theta":  # which does not show the sign of b and of psi'
+        found = np.concatenate([found, found * [1, -1, 1, 1, -1]])
+    sizes = np.abs(exact) + 0.1 * abs(exact[1]) * np.array([0, 0, 0, 1, 1])
+    assert (np.abs(found - exact) / sizes).max(axis=1).min() < close
+
+
+def test_bins_are_means() -> None:
+    t = np.arange(42.0) / 4
+    theta = 1 + 0.1 * np.sin(np.arange(42))
+    psi = np.where(t < 5, 0, 1.5) + 2.0 * t
+    recording = recording_from(t, theta=theta, psi=np.angle(np.exp(1j * psi)))
+    bins = binned(recording, signals_in(recording), 14)
+    assert (bins.rows_per_bin, bins.t.size) == (3, 14)
+    assert bins.t == pytest.approx(t.reshape(14, 3).mean(axis=1))
+    assert bins.spread == pytest.approx(t.reshape(14, 3).std(axis=1))
+    assert bins.angles["theta"] == pytest.approx(theta.reshape(14, 3).mean(axis=1))
+    off = bins.angles["psi"] - psi.reshape(14, 3).mean(axis=1)
+    assert np.isnan(off).tolist() == [i == 6 for i in range(14)]  # the jump is in its rows
+    assert np.diff(off[np.isfinite(off)]) == pytest.approx(0, abs=1e-9)
+
+
+def test_noise_steps_and_mean_rates_of_signals() -> None:
+    rng, t = np.random.default_rng(3), np.arange(900) / 50
+    y = 3 * np.sin(2 * t) + rng.normal(scale=0.02, size=900)
+    assert neighbour_noise(y) == pytest.approx(0.02, rel=0.08)
+    assert step_between(np.round(y / 0.3) * 0.3) == pytest.approx(0.3)
+    assert step_between(np.ones(9)) == 0
+    for rate in (40.0, -150.0):
+        assert mean_rate(t, np.angle(np.exp(1j * (rate * t + y / 9))), 0.02) == pytest.approx(
+            rate, abs=0.1
+        )
+    uneven = np.sort(rng.uniform(0, 18, 900))
+    assert mean_rate(uneven, 40 * uneven + y / 9, 0.02) == pytest.approx(40, abs=0.1)
+
+
+def test_residuals_of_an_encoder_and_outliers() -> None:
+    rng, t = np.random.default_rng(4), np.arange(400.0)
+    steps = rng.uniform(-0.5, 0.5, 400)
+    assert Residuals(t, steps, step=1.0).is_coarse
+    assert not Residuals(t, 2 * steps, step=1.0).is_coarse
+    sizes = np.where(t % 2, 0.6745, -0.6745)  # as those of noise with the standard deviation 1
+    assert Residuals(t, np.where(t == 7, -15.1, sizes)).outliers.nonzero()[0].tolist() == [7]
+    assert not Residuals(t, np.where(t == 7, -14.9, sizes)).outliers.any()
+    assert Residuals(t, np.ones(400) + steps / 9).rms == pytest.approx(1, rel=0.01)
+
+
+@pytest.mark.parametrize("seconds", [0.2, 30.0])
+def test_noise_may_correlate_within_half_a_period(seconds: float) -> None:
+    rng, t = np.random.default_rng(5), np.linspace(0, seconds, 600)
+    smooth = np.convolve(rng.normal(size=605), np.ones(6) / 6, "valid")
+    rest = Residuals(t, smooth)
+    assert rest.reach in {5, 6}
+    assert not [*rest.faults("x", 600 / 24 / seconds, CHANCE)]
+    (fault,) = rest.faults("x", 600 / 9 / seconds, CHANCE)
+    assert fault.startswith("the residuals of x are not noise: neighbours correlate by 0.8")
+    assert rest.widening() == pytest.approx(math.sqrt(6), rel=0.1)
+    lost = rest.lost(600 / 24 / seconds)  # of the mean of six: (n^2 - 1)/24 w^2
+    assert lost == pytest.approx((2 * math.pi / 24) ** 2 * 35 / 24, rel=0.3)
+
+
+def test_means_of_a_steady_precession() -> None:
+    rng, t = np.random.default_rng(6), np.linspace(0, 4, 200)
+    theta, psi, phi = (x + rng.normal(scale=0.01, size=200) for x in (0 * t + 1, 2 * t, 15 * t))
+    outcome = fit(t, theta=theta, psi=psi, phi=phi)
+    assert outcome.verdict == "good, no nutation"
+    rate = 0.01 * math.sqrt(12 / 200) / 4
+    r0 = math.hypot(rate, rate * math.cos(1), 2 * math.sin(1) * 0.01 / math.sqrt(200))
+    truth = {"mean_tilt_deg": (math.degrees(1), math.degrees(0.01 / math.sqrt(200)))}
+    truth |= {"mean_precession_rate": (2, rate), "mean_spin_rate": (15, rate)}
+    truth |= {"r0": (15 + 2 * math.cos(1), r0)}
+    for key, (value, std) in truth.items():
+        found = outcome.numbers[key]
+        assert found.std == pytest.approx(std, rel=0.2), key
+        assert abs(found.value - value) < 4 * std, key
+
+
+def test_a_decay_is_that_of_the_windows() -> None:
+    def window(t: float, a_off: float) -> Any:
+        """Return a good fit whose a is off, and with it its r0, by the correlation 0.6."""
+        value = -50 * math.exp(-t / 20)
+        numbers = {"r0": Number(value + 0.3 * a_off, 1.0, "", 0.5)}
+        numbers["a"] = Number(90 + a_off, 1.0, "", 1.0)
+        part = SimpleNamespace(middle=t)
+        pairs = {"a and r0": 0.6}
+        return SimpleNamespace(verdict="good", numbers=numbers, correlations=pairs, recording=part)
+
+    t = np.array([1.0, 3.0, 5.0, 7.0])
+    found: Any = decay_of([window(*x) for x in zip(t, (0.5, -0.7, 0.9, -0.7), strict=True)])
+    assert (found.quantity, found.rate, found.time) == ("r0", *map(pytest.approx, (0.05, 20)))
+    assert [found.value(x) for x in (0, 20)] == pytest.approx([-50, -50 / math.e])
+    weights = (50 * np.exp(-t / 20) / 0.4) ** 2  # 0.4 is what the correlation leaves of 0.5
+    middle = np.average(t, weights=weights)
+    assert found.rate_std == pytest.approx(np.sum(weights * (t - middle) ** 2) ** -0.5)
+    assert found.time_std == pytest.approx(20**2 * found.rate_std)
+    assert found.chi2_dof == pytest.approx(0, abs=1e-9)
+    assert decay_of([window(x, 0) for x in (1, 2)]) is None
+
+
+def test_windows_keep_the_time() -> None:
+    t = 100 + np.arange(60) / 10
+    parts = recording_from(t, theta=np.ones(60), psi=t).windows(3)
+    assert [x.name for x in parts] == ["window 1", "window 2", "window 3"]
+    assert [x.t.size for x in parts] == [20, 20, 20]
+    assert [x.t_start for x in parts] == pytest.approx([100, 102, 104], abs=0.11)
+    assert [x.middle for x in parts] == pytest.approx([100.95, 102.95, 104.95], abs=0.11)
+    assert [float(x.t[0]) for x in parts] == [0, 0, 0]
