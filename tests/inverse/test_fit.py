@@ -234,6 +234,27 @@ def test_known_inputs_determine_others(known: dict[str, float], truth: dict[str,
     assert (product in outcome.notes) == ("C*r0" in outcome.numbers)
 
 
+@pytest.mark.parametrize(
+    ("known", "truth"),
+    [
+        (LAB | {"C": 2.5e-3, "phidot0": 40}, {"A": 4.45e-3, "psidot0": 6}),
+        ({"g": 9.81, "C": 2.5e-3, "phidot0": "40"}, {"A": 4.45e-3, "m*s": 0.04}),
+    ],
+)
+def test_a_known_rate_of_spin_is_no_total_spin(known: Any, truth: dict[str, float]) -> None:
+    """r0 = phidot0 + psidot0 cos(theta0), and a scene has the motion whatever is not known."""
+    top = Top(**LAB, A=4.45e-3, C=2.5e-3, phidot0=40, psidot0=6, theta0_deg=75)
+    t, seen = recorded("theta", "psi", "phi", top=top, seed=8)
+    for some in (known, {}):
+        outcome = fitted(t, seen, known=some)
+        spin = {"r0": float(top.r0)} if outcome.numbers.keys() & {"r0"} else {}
+        assert_true(outcome, (truth if some else {}) | spin | {"a": solve(top).a}, least=2)
+        assert outcome.inputs is not None
+        again, exact = solve(Top(**outcome.inputs)), solve(top)
+        for key in ("a", "b", "T_nutation", "mean_precession_rate"):
+            assert getattr(again, key) == pytest.approx(getattr(exact, key), rel=0.02), key
+
+
 def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
     t, seen = recorded("theta", "psi", seed=9)
     sure, unsure = (fitted(t, seen, known=LAB | {"C": c}).numbers for c in (2.5e-3, "0.0025(1)"))

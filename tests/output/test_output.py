@@ -22,12 +22,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lagtop import LagtopError, Top, solve
+from pyarrow import parquet
 
 from lagrange_cli.arithmetic.text import NumberText, double_text, value_text
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
-from lagrange_cli.output.formats import block_text, write
+from lagrange_cli.output.formats import block_text, part_file, write
 from lagrange_cli.output.notebook import HasRecord
 from lagrange_cli.output.report import Field, Report, drawn, record_text
 from lagrange_cli.output.text import csv_text
@@ -68,6 +69,19 @@ def test_two_blocks_read_back_as_the_rows() -> None:
                 assert cell == (value or "")
             else:
                 assert json.loads(cell) == value
+
+
+def test_blocks_of_parquet_and_parts_read_back() -> None:
+    blocks = [
+        block_text([np.array([[1.5], [math.nan]]), [x, None]], ["a", "b"], "parquet") for x in "xy"
+    ]
+    for kept, end in ((blocks, "y"), (blocks[:1], "x")):
+        write(stream := io.BytesIO(), ["a", "b"], kept, "parquet")
+        found = parquet.read_table(stream).to_pylist()
+        assert found[:2] == [{"a": 1.5, "b": "x"}, {"a": None, "b": None}]
+        assert found[-2:] == [{"a": 1.5, "b": end}, {"a": None, "b": None}]
+    assert [part_file("csv", ["a"], i, b"1\n") for i in (0, 1)] == [b"a\n1\n", b"1\n"]
+    assert part_file("ndjson", ["a"], 0, b"{}\n") == b"{}\n"
 
 
 def test_numbers_that_are_written_out_keep_their_digits() -> None:
