@@ -28,8 +28,8 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
 
     A key is the name of a result.  Each formula is shown in symbols and with the numbers of the
     top.  Without KEY, all keys and columns are listed.  By default, solve prints the keys of the
-    record.  Keys go to solve --get, sweep --keys, find --keys and plot --key, and columns to table
-    --columns.
+    record.  Pass keys to solve --get, sweep --keys, find --keys and plot --key, and columns to
+    table --columns.
     """
     from ..solver.explanation import explanations, listed
 

@@ -54,7 +54,7 @@ FILMS = "gif", "mp4"
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
 @opt.option("--animate", metavar="FILE", help="Write a film of the top: FILE.gif or FILE.mp4.")
 @opt.option("--duration", type=opt.NUMBER, help="Length of the film in seconds.  [default: 6]")
-@opt.option("-o", "--output", metavar="FILE", help="FILE.png, .svg or .pdf.")
+@opt.option("-o", "--output", metavar="FILE", help="Output file: FILE.png, .svg or .pdf.")
 def plot_command(
     top: opt.TopOptions,
     words: list[str],
@@ -168,7 +168,9 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Valu
     """Return the input and the values of a text such as `r0=log:5:120:40` or `r0=60:600:40 rpm`."""
     if text is None:
         return None
-    name, _, grid = text.partition("=")
+    name, equals, grid = text.partition("=")
+    if not equals:
+        raise LagtopError(f"{option} must be INPUT=[log:]start:stop:count, got {text!r}")
     is_tilt = name in DECLARED and DECLARED[name].unit == "angle"
     angle = "rad" if top.radians else "deg"
     try:
@@ -185,7 +187,11 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Valu
 )
 @opt.top()
 @opt.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
-@opt.option(*("-o", "--output"), metavar="FILE", help="FILE.html (replaced once all is written).")
+@opt.option(
+    *("-o", "--output"),
+    metavar="FILE",
+    help="Output file: FILE.html (replaced once all is written).",
+)
 def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     """Write an interactive page for the browser.
 

@@ -115,8 +115,8 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
     elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (
         found and found.converges
     ):
-        hint = ": compare runs with other step sizes" * (x.verdict == "drifts")
-        yield f"None of the known causes explains the error{hint}."
+        hint = ", and compare runs with other step sizes" * (x.verdict == "drifts")
+        yield f"None of the known causes explains the error: check the inputs{hint}."
 
 
 def _few_rows(x: Comparison, limit: float) -> str:

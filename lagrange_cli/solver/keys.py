@@ -266,7 +266,8 @@ INPUT_KEYS = {
 """The declaration of each input by key, the tilt in degrees."""
 KEYS = (
     INPUT_KEYS
-    | {"regime": Key("Constants", "", "regime"), "path": Key("Constants", "", "path of the axis")}
+    | {"regime": Key("Constants", "", "kind of motion")}
+    | {"path": Key("Constants", "", "path of the axis")}
     | {name: NUMBERS[name] for name in NUMBER_KEYS}
     | {"remark": Key("Remark", "", "special properties of the motion, if any")}
 )

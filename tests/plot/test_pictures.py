@@ -404,6 +404,7 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
         (["sphere", "-o", "x.png", "--key", "a"], "need map"),
         (["map", "-o", "x.png", "--key", "nosuch"], "nosuch"),
         (["map", "-o", "x.png", "--x", "r0=1:2"], "--x"),
+        (["map", "-o", "x.png", "--x", "r0"], "--x must be INPUT=[log:]start:stop:count, got 'r0'"),
         (["map", "-o", "x.png", "--x", "m=1:2:3 kg", "--r0", "50"], "--r0 must have a unit"),
         (["map", "-o", "x.png", "--x", "m=1:2:3 s"], "--x must have a unit such as kg or g"),
         (["map", "-o", "x.png", "--x", "q0=1:2:3"], "--x must be among"),
