@@ -302,7 +302,7 @@ def warn(found: Given, *, uses_stds: bool = False) -> None:
         words = [f"--{name} {quoted(x) if found.si else x}" for name, x in texts.items()]
         complain(f"Warning: {remark_on(found.missing, words)}")
     if found.stds and not uses_stds:
-        used = "only solve, table and plot angles use it"
+        used = "only solve, table and plot angles (of one scene) use it"
         complain(f"Warning: the uncertainty of {', '.join(found.stds)} is not used: {used}")
 
 

@@ -67,7 +67,7 @@ def with_stds(
 
 def _to_the_last_digit(motion: Motion, key: str, value: float, std: float) -> float | str:
     """Return a number of a motion with as many digits as its uncertainty has."""
-    digits = math.ceil(math.log10(abs(value) / std)) + 3 if value else 0
+    digits = math.ceil(math.log10(abs(value) / std)) + 3 if value and std else 0
     if digits <= sys.float_info.dig:
         return value
     found = motion.number(key, digits)

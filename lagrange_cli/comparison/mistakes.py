@@ -98,6 +98,8 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         "r0 in rpm was taken as radians": {"r0": r0 * 30 / math.pi},
         "r0 was taken as the gimbal's rate phi'": {"r0": r0 + float(top.psidot0) * math.cos(tilt)},
         "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
+        "psidot0 is left out (as if it were 0)": {"psidot0": 0},
+        "thetadot0 is left out (as if it were 0)": {"thetadot0": 0},
         "thetadot0 has the wrong sign": {"thetadot0": -rate},
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
         **{
@@ -127,6 +129,11 @@ def _of_inputs(top: Top, run: Run) -> Iterator[Cause]:
         turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
         with suppress(LagtopError):  # there is no such top
             yield Cause(name, exact=ExactMotion(solve(top.replace(**changed)), **turns))
+    faster = {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")}
+    with suppress(LagtopError):
+        twice = ExactMotion(solve(top.replace(A=A / 2, C=(A + C) / 4, **faster)))
+        undo = partial(_changed, {"rates": lambda x: 2 * x})
+        yield Cause("the factor 1/2 is missing in the rate of the quaternion", undo, twice)
 
 
 def _of_writing(run: Run) -> Iterator[Cause]:

@@ -144,7 +144,7 @@ def compared(
     text = f"known {name} = {shown} {verb} the recording, which gives {own}"
     if far <= CONTRADICTS:
         return far, True, f"{text}: {far:.1f} sigma"
-    text = f"{text}, {far:.3g} sigma apart"
+    text = f"{text}, {_plain(far)} sigma apart"
     if name == "A" and WEIGHT <= known.keys():
         added = given[0] + known["m"][0] * known["s"][0] ** 2
         if abs(added - found[0]) <= CONTRADICTS * math.hypot(given[1], found[1]):
@@ -152,12 +152,18 @@ def compared(
     ratio = given[0] / found[0] if found[0] else math.inf
     for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
         if abs(ratio / factor - 1) < _ROUGHLY:
-            times = f"{factor:.3g} times as large" if factor > 1 else f"1/{1 / factor:.3g} of it"
+            more = f"{_plain(factor)} times as large"
+            times = more if factor > 1 else f"1/{_plain(1 / factor)} of it"
             return far, False, f"{text}, about {times}: check the units, or omit {name}"
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
     others += ["the unit of t"] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
     check = f", or check {', '.join(others)}" if others and name in {"A", "A_cm", "C"} else ""
     return far, False, f"{text}: omit {name}{check}"
+
+
+def _plain(x: float) -> str:
+    """Return a factor in three digits, and up to a million without an exponent."""
+    return f"{x:.3g}" if not 1000 <= x < 1e6 else f"{x:.0f}"
 
 
 def selects_any(turns: float, spread: float) -> bool:

@@ -205,7 +205,8 @@ class Outcome(HasRecord):
     def scene(self, source: str, *, si: bool = False) -> str:
         """Return a scene file of the motion, whose comments have the uncertainties.
 
-        If `si` is true, inputs have units.  Raises AbsentError for a steady precession.
+        If `si` is true, inputs have units.  Comments mark those that are not determined.  Raises
+        AbsentError for a steady precession.
         """
         if self.inputs is None:
             raise AbsentError("no scene is written: a steady precession does not determine a top")
@@ -215,11 +216,12 @@ class Outcome(HasRecord):
             *(f"# {note}" for note in self.notes),
             *(f"# {key} = {x}" for key, x in self.numbers.items()),
             *(f"# correlation of {pair}: {r:.3f}" for pair, r in self.correlations.items()),
-            *(
-                f'{key} = "{x!r} {_UNITS[key]}"' if si and key in _UNITS else f"{key} = {x!r}"
-                for key, x in self.inputs.items()
-            ),
         ]
+        determined = {*self.known, *self.numbers, "theta0_deg"}
+        for key, x in self.inputs.items():
+            text = f'{key} = "{x!r} {_UNITS[key]}"' if si and key in _UNITS else f"{key} = {x!r}"
+            unknown = "  # not determined by the recording"
+            lines.append(text + unknown * (key not in determined))
         return "".join(f"{line}\n" for line in lines)
 
     def curves(self) -> Iterator[Curve]:

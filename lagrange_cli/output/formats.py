@@ -112,7 +112,7 @@ def write(
     if fmt == "parquet":
         _write_parquet(stream, names, blocks)
     elif fmt == "table":
-        from .report import drawn
+        from .report import rows_text
 
         rows: list[list[str]] = []
         for block in blocks:
@@ -120,7 +120,7 @@ def write(
             if len(rows) > MOST_DRAWN_ROWS:
                 wanted = f"table shows at most {MOST_DRAWN_ROWS} rows"
                 raise LagtopError(f"format {wanted}, got more: use csv", "format")
-        stream.write(drawn(names, rows, range(len(names)), width).encode())
+        stream.write(rows_text(names, rows, width).encode())
     else:
         first = next(blocks, b"")  # before anything is written, because most errors occur here
         stream.write({"json": b"[", "ndjson": b""}.get(fmt, _csv_header(names)) + first)

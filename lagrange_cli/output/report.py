@@ -133,6 +133,22 @@ def record_text(record: Mapping[str, Any], keys: Keys, width: int | None) -> str
     return "\n\n".join(filter(None, texts)) + "\n"
 
 
+def rows_text(names: Sequence[str], rows: Sequence[Sequence[str]], width: int | None) -> str:
+    """Return rows as a table; it has a line per name if only that fits the width of a terminal."""
+    from rich.text import Text
+
+    def fits(table: str) -> bool:
+        return all(Text.from_ansi(x).cell_len <= (width or 10**6) for x in table.splitlines())
+
+    table = drawn(names, rows, range(len(names)), width)
+    if fits(table):
+        return table
+    numbers = range(1, len(rows) + 1)
+    lines = [x for x in zip(names, *rows, strict=True) if any(x[1:])]
+    upright = drawn(["key", *map(str, numbers)], lines, numbers, width)
+    return upright if fits(upright) else table
+
+
 def drawn(
     headings: Sequence[str],
     rows: Sequence[Sequence[str | Text]],

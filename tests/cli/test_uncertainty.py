@@ -57,6 +57,12 @@ def test_the_record_carries_uncertainties(lagtop: Lagtop, solved: Solved) -> Non
     assert radians["theta_min_rad_std"] == pytest.approx(0.1)
 
 
+def test_a_budget_without_an_uncertain_input_that_matters(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", "--r0", "50(1)", "--budget", "theta_min_deg")
+    assert shown.exit_code == 0, shown.stderr
+    assert "theta_min_deg = 30.0, to first order" in " ".join(shown.stdout.split())
+
+
 def test_a_budget_adds_up(lagtop: Lagtop) -> None:
     arguments = [*BODY, "--theta0", "30(1)", "--budget", "T_nutation"]
     rows = dicts(lagtop("solve", *arguments, "--format", "csv").stdout)
@@ -156,7 +162,8 @@ def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
     scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
     assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
     assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
-    said = "Warning: the uncertainty of m is not used: only solve, table and plot angles use it\n"
+    used = "only solve, table and plot angles (of one scene) use it"
+    said = f"Warning: the uncertainty of m is not used: {used}\n"
     assert lagtop("view", scene, "-o", tmp_path / "top.html").stderr == said
 
 

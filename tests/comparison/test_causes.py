@@ -34,6 +34,14 @@ def run(name: str, mistake: str = "", method: str = "DOP853") -> tuple[Rotation,
     return Rotation.from_quat(states[:, :4], scalar_first=True), states[:, 4:]
 
 
+class Doubled(Body):
+    """A body whose attitude turns twice as fast as its angular velocity."""
+
+    def slope(self, state: Array) -> Array:
+        found = super().slope(state)
+        return np.concatenate([2 * found[:4], found[4:]])
+
+
 def bodies(top: Top) -> dict[str, Body]:
     """Return the bodies that engines take for a top, by a part of the name of the mistake."""
     body, steiner, r0 = Body.of(top), float(top.m * top.s**2), float(top.r0)
@@ -61,6 +69,9 @@ def bodies(top: Top) -> dict[str, Body]:
         "r0 was taken as the gimbal's rate phi'": start(r=r0 + psidot0 * math.cos(tilt)),
         "psidot0 has the wrong sign": start(psidot=-1),
         "thetadot0 has the wrong sign": start(slope=-1),
+        "psidot0 is left out": start(psidot=0),
+        "thetadot0 is left out": start(slope=0),
+        "the factor 1/2 is missing in the rate of the quaternion": Doubled(*body),
         "theta0 has the wrong sign": start(-tilt),
         "theta0 is measured from the horizontal": start(math.pi / 2 - tilt, slope=-1),
         "theta0 in radians was taken as degrees": start(math.radians(tilt)),

@@ -30,7 +30,7 @@ from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
 from lagrange_cli.output.formats import block_text, part_file, write
 from lagrange_cli.output.notebook import HasRecord
-from lagrange_cli.output.report import Field, Report, drawn, record_text
+from lagrange_cli.output.report import Field, Report, drawn, record_text, rows_text
 from lagrange_cli.output.text import csv_text
 from lagrange_cli.solver.keys import shown_keys
 
@@ -143,6 +143,20 @@ def test_a_table_cuts_no_digit_however_narrow_the_terminal() -> None:
             assert numbers <= set(shown.split()), width
             assert width or [x for x in shown.splitlines() if x in groups] == groups
             assert width or digits or max(map(len, shown.splitlines())) <= 80
+
+
+def test_rows_that_do_not_fit_a_terminal_stand_side_by_side() -> None:
+    names, rows = [f"key{i}" for i in range(9)], [[f"1.{i}23456789" for i in range(9)]] * 2
+    rows[1] = ["2.0", *[""] * 8]
+    for width in (None, 140):
+        assert [len(x.split()) for x in rows_text(names, rows, width).splitlines()[1:]] == [1, 9, 1]
+    upright = rows_text(names, rows, 60).splitlines()
+    assert [x.split() for x in upright[2:4]] == [
+        ["key0", *(x[0] for x in rows)],
+        ["key1", rows[0][1]],
+    ]
+    assert len(upright) == 2 + 9
+    assert len(rows_text(names, rows * 9, 60).splitlines()) == 2 + 18  # neither fits
 
 
 def test_a_cell_that_is_wrapped_moves_the_rows_below_it() -> None:
