@@ -117,10 +117,12 @@ class Trajectory:
         return {key: np.any(empty[:, x], axis=1) for key, x in self._places.items()}
 
     def conventions(self, given: Conventions) -> Conventions:
-        """Return conventions, overridden by the names of columns; the frame `space` is kept."""
+        """Return conventions, overridden by the names of columns unless they are not the usual."""
         found = {x: self.quantities[x].says for x in given._fields if x in self.quantities}
-        if given.rates == "space":
-            found.pop("rates", None)
+        usual = type(given)()
+        for key in ("rates", "euler"):
+            if getattr(given, key) != getattr(usual, key):
+                found.pop(key, None)
         implied: dict[str, Any] = {key: says for key, says in found.items() if says}
         return given._replace(**implied)
 

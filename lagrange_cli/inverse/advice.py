@@ -16,8 +16,8 @@ from ..names import ANGLES
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
-from .outcome import GOOD, Outcome
-from .recording import Recording, reoriented
+from .outcome import GOOD, STEADY, Outcome
+from .recording import Recording, reoriented, shifted_origin
 from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
@@ -39,6 +39,10 @@ _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
 _FEW, _LEAST_TIMES = 0.03, 0.25
 """Largest share of rows that are outliers, and least share of times that differ."""
+_NO_MISTAKE = ("the recording ", "another top ", "chi2")
+"""How failures begin that are no mistake in the data, but too little of it, or more noise."""
+_WHOLE, _ROUNDED = 1e-4, 0.6
+"""If t is rounded: the deviation of times from whole units, and that of even times, in units."""
 _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
 """If windows are not good: standard deviations of a loss of spin, the least share of it in either
 half, and the residual of the spin over that of the whole recording."""
@@ -47,13 +51,19 @@ half, and the residual of the spin over that of the whole recording."""
 def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
     """Yield what makes a failed fit good, the likeliest mistakes first, and then the usual ones."""
     body = {name: x for name, x in known.items() if name in _BODY}
-    if outcome.contradictions:
+    if len(recording.angles) == 1:  # of which a known start is a part
+        body = dict(known)
+    reasons = [*outcome.faults, *outcome.misfits]
+    if all(x.startswith(_NO_MISTAKE) for x in reasons):  # also if only known inputs contradict
         return
-    yield from _frames(recording, body)
-    if all(x.startswith("chi2") for x in outcome.misfits):  # the noise is not as sigma says
+    if shifted_origin(recording) is not None:  # the failure says where the pivot is
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
         yield f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
+    even = evenly_timed(recording)
+    if even is not None and _is_good(even, known, also=STEADY):
+        yield f"t is rounded: write it with more digits (the rows are {even.frame:.6g} apart)"
+    yield from _frames(recording, body)
     noise = _calmness(recording)
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if 0 < len(wrong) <= _FEW * recording.t.size:
@@ -70,16 +80,15 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     others = _other_angles(replace(recording, sigma={})) if is_wrong else ()
     yield from (words for other, words in others if _is_good(other, known))
     yield from _decays(recording, body, outcome, noise)
-    if outcome.frequency * recording.t[-1] < 1 and oscillation_in(signals_in(recording))[1]:
-        yield "a recording must last for a period of the nutation"
     start = [x for x in ("theta0", "psidot0") if x in known]
-    yield f"check {', '.join([*start, 'columns'])}, units and axes"
+    short = ", and that the recording lasts for a period of the nutation"
+    yield f"check {', '.join([*start, 'columns'])}, units and axes{short * (not outcome.inputs)}"
 
 
-def _is_good(recording: Recording, known: Known) -> bool:
+def _is_good(recording: Recording, known: Known, also: str = GOOD) -> bool:
     """Return whether a fit is good and needs no faster spin or reversed angle."""
     found = _tried(recording, known)
-    if found is None or found.verdict != GOOD:
+    if found is None or found.verdict not in {GOOD, also}:
         return False
     return not found.recording.is_mirrored and found.is_spin_slow
 
@@ -90,6 +99,21 @@ def _tried(recording: Recording, known: Known, chance: float = CHANCE) -> Outcom
         return best_fit(recording, known, chance=chance)
     except DataError:
         return None
+
+
+def evenly_timed(recording: Recording) -> Recording | None:
+    """Return a recording at even times, if its times are these after rounding to some digits."""
+    t = recording.t_start + recording.t
+    sizes = (10.0**-k for k in range(9))
+    unit = next((x for x in sizes if np.abs(t / x - np.round(t / x)).max() < _WHOLE), 0.0)
+    frames = np.arange(t.size, dtype=float)
+    for _ in range(4):
+        step, start = np.polyfit(frames, recording.t, 1)
+        off = np.abs(recording.t - start - step * frames)
+        if unit / 10 < np.median(off) and off.max() < _ROUNDED * unit:
+            return replace(recording, t=step * frames)
+        frames = np.concatenate([[0.0], np.cumsum(np.round(np.diff(t) / step))])  # some are missing
+    return None
 
 
 def _frames(recording: Recording, known: Known) -> Iterator[str]:

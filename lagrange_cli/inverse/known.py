@@ -28,7 +28,8 @@ CONTRADICTS = 3.0
 _MOST_TURNS, _APART = 10, 6.0
 """A known C selects among spins that differ by whole turns per row: the most turns, and the least
 distance of these spins in standard deviations."""
-_UNITS, _ROUGHLY = (2 * math.pi, 30 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7), 0.02
+_UNITS = (6.0, 2 * math.pi, 30 / math.pi, 180 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7)
+_ROUGHLY = 0.02
 """Factors between units, in either direction, and how close a contradiction is to them."""
 _RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
 _POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1, "precession_rate": -1}
@@ -157,7 +158,11 @@ def compared(
             return far, False, f"{text}, about {times}: check the units, or omit {name}"
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
     others += ["the unit of t"] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
-    check = f", or check {', '.join(others)}" if others and name in {"A", "A_cm", "C"} else ""
+    if name in {"r0", "phidot0"}:
+        others = ["the unit of t"]
+    elif name not in {"A", "A_cm", "C"}:
+        others = []
+    check = f", or check {', '.join(others)}" * bool(others)
     return far, False, f"{text}: omit {name}{check}"
 
 

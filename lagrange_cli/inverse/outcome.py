@@ -132,12 +132,6 @@ class Outcome(HasRecord):
 
     def _misfits(self) -> Iterator[str]:
         """Yield why the motion does not match the recording, the plainest reasons first."""
-        if (offset := shifted_origin(self.recording)) is not None:
-            shown = ", ".join(f"{x:.2g}" for x in offset)
-            yield (
-                "the distance of the marker from the origin varies with its direction: is the "
-                f"origin at the pivot, or is the pivot at about ({shown})?"
-            )
         scale, unit = angle_unit(radians=self.radians)
         for name, rest in self.residuals.items():
             if rest.rms > LARGEST:
@@ -161,10 +155,24 @@ class Outcome(HasRecord):
     def failures(self) -> list[str]:
         """Return the reasons why the fit has failed, if there are any.
 
-        A motion that is impossible or not determined comes first, then one that does not match,
-        then a known input that contradicts a motion that matches.
+        A marker with another origin comes first, then a motion that is impossible or not
+        determined, then one that does not match, and a known input that contradicts a right one.
         """
-        return [*self.faults, *self.misfits] or self.contradictions
+        return [*self._origin(), *self.faults, *self.misfits] or self.contradictions
+
+    def _origin(self) -> Iterator[str]:
+        """Yield that the origin of a marker is not at the pivot, if it is not."""
+        if (offset := shifted_origin(self.recording)) is not None:
+            shown = ", ".join(f"{x:.2g}" for x in offset)
+            yield (
+                "the distance of the marker from the origin varies with its direction: is the "
+                f"origin at the pivot, or is the pivot at about ({shown})?"
+            )
+
+    @property
+    def remarks(self) -> list[str]:
+        """The notes, unless the motion that they describe does not match."""
+        return [] if self.misfits else self.notes
 
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""
@@ -199,7 +207,7 @@ class Outcome(HasRecord):
         for name, rest in self.residuals.items():
             record[f"{name}_rms_{unit}"] = rest.rms * scale
             record[f"{name}_autocorrelation"] = rest.autocorrelation
-        remarks = [*self.notes, *self.failures(), *self.hints]
+        remarks = [*self.remarks, *self.failures(), *self.hints]
         return record | {"verdict": self.verdict, "remark": "; ".join(remarks) or None}
 
     def scene(self, source: str, *, si: bool = False) -> str:

@@ -89,9 +89,12 @@ class Recording:
 
     @property
     def frame(self) -> float:
-        """The usual time between two rows."""
+        """The usual time between two rows: the mean of even ones, which are rounded in a file."""
         steps = np.diff(self.t)
-        return float(np.median(steps[steps > 0]))
+        usual = float(np.median(steps[steps > 0]))
+        frames = np.concatenate([[0.0], np.cumsum(np.round(steps / usual))])
+        even = float(np.polyfit(frames, self.t, 1)[0])
+        return even if are_whole(self.t / even) else usual
 
     @property
     def middle(self) -> float:
@@ -248,9 +251,10 @@ def recording_of(
         )
     tilts = angles.get("theta", np.zeros(1))
     if (wrong := tilts[np.abs(tilts - np.pi / 2) > np.pi / 2 + _BEYOND]).size:
+        hint = ": an angle from the horizontal is named elevation"
         raise DataError(
             f"{where}: theta must be between 0 and 180 deg (pi rad), got {np.degrees(wrong[0]):.6g}"
-            " deg: an angle from the horizontal is named elevation"
+            f" deg{hint * bool(np.nanmax(np.abs(tilts)) <= np.pi / 2 + _BEYOND)}"
         )
     order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
     if not 1e-60 < (span := float(t[order[-1]] - t[order[0]])) < 1e60:
@@ -328,13 +332,23 @@ def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3)
     """
     if recording.position is None:
         return None
-    distance = np.linalg.norm(recording.position, axis=1)
-    direction = recording.position / distance[:, np.newaxis]
-    basis = np.column_stack([np.ones(distance.size), direction - direction.mean(axis=0)])
-    offset: Array = np.linalg.lstsq(basis, distance, rcond=1e-3)[0][1:]
-    explained = basis[:, 1:] @ offset
+    offset, directions, distance = _offset(recording.position)
+    explained = directions @ offset
     rest = distance - distance.mean() - explained
     noise = float(rest @ rest) / max(distance.size - 4, 1)
     gain = float(explained @ explained) / (noise + 1e-30)
     hidden = gain < sure**2 + 3 or np.ptp(explained) < least * distance.mean()
-    return None if hidden else offset
+    if hidden:
+        return None
+    for _ in range(8):  # to first order in what is left
+        offset = offset + _offset(recording.position - offset)[0]
+    return offset
+
+
+def _offset(marker: Array) -> tuple[Array, Array, Array]:
+    """Return the pivot to first order, and directions from their mean and distances of a marker."""
+    distance = np.linalg.norm(marker, axis=1)
+    directions = marker / distance[:, np.newaxis]
+    directions = directions - directions.mean(axis=0)
+    basis = np.column_stack([np.ones(distance.size), directions])
+    return np.linalg.lstsq(basis, distance, rcond=1e-3)[0][1:], directions, distance

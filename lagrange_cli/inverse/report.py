@@ -65,5 +65,5 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     yield f"RMS residual ({unit}): {rest}."
     if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
         yield f"Correlation: {pairs}."
-    yield from (f"Note: {text}." for text in outcome.notes)
+    yield from (f"Note: {text}." for text in outcome.remarks)
     yield from (f"Failed: {text}." for text in [*outcome.failures(), *outcome.hints])

@@ -202,6 +202,9 @@ def _nutation(
     turn = ways[0].turn
     for is_free in (True, False)[: 1 + bool(known)]:
         found, rival, image = _chosen(_minima(ways, known, free=is_free), turn)
+        if found and image and _contradicts(found, known, turn) > _contradicts(image, known, turn):
+            found, image = image, found
+            rival = rival if rival and found.differs(rival) else None
         if found is not None:
             way = ways[found.problem.recording.is_mirrored]
             factors, problem = _widening(found, way), found.problem
@@ -234,6 +237,13 @@ def _nutation(
     )
     result.known, result.contradictions, result.distances = given, texts, distances
     result.notes += notes
+    ratio, error = (
+        x / (found.values["r0"] or math.inf) for x in (found.values["b"], found.std("b"))
+    )
+    if recording.kind == "angles" and "psi" not in recording.angles and abs(ratio - 1) < 3 * error:
+        result.notes.append(
+            "C = A within the uncertainty, as if phi is the precession: then name its column psi"
+        )
     if rival:
         shown = ", ".join(
             f"{x} = {rival.values[x] * scale ** time_power(x):.6g}"
@@ -395,6 +405,13 @@ def _against_known(
             "known psidot0 = steady contradicts the recording, which nutates: omit psidot0"
         )
     return notes, texts, distances
+
+
+def _contradicts(found: Minimum, known: Known, turn: float) -> bool:
+    """Return whether known inputs contradict a free minimum, or its slowest spin."""
+    found = _slowest(found, turn)
+    known = _usable(found, known, turn)
+    return bool(found.problem.free and _against_known(found, known, turn, 1.0)[1])
 
 
 def _constrained(

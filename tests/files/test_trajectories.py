@@ -269,6 +269,9 @@ def test_conventions_and_masks_of_a_trajectory(tmp_path: Path) -> None:
         "body",
         "space",
     ]
+    (tmp_path / "b").write_text("t,roll,pitch,yaw\n0,1,2,3\n")
+    file = read_trajectory(str(tmp_path / "b"))
+    assert [file.conventions(Conventions(euler=x)).euler for x in ("xyz", "XYZ")] == ["xyz", "XYZ"]
     masked = np.ma.masked_array([1.0, 2.0], [False, True])
     assert np.isnan(quantities_of([0, 1], {"theta": masked})["theta"]).ravel().tolist() == [0, 1]
 

@@ -80,7 +80,9 @@ def test_a_contradiction_by_a_unit_says_so(factor: float) -> None:
         assert f"{words}: check the units, or omit C" in text
     far, agrees, text = compared("r0", (3.04, 0.03), (3.0, 0.04), {})
     assert (agrees, text.rpartition(": ")[2]) == (True, "0.8 sigma")
-    assert compared("r0", (3.4, 0.03), (3.0, 0.04), {})[2].endswith("8 sigma apart: omit r0")
+    assert compared("r0", (3.4, 0.03), (3.0, 0.04), {})[2].endswith(
+        "8 sigma apart: omit r0, or check the unit of t"
+    )
 
 
 def test_bins_are_means() -> None:
