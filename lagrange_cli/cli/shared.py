@@ -41,9 +41,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         self.name, self.parse, self.keyed = metavar, parse, keyed
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the value; click may pass it a second time, when it is already converted."""
-        if not isinstance(value, str):
-            return value
+        """Return the value, or raise LagtopError."""
         try:
             return self.parse(*([param.name] if param and self.keyed else []), value)
         except LagtopError as error:

@@ -36,10 +36,6 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
-def _warn(text: str) -> None:
-    complain(f"Warning: {text}")
-
-
 def _parse_jobs(text: str) -> int:
     """Return a number of processes; `auto` is one for each core that this process may use.
 
@@ -129,7 +125,8 @@ def sweep_command(
     folder = None if parts is None else Parts(parts, sweep, digest)
     if folder:
         blocks = folder.missing(blocks, done)
-    with closing(in_order(sweep.part, blocks, jobs or 1, dask, _warn)) as computed:
+    shared = jobs or 1, dask, lambda text: complain(f"Warning: {text}")
+    with closing(in_order(sweep.part, blocks, *shared)) as computed:
         total = size // every or None
         shown = with_progress(noted(computed, done), "tops", total, lambda part: part.size)
         if folder:
