@@ -63,12 +63,10 @@ class _Search:
     def __init__(self, exact: ExactMotion, run: Run, limit: float) -> None:
         self.run, self.given, self.limit = run, exact, limit
         self.mistakes = mistakes(exact.motion.top, run)
-        self.some, self.tilt = cache(self._some), cache(self._tilt)
+        self.tilt = cache(self._tilt)
+        self.some = cache(lambda undo: (undo(run) if undo else run).few(_SOME))
+        """Returns some rows of the trajectory as it was meant."""
         self.enough = min(EXPLAINS * self.error(_NONE, _SOME), _PART)
-
-    def _some(self, undo: Undo | None) -> Run:
-        """Return some rows of the trajectory as it was meant."""
-        return (undo(self.run) if undo else self.run).few(_SOME)
 
     def _tilt(self, undo: Undo | None, frame: Alignment) -> float:
         """Return the tilt of the first row, NaN if it is not known, infinity without a frame."""

@@ -134,15 +134,9 @@ _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITI
 _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
 """Units that mean those of the scene, as in a drawn table."""
 
-
-_GREEK = str.maketrans(
-    dict(
-        zip(
-            "\u03b8\u03d1\u03c6\u03d5\u03c8\u03c9\u0307\u2032\u2080",
-            "theta theta phi phi psi omega dot ' 0".split(),
-            strict=True,
-        )
-    )
+_ASCII = "theta theta phi phi psi omega dot ' 0".split()
+_GREEK = dict(
+    zip(map(ord, "\u03b8\u03d1\u03c6\u03d5\u03c8\u03c9\u0307\u2032\u2080"), _ASCII, strict=True)
 )
 """ASCII spellings of the Greek letters, a dot above, a prime, and a subscript 0."""
 
