@@ -207,7 +207,6 @@ CONDITIONS: dict[str, Callable[[Any], bool]] = {
 
 
 def _read(table: str) -> Iterator[tuple[str, Key]]:
-    """Yield the lines of the table by name."""
     group = common = ""
     for text in table.strip().replace("\n ", " ").splitlines():
         if text.startswith("# "):

@@ -16,7 +16,7 @@ from operator import itemgetter
 from types import CodeType
 from typing import Any
 
-from flint import acb, arb, ctx
+from flint import acb, arb, arb_poly, ctx
 
 from ..arithmetic.enclosures import TooFewDigitsError, at_precision, exact, fraction, root, sign
 from ..top.derived import rates_of
@@ -176,12 +176,11 @@ class Numbers(dict[str, Any]):
             return self["roots_sum_a"] / self["a"] - 2, arb(1)
         a, b = self["a"], self["b"]
         alpha, beta = self["energy_constant"], self["momentum_constant"]
-        cubic = [a, -self["roots_sum_a"], 2 * b * beta - a, alpha - square(beta)]
+        rest = arb_poly([alpha - square(beta), 2 * b * beta - a, -self["roots_sum_a"], a])
         known = [arb(1)] * (not facts.minus) + [arb(-1)] * (not facts.plus)
         known += [u0] * bool(facts.turning and not facts.pole)
-        rest = cubic if facts.a else cubic[1:]
         for known_root in known:
-            rest = _divided(rest, known_root)
+            rest //= arb_poly([-known_root, 1])
         found = sorted([*known, *_real_roots(rest)], key=_middle)
         if any(sign(upper - lower) <= 0 for lower, upper in pairwise(found)):
             raise TooFewDigitsError
@@ -255,24 +254,17 @@ class Numbers(dict[str, Any]):
         return self["course"].growth(arb(0), arb(0.25))
 
 
-def _divided(polynomial: list[arb], known_root: arb) -> list[arb]:
-    """Return a polynomial, the highest power first, divided by u - known_root (Horner's scheme)."""
-    quotient = polynomial[:1]
-    for coefficient in polynomial[1:-1]:
-        quotient.append(quotient[-1] * known_root + coefficient)
-    return quotient
-
-
-def _real_roots(polynomial: list[arb]) -> list[arb]:
+def _real_roots(polynomial: arb_poly) -> list[arb]:
     """Return the roots of a polynomial of degree 0 to 3 whose roots are real and simple."""
-    others = [x / polynomial[0] for x in polynomial[1:]]
+    *others, first = polynomial.coeffs()
+    others = [x / first for x in others]
     if len(others) < 2:
         return [-x for x in others]
     if len(others) == 2:
-        half = -others[0] / 2
-        apart = (square(half) - others[1]).sqrt()
+        half = -others[1] / 2
+        apart = (square(half) - others[0]).sqrt()
         return [half - apart, half + apart]
-    c2, c1, c0 = others  # Viete's cosines, in u = 2 size cos(angle) + centre
+    c0, c1, c2 = others  # Viete's cosines, in u = 2 size cos(angle) + centre
     centre = -c2 / 3
     size = (square(centre) - c1 / 3).sqrt()
     cosine = (square(centre) * centre - (c1 * centre + c0) / 2) / (square(size) * size)

@@ -160,11 +160,6 @@ def polynomial(coefficients: Sequence[float], x: Array) -> Array:
     return value
 
 
-def _ratio(x: Array, y: Array, otherwise: Array | float = 0.0) -> Array:
-    """Return x/y; where y is 0, return another number."""
-    return np.where(y != 0.0, x / y, otherwise)
-
-
 def _argument(real: Array, imag: Array) -> Array:
     """Return the argument of X or Y, whose real part is not negative.
 
@@ -175,7 +170,8 @@ def _argument(real: Array, imag: Array) -> Array:
 
 _FUNCTIONS: dict[str, Any] = {
     **{"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "square": np.square, "arctan": np.arctan},
-    **{"ratio": _ratio, "polynomial": polynomial, "argument": _argument, "maximum": np.maximum},
+    **{"polynomial": polynomial, "argument": _argument, "maximum": np.maximum},
+    "ratio": lambda x, y, otherwise=0.0: np.where(y != 0.0, x / y, otherwise),
 }
 _FORMULAS = FORMULAS | {
     "XX": "square(re_X) + square(im_X)",

@@ -119,7 +119,6 @@ class Motion(Solution):
         return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
 
     def _repr_html_(self) -> str:
-        """Return the record as a table for a notebook."""
         from ..output.notebook import record_html  # start-up
 
         return record_html(self.regime, self.record(), KEYS)
