@@ -18,6 +18,7 @@ from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
 from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
+from ..top.units import is_unit
 from ..top.values import Value, parse_value, tilt_key
 from .app import complain, with_options
 
@@ -250,8 +251,6 @@ def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
     name, _, value = word.partition("=")
     if name in DECLARED and is_decimal(value):
         raise LagtopError(f"an input is not a scene: write --{name.replace('_', '-')} {value}")
-    from ..top.units import is_unit  # start-up
-
     if is_unit(word):
         bare = [(x, y.number) for x, y in inputs.items() if isinstance(y.number, Fraction)]
         name, number = bare[-1] if bare else ("m", Fraction(2))

@@ -17,6 +17,7 @@ from ..arithmetic.enclosures import (
     sign_to,
 )
 from ..errors import OutOfRangeError
+from ..names import suggestion
 from ..top.top import Top
 from .facts import Facts, Regime
 from .keys import (
@@ -57,8 +58,6 @@ class Solution:
     def __getattr__(self, name: str) -> Any:
         """Return a number by its key: a float, or None if the motion has no such number."""
         if name not in NUMBERS:
-            from ..names import suggestion  # start-up: for a misspelt name only
-
             hint = "" if name.startswith("_") else suggestion(name, dir(self))
             raise AttributeError(f"a motion has no {name!r}{hint}", name=name, obj=self)
         found = self.number(name)
