@@ -86,7 +86,8 @@ class Solution:
         bare = bare_name(name)
         if bare not in LINES:
             return True
-        return bare not in self.facts.undefined and CONDITIONS[LINES[bare].only](self)
+        condition = CONDITIONS[LINES[bare].only]
+        return bare not in self.facts.undefined and bool(condition(self.facts, self))
 
     def number(self, name: str, digits: int | None = None) -> Rounded | None:
         """Return a number correctly rounded to a double or to `digits`; None if it does not exist.
