@@ -259,10 +259,7 @@ class Rounded(NamedTuple):
 
 
 def settled(
-    what: str,
-    number: Callable[[int], arb | None],
-    digits: int | None,
-    most: int,
+    what: str, number: Callable[[int], arb | None], digits: int | None, most: int
 ) -> Rounded | None:
     """Return a number as the nearest double, or with `digits` significant digits; None for None.
 

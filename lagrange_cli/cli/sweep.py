@@ -169,11 +169,7 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
 @opt.keys
 @opt.output("csv", "ndjson", "json", "table", on_terminal="table")
 def find_command(
-    top: opt.TopOptions,
-    words: Sequence[str],
-    scan: int | None,
-    keys: list[str] | None,
-    out: Output,
+    top: opt.TopOptions, words: Sequence[str], scan: int | None, keys: list[str] | None, out: Output
 ) -> None:
     """Find the inputs for which results take given values.
 

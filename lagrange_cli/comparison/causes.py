@@ -58,8 +58,6 @@ def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
 
 
 class _Search:
-    """The search for the causes of the error of a trajectory."""
-
     def __init__(self, exact: ExactMotion, run: Run, limit: float) -> None:
         self.run, self.given, self.limit = run, exact, limit
         self.mistakes = mistakes(exact.motion.top, run)
@@ -155,7 +153,6 @@ class _Search:
 
 
 def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
-    """Return an alignment as a cause."""
     given, words, names = run.align, [align], []
     if align[:3] == given[:3] and align.start and not given.start:
         seen = run._replace(align=align._replace(start=False)).observed()

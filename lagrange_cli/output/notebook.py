@@ -16,7 +16,6 @@ class Document(str):
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        """Return the document in a frame of its own."""
         style = "width: 100%; height: 720px; border: 0"
         return f'<iframe style="{style}" srcdoc="{escape(self)}"></iframe>'
 

@@ -16,15 +16,7 @@ from typing import Any, NamedTuple
 
 from flint import arb
 
-from ..arithmetic.enclosures import (
-    BITS,
-    TooFewDigitsError,
-    decided,
-    exact,
-    fraction,
-    rounded,
-    sign,
-)
+from ..arithmetic.enclosures import BITS, TooFewDigitsError, decided, exact, fraction, rounded, sign
 from ..errors import LagtopError
 from ..names import check_names
 from ..top.inputs import DECLARED
@@ -158,7 +150,6 @@ def _value(motion: Motion, key: str, digits: int) -> Any:
 
 
 def _exceeds(x: arb, limit: arb) -> bool:
-    """Return whether a number is greater than a limit."""
     return sign(limit - x) < 0
 
 

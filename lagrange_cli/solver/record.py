@@ -8,27 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb
 
-from ..arithmetic.enclosures import (
-    Rounded,
-    TooFewDigitsError,
-    decided,
-    rounded,
-    settled,
-    sign_to,
-)
+from ..arithmetic.enclosures import Rounded, TooFewDigitsError, decided, rounded, settled, sign_to
 from ..errors import OutOfRangeError
 from ..names import suggestion
 from ..top.top import Top
 from .facts import Facts, Regime
-from .keys import (
-    CONDITIONS,
-    LINES,
-    NUMBERS,
-    all_keys,
-    bare_name,
-    degree_name,
-    record_keys,
-)
+from .keys import CONDITIONS, LINES, NUMBERS, all_keys, bare_name, degree_name, record_keys
 from .numbers import Numbers
 
 if TYPE_CHECKING:

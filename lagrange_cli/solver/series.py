@@ -90,10 +90,7 @@ def theta_series(of: Nutation) -> Series:
     rate = unit * _summed(SIN_EVEN, weights, hyperbolic)
     scale = pi / 2 * stretch
     most = scale.exp() / 4 if hyperbolic else arb(0.5)
-    frames = [
-        _frame(True, x[:2] + y[2:], rate, most),
-        _frame(False, x[2:] + y[:2], -rate, most),
-    ]
+    frames = [_frame(True, x[:2] + y[2:], rate, most), _frame(False, x[2:] + y[:2], -rate, most)]
     turns = [arb(0.5) - (side.place if hyperbolic else 0) for side in of.sides]
     slopes = [-side.sign * pi * turn for side, turn in zip(of.sides, turns, strict=True)]
     return Series(frames, scale, slopes)
