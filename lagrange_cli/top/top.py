@@ -112,19 +112,17 @@ class Top:
         for name in INPUTS:
             object.__setattr__(self, name, inputs.get(name))
         if self.A_cm is not None:
-            self._derive("A", float(self.exact("A")))
+            object.__setattr__(self, "A", _checked("A", float(self.exact("A"))))
         twice, remedy = 2 * self.exact("A"), "no rigid body has more"
         _require(twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, remedy)
         if word:
             object.__setattr__(self, "psidot0", steady_rate_of(self, word))
             object.__setattr__(self, "steady_word", word)
         if self.phidot0 is not None:
-            self._derive("r0", spin(inputs | {"psidot0": self.psidot0}))
+            rate = spin(inputs | {"psidot0": self.psidot0})
+            object.__setattr__(self, "r0", _checked("r0", rate))
         if missing := from_example(given):
             warn_of(missing, stacklevel=4)
-
-    def _derive(self, name: str, value: float) -> None:
-        object.__setattr__(self, name, _checked(name, value))
 
     def __repr__(self) -> str:
         given = self.parts.body | self.parts.start
