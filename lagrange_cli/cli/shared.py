@@ -199,17 +199,16 @@ def is_scene(word: str) -> bool:
 def top(
     argument: str = "[SCENE]",
     *,
-    kind: Parsed | None = None,
-    rate: Parsed | None = None,
+    parse: Callable[..., Any] | None = None,
     whole: bool = True,
     is_scene: Callable[[str], bool] | None = is_scene,
 ) -> Callable[[F], F]:
     """Declare the inputs of a top and --rad, which become `top`, and the arguments of a command.
 
-    `kind` is the type of the inputs, and `rate` that of psidot0; by default they are numbers that
-    may have an uncertainty.  If the `argument` is more than a scene, the command gets the other
-    `words`; `is_scene` finds the scene among them, unless it is None.  A top that is not `whole`
-    has no defaults.
+    `parse` reads an input (see `parse_value`); by default inputs are numbers that may have an
+    uncertainty.  If the `argument` is more than a scene, the command gets the other `words`;
+    `is_scene` finds the scene among them, unless it is None.  A top that is not `whole` has no
+    defaults.
     """
     names = [*DECLARED]
     several = argument != "[SCENE]"
@@ -233,9 +232,7 @@ def top(
 
         found: Any = rad(run)
         for name in reversed(names):
-            steady = name == "psidot0"
-            own = rate if name == "psidot0" else None
-            parameter = own or kind or values(uncertain=True, steady=steady)
+            parameter = values(parse, uncertain=parse is None, steady=name == "psidot0")
             flag, text = f"--{name.replace('_', '-')}", _help_of(name, shows_default=whole)
             found = option(flag, name, type=parameter, help=text)(found)
         words: Any = {"nargs": -1 if several else 1, "required": False, "metavar": argument}

@@ -57,8 +57,7 @@ def _parse_jobs(text: str) -> int:
 )
 @opt.top(
     "[SCENE] [TOPS.csv|.ndjson|-]",
-    kind=opt.values(parse_values),
-    rate=opt.values(parse_values, steady=True),
+    parse=parse_values,
     is_scene=is_scene_file,
 )
 @opt.keys
@@ -160,8 +159,7 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
 )
 @opt.top(
     "[SCENE] CONDITION...",
-    kind=opt.values(parse_number_or_span),
-    rate=opt.values(parse_number_or_span, steady=True),
+    parse=parse_number_or_span,
 )
 @opt.option(
     "--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60, 20 for 1, 2, 3]"
