@@ -259,12 +259,7 @@ class Rounded(NamedTuple):
 
 
 def settled(
-    what: str,
-    number: Callable[[int], arb | None],
-    digits: int | None,
-    most: int,
-    *,
-    lost: int = 0,
+    what: str, number: Callable[[int], arb | None], digits: int | None, most: int
 ) -> Rounded | None:
     """Return a number as the nearest double, or with `digits` significant digits; None for None.
 
@@ -283,14 +278,14 @@ def settled(
                 raise TooFewDigitsError
             value = _alike(what, ball, digits)
         except TooFewDigitsError:
-            if working < most + lost or not ball.rel_one_accuracy_bits() > most:
+            if working < most or not ball.rel_one_accuracy_bits() > most:
                 raise
             middle, radius = fraction(ball.mid()), fraction(ball.rad())
             tie = simplest_between(middle - radius, middle + radius)
             return Rounded(rounded(what, tie, digits, _MORE_DIGITS), tie)
         return Rounded(value, ball, bits)
 
-    return decided(attempt, most, digits=digits, lost=lost, what=what)
+    return decided(attempt, most, digits=digits, what=what)
 
 
 def _alike(what: str, ball: arb, digits: int | None) -> Any:

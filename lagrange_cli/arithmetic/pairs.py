@@ -57,13 +57,6 @@ def two_sum(x: float | Array, y: float | Array) -> tuple[Array, Array]:
     return total, (x - (total - part)) + (y - part)
 
 
-def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
-    """Return the square root of high + low >= 0."""
-    root = np.sqrt(high)
-    square, error = two_product(root, root)
-    return root, ((high - square) - error + low) / np.where(root > 0, 2 * root, 1.0)
-
-
 def _compared(high: Any, low: Any) -> Callable[[DoubleDouble, DoubleDouble | float], Mask]:
     """Return a comparison of the high parts or, if they are equal, of the low parts."""
 
@@ -120,8 +113,6 @@ class DoubleDouble:
         if not isinstance(other, DoubleDouble) and math.frexp(other)[0] == 0.5:
             return self.scaled(other)
         other = self._like(other)
-        if self.high.size < other.high.size:  # a constant
-            return other * self
         high, low = two_product(self.high, other.high)
         low += self.high * other.low
         low += self.low * other.high
@@ -149,7 +140,10 @@ class DoubleDouble:
 
     def sqrt(self) -> DoubleDouble:
         """Return the square root of numbers >= 0."""
-        return _renormalised(*sqrt_pair(self.high, self.low))
+        root = np.sqrt(self.high)
+        square, error = two_product(root, root)
+        rest = (self.high - square) - error + self.low
+        return _renormalised(root, rest / np.where(root > 0, 2 * root, 1.0))
 
     @classmethod
     def choose(

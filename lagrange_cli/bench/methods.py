@@ -20,6 +20,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..files.rotations import of_angles
+from ..inverse.motions import angles
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 
@@ -114,8 +115,6 @@ def scipy_special(motion: Motion, _: Any) -> Sample:
     It is the function that `fit` uses.  Differences of roots follow from the cubic and not from
     subtractions, so that it keeps its digits in hard scenes as far as doubles allow.
     """
-    from ..inverse.motions import angles
-
     (a, b), r0 = constants(motion.top), float(motion.top.r0)
     inputs = motion.top.inputs(radians=True)
     start = [float(inputs[x]) for x in ("theta0_rad", "thetadot0", "psidot0")]

@@ -98,9 +98,6 @@ def stability_command(
     from ..bench.stability import failures, stability, stability_figure
 
     report = opt.write_report(
-        out,
-        lambda: stability(kinds, samples, seed, with_progress),
-        plot,
-        stability_figure,
+        out, lambda: stability(kinds, samples, seed, with_progress), plot, stability_figure
     )
     opt.fail_for(failures(report), len(report.rows), "rows")

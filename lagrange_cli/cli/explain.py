@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 from ..arithmetic.text import value_text
 from ..output.report import Field, Report
@@ -71,11 +72,6 @@ _EXPLAINED = [
 ]
 
 
-class _Scene(NamedTuple):
-    name: str
-    remark: str
-
-
 @opt.command("scenes", "scenes", "solve fast-gyroscope", "scenes --format json")
 @opt.output(*opt.REPORT_FORMATS)
 def scenes_command(out: Output) -> None:
@@ -84,6 +80,6 @@ def scenes_command(out: Output) -> None:
     Commands that solve a top accept these names as SCENE.  You can write your own scene: a TOML
     file with inputs by name, such as r0 = 40 or theta0 = "30 deg".
     """
-    rows = [_Scene(name, scene_remark(name)) for name in scene_names()]
-    fields = [Field(x, x, is_text=True) for x in _Scene._fields]
+    rows = [SimpleNamespace(name=x, remark=scene_remark(x)) for x in scene_names()]
+    fields = [Field(x, x, is_text=True) for x in ("name", "remark")]
     opt.write_report(out, lambda: Report({}, fields, rows, []))

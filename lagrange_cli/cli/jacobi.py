@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 
 from ..elliptic import eta, legendre
@@ -20,6 +19,7 @@ from ..errors import LagtopError
 from ..names import Key, check_names
 from ..output.destination import Output
 from ..output.terminal import with_progress
+from ..top.inputs import declared
 from ..top.ranges import Points
 from ..top.values import parse_values
 from . import shared as opt
@@ -31,11 +31,11 @@ def constant_keys(group: str, table: str) -> dict[str, Key]:
     Complex numbers also have the keys of their parts.
     """
     keys = {}
-    for line in table.strip().split("\n"):
-        if "|" not in line:
-            group = line
+    for name, *cells in declared(table):
+        if not cells:
+            group = name
             continue
-        name, symbol, *others = re.split(r"\s*\|\s*", line)
+        symbol, *others = cells
         keys[name] = Key(group, symbol, *others)
         for part, sign in (("re", "Re"), ("im", "Im")):
             keys[f"{name}_{part}"] = Key(group, f"{sign} {symbol}", *others)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import ExitStack
 from fractions import Fraction
 from os.path import exists, splitext
@@ -82,12 +81,13 @@ def plot_command(
 
     Several scenes are drawn side by side.
     """
-    kinds = _kinds([word for word in words if word in {*KINDS, SHEET}])
-    scenes = [word for word in words if word not in {*KINDS, SHEET}]
+    expanded = {kind: [kind] for kind in KINDS} | {SHEET: [kind for kind in KINDS if kind != "map"]}
+    named = [word for word in words if word in expanded] or [SHEET]
+    kinds = list(dict.fromkeys(kind for word in named for kind in expanded[word]))
+    scenes = [word for word in words if word not in expanded]
     for word in scenes:
         if not (opt.is_scene(word) or exists(word)):
-            known = [*KINDS, SHEET]
-            hint = suggestion(word, [*known, *scene_names()]) or f": draw {', '.join(known)}"
+            hint = suggestion(word, [*expanded, *scene_names()]) or f": draw {', '.join(expanded)}"
             raise LagtopError(f"{word!r} is neither a kind of picture nor a scene{hint}")
     if not (output or animate):
         raise LagtopError("nothing to do: give -o FILE.png or --animate FILE.gif")
@@ -133,24 +133,17 @@ def plot_command(
             resolution = float(dpi or FILM_DPI)
             stream.write(film_bytes(motions[0], film, options, seconds, resolution))
         if output is not None:
-            named = list(zip(scenes or [""], motions, strict=True))
+            drawn = list(zip(scenes or [""], motions, strict=True))
             about = title or f"Lagrange top: {', '.join(kinds)}"
             text = "; ".join(
                 f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.as_text()}"
-                for name, motion in named
+                for name, motion in drawn
             )
             with styled(options.look):
-                figure = figure_of(named, kinds, options, title)
+                figure = figure_of(drawn, kinds, options, title)
                 picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)
     warn_if_misleading(stds, ["theta", "dphi", "psi"])
-
-
-def _kinds(names: Sequence[str]) -> list[str]:
-    """Return the kinds of picture, each once; `all` stands for several, and is the default."""
-    sheet = [kind for kind in KINDS if kind != "map"]
-    kinds = [kind for name in names or [SHEET] for kind in (sheet if name == SHEET else [name])]
-    return list(dict.fromkeys(kinds))
 
 
 def _camera(text: str, radians: bool) -> tuple[float, float]:

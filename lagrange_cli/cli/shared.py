@@ -18,6 +18,7 @@ from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.terminal import is_screen, width_of
 from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
+from ..top.units import is_unit
 from ..top.values import Value, parse_value, tilt_key
 from .app import complain, with_options
 
@@ -41,9 +42,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         self.name, self.parse, self.keyed = metavar, parse, keyed
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the value; click may pass it a second time, when it is already converted."""
-        if not isinstance(value, str):
-            return value
+        """Return the value, or raise LagtopError."""
         try:
             return self.parse(*([param.name] if param and self.keyed else []), value)
         except LagtopError as error:
@@ -200,17 +199,16 @@ def is_scene(word: str) -> bool:
 def top(
     argument: str = "[SCENE]",
     *,
-    kind: Parsed | None = None,
-    rate: Parsed | None = None,
+    parse: Callable[..., Any] | None = None,
     whole: bool = True,
     is_scene: Callable[[str], bool] | None = is_scene,
 ) -> Callable[[F], F]:
     """Declare the inputs of a top and --rad, which become `top`, and the arguments of a command.
 
-    `kind` is the type of the inputs, and `rate` that of psidot0; by default they are numbers that
-    may have an uncertainty.  If the `argument` is more than a scene, the command gets the other
-    `words`; `is_scene` finds the scene among them, unless it is None.  A top that is not `whole`
-    has no defaults.
+    `parse` reads an input (see `parse_value`); by default inputs are numbers that may have an
+    uncertainty.  If the `argument` is more than a scene, the command gets the other `words`;
+    `is_scene` finds the scene among them, unless it is None.  A top that is not `whole` has no
+    defaults.
     """
     names = [*DECLARED]
     several = argument != "[SCENE]"
@@ -234,9 +232,7 @@ def top(
 
         found: Any = rad(run)
         for name in reversed(names):
-            steady = name == "psidot0"
-            own = rate if name == "psidot0" else None
-            parameter = own or kind or values(uncertain=True, steady=steady)
+            parameter = values(parse, uncertain=parse is None, steady=name == "psidot0")
             flag, text = f"--{name.replace('_', '-')}", _help_of(name, shows_default=whole)
             found = option(flag, name, type=parameter, help=text)(found)
         words: Any = {"nargs": -1 if several else 1, "required": False, "metavar": argument}
@@ -252,8 +248,6 @@ def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
     name, _, value = word.partition("=")
     if name in DECLARED and is_decimal(value):
         raise LagtopError(f"an input is not a scene: write --{name.replace('_', '-')} {value}")
-    from ..top.units import is_unit  # start-up
-
     if is_unit(word):
         bare = [(x, y.number) for x, y in inputs.items() if isinstance(y.number, Fraction)]
         name, number = bare[-1] if bare else ("m", Fraction(2))

@@ -11,9 +11,10 @@ from ..errors import AbsentError, LagtopError
 from ..names import Key, check_names
 from ..output.destination import Output
 from ..solver.facts import Regime
-from ..solver.keys import all_keys, key_of, shown_keys, unit_name
+from ..solver.keys import CHAIN, all_keys, derivation_keys, key_of, shown_keys, unit_name
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
+from ..solver.summary import summary
 from . import shared as opt
 from .app import complain
 
@@ -79,8 +80,6 @@ def solve_command(
         record["remark"] = found.remark(record["remark"])
     sentence = {}
     if wanted is None and out.fmt != "csv":
-        from ..solver.summary import summary
-
         with suppress(TypeError):  # a number beyond the range of doubles is None
             sentence["summary"] = summary(record, motion.facts, named)
     if found.stds:
@@ -147,8 +146,6 @@ def _absence(motion: Motion, record: dict[str, Any], key: str) -> str:
 
 def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
-    from ..solver.keys import derivation_keys
-
     if motion.roots_sum is None:
         top = motion.top
         raise AbsentError(
@@ -161,7 +158,5 @@ def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
 
 def _keys_by_step(keys: dict[str, Key], radians: bool) -> dict[str, Key]:
     """Return the keys of the steps of section 8, in order and grouped by step."""
-    from ..solver.keys import CHAIN
-
     chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
     return {name: keys[name]._replace(group=step) for name, step in chain.items()}

@@ -36,10 +36,6 @@ def _parse_shard(text: str) -> tuple[int, int]:
     raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
-def _warn(text: str) -> None:
-    complain(f"Warning: {text}")
-
-
 def _parse_jobs(text: str) -> int:
     """Return a number of processes; `auto` is one for each core that this process may use.
 
@@ -61,8 +57,7 @@ def _parse_jobs(text: str) -> int:
 )
 @opt.top(
     "[SCENE] [TOPS.csv|.ndjson|-]",
-    kind=opt.values(parse_values),
-    rate=opt.values(parse_values, steady=True),
+    parse=parse_values,
     is_scene=is_scene_file,
 )
 @opt.keys
@@ -129,7 +124,8 @@ def sweep_command(
     folder = None if parts is None else Parts(parts, sweep, digest)
     if folder:
         blocks = folder.missing(blocks, done)
-    with closing(in_order(sweep.part, blocks, jobs or 1, dask, _warn)) as computed:
+    shared = jobs or 1, dask, lambda text: complain(f"Warning: {text}")
+    with closing(in_order(sweep.part, blocks, *shared)) as computed:
         total = size // every or None
         shown = with_progress(noted(computed, done), "tops", total, lambda part: part.size)
         if folder:
@@ -163,8 +159,7 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
 )
 @opt.top(
     "[SCENE] CONDITION...",
-    kind=opt.values(parse_number_or_span),
-    rate=opt.values(parse_number_or_span, steady=True),
+    parse=parse_number_or_span,
 )
 @opt.option(
     "--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60, 20 for 1, 2, 3]"
@@ -172,11 +167,7 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
 @opt.keys
 @opt.output("csv", "ndjson", "json", "table", on_terminal="table")
 def find_command(
-    top: opt.TopOptions,
-    words: Sequence[str],
-    scan: int | None,
-    keys: list[str] | None,
-    out: Output,
+    top: opt.TopOptions, words: Sequence[str], scan: int | None, keys: list[str] | None, out: Output
 ) -> None:
     """Find the inputs for which results take given values.
 

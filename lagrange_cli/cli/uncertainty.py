@@ -88,14 +88,14 @@ def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Out
     if whole is None:
         raise AbsentError(f"{key} has no uncertainty of first order: {NO_DERIVATIVE}")
     given = {x: float(found.inputs[x]) for x in found.stds}
-    units = _units(found, [key, *given])
+    units, four_digits = _units(found, [key, *given]), "{:.4g}".format
     fields = [
         Field("quantity", "quantity", lambda x: with_unit(x, units.get(x)), is_text=True),
         Field("value", "value", lambda x: f"{x:.6g}"),
-        Field("std", "uncertainty", _figures),
-        Field("sensitivity", "sensitivity", _figures),
-        Field("contribution", with_unit("contribution", units.get(key)), _figures),
-        Field("elasticity", "elasticity", _figures),
+        Field("std", "uncertainty", four_digits),
+        Field("sensitivity", "sensitivity", four_digits),
+        Field("contribution", with_unit("contribution", units.get(key)), four_digits),
+        Field("elasticity", "elasticity", four_digits),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
     rows = [*uncertain.budget(key, given), Contribution(key, value, whole)]  # last, as in EA-4/02
@@ -113,7 +113,3 @@ def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
     shown = shown_keys(named=named) | shown_keys(named=named, radians=True)
     solved = {key: shown.get(STANDS_FOR.get(key, key)) for key in keys}
     return {key: x.unit for key, x in solved.items() if x is not None and x.unit}
-
-
-def _figures(x: float) -> str:
-    return f"{x:.4g}"

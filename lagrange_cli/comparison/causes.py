@@ -58,17 +58,13 @@ def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
 
 
 class _Search:
-    """The search for the causes of the error of a trajectory."""
-
     def __init__(self, exact: ExactMotion, run: Run, limit: float) -> None:
         self.run, self.given, self.limit = run, exact, limit
         self.mistakes = mistakes(exact.motion.top, run)
-        self.some, self.tilt = cache(self._some), cache(self._tilt)
+        self.tilt = cache(self._tilt)
+        self.some = cache(lambda undo: (undo(run) if undo else run).few(_SOME))
+        """Returns some rows of the trajectory as it was meant."""
         self.enough = min(EXPLAINS * self.error(_NONE, _SOME), _PART)
-
-    def _some(self, undo: Undo | None) -> Run:
-        """Return some rows of the trajectory as it was meant."""
-        return (undo(self.run) if undo else self.run).few(_SOME)
 
     def _tilt(self, undo: Undo | None, frame: Alignment) -> float:
         """Return the tilt of the first row, NaN if it is not known, infinity without a frame."""
@@ -157,7 +153,6 @@ class _Search:
 
 
 def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
-    """Return an alignment as a cause."""
     given, words, names = run.align, [align], []
     if align[:3] == given[:3] and align.start and not given.start:
         seen = run._replace(align=align._replace(start=False)).observed()

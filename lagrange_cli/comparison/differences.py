@@ -226,7 +226,6 @@ def errors(exact: ExactMotion, run: Run) -> Array:
 def _differences(
     motion: Motion, run: Observed, states: dict[str, Array], missing: Mask
 ) -> dict[str, Array]:
-    """Return the differences of some rows."""
     q, exact = states["quaternion"], {x: states[x] for x in ANGLES}
     axis, angles, found = run.axis, angles_of(run), dict[str, Array]()
     if run.quaternion is not None:

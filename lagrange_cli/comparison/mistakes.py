@@ -60,7 +60,6 @@ def mistakes(top: Top, run: Run) -> list[Cause]:
 
 
 def _changed(changes: Mapping[str, Callable[[Array], Array]], run: Run) -> Run:
-    """Return a trajectory with changes of some quantities."""
     return run._replace(given={x: changes.get(x, np.asarray)(y) for x, y in run.given.items()})
 
 

@@ -77,10 +77,7 @@ def _used(rows: Quantities, conventions: Conventions) -> set[str]:
 
 
 def comparison_report(
-    motion: Motion,
-    results: Sequence[Comparison],
-    found: Convergence | None,
-    limit: float = LIMIT,
+    motion: Motion, results: Sequence[Comparison], found: Convergence | None, limit: float = LIMIT
 ) -> Report:
     """Return the report on trajectories."""
     shown = [x for x in _COLUMNS if any(getattr(row, x.key) is not None for row in results)]

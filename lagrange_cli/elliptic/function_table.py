@@ -122,7 +122,6 @@ def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Values:
 
 
 def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Values:
-    """Return the theta and the Zeta functions of u."""
     families, kind, found = request.families, functions.kind, Values()
     for ij, z in functions.thetas(u).items() if "theta" in families else ():
         is_real = kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0")

@@ -20,11 +20,7 @@ THIRD = ("01", "00", "11")
 """The indices of Omega and Pi."""
 _NUMBERS = {"01": 3, "00": 2, "11": 0, "10": 1}
 """The theta functions theta4, theta3, theta1 and theta2 of pi z: their places in Arb's tuple."""
-_REDUCED = {
-    Kind.UNIT: {},
-    Kind.IMAGINARY: {"01": "00", "00": "01"},
-    Kind.LARGE: {"00": "10"},
-}
+_REDUCED = {Kind.UNIT: {}, Kind.IMAGINARY: {"01": "00", "00": "01"}, Kind.LARGE: {"00": "10"}}
 """The function of the reduced modulus that replaces each function, if the index differs."""
 
 

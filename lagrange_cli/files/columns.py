@@ -9,16 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+import numpy as np
 
 from ..arithmetic.text import quoted, shortened
+from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import ANGLES, suggestion
 from ..top.inputs import declared
 from ..top.units import SPELLINGS, conversion, is_unit
-
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
 
 SKIPPED = "_"
 """The name of an ignored column."""
@@ -134,15 +134,9 @@ _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITI
 _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
 """Units that mean those of the scene, as in a drawn table."""
 
-
-_GREEK = str.maketrans(
-    dict(
-        zip(
-            "\u03b8\u03d1\u03c6\u03d5\u03c8\u03c9\u0307\u2032\u2080",
-            "theta theta phi phi psi omega dot ' 0".split(),
-            strict=True,
-        )
-    )
+_ASCII = "theta theta phi phi psi omega dot ' 0".split()
+_GREEK = dict(
+    zip(map(ord, "\u03b8\u03d1\u03c6\u03d5\u03c8\u03c9\u0307\u2032\u2080"), _ASCII, strict=True)
 )
 """ASCII spellings of the Greek letters, a dot above, a prime, and a subscript 0."""
 
@@ -256,8 +250,6 @@ def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> Found
 
 def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -> Array:
     """Return numbers in known units, all angles in radians; `radians` if their unit is missing."""
-    import numpy as np
-
     if found.factor is not None:
         size = float(max(found.factor, 1 / found.factor))
         values = values * size if found.factor > 1 else values / size  # by a whole number, if it is

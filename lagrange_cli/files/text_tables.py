@@ -14,16 +14,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import islice
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.text import parse_number, quoted
+from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from .json_rows import MOST_CELLS, entries_of, json_value, shown
-
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array, Mask
 
 _SAMPLE = 1000
 """Number of rows that decide whether numbers have decimal commas."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from math import prod
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,16 +26,13 @@ from ..top.values import STEADY_WORDS, Value, tilt_key
 from .columns import known_quantities, name_and_unit
 from .text_tables import Table, read_table
 
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
-
 
 class Tops(NamedTuple):
     """The inputs of some tops, with the columns, lines and errors of each."""
 
     size: int
     inputs: Mapping[str, Any]
-    """For each input an array, or one value for all tops; NaN for a top without the input."""
+    """For each input an array of any type, or one value for all tops; NaN if a top lacks it."""
     carried: Sequence[Sequence[Any]] = ()
     """The extra columns, which are copied to the output."""
     lines: Sequence[int] | None = None
@@ -126,7 +123,7 @@ class TopsFile(NamedTuple):
                 errors[i] = str(error)
             found.append(inputs)
             carried.append([values.get(name) for name in self.carried])
-        arrays = {name: _array([x.get(name, np.nan) for x in found]) for name in INPUTS}
+        arrays = {x: np.array([y.get(x, np.nan) for y in found], object) for x in INPUTS}
         return Tops(len(lines), arrays, [*zip(*carried, strict=True)], lines, errors)
 
     def _double(self, name: str, cell: Any) -> Any:
@@ -138,11 +135,6 @@ class TopsFile(NamedTuple):
         except LagtopError as error:
             raise LagtopError(f"{name} {error}") from None
         return checked_double(name, number * self.units[name].number)
-
-
-def _array(values: list[Any]) -> Array:
-    words = any(isinstance(x, str) for x in values)
-    return np.array(values, dtype=object if words else np.float64)
 
 
 def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFile:

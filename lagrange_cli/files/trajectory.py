@@ -11,11 +11,12 @@ from decimal import Decimal
 from fractions import Fraction
 from io import BytesIO
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..arithmetic.text import shortened
+from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError, UnavailableError
 from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
 from ..top.ranges import ListedPoints
@@ -30,11 +31,8 @@ from .columns import (
     quantities_in,
     with_units_of,
 )
+from .observed import Conventions
 from .text_tables import Table, read_table
-
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array, Mask
-    from .observed import Conventions
 
 _BYTES_OF_A_NUMBER = 24
 """Most characters of a number in CSV."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,6 @@ class Document(str):
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        """Return the document in a frame of its own."""
         style = "width: 100%; height: 720px; border: 0"
         return f'<iframe style="{style}" srcdoc="{escape(self)}"></iframe>'
 
@@ -29,10 +28,7 @@ class HasRecord:
     """Results with a verdict and a record: a dict for programs, a table for notebooks."""
 
     verdict: Any
-
-    def record(self) -> dict[str, Any]:
-        """Return the results by key."""
-        raise NotImplementedError
+    record: Callable[[], dict[str, Any]]
 
     def _repr_html_(self) -> str:
         """Return the results as a table for a notebook, without keys that have none."""

@@ -6,10 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from time import monotonic
-from typing import TYPE_CHECKING, Any, TypeVar
-
-if TYPE_CHECKING:
-    from typing import TextIO
+from typing import Any, TextIO, TypeVar
 
 Item = TypeVar("Item")
 MOST_CHARACTERS = 1000

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from .style import DARK, LIGHT, require_matplotlib
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -47,7 +49,6 @@ def draw(
     from ..errors import LagtopError, check_type  # start-up
     from ..names import check_names  # start-up
     from ..solver.solve import Motion  # start-up
-    from .style import DARK, LIGHT, require_matplotlib  # start-up
 
     check_type("motion", motion, Motion)
     check_type("kind", kind, str)
@@ -92,8 +93,6 @@ def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
 
 def new_figure() -> Figure:
     """Return a new figure of pyplot, which a notebook shows.  Raises UnavailableError."""
-    from .style import require_matplotlib  # start-up
-
     require_matplotlib()
     from matplotlib import pyplot
 

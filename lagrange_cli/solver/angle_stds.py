@@ -173,5 +173,4 @@ class AngleStds:
 
 
 def _all_angles(motion: Motion, t: Array) -> Array:
-    """Return the columns `STD_COLUMNS` at some times."""
     return np.stack([*motion.table(t, STD_COLUMNS).values()])

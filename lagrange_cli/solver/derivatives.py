@@ -8,7 +8,7 @@ degenerate motion may be too near, the step is 2^-1000.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
@@ -16,15 +16,7 @@ from typing import Any, NamedTuple
 
 from flint import arb
 
-from ..arithmetic.enclosures import (
-    BITS,
-    TooFewDigitsError,
-    decided,
-    exact,
-    fraction,
-    rounded,
-    sign,
-)
+from ..arithmetic.enclosures import BITS, TooFewDigitsError, decided, exact, fraction, rounded, sign
 from ..errors import LagtopError
 from ..names import check_names
 from ..top.inputs import DECLARED
@@ -123,8 +115,8 @@ class Derivatives:
                 return None
             first, last = ((y - x) / h for x, y in pairwise(values))
             bent = last - first
-            largest = _greatest(x.abs_lower() for x in values)
-            steepest = _greatest(x.abs_upper() for x in (first, last))
+            largest = max(x.abs_lower() for x in values)
+            steepest = max(x.abs_upper() for x in (first, last))
             scale = (arb(1) if largest.is_zero() else largest) / size
             limit = _ALIKE * (steepest + scale)
             if _exceeds(abs(bent), limit) or _exceeds(4 * h * steepest, largest):
@@ -157,16 +149,7 @@ def _value(motion: Motion, key: str, digits: int) -> Any:
     return ball
 
 
-def _greatest(numbers: Iterable[arb]) -> arb:
-    """Return the greatest of some exact numbers that are not negative."""
-    found = arb(0)
-    for x in numbers:
-        found = found.max(x)
-    return found
-
-
 def _exceeds(x: arb, limit: arb) -> bool:
-    """Return whether a number is greater than a limit."""
     return sign(limit - x) < 0
 
 

@@ -139,7 +139,6 @@ def _reasons(motion: Motion, absent: Sequence[str]) -> str:
 
 
 def _symbols() -> dict[str, str]:
-    """Return the symbols of names in formulas."""
     keys = shown_keys(requested=True).items()
     symbols = {bare_name(name): key.symbol for name, key in keys if key.symbol}
     return symbols | {name: key.symbol for name, key in shown_columns().items()} | _WORDS

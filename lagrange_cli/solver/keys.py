@@ -172,42 +172,33 @@ lowest | | time at which the axis is lowest | time | | -course.h0/course.rate
 """
 
 
-CONDITIONS: dict[str, Callable[[Any], bool]] = {
-    "": lambda of: True,
-    "if there is a torque": lambda of: bool(of.facts.a),
-    "if r0 is not 0": lambda of: bool(of.facts.spin),
-    "if k > 0": lambda of: bool(of.facts.a) and not of.facts.steady,
-    "if the top moves": lambda of: of.facts.moves,
-    "if the top is released from rest": lambda of: of.facts.released,
-    "if the start is at u1": lambda of: of.facts.turning > 0,
-    "if the mean spin rate is not 0": lambda of: not of.is_zero("mean_spin_rate"),
-    "if the mean precession rate is not 0": lambda of: not of.is_zero("mean_precession_rate"),
-    "if the axis does not leave the vertical at the start": lambda of: (
-        not of.facts.pole or of.facts.vertical
+CONDITIONS: dict[str, Callable[[Any, Any], Any]] = {
+    "": lambda x, _: True,
+    "if there is a torque": lambda x, _: x.a,
+    "if r0 is not 0": lambda x, _: x.spin,
+    "if k > 0": lambda x, _: x.a and not x.steady,
+    "if the top moves": lambda x, _: x.moves,
+    "if the top is released from rest": lambda x, _: x.released,
+    "if the start is at u1": lambda x, _: x.turning > 0,
+    "if the mean spin rate is not 0": lambda _, of: not of.is_zero("mean_spin_rate"),
+    "if the mean precession rate is not 0": lambda _, of: not of.is_zero("mean_precession_rate"),
+    "if the axis does not leave the vertical at the start": lambda x, _: x.vertical or not x.pole,
+    "if the axis is not vertical half a period after the start": lambda x, _: not x.half_on_pole,
+    "if the top nutates": lambda x, _: x.nutates,
+    "if the top nutates, and the axis is not vertical half a period after the start": (
+        lambda x, _: x.nutates and not x.half_on_pole
     ),
-    "if the axis is not vertical half a period after the start": lambda of: (
-        not of.facts.half_on_pole
+    "if the top nutates and does not pass over a pole": (
+        lambda x, _: x.nutates and not (x.over_top or x.over_bottom)
     ),
-    "if the top nutates": lambda of: of.facts.nutates,
-    "if the top nutates, and the axis is not vertical half a period after the start": lambda of: (
-        of.facts.nutates and not of.facts.half_on_pole
-    ),
-    "if the top nutates and does not pass over a pole": lambda of: (
-        of.facts.nutates and not (of.facts.over_top or of.facts.over_bottom)
-    ),
-    "if the top nutates after release from rest": lambda of: of.facts.nutates and of.facts.released,
-    "if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees": lambda of: of.facts.has_steady_rate(
-        SLOW
-    ),
-    "if |r0| >= r0_steady_min and the tilt is not 90 degrees": lambda of: of.facts.has_steady_rate(
-        FAST
-    ),
+    "if the top nutates after release from rest": lambda x, _: x.nutates and x.released,
+    "if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees": lambda x, _: x.has_steady_rate(SLOW),
+    "if |r0| >= r0_steady_min and the tilt is not 90 degrees": lambda x, _: x.has_steady_rate(FAST),
 }
-"""The condition of a key, as lines and messages name it, and the test of a motion that it is."""
+"""The condition of a key, as lines and messages name it, and its test by facts and motion."""
 
 
 def _read(table: str) -> Iterator[tuple[str, Key]]:
-    """Yield the lines of the table by name."""
     group = common = ""
     for text in table.strip().replace("\n ", " ").splitlines():
         if text.startswith("# "):

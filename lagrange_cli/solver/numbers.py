@@ -9,14 +9,14 @@ mean of 1/(1 - u), and the limits.  Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
-import ast
+import re
 from functools import cache, partial
 from itertools import pairwise
 from operator import itemgetter
 from types import CodeType
 from typing import Any
 
-from flint import acb, arb, ctx
+from flint import acb, arb, arb_poly, ctx
 
 from ..arithmetic.enclosures import TooFewDigitsError, at_precision, exact, fraction, root, sign
 from ..top.derived import rates_of
@@ -77,23 +77,16 @@ FUNCTIONS: dict[str, Any] = {
 """The functions of formulas."""
 
 
-class _Squares(ast.NodeTransformer):
-    """Write `x**2` as `square(x)`: Arb has no power of a ball that contains 0."""
-
-    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
-        """Replace a power."""
-        self.generic_visit(node)
-        if not isinstance(node.op, ast.Pow):
-            return node
-        assert ast.unparse(node.right) == "2", ast.unparse(node)
-        return ast.Call(ast.Name("square", ast.Load()), [node.left], [])
+_SQUARED = re.compile(r"(\w+(?:\([^()]*\))?|\([^()]*\))\*\*2")
+"""A square of a name, a function or a sum: Arb has no power of a ball that contains 0."""
 
 
 @cache
 def code_of(formula: str) -> CodeType:
-    """Return a formula compiled for `eval`."""
-    tree = _Squares().visit(ast.parse(formula, mode="eval"))
-    return compile(ast.fix_missing_locations(tree), "<formula>", "eval")
+    """Return a formula compiled for `eval`, with `square(x)` for `x**2`."""
+    text = _SQUARED.sub(r"square(\1)", formula)
+    assert "**" not in text, formula
+    return compile(text, "<formula>", "eval")
 
 
 class Numbers(dict[str, Any]):
@@ -176,12 +169,11 @@ class Numbers(dict[str, Any]):
             return self["roots_sum_a"] / self["a"] - 2, arb(1)
         a, b = self["a"], self["b"]
         alpha, beta = self["energy_constant"], self["momentum_constant"]
-        cubic = [a, -self["roots_sum_a"], 2 * b * beta - a, alpha - square(beta)]
+        rest = arb_poly([alpha - square(beta), 2 * b * beta - a, -self["roots_sum_a"], a])
         known = [arb(1)] * (not facts.minus) + [arb(-1)] * (not facts.plus)
         known += [u0] * bool(facts.turning and not facts.pole)
-        rest = cubic if facts.a else cubic[1:]
         for known_root in known:
-            rest = _divided(rest, known_root)
+            rest //= arb_poly([-known_root, 1])
         found = sorted([*known, *_real_roots(rest)], key=_middle)
         if any(sign(upper - lower) <= 0 for lower, upper in pairwise(found)):
             raise TooFewDigitsError
@@ -255,24 +247,17 @@ class Numbers(dict[str, Any]):
         return self["course"].growth(arb(0), arb(0.25))
 
 
-def _divided(polynomial: list[arb], known_root: arb) -> list[arb]:
-    """Return a polynomial, the highest power first, divided by u - known_root (Horner's scheme)."""
-    quotient = polynomial[:1]
-    for coefficient in polynomial[1:-1]:
-        quotient.append(quotient[-1] * known_root + coefficient)
-    return quotient
-
-
-def _real_roots(polynomial: list[arb]) -> list[arb]:
+def _real_roots(polynomial: arb_poly) -> list[arb]:
     """Return the roots of a polynomial of degree 0 to 3 whose roots are real and simple."""
-    others = [x / polynomial[0] for x in polynomial[1:]]
+    *others, first = polynomial.coeffs()
+    others = [x / first for x in others]
     if len(others) < 2:
         return [-x for x in others]
     if len(others) == 2:
-        half = -others[0] / 2
-        apart = (square(half) - others[1]).sqrt()
+        half = -others[1] / 2
+        apart = (square(half) - others[0]).sqrt()
         return [half - apart, half + apart]
-    c2, c1, c0 = others  # Viete's cosines, in u = 2 size cos(angle) + centre
+    c0, c1, c2 = others  # Viete's cosines, in u = 2 size cos(angle) + centre
     centre = -c2 / 3
     size = (square(centre) - c1 / 3).sqrt()
     cosine = (square(centre) * centre - (c1 * centre + c0) / 2) / (square(size) * size)

@@ -8,26 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb
 
-from ..arithmetic.enclosures import (
-    Rounded,
-    TooFewDigitsError,
-    decided,
-    rounded,
-    settled,
-    sign_to,
-)
+from ..arithmetic.enclosures import Rounded, TooFewDigitsError, decided, rounded, settled, sign_to
 from ..errors import OutOfRangeError
+from ..names import suggestion
 from ..top.top import Top
 from .facts import Facts, Regime
-from .keys import (
-    CONDITIONS,
-    LINES,
-    NUMBERS,
-    all_keys,
-    bare_name,
-    degree_name,
-    record_keys,
-)
+from .keys import CONDITIONS, LINES, NUMBERS, all_keys, bare_name, degree_name, record_keys
 from .numbers import Numbers
 
 if TYPE_CHECKING:
@@ -57,8 +43,6 @@ class Solution:
     def __getattr__(self, name: str) -> Any:
         """Return a number by its key: a float, or None if the motion has no such number."""
         if name not in NUMBERS:
-            from ..names import suggestion  # start-up: for a misspelt name only
-
             hint = "" if name.startswith("_") else suggestion(name, dir(self))
             raise AttributeError(f"a motion has no {name!r}{hint}", name=name, obj=self)
         found = self.number(name)
@@ -87,7 +71,8 @@ class Solution:
         bare = bare_name(name)
         if bare not in LINES:
             return True
-        return bare not in self.facts.undefined and CONDITIONS[LINES[bare].only](self)
+        condition = CONDITIONS[LINES[bare].only]
+        return bare not in self.facts.undefined and bool(condition(self.facts, self))
 
     def number(self, name: str, digits: int | None = None) -> Rounded | None:
         """Return a number correctly rounded to a double or to `digits`; None if it does not exist.

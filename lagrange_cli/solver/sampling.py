@@ -160,11 +160,6 @@ def polynomial(coefficients: Sequence[float], x: Array) -> Array:
     return value
 
 
-def _ratio(x: Array, y: Array, otherwise: Array | float = 0.0) -> Array:
-    """Return x/y; where y is 0, return another number."""
-    return np.where(y != 0.0, x / y, otherwise)
-
-
 def _argument(real: Array, imag: Array) -> Array:
     """Return the argument of X or Y, whose real part is not negative.
 
@@ -175,7 +170,8 @@ def _argument(real: Array, imag: Array) -> Array:
 
 _FUNCTIONS: dict[str, Any] = {
     **{"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "square": np.square, "arctan": np.arctan},
-    **{"ratio": _ratio, "polynomial": polynomial, "argument": _argument, "maximum": np.maximum},
+    **{"polynomial": polynomial, "argument": _argument, "maximum": np.maximum},
+    "ratio": lambda x, y, otherwise=0.0: np.where(y != 0.0, x / y, otherwise),
 }
 _FORMULAS = FORMULAS | {
     "XX": "square(re_X) + square(im_X)",
@@ -209,9 +205,9 @@ class ThetaParts:
     """The parts of X and Y of a top that nutates, by its theta series."""
 
     def __init__(self, of: Nutation) -> None:
-        series, step = theta_series(of), nearest(2 * of.since)
-        offset, scale = 2 * of.since - step, series.scale
-        self.frames = series.frames[:: -1 if step % 2 else 1]
+        (frames, scale, slopes), step = theta_series(of), nearest(2 * of.since)
+        offset = 2 * of.since - step
+        self.frames = frames[:: -1 if step % 2 else 1]
         """The series about the turning points of the even and of the odd steps."""
         self.half = period_of(of.period / 2)
         self.offset = near(offset)
@@ -220,8 +216,7 @@ class ThetaParts:
         """Argument of the series per unit of time."""
         self.first = near(scale * offset)
         """Argument at t = 0."""
-        slopes = [near(slope / scale) for slope in series.slopes]
-        self.slopes = dict(zip(("slope_X", "slope_Y"), slopes, strict=True))
+        self.slopes = {f"slope_{x}": near(y / scale) for x, y in zip("XY", slopes, strict=True)}
         """What is added to arg X and arg Y per unit of the argument to make them periodic."""
         self.over_pole = not all(part[0] for frame in self.frames for part in frame.parts[::2])
         self.hyperbolic, self.steep = of.hyperbolic, near(scale) > 2 * _STEEPEST

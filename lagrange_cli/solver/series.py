@@ -57,17 +57,6 @@ class Frame(NamedTuple):
     """S C times this is 2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
 
 
-class Series(NamedTuple):
-    """The series of a motion."""
-
-    frames: list[Frame]
-    """The series about u1 and about u2."""
-    scale: arb
-    """Argument of the functions per half period."""
-    slopes: list[arb]
-    """Slopes per half period that are added to arg X and arg Y to make them periodic."""
-
-
 def near(x: arb) -> float:
     """Return the double next to a number; raise TooFewDigitsError unless 85 bits are known."""
     if not (x.is_zero() or x.rel_accuracy_bits() >= _BITS):
@@ -75,10 +64,12 @@ def near(x: arb) -> float:
     return float(x.mid()) + 0.0  # no -0
 
 
-def theta_series(of: Nutation) -> Series:
-    """Return the series of a nutating top in the smaller nome.
+def theta_series(of: Nutation) -> tuple[list[Frame], arb, list[arb]]:
+    """Return the series of a nutating top about u1 and about u2, in the smaller nome.
 
-    Raises TooFewDigitsError if a coefficient is not known well enough to be rounded to a double.
+    They are followed by the argument of the functions per half period, and by the slopes per half
+    period that are added to arg X and arg Y to make them periodic.  Raises TooFewDigitsError if a
+    coefficient is not known well enough to be rounded to a double.
     """
     pi, hyperbolic = arb.pi(), of.hyperbolic
     stretch = 1 / of.ratio if hyperbolic and of.ratio is not None else arb(1)
@@ -90,13 +81,10 @@ def theta_series(of: Nutation) -> Series:
     rate = unit * _summed(SIN_EVEN, weights, hyperbolic)
     scale = pi / 2 * stretch
     most = scale.exp() / 4 if hyperbolic else arb(0.5)
-    frames = [
-        _frame(True, x[:2] + y[2:], rate, most),
-        _frame(False, x[2:] + y[:2], -rate, most),
-    ]
+    frames = [_frame(True, x[:2] + y[2:], rate, most), _frame(False, x[2:] + y[:2], -rate, most)]
     turns = [arb(0.5) - (side.place if hyperbolic else 0) for side in of.sides]
     slopes = [-side.sign * pi * turn for side, turn in zip(of.sides, turns, strict=True)]
-    return Series(frames, scale, slopes)
+    return frames, scale, slopes
 
 
 def _polynomials(side: Side, nome: arb, hyperbolic: bool) -> list[arb_poly]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import LagtopError, OutOfRangeWarning
+from ..names import check_names
 from ..top.top import Top
 from .attitude import Swing
 from .facts import facts_of
@@ -103,8 +104,6 @@ class Motion(Solution):
         precision distinguishes a number from 0.
         """
         if keys is not None:
-            from ..names import check_names  # start-up: not for the whole record
-
             keys = check_names("keys", list(keys), all_keys(radians=radians))
         record, beyond = record_in_range(
             self, digits=digits, radii=radii, radians=radians, keys=keys
@@ -119,7 +118,6 @@ class Motion(Solution):
         return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
 
     def _repr_html_(self) -> str:
-        """Return the record as a table for a notebook."""
         from ..output.notebook import record_html  # start-up
 
         return record_html(self.regime, self.record(), KEYS)

@@ -44,6 +44,7 @@ browser page receives this table and fills it in the same way.
 """
 
 _MOST_DIGITS = 17
+"""Digits that distinguish the ends of a nutation, at most; four are enough for most tops."""
 
 
 def summary(record: Mapping[str, Any], facts: Facts, named: Callable[[str], str] = str) -> str:
@@ -67,8 +68,9 @@ def summary(record: Mapping[str, Any], facts: Facts, named: Callable[[str], str]
     }
     numbers = {"low": low, "high": high, "spin": record["r0"], "turns": turns}
     numbers["nutation"] = record["T_nutation"]
-    words = dict(zip(("least", "most"), _apart(low, high), strict=True))
-    words |= {"angle": angle, "unit": named("time")}
+    ends = [(_figures(low, n), _figures(high, n)) for n in range(4, _MOST_DIGITS + 1)]
+    least, most = next(((x, y) for x, y in ends if x != y), ends[0])
+    words = {"least": least, "most": most, "angle": angle, "unit": named("time")}
 
     def part(match: re.Match[str] | str) -> str:
         name = match if isinstance(match, str) else match[1]
@@ -84,9 +86,3 @@ def summary(record: Mapping[str, Any], facts: Facts, named: Callable[[str], str]
 
 def _figures(x: float, digits: int = 4) -> str:
     return f"{x:#.{digits}g}".removesuffix(".")
-
-
-def _apart(low: float, high: float) -> tuple[str, str]:
-    """Return two numbers with four digits, or with as many as distinguish them."""
-    texts = [(_figures(low, n), _figures(high, n)) for n in range(4, _MOST_DIGITS + 1)]
-    return next(((a, b) for a, b in texts if a != b), texts[0])

@@ -172,8 +172,6 @@ def grid(
     t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
     if not t_max >= t_min:
         raise LagtopError(f"t_max must be >= t_min = {float(t_min)}, got {float(t_max)}", "t_max")
-    if n is not None and n < 1:
-        raise LagtopError(f"n must be >= 1, got {n}", "n")
     if dt is not None:
         if not dt > 0:
             raise LagtopError(f"dt must be > 0, got {float(dt)}", "dt")

@@ -272,12 +272,6 @@ def u_quarter(of: Any) -> Array:
     return np.where(of.gaps.u1_u0 <= 0, of.start.cos - fall, np.nan)
 
 
-def spin_at_rest(of: Any) -> Doubles:
-    """Return the mean spin rate (6,3), a drift and one turn per nutation, a sum of one sign."""
-    turn = 2 * np.pi / of["T_nutation"]
-    return of.start.spin_drift + np.where(of.start.r0 < 0, -turn, turn) / 2
-
-
 _START_TILT: Formulas = {  # with all of its digits in both units
     "theta_min_deg": lambda of: of.tops.tilt_in(radians=False),
     "theta_min_rad": lambda of: of.tops.tilt_in(radians=True),
@@ -335,7 +329,9 @@ OF_PENDULUMS: Formulas = OF_NUTATION | {
         np.arctan2(np.sqrt(of.gaps.a_u3_u2), np.sqrt(of.start.a * of.gaps.below_u2))
     ),
     "alpha": alpha,
-    "mean_spin_rate": spin_at_rest,
+    "mean_spin_rate": lambda of: (  # (6,3), a drift and a turn, a sum of one sign
+        of.start.spin_drift + np.where(of.start.r0 < 0, -np.pi, np.pi) / of["T_nutation"]
+    ),
     "mean_precession_rate": lambda of: np.pi / of["T_nutation"],  # a half turn at the bottom
 }
 """Formulas of tops released from rest without spin."""

@@ -23,14 +23,7 @@ from ..solver.keys import degree_name, unit_name
 from ..solver.record import FAST_WORDS, record_in_range, vertical_remark
 from ..solver.solve import solve
 from .elementary import ELEMENTARY, OF_STEADY
-from .formulas import (
-    OF_PENDULUMS,
-    OF_RELEASED,
-    OF_TORQUE_FREE,
-    OF_VERTICAL,
-    Formulas,
-    Motions,
-)
+from .formulas import OF_PENDULUMS, OF_RELEASED, OF_TORQUE_FREE, OF_VERTICAL, Formulas, Motions
 from .results import ResultColumn, Results, read_inputs
 from .tops import TopArrays, top_arrays
 from .trust import OF_ANY_START, AnyStart
@@ -44,7 +37,6 @@ FAST_KEYS = frozenset(
 
 
 def _remarks_on_upright(of: Motions) -> Any:
-    """Return the remarks on upright tops, stable or not."""
     stable, unstable = (vertical_remark(Regime.SLEEPING, x) for x in (True, False))
     return np.where(of.start.sleep >= 0, stable, unstable)
 
@@ -78,10 +70,7 @@ def column_keys(*, radians: bool = False) -> list[str]:
 
 
 def sweep(
-    *tops: object,
-    keys: Sequence[str] | None = None,
-    radians: bool = False,
-    **inputs: ArrayLike,
+    *tops: object, keys: Sequence[str] | None = None, radians: bool = False, **inputs: ArrayLike
 ) -> Results:
     """Return the records of many tops: arrays by key, in the shape to which the inputs broadcast.
 

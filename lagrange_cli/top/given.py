@@ -23,6 +23,7 @@ from .inputs import (
 )
 from .ranges import Points
 from .top import Top
+from .units import EXAMPLES, in_si, remark_in_si
 from .values import STEADY_WORDS, Value, tilt_key, values_of
 
 if TYPE_CHECKING:
@@ -59,14 +60,10 @@ class Given(NamedTuple):
     @property
     def named(self) -> Callable[[str], str]:
         """A function that returns the name of a unit such as `rad/time`, with seconds if in SI."""
-        from .units import in_si  # start-up
-
         return in_si if self.si else str
 
     def remark(self, remark: str | None) -> str | None:
         """Return a remark of a record with the names of units."""
-        from .units import remark_in_si  # start-up
-
         return remark_in_si(remark) if remark and self.si else remark
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
@@ -156,8 +153,6 @@ def have_units(values: Mapping[str, Value], *, asked: bool = False) -> bool:
     united = [name for name, x in named.items() if x.unit]
     for name, x in named.items() if united or asked else ():
         if name in DECLARED and not (x.unit or _is_zero(x.number)):
-            from .units import EXAMPLES  # start-up
-
             why = f"as the input {united[0]} has" if united else "as a time or a condition has"
             example = EXAMPLES[DECLARED[name].unit]
             raise LagtopError(f"{name} must have a unit such as {example}, {why}, got none", name)

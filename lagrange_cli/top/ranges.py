@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -36,10 +36,8 @@ class Points:
 
     count: int
     """The number of points; 0 if it is unknown until the end of a file."""
-
-    def at(self, index: Index) -> Array:
-        """Return the doubles nearest to the points with these indices."""
-        raise NotImplementedError
+    at: Callable[[Index], Array]
+    """Returns the doubles nearest to the points with some indices."""
 
     def decimals(self) -> Iterator[Fraction]:
         """Yield every point exactly, or as a double if it is not a fraction."""

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from ..arithmetic.enclosures import pi_to, text_of
 from ..arithmetic.numbers import Real, unit_in_radians, unrounded
 from ..errors import LagtopError
+from ..names import suggestion
+from .derived import Tilt, moment, spin, steady_rate_of
 from .inputs import (
     DECLARED,
     EXAMPLE,
@@ -22,9 +24,6 @@ from .inputs import (
     overridden,
     warn_of,
 )
-
-if TYPE_CHECKING:
-    from .derived import Tilt
 
 _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
@@ -98,8 +97,6 @@ class Top:
         if values:
             raise TypeError("a top takes inputs by name, such as Top(theta0_deg=30, r0=50)")
         for name in inputs.keys() - set(INPUTS):
-            from ..names import suggestion  # start-up: for a misspelt name only
-
             raise TypeError(f"a top has no input {name!r}{suggestion(name, INPUTS)}")
         return object.__new__(cls)
 
@@ -115,23 +112,17 @@ class Top:
         for name in INPUTS:
             object.__setattr__(self, name, inputs.get(name))
         if self.A_cm is not None:
-            self._derive("A", float(self.exact("A")))
+            object.__setattr__(self, "A", _checked("A", float(self.exact("A"))))
         twice, remedy = 2 * self.exact("A"), "no rigid body has more"
         _require(twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, remedy)
         if word:
-            from .derived import steady_rate_of  # for few tops only
-
             object.__setattr__(self, "psidot0", steady_rate_of(self, word))
             object.__setattr__(self, "steady_word", word)
         if self.phidot0 is not None:
-            from .derived import spin  # for few tops only
-
-            self._derive("r0", spin(inputs | {"psidot0": self.psidot0}))
+            rate = spin(inputs | {"psidot0": self.psidot0})
+            object.__setattr__(self, "r0", _checked("r0", rate))
         if missing := from_example(given):
             warn_of(missing, stacklevel=4)
-
-    def _derive(self, name: str, value: float) -> None:
-        object.__setattr__(self, name, _checked(name, value))
 
     def __repr__(self) -> str:
         given = self.parts.body | self.parts.start
@@ -149,16 +140,12 @@ class Top:
         A rate that is derived from the tilt is irrational: then `name` must not be r0 or psidot0.
         """
         if name == "A" and self.A_cm is not None:
-            from .derived import moment  # for few tops only
-
             return moment(self.as_dict())
         return Fraction(getattr(self, name))
 
     @property
     def exact_tilt(self) -> Tilt:
         """The tilt, with its exact sine and cosine."""
-        from .derived import Tilt
-
         return Tilt.of(self.as_dict())
 
     def replace(self, **changes: Any) -> Self:

@@ -21,6 +21,7 @@ from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
 from .inputs import TILT
 from .ranges import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
+from .units import conversion
 
 LOG = "log:"
 """Prefix of a range with equal ratios."""
@@ -86,8 +87,6 @@ def parse_value(
         raise LagtopError(f"{key} {wrong}", key)
     factor = Fraction(1)
     if unit:
-        from .units import conversion  # start-up
-
         factor, unit = conversion(key, unit, wanted)
 
     def read(text: str) -> Fraction:
