@@ -18,6 +18,7 @@ from engines import Array, Body, dop853
 from lagtop import LagtopError, Top, fit, read_scene, solve
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
+from scipy.stats import chi2
 
 from lagrange_cli.inverse.advice import evenly_timed, release
 from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
@@ -606,9 +607,12 @@ def test_noise_hardly_ever_fails_a_test() -> None:
     assert sum(faults) <= 6
     drift = Residuals(t, rng.normal(size=90) + 3 * t * np.sin(8 * math.pi * t))
     assert any(drift.faults("x", 4.0, CHANCE))
+    for dof in (1, 100):
+        exact = chi2.ppf([CHANCE / 2, 1 - CHANCE / 2], dof) / dof
+        assert chi2_bounds(dof) == pytest.approx(tuple(exact), rel=1e-6)
     low, high = chi2_bounds(100)
-    chi2 = rng.chisquare(100, size=20_000) / 100
-    assert np.mean((chi2 < low) | (chi2 > high)) == pytest.approx(CHANCE, abs=1.2e-3)
+    sums = rng.chisquare(100, size=20_000) / 100
+    assert np.mean((sums < low) | (sums > high)) == pytest.approx(CHANCE, abs=1.2e-3)
 
 
 @pytest.mark.parametrize("offset", [(0, 0, 0.05), (0.02, 0, 0), (0, 0, 0)])
@@ -910,6 +914,8 @@ def test_any_unit_of_time(scale: float) -> None:
     one, other = fitted(t, seen), fitted(t / scale, seen)
     assert other.verdict == "good"
     assert other.frequency / scale == pytest.approx(one.frequency, rel=1e-6)
-    for key, power in (("a", 2), ("b", 1), ("theta0_deg", 0), ("T_nutation", -1)):
+    powers = {"a": 2, "b": 1, "theta0_deg": 0, "T_nutation": -1, "T_nutation_elementary": -1}
+    powers |= {"mean_precession_rate": 1, "precession_rate_elementary": 1, "psidot0": 1}
+    for key, power in powers.items():
         found, std = other.numbers[key][:2]
         assert found == pytest.approx(one.numbers[key].value * scale**power, abs=0.02 * std)
