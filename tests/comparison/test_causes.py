@@ -13,8 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 from engines import Array, Body, dop853, wxyz
-from lagtop import Top, compare
+from lagtop import Top, compare, solve
 from scipy.spatial.transform import Rotation
+
+from lagrange_cli.comparison.differences import Alignment, ExactMotion
+from lagrange_cli.comparison.mistakes import Cause
 
 _BODIES = {
     "slim": (0.35, 8.5e-4, 4e-4, 0.03, 90, 40, 1, 3),
@@ -181,6 +184,28 @@ def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
     assert found.verdict != "fine"
     assert mistake in UNKNOWN if found.cause is None else mistake in found.cause
     assert (found.cause_error or 0) < 1e-5
+
+
+def test_two_causes_are_one() -> None:
+    written = Cause("written", lambda run: run, remedy="x=1")
+    top = Cause("top", exact=ExactMotion(solve(TOPS["toy"])))
+    framed = Cause("framed", align=Alignment(left=True), remedy="y=2")
+    assert written.with_other(top) == (
+        "written; top",
+        written.undo,
+        top.exact,
+        None,
+        "x=1",
+        math.inf,
+    )
+    assert framed.with_other(top)[:4] == ("framed; top", None, top.exact, framed.align)
+    assert framed.with_other(written)[1:5] == (written.undo, None, framed.align, "y=2 and x=1")
+
+
+def test_a_conjugate_in_the_other_order_is_named() -> None:
+    turn, _ = run("toy")
+    found = compare(TOPS["toy"], T, quaternion=turn.inv().as_quat(), quaternion_order="xyzw")
+    assert (found.cause or "").startswith("the attitude is the conjugate")
 
 
 IN_FRAMES = ["A and C are exchanged", "(A + m s^2)", "g is 10 (or m or s is wrong by the"]

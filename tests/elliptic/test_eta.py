@@ -151,6 +151,7 @@ def test_the_order_of_the_outer_roots_is_free() -> None:
 def test_degenerate_radicands_are_named(lagtop: Lagtop, outer: str, kind: str) -> None:
     args = f"eta --delta 0.5 --delta-star -0.25 {outer} --format json".split()
     assert json.loads(lagtop(*args).stdout)["kind"] == kind
+    assert kind in " ".join(lagtop(*args[:-1], "table").stdout.split())
     still = json.loads(lagtop(*args, "--delta-star", "0.5").stdout)
     degree = kind.split(maxsplit=1)[0].rstrip(",")
     assert still["kind"] == f"{degree}, the band is a double root: eta is constant"
