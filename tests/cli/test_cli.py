@@ -165,6 +165,15 @@ def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Pat
 
 # errors
 
+
+def test_a_failed_command_leaves_its_file_as_it_was(lagtop: Lagtop, tmp_path: Path) -> None:
+    target = tmp_path / "out.csv"
+    target.write_text("old")
+    for bad in ("--theta0 200", "--t-max 1e30", "--times /nowhere", "nowhere.toml"):
+        assert lagtop("table", "-o", target, *bad.split()).exit_code in (2, 65)
+    assert (target.read_text(), [*tmp_path.iterdir()]) == ("old", [target])
+
+
 BAD = {
     "--r0 nan": "--r0 must be a finite decimal number, got 'nan'",
     "--r0 1e400": "--r0 must be at most 1.8e308 in size, got 1e400",
