@@ -88,7 +88,11 @@ def errors(motions: Sequence[Motion]) -> list[tuple[float, bool]]:
     """Return the greatest error of the attitude of each motion, and whether it is a sketch."""
     found = []
     for motion, page in zip(motions, computed(motions), strict=True):
-        theta, phi, psi = np.array(page["angles"], float).T  # null is NaN
+        angles = np.array(page["angles"], float)  # null is NaN
+        if np.isnan(angles).any():  # SciPy has no such rotation
+            found.append((math.inf, page["isSketch"]))
+            continue
+        theta, phi, psi = angles.T
         shown = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=1))
         away = (motion.rotation(times_of(motion)) * shown.inv()).magnitude().max()
         found.append((float(away), page["isSketch"]))
