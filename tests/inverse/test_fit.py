@@ -115,7 +115,6 @@ def test_recorded_angles_give_the_top(names: tuple[str, ...], seed: int) -> None
     assert_true(fitted(t, seen, sigma=sigma), TRUTH | {"theta0_deg": 75, "psidot0": 0})
 
 
-@pytest.mark.slow
 def test_either_direction_of_psi() -> None:
     t, seen = recorded("theta", "phi", "psi", seed=3)
     outcome = fit(t, theta=seen["theta"], phi=seen["phi"], psi=-seen["psi"])
@@ -123,7 +122,6 @@ def test_either_direction_of_psi() -> None:
     assert outcome.notes[0] == "psi counts in the other direction: its sign was changed"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["axis", "quaternion"])
 def test_an_axis_and_an_attitude(kind: str) -> None:
     rng, t = np.random.default_rng(4), np.linspace(0, 1.2, 70)
@@ -153,7 +151,7 @@ def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
 @pytest.mark.parametrize(
     ("name", "known"),
     [
-        pytest.param("theta", {"psidot0": 0}, marks=pytest.mark.slow),
+        ("theta", {"psidot0": 0}),
         ("psi", {"theta0_deg": 75}),
     ],
 )
@@ -171,7 +169,6 @@ def test_a_top_next_to_the_vertical() -> None:
     assert_true(fitted(t, seen), {"a": 53.8, "b": 1.461 * 11.14, "r0": 11.14})
 
 
-@pytest.mark.slow
 def test_irregular_times_with_two_rows_per_period() -> None:
     rng = np.random.default_rng(7)
     t = np.concatenate([[0], np.sort(rng.uniform(0, 20, 119))])
@@ -271,7 +268,7 @@ def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
 
 @pytest.mark.parametrize(
     "rough",
-    [pytest.param({"C": "0.003(1)"}, marks=pytest.mark.slow), {"m": "0.2(2)", "A": 4.44e-3}],
+    [{"C": "0.003(1)"}, {"m": "0.2(2)", "A": 4.44e-3}],
 )
 def test_a_rough_input_is_improved(rough: dict[str, Any]) -> None:
     """The fit with it begins in phase with the recording, whatever b the rough value implies."""
@@ -281,7 +278,6 @@ def test_a_rough_input_is_improved(rough: dict[str, Any]) -> None:
     assert found.numbers["b"].std < 0.3
 
 
-@pytest.mark.slow
 def test_a_prior_lies_between_a_known_input_and_none() -> None:
     """The estimate of A is the mean of prior and data, weighted by their variances."""
     t, seen = recorded("theta", "psi", seed=10)
@@ -321,7 +317,6 @@ def test_exchanged_spin_and_precession_are_noticed() -> None:
     assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
 
 
-@pytest.mark.slow
 def test_an_outlier_is_named() -> None:
     t, seen = recorded("theta", "psi", seed=8)
     seen["psi"][30] += 20 * DEGREE
@@ -369,7 +364,6 @@ def test_verdicts_near_a_pole_in_a_bent_valley_or_with_another_top(seed: int, ve
     assert result.is_right or verdict == "failed"
 
 
-@pytest.mark.slow
 def test_noise_of_psi_and_phi_may_grow_beside_a_pole() -> None:
     """A tracker sees the axis, whose noise turns psi and phi by large angles near the pole."""
     import fuzz_fits
@@ -458,7 +452,7 @@ def _of_engine(seen: Mapping[str, Array]) -> Array:
 @pytest.mark.parametrize(
     ("make", "reason"),
     [
-        (lambda rng, t: slowed(20, t), "not noise"),
+        pytest.param(lambda rng, t: slowed(20, t), "not noise", marks=pytest.mark.slow),
         (
             lambda rng, t: {x: rng.uniform(0.2, 3, t.size) for x in ("theta", "psi")},
             "the tilt varies",
@@ -475,9 +469,10 @@ def _of_engine(seen: Mapping[str, Array]) -> Array:
             },
             "the y axis of the data points up: use align=up=y",
         ),
-        (
+        pytest.param(
             lambda rng, t: {"quaternion": _of_engine(slowed(1e9, t))},
             "the y axis is the figure axis: use align=up=y,axis=y",
+            marks=pytest.mark.slow,
         ),
         (
             lambda rng, t: {"quaternion": np.roll(_of_body(slowed(1e9, t)), -1, axis=1)},
@@ -489,7 +484,6 @@ def _of_engine(seen: Mapping[str, Array]) -> Array:
         ),
     ],
 )
-@pytest.mark.slow
 def test_recordings_of_no_top_fail(make: Any, reason: str) -> None:
     rng, t = np.random.default_rng(12), np.linspace(0, 3, 150)
     seen = {x: y + rng.normal(scale=0.003, size=y.shape) for x, y in make(rng, t).items()}
@@ -527,7 +521,6 @@ def test_an_attitude_whose_spin_is_wrong_fails() -> None:
     assert any("residuals of along" in x for x in outcome.failures())
 
 
-@pytest.mark.slow
 def test_sigma_is_tested_on_both_sides() -> None:
     t, seen = recorded("theta", "psi", seed=14)
     plain = fitted(t, seen)
@@ -732,7 +725,6 @@ def test_the_command(lagtop: Lagtop, tmp_path: Path) -> None:
     assert doubtful == ["m", "s", "g", "A", "C", "r0"]  # only a and b are
 
 
-@pytest.mark.slow
 def test_the_record_and_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
     path = written(tmp_path / "data.csv", recorded("theta", "psi", seed=20))
     picture = tmp_path / "fit.svg"
@@ -745,7 +737,6 @@ def test_the_record_and_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
     assert record["theta_rms_deg"] == pytest.approx(0.3, rel=0.3)
 
 
-@pytest.mark.slow
 def test_windows(lagtop: Lagtop, tmp_path: Path) -> None:
     path = written(tmp_path / "one.csv", recorded("theta", "psi", rows=150, seconds=3, seed=23))
     result = lagtop("fit", path, "--window", 3, "--plot", tmp_path / "decay.svg")
@@ -765,9 +756,12 @@ def test_windows(lagtop: Lagtop, tmp_path: Path) -> None:
 # Hard kinds
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    "look", ["encoder", "smooth", "small", "units", "known", "attitude", "axis"]
+    "look",
+    [
+        *("small", "attitude", "axis"),
+        *(pytest.param(x, marks=pytest.mark.slow) for x in ("encoder", "smooth", "units", "known")),
+    ],
 )
 def test_hard_recordings_are_fitted(look: str) -> None:
     import fuzz_fits
@@ -893,7 +887,6 @@ def test_a_known_tilt_that_is_wrong_is_questioned() -> None:
     assert outcome.hints[-1] == "check theta0, columns, units and axes"
 
 
-@pytest.mark.slow
 def test_known_inputs_that_agree_and_a_nutation_of_a_steady_precession() -> None:
     t, seen = recorded("theta", "psi", seed=8)
     agreeing = fitted(t, seen, known=LAB | {"C": 2.5e-3, "r0": "52.4(1)"})

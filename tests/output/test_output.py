@@ -7,6 +7,7 @@ import io
 import json
 import math
 import os
+import re
 import stat
 import subprocess
 import sys
@@ -156,6 +157,7 @@ def test_rows_that_do_not_fit_a_terminal_stand_side_by_side() -> None:
         ["key1", rows[0][1]],
     ]
     assert len(upright) == 2 + 9
+    assert re.sub("\x1b[^m]*m", "", upright[0]).split() == ["key", "1", "2"]
     assert len(rows_text(names, rows * 9, 60).splitlines()) == 2 + 18  # neither fits
 
 
