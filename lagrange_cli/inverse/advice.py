@@ -17,7 +17,7 @@ from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
 from .outcome import GOOD, STEADY, Outcome
-from .recording import Recording, reoriented, shifted_origin
+from .recording import Recording, frames_of, reoriented
 from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
@@ -39,8 +39,8 @@ _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
 _FEW, _LEAST_TIMES = 0.03, 0.25
 """Largest share of rows that are outliers, and least share of times that differ."""
-_NO_MISTAKE = ("the recording ", "another top ", "chi2")
-"""How failures begin that are no mistake in the data, but too little of it, or more noise."""
+_MISTAKEN = ("impossible", "not a steady precession")
+"""Words of faults that come from a mistake in the data, not from too little of it."""
 _WHOLE, _ROUNDED = 1e-4, 0.6
 """If t is rounded: the deviation of times from whole units, and that of even times, in units."""
 _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
@@ -53,10 +53,9 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     body = {name: x for name, x in known.items() if name in _BODY}
     if len(recording.angles) == 1:  # of which a known start is a part
         body = dict(known)
-    reasons = [*outcome.faults, *outcome.misfits]
-    if all(x.startswith(_NO_MISTAKE) for x in reasons):  # also if only known inputs contradict
-        return
-    if shifted_origin(recording) is not None:  # the failure says where the pivot is
+    is_wrong = any(not x.startswith("chi2") for x in outcome.misfits)  # not only more noise
+    is_wrong |= any(word in x for x in outcome.faults for word in _MISTAKEN)
+    if outcome.origin or not is_wrong:  # a marker's pivot is named, or known inputs contradict
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
         yield f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
@@ -76,8 +75,8 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     if row and noise - _calmness(free) > _CALMER and _is_good(free, body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: leave out the rows before the release"
-    is_wrong = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
-    others = _other_angles(replace(recording, sigma={})) if is_wrong else ()
+    is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
+    others = _other_angles(replace(recording, sigma={})) if is_far else ()
     yield from (words for other, words in others if _is_good(other, known))
     yield from _decays(recording, body, outcome, noise)
     start = [x for x in ("theta0", "psidot0") if x in known]
@@ -112,7 +111,7 @@ def evenly_timed(recording: Recording) -> Recording | None:
         off = np.abs(recording.t - start - step * frames)
         if unit / 10 < np.median(off) and off.max() < _ROUNDED * unit:
             return replace(recording, t=step * frames)
-        frames = np.concatenate([[0.0], np.cumsum(np.round(np.diff(t) / step))])  # some are missing
+        frames = frames_of(recording.t, step)  # some are missing
     return None
 
 

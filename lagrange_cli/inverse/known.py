@@ -31,6 +31,7 @@ distance of these spins in standard deviations."""
 _UNITS = (6.0, 2 * math.pi, 30 / math.pi, 180 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7)
 _ROUGHLY = 0.02
 """Factors between units, in either direction, and how close a contradiction is to them."""
+_CLOCK = "the unit of t"
 _RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
 _POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1, "precession_rate": -1}
 _POWERS |= dict.fromkeys(_RATES, -1)
@@ -157,12 +158,10 @@ def compared(
             times = more if factor > 1 else f"1/{_plain(1 / factor)} of it"
             return far, False, f"{text}, about {times}: check the units, or omit {name}"
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
-    others += ["the unit of t"] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
-    if name in {"r0", "phidot0"}:
-        others = ["the unit of t"]
-    elif name not in {"A", "A_cm", "C"}:
-        others = []
-    check = f", or check {', '.join(others)}" * bool(others)
+    others += [_CLOCK] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
+    checks = dict.fromkeys(("A", "A_cm", "C"), ", ".join(others))
+    checks |= dict.fromkeys(("r0", "phidot0"), _CLOCK)
+    check = f", or check {checks[name]}" if checks.get(name) else ""
     return far, False, f"{text}: omit {name}{check}"
 
 

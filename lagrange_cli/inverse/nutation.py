@@ -84,7 +84,9 @@ def nutating_outcome(
     notes = [_wish(products)] * bool(products)
     if problem.is_even:
         notes.append("the sign of b is not determined: theta alone does not show the direction")
-    inputs = _inputs(found, {x: y[0] for x, y in pairs.items()}, is_spin_known=is_spin_known)
+    values = {x: y[0] for x, y in pairs.items()}
+    inputs, arbitrary = _inputs(found, values, is_spin_known=is_spin_known)
+    arbitrary |= hidden & {"thetadot0", "psidot0"} - problem.inputs.keys()
     return Outcome(
         recording=recording,
         known=problem.inputs,
@@ -97,6 +99,7 @@ def nutating_outcome(
         faults=_faults(found, is_even=is_even),
         notes=notes,
         inputs={x: y * scale ** time_power(x) for x, y in inputs.items()},
+        arbitrary=arbitrary,
         correlations={
             f"{x} and {y}": float(unit[i] @ unit[j]) for i, x in body for j, y in body if x < y
         },
@@ -174,14 +177,15 @@ def _meaning(
 
 def _inputs(
     found: Minimum, numbers: Mapping[str, float], *, is_spin_known: bool
-) -> dict[str, float]:
-    """Return inputs of `Top` with this motion.
+) -> tuple[dict[str, float], set[str]]:
+    """Return inputs of `Top` with this motion, and which of the body's are arbitrary.
 
     Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.
     """
     values, body = found.values, ("m", "s", "g", "A", "C", "r0")
     has = {x: values[x] for x in body if x in found.problem.known or (x == "A" and x in values)}
     has |= {x: numbers[x] for x in body if x in numbers and (x != "r0" or is_spin_known)}
+    arbitrary = {*body} - has.keys()
     moment = has.setdefault("A", has.get("C", 1.0))  # with C and r0, A is a number of the fit
     ratio = values["b"] / values["r0"] if found.problem.spins and is_spin_known else 1.0
     has["r0"] = values["b"] * moment / has.setdefault("C", ratio * moment)
@@ -193,4 +197,5 @@ def _inputs(
     for name in unknown[-1:]:
         has[name] = weight / math.prod(has[x] for x in ("m", "g", "s") if x != name)
     start = {"theta0_deg": math.degrees(values["theta0"])}
-    return {x: has[x] for x in body} | start | {x: values[x] for x in ("thetadot0", "psidot0")}
+    start |= {x: values[x] for x in ("thetadot0", "psidot0")}
+    return {x: has[x] for x in body} | start, arbitrary

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -85,6 +85,8 @@ class Outcome(HasRecord):
     """What to try if the fit has failed, as other fits confirm."""
     inputs: Mapping[str, float] | None = None
     """Inputs of `Top` with this motion; None for a steady precession."""
+    arbitrary: Collection[str] = ()
+    """Those of the inputs that the recording does not determine."""
     correlations: Mapping[str, float] = field(default_factory=dict)
     """Correlations of a, b and r0 by pairs such as `a and b`, as far as they are parameters."""
     distances: Mapping[str, float] = field(default_factory=dict)
@@ -158,16 +160,18 @@ class Outcome(HasRecord):
         A marker with another origin comes first, then a motion that is impossible or not
         determined, then one that does not match, and a known input that contradicts a right one.
         """
-        return [*self._origin(), *self.faults, *self.misfits] or self.contradictions
+        return [*self.origin, *self.faults, *self.misfits] or self.contradictions
 
-    def _origin(self) -> Iterator[str]:
-        """Yield that the origin of a marker is not at the pivot, if it is not."""
-        if (offset := shifted_origin(self.recording)) is not None:
-            shown = ", ".join(f"{x:.2g}" for x in offset)
-            yield (
-                "the distance of the marker from the origin varies with its direction: is the "
-                f"origin at the pivot, or is the pivot at about ({shown})?"
-            )
+    @cached_property
+    def origin(self) -> list[str]:
+        """That the origin of a marker is not at the pivot, if it is not."""
+        if (offset := shifted_origin(self.recording)) is None:
+            return []
+        shown = ", ".join(f"{x:.2g}" for x in offset)
+        return [
+            "the distance of the marker from the origin varies with its direction: is the "
+            f"origin at the pivot, or is the pivot at about ({shown})?"
+        ]
 
     @property
     def remarks(self) -> list[str]:
@@ -225,11 +229,9 @@ class Outcome(HasRecord):
             *(f"# {key} = {x}" for key, x in self.numbers.items()),
             *(f"# correlation of {pair}: {r:.3f}" for pair, r in self.correlations.items()),
         ]
-        determined = {*self.known, *self.numbers, "theta0_deg"}
         for key, x in self.inputs.items():
             text = f'{key} = "{x!r} {_UNITS[key]}"' if si and key in _UNITS else f"{key} = {x!r}"
-            unknown = "  # not determined by the recording"
-            lines.append(text + unknown * (key not in determined))
+            lines.append(text + "  # not determined by the recording" * (key in self.arbitrary))
         return "".join(f"{line}\n" for line in lines)
 
     def curves(self) -> Iterator[Curve]:

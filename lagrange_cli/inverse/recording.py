@@ -29,6 +29,8 @@ about the axis."""
 LEAST_ROWS = 12
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
+_SURE, _LEAST_CHANGE = 5.0, 2e-3
+"""Standard deviations of a shifted origin, and the least change of the distance over itself."""
 _UNEVEN = 0.05
 """Mean deviation of times from whole frames from which rows are not evenly spaced."""
 
@@ -36,6 +38,11 @@ _UNEVEN = 0.05
 def are_whole(frames: Array) -> bool:
     """Return whether times in units of a frame are whole numbers, except for jitter."""
     return bool(np.mean(np.abs(frames - np.round(frames))) < _UNEVEN)
+
+
+def frames_of(t: Array, frame: float) -> Array:
+    """Return the number of the frame of each time, from 0, if frames are about this apart."""
+    return np.concatenate([[0.0], np.cumsum(np.round(np.diff(t) / frame))])
 
 
 @dataclass(frozen=True)
@@ -92,8 +99,7 @@ class Recording:
         """The usual time between two rows: the mean of even ones, which are rounded in a file."""
         steps = np.diff(self.t)
         usual = float(np.median(steps[steps > 0]))
-        frames = np.concatenate([[0.0], np.cumsum(np.round(steps / usual))])
-        even = float(np.polyfit(frames, self.t, 1)[0])
+        even = float(np.polyfit(frames_of(self.t, usual), self.t, 1)[0])
         return even if are_whole(self.t / even) else usual
 
     @property
@@ -323,12 +329,12 @@ def reoriented(recording: Recording, *, up: str = "z", axis: str = "z") -> Recor
     return replace(recording, angles={name: found[name] for name in recording.angles})
 
 
-def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3) -> Array | None:
+def shifted_origin(recording: Recording) -> Array | None:
     """Return the pivot in the coordinates of the marker, if these do not begin at the pivot.
 
     The distance of the marker from its origin grows by d.e if the origin is off by d, with the
-    direction e of the marker.  Returns None if d is below `sure` standard deviations, or if the
-    distance varies by less than `least` of itself.
+    direction e of the marker.  Returns None if the distance does not vary by more than noise, or
+    hardly varies.
     """
     if recording.position is None:
         return None
@@ -337,7 +343,7 @@ def shifted_origin(recording: Recording, sure: float = 5.0, least: float = 2e-3)
     rest = distance - distance.mean() - explained
     noise = float(rest @ rest) / max(distance.size - 4, 1)
     gain = float(explained @ explained) / (noise + 1e-30)
-    hidden = gain < sure**2 + 3 or np.ptp(explained) < least * distance.mean()
+    hidden = gain < _SURE**2 + 3 or np.ptp(explained) < _LEAST_CHANGE * distance.mean()
     if hidden:
         return None
     for _ in range(8):  # to first order in what is left

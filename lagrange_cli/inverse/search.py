@@ -202,7 +202,11 @@ def _nutation(
     turn = ways[0].turn
     for is_free in (True, False)[: 1 + bool(known)]:
         found, rival, image = _chosen(_minima(ways, known, free=is_free), turn)
-        if found and image and _contradicts(found, known, turn) > _contradicts(image, known, turn):
+        if (
+            (found and image)
+            and _contradicts(found, known, turn)
+            and not _contradicts(image, known, turn)
+        ):
             found, image = image, found
             rival = rival if rival and found.differs(rival) else None
         if found is not None:
@@ -240,7 +244,7 @@ def _nutation(
     ratio, error = (
         x / (found.values["r0"] or math.inf) for x in (found.values["b"], found.std("b"))
     )
-    if recording.kind == "angles" and "psi" not in recording.angles and abs(ratio - 1) < 3 * error:
+    if recording.angles.keys() == {"theta", "phi"} and abs(ratio - 1) < 3 * error:
         result.notes.append(
             "C = A within the uncertainty, as if phi is the precession: then name its column psi"
         )

@@ -135,18 +135,17 @@ def record_text(record: Mapping[str, Any], keys: Keys, width: int | None) -> str
 
 def rows_text(names: Sequence[str], rows: Sequence[Sequence[str]], width: int | None) -> str:
     """Return rows as a table; it has a line per name if only that fits the width of a terminal."""
-    from rich.text import Text
+    from rich.cells import cell_len
 
-    def fits(table: str) -> bool:
-        return all(Text.from_ansi(x).cell_len <= (width or 10**6) for x in table.splitlines())
+    def fits(lines: Sequence[Sequence[str]]) -> bool:
+        widths = (max(map(cell_len, column)) + 2 for column in zip(*lines, strict=True))
+        return width is None or sum(widths) - 2 <= width
 
-    table = drawn(names, rows, range(len(names)), width)
-    if fits(table):
-        return table
-    numbers = range(1, len(rows) + 1)
-    lines = [x for x in zip(names, *rows, strict=True) if any(x[1:])]
-    upright = drawn(["key", *map(str, numbers)], lines, numbers, width)
-    return upright if fits(upright) else table
+    numbers = [str(i) for i in range(1, len(rows) + 1)]
+    upright = [["key", *numbers], *(x for x in zip(names, *rows, strict=True) if any(x[1:]))]
+    if rows and not fits([names, *rows]) and fits(upright):
+        return drawn(upright[0], upright[1:], range(1, len(rows) + 1), width)
+    return drawn(names, rows, range(len(names)), width)
 
 
 def drawn(

@@ -159,6 +159,7 @@ def test_rows_that_do_not_fit_a_terminal_stand_side_by_side() -> None:
     assert len(upright) == 2 + 9
     assert re.sub("\x1b[^m]*m", "", upright[0]).split() == ["key", "1", "2"]
     assert len(rows_text(names, rows * 9, 60).splitlines()) == 2 + 18  # neither fits
+    assert "key8" in rows_text(names, [], 60)
 
 
 def test_a_cell_that_is_wrapped_moves_the_rows_below_it() -> None:
