@@ -164,7 +164,7 @@ class Outcome(HasRecord):
 
     @cached_property
     def origin(self) -> list[str]:
-        """That the origin of a marker is not at the pivot, if it is not."""
+        """Where the pivot is if the origin of a marker is elsewhere, as a failure; else empty."""
         if (offset := shifted_origin(self.recording)) is None:
             return []
         shown = ", ".join(f"{x:.2g}" for x in offset)

@@ -41,7 +41,7 @@ def are_whole(frames: Array) -> bool:
 
 
 def frames_of(t: Array, frame: float) -> Array:
-    """Return the number of the frame of each time, from 0, if frames are about this apart."""
+    """Return the number of the frame of each time, the first 0, for a rough length of a frame."""
     return np.concatenate([[0.0], np.cumsum(np.round(np.diff(t) / frame))])
 
 
@@ -352,7 +352,7 @@ def shifted_origin(recording: Recording) -> Array | None:
 
 
 def _offset(marker: Array) -> tuple[Array, Array, Array]:
-    """Return the pivot to first order, and directions from their mean and distances of a marker."""
+    """Return the pivot to first order, and a marker's directions, less their mean, and distances."""
     distance = np.linalg.norm(marker, axis=1)
     directions = marker / distance[:, np.newaxis]
     directions = directions - directions.mean(axis=0)

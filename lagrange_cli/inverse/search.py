@@ -246,7 +246,7 @@ def _nutation(
     )
     if recording.angles.keys() == {"theta", "phi"} and abs(ratio - 1) < 3 * error:
         result.notes.append(
-            "C = A within the uncertainty, as if phi is the precession: then name its column psi"
+            "C agrees with A, as it would if phi were the precession: if it is, name its column psi"
         )
     if rival:
         shown = ", ".join(
@@ -412,7 +412,7 @@ def _against_known(
 
 
 def _contradicts(found: Minimum, known: Known, turn: float) -> bool:
-    """Return whether known inputs contradict a free minimum, or its slowest spin."""
+    """Return whether known inputs contradict a minimum that was found without them."""
     found = _slowest(found, turn)
     known = _usable(found, known, turn)
     return bool(found.problem.free and _against_known(found, known, turn, 1.0)[1])

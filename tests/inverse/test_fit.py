@@ -870,7 +870,7 @@ def test_known_inputs_that_are_right_do_not_hide_the_cause(
 def test_precession_in_a_column_of_the_spin_is_questioned() -> None:
     t, seen = recorded("theta", "psi", rows=120, noise=0.1, seed=8)
     outcome = fit(t, theta=seen["theta"], phi=seen["psi"])
-    question = "as if phi is the precession: then name its column psi"
+    question = "if phi were the precession: if it is, name its column psi"
     assert any(question in x for x in outcome.notes)
     alone = fit(t, theta=seen["theta"], known={"psidot0": 0})
     assert not any(question in x for x in alone.notes)
