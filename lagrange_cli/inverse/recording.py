@@ -352,7 +352,7 @@ def shifted_origin(recording: Recording) -> Array | None:
 
 
 def _offset(marker: Array) -> tuple[Array, Array, Array]:
-    """Return the pivot to first order, and a marker's directions, less their mean, and distances."""
+    """Return the pivot to first order, a marker's directions less their mean, and its distances."""
     distance = np.linalg.norm(marker, axis=1)
     directions = marker / distance[:, np.newaxis]
     directions = directions - directions.mean(axis=0)
