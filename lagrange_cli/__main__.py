@@ -21,6 +21,7 @@ def main() -> None:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     import gc
 
+    from .cli.app import complain_of_bug
     from .cli.app import main as run
 
     gc.set_threshold(100_000)  # a start makes no garbage: collections take a tenth of its time
@@ -30,11 +31,14 @@ def main() -> None:
     sys.unraisablehook = _repeat
     try:
         run(prog_name="lagtop")
-    except (Exception, KeyboardInterrupt):
-        if not _received:
+    except (Exception, KeyboardInterrupt) as error:
+        if _received:
+            signal.signal(_received[0], signal.SIG_DFL)  # C libraries raise errors of their own
+            signal.raise_signal(_received[0])
+        if not isinstance(error, Exception):
             raise
-        signal.signal(_received[0], signal.SIG_DFL)  # C libraries raise errors of their own
-        signal.raise_signal(_received[0])
+        complain_of_bug(error)
+        sys.exit(70)
     finally:
         if is_interactive:
             signal.signal(signal.SIGINT, signal.SIG_DFL)

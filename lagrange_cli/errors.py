@@ -7,6 +7,7 @@
 | 2 | wrong usage or a bad value |
 | 65 | a file cannot be read or holds bad data |
 | 69 | a package, an engine or a cluster is not available |
+| 70 | an unexpected exception: please report it |
 | 74 | output cannot be written |
 | 128 + N | ended by signal N |
 
@@ -15,12 +16,60 @@ N is 2 for Ctrl-C and 13 if the reader has gone away.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+MARK = "\x1d"
+"""The character on both sides of an argument in a text; no name of a file contains it."""
+
+
+def arg(name: str, value: object = None) -> str:
+    """Return the name of an argument, with its value if there is one, for the text of a message."""
+    return f"{MARK}{name}{MARK}" if value is None else f"{MARK}{name}={value}{MARK}"
+
+
+class Message(str):
+    """A text that names arguments, as in Python; the command line writes options instead.
+
+    >>> text = Message(f"use {arg('decimal', 'comma')} in dt=1.csv")
+    >>> text, text.with_options({"decimal": "--decimal", "dt": "--dt"})
+    ('use decimal=comma in dt=1.csv', 'use --decimal comma in dt=1.csv')
+    """
+
+    marked: str
+    """The text with marks around the arguments, to be part of another message."""
+
+    def __new__(cls, text: str) -> Message:
+        """Take a text with arguments that `arg` has marked."""
+        found = super().__new__(cls, text.replace(MARK, ""))
+        found.marked = marked(text)
+        return found
+
+    def with_options(self, options: Mapping[str, str]) -> str:
+        """Return the text with options for the arguments that have one."""
+        parts = self.marked.split(MARK)
+        for i, part in enumerate(parts[1::2]):
+            name, equals, value = part.partition("=")
+            if name in options:
+                parts[2 * i + 1] = options[name] + equals.replace("=", " ") + value
+        return "".join(parts)
+
+
+def marked(text: str | LagtopError) -> str:
+    """Return the text of a message or of an error with its marks, or a plain text."""
+    return getattr(text, "marked", str(text))
+
+
+def joined(texts: Iterable[str | LagtopError], by: str = "; ") -> Message:
+    """Return several texts or errors as one message."""
+    return Message(by.join(map(marked, texts)))
+
 
 class LagtopError(ValueError):
     """A bad input, and the base class of all other errors.
 
-    `key` is the name of the argument at fault, if there is one.  A message about an argument begins
-    with its name in Python; the command line converts it to the name of the option.
+    `key` is the name of the argument at fault, if there is one.  A message that begins with it has
+    the name of the option on the command line.
 
     >>> Top(m=-1)
     Traceback (most recent call last):
@@ -30,8 +79,22 @@ class LagtopError(ValueError):
     exit_code = 2
 
     def __init__(self, message: str, key: str | None = None) -> None:
-        super().__init__(message)
+        if key and message.startswith(f"{key} "):
+            message = arg(key) + message.removeprefix(key)
+        super().__init__(Message(message))
         self.key = key
+
+    @property
+    def marked(self) -> str:
+        """The message with marks around the arguments, to be part of another message."""
+        return marked(self.args[0])
+
+    @classmethod
+    def at(cls, place: str, error: LagtopError, remedy: str = "") -> Any:
+        """Return an error of this class with the message of another one, after a place."""
+        found = cls(f"{place}: {error.marked}{remedy}")
+        found.key = error.key
+        return found
 
 
 def check_type(name: str, value: object, *kinds: type) -> None:

@@ -55,10 +55,14 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 @pytest.fixture
 def lagtop() -> Lagtop:
-    """Run the command in this process: lagtop("solve", "--r0", 3, charset="ascii")."""
+    """Run the command in this process: lagtop("solve", "--r0", 3, charset="ascii").
+
+    A crash raises its exception.
+    """
 
     def run(*args: Any, charset: str = "utf-8", **extra: Any) -> Result:
-        return CliRunner(charset=charset).invoke(main, list(map(str, args)), **extra)
+        runner = CliRunner(charset=charset, catch_exceptions=False)
+        return runner.invoke(main, list(map(str, args)), **extra)
 
     return run
 

@@ -8,7 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
@@ -19,10 +19,12 @@ from errata import figures_table
 from published import published_table
 
 import lagrange_cli
-from lagrange_cli.cli.app import main
+from lagrange_cli.cli.app import NAMES, main
 from lagrange_cli.comparison.compare import COMPARISON_KEYS, VERDICTS
 from lagrange_cli.comparison.differences import WORDS
 from lagrange_cli.files.columns import QUANTITIES
+from lagrange_cli.output.formats import FORMATS
+from lagrange_cli.plot import KINDS, SHEET
 from lagrange_cli.solver.explanation import listed
 from lagrange_cli.solver.keys import FURTHER_KEYS, NUMBERS
 from lagrange_cli.top.inputs import DECLARED, TILT
@@ -91,7 +93,11 @@ def test_session(command: str, shown: str) -> None:
     A fit ends where its steps get small: its rounded numbers may differ by one last digit.  Three
     dots at the end of the text shown stand for more lines.
     """
-    real = run(command)
+    check_session(command, shown, run(command))
+
+
+def check_session(command: str, shown: str, real: str) -> None:
+    """Compare the output of a command with what a page shows."""
     if shown.endswith("\n...\n"):
         shown = shown.removesuffix("...\n")
         real = "".join(real.splitlines(keepends=True)[: shown.count("\n")])
@@ -207,6 +213,19 @@ def test_every_option_and_key_is_explained() -> None:
     assert {*NUMBERS, "regime", "path", "remark"} <= words
 
 
+@pytest.mark.parametrize(
+    ("names", "page"),
+    [
+        (NAMES, "README.md"),
+        (FORMATS, "lagrange_cli/cli/README.md"),
+        ([x.extension for x in FORMATS.values() if x.extension], "lagrange_cli/cli/README.md"),
+        ([*KINDS, SHEET], "lagrange_cli/plot/README.md"),
+    ],
+)
+def test_every_name_of_a_registry_is_on_its_page(names: Iterable[str], page: str) -> None:
+    assert {*names} - {*re.findall(r"[\w]+", text_of(ROOT / page))} == set()
+
+
 def test_every_public_name_is_on_the_page_of_the_library() -> None:
     words = set(re.findall(r"\w+", text_of(ROOT / "lagrange_cli" / "README.md")))
     assert {*lagrange_cli.__all__} - words == set()
@@ -217,13 +236,15 @@ def test_ci_runs_the_test_command_of_the_readme() -> None:
     assert len(re.findall(r"```sh\n(python3 -m venv .*pytest.*)\n```", text_of(README))) == 1
 
 
-def rewrite() -> None:
-    """Put the real outputs, and the tables that are made, into every page."""
+def rewrite(*, only_tables: bool) -> None:
+    """Put the tables that are made, and outputs that no longer are as shown, into every page."""
     for path in PAGES:
         text = text_of(path)
-        for command, shown in sessions(text):
-            if not shown.endswith("\n...\n"):
-                text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
+        for command, shown in [] if only_tables else sessions(text):
+            try:
+                check_session(command, shown, real := run(command))
+            except AssertionError:
+                text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{real}", 1)
         for table, folder in TABLES:
             if path.parent == ROOT / folder:
                 text = with_table(text, table())
@@ -237,4 +258,4 @@ def with_table(text: str, lines: list[str]) -> str:
 
 
 if __name__ == "__main__":
-    rewrite()
+    rewrite(only_tables="--tables" in sys.argv)

@@ -44,7 +44,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from flint import arb, ctx, fmpq
 
-from ..errors import LagtopError, OutOfRangeError
+from ..errors import LagtopError, OutOfRangeError, arg
 from .text import NumberText, own_context
 
 T = TypeVar("T")
@@ -308,7 +308,7 @@ _EXACT = own_context(1_000_000, [])
 _SHORT, _OUTWARDS = own_context(20, []), own_context(20, [], ROUND_UP)
 _TWO_DIGITS = own_context(2, [], ROUND_UP)
 _A_HAIR_MORE = Decimal("1.000000000001")
-_MORE_DIGITS = "use digits=N"
+_MORE_DIGITS = f"use {arg('digits', 'N')}"
 
 
 def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
@@ -322,7 +322,7 @@ def ends_of(ball: arb) -> tuple[Decimal, Decimal]:
     if abs(exponent) > LARGEST_EXPONENT and (middle or radius):
         raise OutOfRangeError(
             "the size of a value is not between 1e-990000000000000000 and 1e+990000000000000000, "
-            "the limits of digits=N: take a smaller argument"
+            f"the limits of {arg('digits', 'N')}: take a smaller argument"
         )
     low, high = Decimal(middle - radius), Decimal(middle + radius)
     return _EXACT.scaleb(low, exponent), _EXACT.scaleb(high, exponent)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import sys
-from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from typing import Any, NoReturn
@@ -14,7 +12,7 @@ from typing import Any, NoReturn
 import click
 
 from .. import __version__
-from ..errors import CannotWriteError, LagtopError, UnavailableError
+from ..errors import CannotWriteError, LagtopError, Message, UnavailableError
 from ..names import suggestion
 from ..output.terminal import one_line
 from ..top.inputs import DECLARED
@@ -37,15 +35,26 @@ _COMPLETION = "_LAGTOP_COMPLETE"
 
 
 def complain(line: str) -> None:
-    """Write one line to standard error, safe for any terminal; ignore failures.
-
-    Within a command, arguments of the library are written as options.
-    """
-    context = click.get_current_context(silent=True)
-    if context is not None:
-        line = with_options(line, context.command.params)
+    """Write one line to standard error, safe for any terminal; ignore failures."""
     with suppress(OSError):
-        click.echo(one_line(line), err=True)
+        click.echo(one_line(worded(line)), err=True)
+
+
+def worded(text: str) -> str:
+    """Return a message with the options of the command in place of arguments."""
+    context = click.get_current_context(silent=True)
+    return Message(text).with_options(options_of(context.command) if context else {})
+
+
+def complain_of_bug(error: Exception) -> None:
+    """Write one line that asks for a report, with the name and the place of an exception."""
+    from traceback import extract_tb  # start-up
+
+    frames = extract_tb(error.__traceback__)
+    own = [x for x in frames if os.path.dirname(os.path.dirname(__file__)) in x.filename]
+    where = f"{os.path.basename(own[-1].filename)}, line {own[-1].lineno}" if own else "a package"
+    found = f"{type(error).__name__} in {where} ({error})"
+    complain(f"Error: this is a bug, please report it with your command: {found}")
 
 
 def _die_by(name: str, code: int) -> NoReturn:
@@ -85,9 +94,9 @@ class LagtopGroup(click.Group):
         try:
             return super().invoke(ctx)
         except LagtopError as error:
-            name = ctx.invoked_subcommand
-            params = self.get_command(ctx, name).params if name else []
-            error.args = (_naming_option(error, params),)
+            if ctx.invoked_subcommand:
+                options = options_of(self.get_command(ctx, ctx.invoked_subcommand))
+                error.args = (error.args[0].with_options(options),)
             raise
         except KeyboardInterrupt:
             _die_by("SIGINT", 130)
@@ -137,30 +146,9 @@ def _check_epoch() -> None:
         raise UnavailableError(f"SOURCE_DATE_EPOCH must be a number of seconds, got {epoch!r}")
 
 
-def _naming_option(error: LagtopError, params: Sequence[click.Parameter]) -> str:
-    """Return a message with the option in place of the key of the error, which it begins with."""
-    text, key, options = str(error), error.key or "", _options(params)
-    if text.startswith(f"{key} ") and key in options:
-        text = options[key] + text.removeprefix(key)
-        other = r"(?<= and )\w+(?= are both given)|(?<= >= )\w+(?= = )"
-        text = re.sub(other, lambda found: options.get(found[0], found[0]), text)
-    return with_options(text, params)
-
-
-def with_options(text: str, params: Sequence[click.Parameter]) -> str:
-    """Return a text of the library with options for arguments.
-
-    They replace `columns` in `columns=t`, and in `give columns` or `omit columns`.
-    """
-    for name, option in _options(params).items():
-        text = re.sub(rf"\b{name}=(?=[-\w(.])", f"{option} ", text)
-        text = re.sub(rf"\b(give|omit) {name}\b(?! =)", rf"\1 {option}", text)
-    return text
-
-
-def _options(params: Sequence[click.Parameter]) -> dict[str, str]:
+def options_of(command: click.Command) -> dict[str, str]:
     """Return the options by the names of arguments; those of a tilt have a unit."""
-    found = {x.opts[-1].lstrip("-").replace("-", "_"): x.opts[-1] for x in params}
+    found = {x.opts[-1].lstrip("-").replace("-", "_"): x.opts[-1] for x in command.params}
     if "theta0" in found:
         found |= {"theta0_deg": found["theta0"], "theta0_rad": f"--rad {found['theta0']}"}
     return {name: option for name, option in found.items() if option.startswith("--")}
@@ -217,6 +205,7 @@ def main(ctx: click.Context) -> None:
       2   wrong usage or a bad value
       65  a file cannot be read or holds bad data
       69  a package, an engine or a cluster is not available
+      70  an unexpected exception: please report it
       74  output cannot be written
       128 + N  ended by signal N
 

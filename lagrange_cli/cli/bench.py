@@ -37,7 +37,7 @@ def _parse_spans(text: str) -> list[float]:
 @opt.option("--n", type=opt.count(MOST_TIMES), default="1e4", help="Number of times.")
 @opt.option("--methods", type=opt.LIST, help="Methods to compare.  [default: all]")
 @opt.plot
-@opt.output(*opt.REPORT_FORMATS)
+@opt.output("table")
 def bench_command(
     scenes: tuple[str, ...],
     spans: list[float] | None,
@@ -80,7 +80,7 @@ def bench_command(
 @opt.option("--samples", type=opt.count(MOST_SCENES), default="1", help="Random scenes per kind.")
 @opt.option("--seed", type=opt.count(), default="1952", help="Seed of the random scenes.")
 @opt.plot
-@opt.output(*opt.REPORT_FORMATS)
+@opt.output("table")
 def stability_command(
     kinds: list[str] | None, samples: int, seed: int, plot: str | None, out: Output
 ) -> None:

@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 )
 @opt.decimal
 @opt.plot
-@opt.output(*opt.REPORT_FORMATS)
+@opt.output("table")
 def compare_command(
     top: opt.TopOptions,
     words: list[str],

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from ..arithmetic.text import value_text
+from ..output.document import Lines
 from ..output.report import Field, Report
 from ..top.scenes import scene_names, scene_remark
 from . import shared as opt
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     "explain b psidot --r0 20 --format json",
 )
 @opt.top("[SCENE] [KEY]...")
-@opt.output(*opt.REPORT_FORMATS)
+@opt.output("table")
 def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     """Explain keys and columns, with formulas and numbers.
 
@@ -41,13 +42,11 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
         opt.write_report(out, lambda: Report({}, _LISTED, rows, []))
         return
     rows = explanations(opt.motion_of(found), words, radians=radians, named=named)
-    if out.fmt == "table":
-        out.text("\n".join(map(_block, rows)))
-    else:
-        opt.write_report(out, lambda: Report({}, _EXPLAINED, rows, []))
+    document = Report({}, _EXPLAINED, rows, []).document()
+    out.document(document._replace(page=lambda _: [Lines(_lines(row)) for row in rows]))
 
 
-def _block(row: Explained) -> str:
+def _lines(row: Explained) -> list[str]:
     """Return the lines of one key or column; each equation of a formula has a line of its own."""
     texts = {
         "formula": row.formula,
@@ -59,7 +58,7 @@ def _block(row: Explained) -> str:
     for name, text in texts.items():
         parts = filter(None, re.split(r" where |, (?=\w+ = )", text))
         lines += [f"  {'' if i else name:9}{part}".rstrip() for i, part in enumerate(parts)]
-    return "\n".join([*lines, ""])
+    return lines
 
 
 _LISTED = [
@@ -73,7 +72,7 @@ _EXPLAINED = [
 
 
 @opt.command("scenes", "scenes", "solve fast-gyroscope", "scenes --format json")
-@opt.output(*opt.REPORT_FORMATS)
+@opt.output("table")
 def scenes_command(out: Output) -> None:
     """List the built-in scenes.
 

@@ -7,13 +7,13 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import quoted
-from ..errors import LagtopError, SomeFailedError
+from ..errors import LagtopError, SomeFailedError, marked
 from ..names import split_names
 from ..output.destination import Output, opened
+from ..output.document import Document
 from ..output.terminal import one_line
-from ..output.text import json_text
 from . import shared as opt
-from .app import complain
+from .app import worded
 
 if TYPE_CHECKING:
     from ..inverse.outcome import Outcome
@@ -63,7 +63,7 @@ def _parse_align(text: str) -> dict[str, str]:
 @opt.euler_sequence
 @opt.decimal
 @opt.plot
-@opt.output(*opt.REPORT_FORMATS, extensions=["toml"])
+@opt.output("table", extensions=["toml"])
 def fit_command(
     top: opt.TopOptions,
     words: list[str],
@@ -128,7 +128,7 @@ def fit_command(
         out = out._replace(path="-") if scene_path else out
         _write(found, source, " (in kg, m and s)" if given.si else "", out)
     if failed and window is None:
-        raise SomeFailedError(f"the fit has failed: {failed[0]}")
+        raise SomeFailedError(f"the fit has failed: {marked(failed[0])}")
     opt.fail_for(failed, len(found), "windows")
     if scene_path:
         found[0].scene(source)  # raises AbsentError for a steady precession
@@ -139,15 +139,13 @@ def _write(found: list[Outcome], source: str, units: str, out: Output) -> None:
     from ..inverse.decay import decay_of, decay_text
     from ..inverse.report import fit_report
 
-    if out.fmt == "table":
-        opt.write_report(out, lambda: fit_report(found, source, units))
-        return
-    is_windows, records = len(found) > 1, [x.record() for x in found]
-    if out.fmt == "json":
-        decay = is_windows and decay_of(found)
-        windows = {"decay": decay and decay._asdict(), "windows": records}
-        out.text(f"{json_text(windows if is_windows else records[0])}\n")
-    else:
-        out.rows(records, list(dict.fromkeys(key for record in records for key in record)))
-    for line in [decay_text(found)] if is_windows else [f"Note: {x}" for x in found[0].notes]:
-        complain(line)
+    rows, whole = [x.record() for x in found], None
+    names = list(dict.fromkeys(key for row in rows for key in row))
+    asides = [f"Note: {marked(x)}" for x in found[0].notes]
+    if len(found) > 1:
+        decay, asides = decay_of(found), [decay_text(found)]
+        whole = {"decay": decay and decay._asdict(), "windows": rows}
+    page = fit_report(found, source, units).document(worded).page
+    document = Document(names, rows, page, whole or rows[0], asides)
+    out.document(document)
+    opt.say_asides(out, document)

@@ -18,6 +18,7 @@ from ..elliptic.tables import Rows
 from ..errors import LagtopError
 from ..names import Key, check_names
 from ..output.destination import Output
+from ..output.document import record_document
 from ..output.terminal import with_progress
 from ..top.inputs import declared
 from ..top.ranges import Points
@@ -51,13 +52,13 @@ def _parse_parameter(text: str) -> tuple[ExactComplex, bool]:
 ARGUMENTS = opt.Parsed("X", parse_arguments)
 MODULUS = opt.Parsed("X", parse_small)
 RANGE = opt.Parsed("X", parse_values)
-function_formats = opt.output("table", "csv", "json", "ndjson", "parquet")
+function_formats = opt.output("table", rows=True)
 
 
 def write_functions(rows: Rows, count: int, out: Output) -> None:
     """Write a table of functions with `count` rows, with its progress."""
     header, blocks = rows
-    out.table(header, with_progress(blocks, "rows", count, len))
+    out.rows(header, with_progress(blocks, "rows", count, len))
 
 
 @opt.command(
@@ -142,7 +143,8 @@ def jacobi_command(
         raise LagtopError("--functions needs --u")
     else:
         keys = constant_keys("Moduli", legendre.CONSTANTS)
-        out.record(legendre.constants_record(given, digits, n=n, radians=rad), lambda: keys)
+        record = legendre.constants_record(given, digits, n=n, radians=rad)
+        out.document(record_document(record, lambda: keys))
 
 
 def _parameter(
@@ -225,7 +227,7 @@ def eta_command(
     if columns is not None:
         raise LagtopError("--columns needs --tau")
     keys = constant_keys("Roots", eta.CONSTANTS)
-    out.record(eta.eta_record(quadrature, digits), lambda: keys)
+    out.document(record_document(eta.eta_record(quadrature, digits), lambda: keys))
 
 
 def _quadrature(

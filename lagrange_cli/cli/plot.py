@@ -7,7 +7,7 @@ from fractions import Fraction
 from os.path import exists, splitext
 
 from ..arithmetic.numbers import unit_in_radians
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 from ..names import suggestion
 from ..output.destination import opened
 from ..output.terminal import is_screen, with_progress
@@ -169,7 +169,7 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Valu
     try:
         return name, parse_value(name, grid, parse_range, wanted=angle if is_tilt else None)
     except LagtopError as error:
-        raise LagtopError(f"{option} {str(error).removeprefix(f'{name} ')}") from None
+        raise LagtopError(f"{option} {error.marked.removeprefix(f'{arg(name)} ')}") from None
 
 
 @opt.command(

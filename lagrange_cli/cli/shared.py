@@ -7,31 +7,31 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from functools import partial, wraps
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
 
 from ..arithmetic.text import is_decimal, parse_number, quoted
-from ..errors import LagtopError, SomeFailedError, UnavailableError
+from ..errors import LagtopError, SomeFailedError, arg, marked
 from ..names import split_names
 from ..output.destination import Output, opened
-from ..output.terminal import is_screen, width_of
+from ..output.formats import FORMATS
+from ..output.terminal import is_screen
 from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
 from ..top.units import is_unit
 from ..top.values import Value, parse_value, tilt_key
-from .app import complain, with_options
+from .app import complain, worded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..output.document import Document
     from ..output.report import Report
     from ..solver.solve import Motion
     from ..top.given import Given
 
 F = TypeVar("F", bound=Callable[..., Any])
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
-REPORT_FORMATS = ("table", "csv", "json", "ndjson")
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
@@ -46,8 +46,8 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         try:
             return self.parse(*([param.name] if param and self.keyed else []), value)
         except LagtopError as error:
-            name, text = param.opts[-1] if param else "", str(error)
-            raise LagtopError(f"{name} {text.removeprefix(f'{error.key} ')}") from None
+            text = error.marked.removeprefix(f"{arg(error.key)} " if error.key else "")
+            raise LagtopError(f"{param.opts[-1] if param else ''} {text}") from None
 
 
 def count(most: float = 1e9) -> Parsed:
@@ -301,50 +301,40 @@ def warn(found: Given, *, uses_stds: bool = False) -> None:
 
 
 def output(
-    *formats: str, extensions: Sequence[str] = (), on_terminal: str = ""
+    default: str, *, rows: bool = False, extensions: Sequence[str] = (), on_terminal: str = ""
 ) -> Callable[[F], F]:
     """Declare --output and --format, which become `out`.
 
     The extension of the file sets the default format.  Without an extension, or with one of the
-    `extensions`, it is the first format, or `on_terminal` if standard output is a terminal.
+    `extensions`, it is the `default`, or `on_terminal` if standard output is a terminal.  Formats
+    that hold only rows are for commands that write `rows`.
     """
-    default = f"{formats[0]}, on a terminal {on_terminal}" if on_terminal else formats[0]
-    text = f"{', '.join(formats)}.  [default: extension of FILE, or {default}]"
+    formats = {name: x.extension for name, x in FORMATS.items() if rows or not x.only_rows}
+    named = {ending: name for name, ending in formats.items() if ending}
+    usual = f"{default}, on a terminal {on_terminal}" if on_terminal else default
+    text = f"{', '.join(formats)}.  [default: extension of FILE, or {usual}]"
 
     def decorate(function: F) -> F:
         @wraps(function)
         def run(output: str, fmt: str | None, **others: Any) -> None:
             ending, plain = extension(output), ("txt", *extensions)
-            chosen = fmt or ending
-            if fmt is None and ending in {"", *plain}:
-                chosen = on_terminal if on_terminal and is_screen(output) else formats[0]
-            elif fmt is None and (ending == "table" or ending not in formats):
+            chosen = fmt or named.get(ending)
+            if chosen is None and ending in {"", *plain}:
+                chosen = on_terminal if on_terminal and is_screen(output) else default
+            elif chosen is None:
                 name = click.get_current_context().command.name
-                endings = ", ".join([x for x in formats if x != "table"] + [*plain])
                 raise LagtopError(
-                    f"{name} cannot write {ending}: use {endings} as extension of "
-                    f"{quoted(output)}, or add --format"
+                    f"{name} cannot write {ending}: use {', '.join([*named, *plain])} as extension "
+                    f"of {quoted(output)}, or add --format"
                 )
-            if chosen == "parquet":
-                _check_parquet(output, others)
             function(out=Output(output, chosen, fmt is not None), **others)
 
-        kind, help_ = click.Choice(formats), "Output file (replaced once all is written)."
+        kind, help_ = click.Choice([*formats]), "Output file (replaced once all is written)."
         found: Any = option("--format", "fmt", metavar="FORMAT", type=kind, help=text)(run)
         found = option("-o", "--output", metavar="FILE", default="-", help=help_)(found)
         return cast(F, found)
 
     return decorate
-
-
-def _check_parquet(path: str, others: Mapping[str, Any]) -> None:
-    """Raise LagtopError if Parquet cannot be written to a path, or cannot hold the numbers."""
-    if is_screen(path):
-        raise LagtopError("--format parquet is not for a terminal: use -o FILE.parquet")
-    if others.get("digits") or others.get("certify"):
-        raise LagtopError("--format parquet holds doubles: with --digits use csv, json or table")
-    if find_spec("pyarrow") is None:
-        raise UnavailableError("--format parquet needs pyarrow: pip install pyarrow")
 
 
 def write_report(
@@ -360,24 +350,21 @@ def write_report(
     """
     check_plot(plot, out.path)
     with opened(plot) if plot else nullcontext() as picture, opened(out.path) as stream:
-        report = _report_with_options(find())
+        report = find()
         if picture and draw:
             from ..plot.style import report_bytes
 
             picture.write(report_bytes(plot or "", draw, report))
-        stream.write(report.text(out.fmt, width_of(out.path)))
-    if out.fmt in {"csv", "ndjson"}:
-        for name, text in report.conditions.items():
-            complain(f"{name}: {text}")
+        document = report.document(worded)
+        stream.write(out.bytes_of(document))
+    say_asides(out, document)
     return report
 
 
-def _report_with_options(report: Report) -> Report:
-    """Return a report with the options of the command in place of arguments."""
-    params = click.get_current_context().command.params
-    conditions = {name: with_options(x, params) for name, x in report.conditions.items()}
-    conclusions = [with_options(x, params) for x in report.conclusions]
-    return report._replace(conditions=conditions, conclusions=conclusions)
+def say_asides(out: Output, document: Document) -> None:
+    """Write what a format of rows does not hold to standard error."""
+    for line in document.asides if out.format.only_rows else ():
+        complain(line)
 
 
 def check_plot(path: str | None, output: str) -> None:
@@ -391,4 +378,6 @@ def check_plot(path: str | None, output: str) -> None:
 def fail_for(failures: Sequence[str], count: int, what: str) -> None:
     """Raise SomeFailedError if there are failures, with their number and the first one."""
     if failures:
-        raise SomeFailedError(f"{len(failures)} of {count} {what} failed; the first: {failures[0]}")
+        raise SomeFailedError(
+            f"{len(failures)} of {count} {what} failed; the first: {marked(failures[0])}"
+        )

@@ -7,9 +7,10 @@ from contextlib import suppress
 from typing import Any
 
 from ..arithmetic.text import value_text
-from ..errors import AbsentError, LagtopError
+from ..errors import AbsentError, LagtopError, joined
 from ..names import Key, check_names
 from ..output.destination import Output
+from ..output.document import lines_document, record_document
 from ..solver.facts import Regime
 from ..solver.keys import CHAIN, all_keys, derivation_keys, key_of, shown_keys, unit_name
 from ..solver.record import record_in_range
@@ -33,7 +34,7 @@ from .app import complain
 @opt.digits(opt.MOST_RECORD_DIGITS)
 @opt.certify
 @opt.option("--budget", metavar="KEY", help="Print each input's share in the uncertainty of KEY.")
-@opt.output("table", "json", "csv", "ndjson")
+@opt.output("table")
 def solve_command(
     top: opt.TopOptions,
     get: list[str] | None,
@@ -74,30 +75,29 @@ def solve_command(
     if beyond and wanted:
         raise beyond[0]
     if beyond:
-        complain("Warning: " + "; ".join(map(str, beyond)))
+        complain(f"Warning: {joined(beyond).marked}")
     named = found.named
     if "remark" in record:
         record["remark"] = found.remark(record["remark"])
-    sentence = {}
-    if wanted is None and out.fmt != "csv":
+    more: dict[str, Any] = {}
+    if wanted is None:
         with suppress(TypeError):  # a number beyond the range of doubles is None
-            sentence["summary"] = summary(record, motion.facts, named)
+            more["summary"] = summary(record, motion.facts, named)
+    shown: dict[str, Any] = {}
     if found.stds:
-        drawn = out.fmt == "table" and (get is None or out.is_named)
-        record = uncertainty.with_stds(found, motion, record, drawn)
-    record |= sentence
-    shown = shown_keys(radians=radians, named=named, requested=names is not None)
+        record, shown = uncertainty.with_stds(found, motion, record)
     if get is not None:
-        _write_selected(motion, record, get, out)
+        _write_selected(motion, record, shown, get, out)
         return
+    keys = shown_keys(radians=radians, named=named, requested=names is not None)
     if derivation:
-        shown = _keys_by_step(shown, radians)
-        record = {x: record[x] for x in [*shown, *record]}
-    elif found.si and out.fmt in {"json", "ndjson"}:
-        record["units"] = {x: key.unit for x, key in shown.items() if x in record and key.unit}
-    if out.fmt == "table" and motion.regime is Regime.SLEEPING and not motion.facts.stable:
-        record["regime"] += ", unstable"
-    out.record(record, lambda: shown)
+        keys = _keys_by_step(keys, radians)
+        record = {x: record[x] for x in [*keys, *record]}
+    elif found.si:
+        more["units"] = {x: key.unit for x, key in keys.items() if x in record and key.unit}
+    if "regime" in record and motion.regime is Regime.SLEEPING and not motion.facts.stable:
+        shown["regime"] = f"{record['regime']}, unstable"
+    out.document(record_document(record, lambda: keys, more, shown))
 
 
 def _selected(words: Sequence[str], radians: bool) -> list[str]:
@@ -114,7 +114,11 @@ def _selected(words: Sequence[str], radians: bool) -> list[str]:
 
 
 def _write_selected(
-    motion: Motion, record: dict[str, Any], keys: Sequence[str], out: Output
+    motion: Motion,
+    record: dict[str, Any],
+    shown: dict[str, Any],
+    keys: Sequence[str],
+    out: Output,
 ) -> None:
     """Write some values of the record, each with its radius, if any; missing ones are empty.
 
@@ -128,10 +132,8 @@ def _write_selected(
     reasons = [f"{key} is {_absence(motion, record, key)}" for key in keys if record[key] is None]
     if len(reasons) < len(keys):
         record = {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
-        if out.fmt == "table":
-            out.text("".join(f"{value_text(value)}\n" for value in record.values()))
-        else:
-            out.record(record, dict)
+        texts = record | shown if out.is_named else record
+        out.document(lines_document(record, [value_text(texts[key]) for key in record]))
     if reasons:
         raise AbsentError("; ".join(reasons))
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..file_bytes import shown_path
+from ..output.document import rows_document
 from ..output.terminal import with_progress
 from ..top.scenes import is_scene_file
 from ..top.values import parse_number_or_span, parse_values
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from ..top.given import Given
 
 MOST_JOBS = 1024
-FEW = 50
+FEW = 1000
 """Largest number of tops whose records are drawn as a table on a terminal."""
 
 
@@ -71,7 +72,7 @@ def _parse_jobs(text: str) -> int:
 @opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")
 @opt.option("--dask", metavar="ADDRESS", help="Use the Dask cluster of this scheduler.")
 @opt.decimal
-@opt.output("csv", "ndjson", "json", "parquet", "table", on_terminal="table")
+@opt.output("csv", rows=True, on_terminal="table")
 def sweep_command(
     top: opt.TopOptions,
     words: Sequence[str],
@@ -107,17 +108,18 @@ def sweep_command(
     opt.exclude(parts=parts, output=out.path != "-")
     if parts is not None:
         out = out._replace(fmt="csv") if not out.is_named else out
-        if out.fmt in {"json", "table"}:
+        if not out.format.only_rows:
             raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
     if len(words) > 1:
         raise LagtopError(f"a sweep takes one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
     digest = digest_of(path) if path is not None and parts is not None else ""
-    how: dict[str, Any] = {"radians": top.radians, "fmt": out.fmt, "decimal": decimal, "keys": keys}
+    how: dict[str, Any] = {"radians": top.radians, "decimal": decimal, "keys": keys}
     sweep, every_block, size, given = plan(path, top.inputs, top.scene, **how)
     opt.warn(given)
-    if not (out.is_named or 0 < size <= FEW) and out.fmt == "table":
-        sweep, out = sweep._replace(fmt="csv"), out._replace(fmt="csv")
+    if not (out.is_named or 0 < size <= FEW) and out.format.is_for_people:
+        out = out._replace(fmt="csv")
+    sweep = sweep._replace(fmt=out.fmt)
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
     done, (first, every) = list[Part](), shard or (1, 1)
     blocks: Iterable[NumberedBlock] = islice(every_block, first - 1, None, every)
@@ -131,7 +133,7 @@ def sweep_command(
         if folder:
             folder.write(shown)
         else:
-            names = _headings(sweep.header, given, out.fmt, radians=top.radians)
+            names = _headings(sweep.header, given, out, radians=top.radians)
             out.blocks(names, (part.text for part in shown))
     if folder and folder.found:
         complain(f"Resumed: {folder.found} parts were already in {parts}")
@@ -140,9 +142,9 @@ def sweep_command(
         complain(f"Warning: {shown_path(path)} holds no tops")
 
 
-def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) -> Sequence[str]:
+def _headings(names: Sequence[str], given: Given, out: Output, *, radians: bool) -> Sequence[str]:
     """Return the headings of keys: with units in a table for people, if inputs have units."""
-    if not given.si or fmt != "table":
+    if not (given.si and out.format.is_for_people):
         return names
     from ..output.report import with_unit
     from ..solver.keys import shown_keys
@@ -165,7 +167,7 @@ def _headings(names: Sequence[str], given: Given, fmt: str, *, radians: bool) ->
     "--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60, 20 for 1, 2, 3]"
 )
 @opt.keys
-@opt.output("csv", "ndjson", "json", "table", on_terminal="table")
+@opt.output("csv", on_terminal="table")
 def find_command(
     top: opt.TopOptions, words: Sequence[str], scan: int | None, keys: list[str] | None, out: Output
 ) -> None:
@@ -200,4 +202,5 @@ def find_command(
             record["remark"] = given.remark(record["remark"])
         if "psidot0" in record:  # the number of a steady rate
             record["psidot0"] = float(motion.top.psidot0)
-    out.rows(records, chosen, _headings(chosen, given, out.fmt, radians=top.radians))
+    headings = _headings(chosen, given, out, radians=top.radians)
+    out.document(rows_document(records, chosen, headings))

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 @opt.option("--wrap", is_flag=True, help="Keep spin and precession in (-180, 180].")
 @opt.digits(opt.MOST_TABLE_DIGITS)
 @opt.certify
-@opt.output("csv", "json", "ndjson", "table", "parquet")
+@opt.output("csv", rows=True)
 def table_command(
     top: opt.TopOptions,
     t_max: Value | None,
@@ -85,16 +85,16 @@ def table_command(
         else:
             stds = angle_stds(found, motion)
             header, parts = rows(motion, at, names, stds=stds.at if stds else None, **how)
-        if out.fmt == "table":
+        if out.format.is_for_people:
             header = _with_units(header, names, found)
-        out.table(header, with_progress(parts, "rows", at.count or None, len))
+        out.rows(header, with_progress(parts, "rows", at.count or None, len))
         warn_if_misleading(stds, names)
     except LagtopError as error:
         late = ": use --digits" if isinstance(error, OutOfRangeError) and error.key else ""
         if times is not None and error.key == "t":
-            raise DataError(f"{shown_path(times)}: {error}{late}") from None
+            raise DataError.at(shown_path(times), error, late) from None
         if late:
-            raise OutOfRangeError(f"{error}{late}", error.key) from None
+            raise OutOfRangeError(f"{error.marked}{late}", error.key) from None
         raise
 
 

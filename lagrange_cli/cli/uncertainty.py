@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..arithmetic.text import NumberText
-from ..errors import AbsentError, LagtopError
+from ..errors import AbsentError, LagtopError, joined
 from ..names import check_names
 from ..output.destination import Output
 from ..output.report import Field, Report, uncertain_text, with_unit
@@ -32,9 +32,9 @@ def check(found: Given, **options: object) -> None:
 
 
 def with_stds(
-    found: Given, motion: Motion, record: Mapping[str, Any], shown: bool
-) -> dict[str, Any]:
-    """Return a record with the keys KEY_std; values are `shown` as `value(uncertainty)` or bare.
+    found: Given, motion: Motion, record: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return a record with the keys KEY_std, and the values as `value(uncertainty)` for people.
 
     A warning names the numbers that have none.
     """
@@ -42,7 +42,7 @@ def with_stds(
     stds, beyond = stds_of(record, uncertain)
     lost = [x for x in record if record[x] is not None and stds.get(f"{x}_std", 0) is None]
     if beyond:
-        complain("Warning: " + "; ".join(map(str, beyond)))
+        complain(f"Warning: {joined(beyond).marked}")
     elif lost:
         known = any(degree_name(key) in DIFFERENTIABLE for key in lost)
         reason = NO_DERIVATIVE if known else "keys outside the record have none"
@@ -60,9 +60,9 @@ def with_stds(
     texts = {
         name: NumberText(uncertain_text(_to_the_last_digit(motion, name, float(value), std), std))
         for name, value in record.items()
-        if shown and value is not None and (std := stds.get(f"{name}_std"))
+        if value is not None and (std := stds.get(f"{name}_std"))
     }
-    return dict(record) | stds | texts
+    return dict(record) | stds, texts
 
 
 def _to_the_last_digit(motion: Motion, key: str, value: float, std: float) -> float | str:

@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 from ..files import rotations
 from .differences import Alignment, ExactMotion, Run, angles_of, errors, sizes, start_of
 from .mistakes import Cause, Undo, mistakes
@@ -169,5 +169,5 @@ def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
         names = [f"{align.up} is up and the figure axis is the body's {align.axis} axis"]
     if align.time and not given.time:
         names.append(f"the clock starts at {run.t[0]:.10g}")
-    remedy = " or ".join(f"align={x}" for x in words)
+    remedy = " or ".join(arg("align", x) for x in words)
     return Cause("; ".join(filter(None, names)), align=align, remedy=remedy)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import DataError, LagtopError, check_type
+from ..errors import DataError, LagtopError, check_type, joined
 from ..file_bytes import shown_path
 from ..files.columns import QUANTITIES
 from ..files.observed import Conventions, quantities_of
@@ -210,7 +210,7 @@ def compared(
             cause="; or ".join(y.name for y in causes) or None,
             explained=("most likely" if causes[0].error <= limit else "partly") if causes else None,
             cause_error=max((y.error for y in causes), default=None),
-            remedy=" or ".join(y.remedy for y in causes if y.remedy) or None,
+            remedy=joined((y.remedy for y in causes if y.remedy), " or ") or None,
         )
     return results, found
 
@@ -225,7 +225,7 @@ def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
     except LagtopError as wrong:
         if "file" not in run.about or wrong.key != "t":
             raise
-        raise DataError(f"{shown_path(run.about['file'])}: {wrong}") from None
+        raise DataError.at(shown_path(run.about["file"]), wrong) from None
     found = {name: np.concatenate([x.pop(name) for x in parts]) for name in [*parts[0]]}
     t, error, known = found.pop("t"), found["error"], dict[str, Any]()
     for name, values in found.items():

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 from ..files import rotations
 from ..files.observed import ORDERS
 from ..names import ANGLES
@@ -37,7 +37,7 @@ class Cause(NamedTuple):
     """The motion of the other inputs."""
     align: Alignment | None = None
     remedy: str = ""
-    """The arguments of `compare` that take the cause into account, as `name=value`."""
+    """The arguments of `compare` that take the cause into account, marked."""
     error: float = math.inf
     """The greatest error without the cause."""
 
@@ -147,7 +147,7 @@ def _of_writing(run: Run) -> Iterator[Cause]:
             then = other.get(now, now.swapcase())
             meant: dict[str, Any] = {key: then}
             undo = partial(Run._replace, conventions=how._replace(**meant))
-            yield Cause(name.format(then, now), undo, remedy=f"{given}={then}")
+            yield Cause(name.format(then, now), undo, remedy=arg(given, then))
     flipped = np.array([1.0 if x == "w" else -1.0 for x in order])
     unit = np.radians if how.radians else np.degrees
     changes: dict[str, dict[str, Callable[[Array], Array]]] = {

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
-from ..errors import DataError, LagtopError
+from ..errors import DataError, LagtopError, Message, arg, joined, marked
 from ..file_bytes import shown_path, utf8_path
 from ..files.observed import Conventions, Quantities, observe
 from ..files.trajectory import read_trajectory
@@ -55,7 +55,7 @@ def read(
         Run(rows, conventions, align).observed(slice(1))
         used = _used(rows, conventions)
     except LagtopError as error:
-        raise DataError(f"{file.name}: {error}") from None
+        raise DataError.at(file.name, error) from None
     given = {key: rows[key] for key in used}
     missing = [x for key, x in file.missing().items() if key in used]
     given["missing"] = np.any(missing, axis=0).reshape(-1, 1).astype(float)
@@ -81,8 +81,9 @@ def comparison_report(
 ) -> Report:
     """Return the report on trajectories."""
     shown = [x for x in _COLUMNS if any(getattr(row, x.key) is not None for row in results)]
+    inputs = (x.partition("=") for x in motion.top.as_text().split())
     conditions = {
-        "scene": motion.top.as_text(),
+        "scene": joined((arg(name, value) for name, _, value in inputs), " "),
         "regime": motion.regime,
         "errors": f"in radians, relative for rates; greatest over all rows; fine up to {limit:g}",
     }
@@ -104,9 +105,9 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
         yield f"The pivot slips: its distance from the centre of mass changes by up to {slip:.1%}."
     if x.cause is not None:
         words = "Partly explained" if x.explained == "partly" else "Most likely cause"
-        remedy = f" ({x.remedy})" if x.remedy else ""
+        remedy = f" ({marked(x.remedy)})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
-        yield f"{words}: {x.cause}{remedy}. {error}."
+        yield Message(f"{words}: {x.cause}{remedy}. {error}.")
     elif rows := _few_rows(x, limit):
         yield rows
     elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (

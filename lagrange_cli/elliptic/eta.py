@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from flint import arb
 
 from ..arithmetic.enclosures import at_precision, exact
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 from ..top.ranges import MAX_PERIODS, MAX_TIME, Points, check_reach
 from .arguments import Arguments, ExactComplex
 from .functions import Functions, Point
@@ -79,7 +79,7 @@ class Quadrature(NamedTuple):
         """Raise LagtopError unless lower <= upper, g > 0 and the band has no real outer root."""
         low, high = float(self.lower), float(self.upper)
         if self.upper < self.lower:
-            raise LagtopError(f"delta must be >= delta_star = {low}, got {high}", "delta")
+            raise LagtopError(f"delta must be >= {arg('delta_star')} = {low}, got {high}", "delta")
         if self.g <= 0:
             raise LagtopError(f"g must be > 0, got {float(self.g)}", "g")
         for root in () if self.height else self.outer:

@@ -15,14 +15,14 @@ import numpy as np
 
 from ..arithmetic.text import quoted, shortened
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 from ..names import ANGLES, suggestion
 from ..top.inputs import declared
 from ..top.units import SPELLINGS, conversion, is_unit
 
 SKIPPED = "_"
 """The name of an ignored column."""
-NAMING = "for example columns=t,quaternion ('t [ms]' for times in ms)"
+NAMING = f"for example {arg('columns', 't,quaternion')} ('t [ms]' for times in ms)"
 """An example of names of columns, for messages."""
 
 
@@ -226,7 +226,7 @@ def found_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
             same = [repr(names[j]) for j, x in enumerate(plain) if x in {plain[i], *angle}]
             if len(same) > 1:
                 wrong = f"must name each quantity once, got {' and '.join(same)}"
-                remedy = "skip one with _, for example columns=t,theta,_"
+                remedy = f"skip one with _, for example {arg('columns', 't,theta,_')}"
                 raise LagtopError(f"columns {wrong}: {remedy}", "columns")
     return {key: in_known_unit(key, x, names) for key, x in found.items()}
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..arithmetic.text import parse_number, quoted
 from ..arithmetic.types import Array, Mask
-from ..errors import DataError, LagtopError
+from ..errors import DataError, LagtopError, arg
 from .json_rows import MOST_CELLS, entries_of, json_value, shown
 
 _SAMPLE = 1000
@@ -199,7 +199,7 @@ class Table:
         try:
             return float(self.number(cell))
         except LagtopError as error:
-            raise self.wrong(row, f"{name} {error}", f", column {column + 1}") from None
+            raise self.wrong(row, f"{name} {error.marked}", f", column {column + 1}") from None
 
     def number(self, cell: Any) -> Fraction:
         """Return the number in a cell exactly.  Raises LagtopError with the cell as written."""
@@ -214,7 +214,7 @@ class Table:
         except LagtopError:
             if not is_other and self.decimal != ",":
                 raise
-        hint = f" (use decimal={other})" if is_other else ""
+        hint = f" (use {arg('decimal', other)})" if is_other else ""
         raise LagtopError(f"must be a finite decimal number, got {quoted(cell)}{hint}")
 
     def plain(self, cell: Any) -> str:
@@ -261,7 +261,7 @@ def read_table(
         try:
             split_row(line, layout.delimiter)
         except LagtopError as error:
-            raise DataError(f"{name}, line {number}: {error}") from None
+            raise DataError.at(f"{name}, line {number}", error) from None
     rows = sample[layout.first :]
     cells = _split(rows[0][1], layout.delimiter) if rows else []
     count = len(cells if width else headings or cells)
@@ -300,7 +300,9 @@ def _decimal_mark(table: Table, rows: Sequence[tuple[int, str]]) -> str:
     if places and all(map(_MAYBE_THOUSANDS.fullmatch, places)):
         cell, number = next(iter(places.items()))
         wrong = f"a comma may be a decimal mark or separate thousands, got {quoted(cell)}"
-        raise table.wrong(number, f"{wrong}: use decimal=point or decimal=comma")
+        raise table.wrong(
+            number, f"{wrong}: use {arg('decimal', 'point')} or {arg('decimal', 'comma')}"
+        )
     return "," if places else "."
 
 

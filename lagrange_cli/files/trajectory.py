@@ -17,7 +17,7 @@ import numpy as np
 
 from ..arithmetic.text import shortened
 from ..arithmetic.types import Array, Mask
-from ..errors import DataError, LagtopError, UnavailableError
+from ..errors import DataError, LagtopError, UnavailableError, arg
 from ..file_bytes import LARGEST_FILE, decoded, read_bytes, read_text, shown_path
 from ..top.ranges import ListedPoints
 from .columns import (
@@ -62,7 +62,7 @@ class Trajectory:
         except LagtopError as error:
             if columns is not None and error.key == "columns":
                 raise
-            raise DataError(f"{table.name}: {error}") from None
+            raise DataError.at(table.name, error) from None
         used = sorted(i for found in self.quantities.values() for i in found.columns)
         self.used = [names[i] for i in used]
         """The names of the columns that are read."""
@@ -73,7 +73,7 @@ class Trajectory:
         for key, places in self._places.items():
             if len(self._numbers.lines) and self._numbers.empty[:, places].all():
                 shown = ", ".join(self.used[i] for i in places)
-                remedy = "remove its columns, or skip them with _, for example columns=t,_"
+                remedy = f"remove its columns, or skip them with _, as in {arg('columns', 't,_')}"
                 raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
         t = self._numbers.values[:, self._places["t"][0]]
         for i in np.flatnonzero(~np.isfinite(t))[:1]:
@@ -195,7 +195,7 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     try:
         factor = in_known_unit("t", found, names).factor or Fraction(1)
     except LagtopError as error:
-        raise DataError(f"{table.name}: {error}") from None
+        raise DataError.at(table.name, error) from None
     times = ListedPoints(_Times(table, found.columns[0], factor))
     if not times.count:
         raise DataError(f"{table.name} must hold at least one time, got none")
@@ -215,4 +215,4 @@ class _Times:
             try:
                 yield self.factor * self.table.number(cell)
             except LagtopError as error:
-                raise self.table.wrong(number, f"the time {error}") from None
+                raise self.table.wrong(number, f"the time {error.marked}") from None

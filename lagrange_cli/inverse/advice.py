@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.text import shortened
-from ..errors import DataError, LagtopError
+from ..errors import DataError, LagtopError, Message, arg
 from ..files import rotations
 from ..files.rotations import within_half_turn
 from ..names import ANGLES
-from .checks import CHANCE
+from .checks import CHANCE, Mistake, MoreNoise
 from .decay import decay_of
 from .known import Known
 from .outcome import GOOD, STEADY, Outcome
@@ -39,8 +39,6 @@ _ROWS_PER_WINDOW = 24
 _BODY = ("m", "g", "s", "A", "A_cm", "C")
 _FEW, _LEAST_TIMES = 0.03, 0.25
 """Largest share of rows that are outliers, and least share of times that differ."""
-_MISTAKEN = ("impossible", "not a steady precession")
-"""Words of faults that come from a mistake in the data, not from too little of it."""
 _WHOLE, _ROUNDED = 1e-4, 0.6
 """If t is rounded: the deviation of times from whole units, and that of even times, in units."""
 _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
@@ -53,8 +51,8 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     body = {name: x for name, x in known.items() if name in _BODY}
     if len(recording.angles) == 1:  # of which a known start is a part
         body = dict(known)
-    is_wrong = any(not x.startswith("chi2") for x in outcome.misfits)  # not only more noise
-    is_wrong |= any(word in x for x in outcome.faults for word in _MISTAKEN)
+    is_wrong = any(not isinstance(x, MoreNoise) for x in outcome.misfits)
+    is_wrong |= any(isinstance(x, Mistake) for x in outcome.faults)
     if outcome.origin or not is_wrong:  # a marker's pivot is named, or known inputs contradict
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
@@ -124,8 +122,8 @@ def _frames(recording: Recording, known: Known) -> Iterator[str]:
     if recording.kind == "attitude":
         last = _scalar_last(recording)
         if _calmness(last.thinned(_ROWS)) < least and _is_good(last, known):
-            where = "on the command line, quaternion_order=xyzw"
-            yield f"the quaternion is in the order x, y, z, w: give w first ({where})"
+            where = f"on the command line, {arg('quaternion_order', 'xyzw')}"
+            yield Message(f"the quaternion is in the order x, y, z, w: give w first ({where})")
     tried = [{"up": x} for x in _AXES]
     if recording.kind == "attitude":
         tried += [{"axis": x} for x in _AXES] + [{"up": x, "axis": x} for x in ("x", "y")]
@@ -137,7 +135,8 @@ def _frames(recording: Recording, known: Known) -> Iterator[str]:
             words = " and ".join(f"the {x} axis {_MEANINGS[word]}" for word, x in one.items())
             if one == {"up": "-z"} and recording.kind == "axis":
                 words += ", or the marker is opposite to the centre of mass"
-            yield f"{words}: use align={','.join(f'{word}={x}' for word, x in one.items())}"
+            align = ",".join(f"{word}={x}" for word, x in one.items())
+            yield Message(f"{words}: use {arg('align', align)}")
 
 
 def _scalar_last(recording: Recording) -> Recording:
@@ -220,7 +219,7 @@ def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) 
                 return
             others = (_tried(part, known, CHANCE / count) for part in parts)
             if all(found is not None and found.verdict == GOOD for found in others):
-                yield f"the spin decays: use window={count}"
+                yield Message(f"the spin decays: use {arg('window', count)}")
                 return
     if lost:
         yield f"the spin decays: {lost}, and within each window"

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.special import fdtrc, gammaincinv, ndtri
 
 from ..arithmetic.types import Array, Mask
+from ..errors import Message
 
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
@@ -31,6 +32,14 @@ _ROWS_PER_LAG, _LAGS, _WEAK = 2.0, 12, 0.1
 a correlation that is none."""
 _COARSE, _WITHIN = 0.6, 0.75
 """An encoder's residuals: largest rms, and largest 95 % quantile, over its step."""
+
+
+class Mistake(Message):
+    """A reason that comes from a mistake in the data, not from too little of it."""
+
+
+class MoreNoise(Message):
+    """A reason that more noise than was given may explain."""
 
 
 @dataclass

@@ -20,7 +20,7 @@ from scipy.optimize import brentq, least_squares
 
 from ..arithmetic.text import double_text, quoted, shortened
 from ..arithmetic.types import Array
-from ..errors import AbsentError, LagtopError, check_type
+from ..errors import AbsentError, LagtopError, arg, check_type
 from ..names import check_names, repeated
 from ..solver.facts import Regime
 from ..solver.keys import all_keys, shown_keys, unit_name
@@ -127,12 +127,13 @@ def search_of(
         raise LagtopError(f"a condition must name each key once, got {key} twice")
     spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
     if len(spans) not in _COUNTS:
-        wanted = f"1 to {max(_COUNTS)} unknown inputs as ranges, such as r0=10:200"
+        wanted = f"1 to {max(_COUNTS)} unknown inputs as ranges, such as {arg('r0', '10:200')}"
         raise LagtopError(f"find takes {wanted}, got {len(spans)}")
     steady = {("k", 0), ("regime", Regime.STEADY.value)}
     is_steady = given.inputs.get("psidot0") in STEADY_WORDS
     if not is_steady and steady & {(x.key, x.value) for x in found if x.relation == "="}:
-        raise LagtopError("a steady precession is not found by a scan: use psidot0=steady")
+        remedy = f"use {arg('psidot0', 'steady')}"
+        raise LagtopError(f"a steady precession is not found by a scan: {remedy}")
     goals = [x for x in found if x.relation == "=" and x.key not in _WORDS]
     if not goals and len(spans) == 1:
         goals = [x for x in found if x.key in _WORDS][:1]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, Message, arg
 from ..names import check_names
 from ..output.report import uncertain_text
 from ..top.inputs import checked_double
@@ -150,19 +150,21 @@ def compared(
     if name == "A" and WEIGHT <= known.keys():
         added = given[0] + known["m"][0] * known["s"][0] ** 2
         if abs(added - found[0]) <= CONTRADICTS * math.hypot(given[1], found[1]):
-            return far, False, f"{text}: it is about the centre of mass, so give A_cm instead"
+            text += ": it is about the centre of mass, so give "
+            return far, False, Message(f"{text}{arg('A_cm')} instead")
     ratio = given[0] / found[0] if found[0] else math.inf
     for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
         if abs(ratio / factor - 1) < _ROUGHLY:
             more = f"{_plain(factor)} times as large"
             times = more if factor > 1 else f"1/{_plain(1 / factor)} of it"
-            return far, False, f"{text}, about {times}: check the units, or omit {name}"
+            text += f", about {times}: check the units, or omit {arg(name)}"
+            return far, False, Message(text)
     others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
     others += [_CLOCK] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
     checks = dict.fromkeys(("A", "A_cm", "C"), ", ".join(others))
     checks |= dict.fromkeys(("r0", "phidot0"), _CLOCK)
     check = f", or check {checks[name]}" if checks.get(name) else ""
-    return far, False, f"{text}: omit {name}{check}"
+    return far, False, Message(f"{text}: omit {arg(name)}{check}")
 
 
 def _plain(x: float) -> str:

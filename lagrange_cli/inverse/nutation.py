@@ -12,6 +12,7 @@ from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..solver.keys import shown_keys, unit_name
 from ..sweeps.records import sweep
+from .checks import Mistake
 from .known import body_numbers, time_power
 from .outcome import PERCENT, Number, Outcome
 from .problem import BESIDE_POLE, Minimum, Problem
@@ -129,7 +130,8 @@ def _faults(found: Minimum, *, is_even: bool) -> list[str]:
         std = found.std("b") / abs(values["r0"] or math.inf)
         is_free = "phi" in problem.recording.angles and is_even
         if not -3 * std < ratio < 2 + 3 * std and not (is_free and abs(ratio) < 3 * std):
-            faults.append(f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2")
+            wrong = f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2"
+            faults.append(Mistake(wrong))
     return faults
 
 

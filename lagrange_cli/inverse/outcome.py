@@ -11,12 +11,12 @@ import numpy as np
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from ..errors import AbsentError
+from ..errors import AbsentError, joined
 from ..files.rotations import within_half_turn
 from ..names import ANGLES
 from ..output.notebook import HasRecord
 from ..output.report import uncertain_text
-from .checks import CHANCE, LARGEST, Residuals, chi2_bounds
+from .checks import CHANCE, LARGEST, MoreNoise, Residuals, chi2_bounds
 from .known import Known
 from .recording import Recording, shifted_origin
 
@@ -149,7 +149,7 @@ class Outcome(HasRecord):
         if chi2 is not None and chi2 > high:
             sigma = self.recording.sigma
             times, name = max((rest.rms / sigma[x], x) for x, rest in self.residuals.items())
-            yield (
+            yield MoreNoise(
                 f"chi2/dof = {chi2:.3g} is above {high:.3g}: a different motion, or more noise: "
                 f"the rms of {name} is {times:.3g} sigma"
             )
@@ -180,7 +180,7 @@ class Outcome(HasRecord):
 
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""
-        return self.recording.named("; ".join([self.failures()[0], *self.hints]))
+        return self.recording.named(joined([self.failures()[0], *self.hints]))
 
     @property
     def verdict(self) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.types import Array, Mask
-from ..errors import DataError, LagtopError
+from ..errors import DataError, LagtopError, Message, marked
 from ..files import rotations
 from ..files.observed import Conventions, Quantities, angles_in, observe, quantities_of, rows_of
 from ..files.rotations import within_half_turn
@@ -109,7 +109,7 @@ class Recording:
 
     def named(self, text: str) -> str:
         """Return a text on this recording, after its name if it has one."""
-        return f"{self.name}: {text}" if self.name else text
+        return Message(f"{self.name}: {marked(text)}") if self.name else text
 
     @property
     def mirrored(self) -> Recording:

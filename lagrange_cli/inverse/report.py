@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from types import SimpleNamespace
 
 from ..arithmetic.numbers import angle_unit
+from ..errors import Message, marked
 from ..output.report import Field, Report
 from .decay import decay_text
 from .outcome import PERCENT, Number, Outcome
@@ -65,5 +66,5 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     yield f"RMS residual ({unit}): {rest}."
     if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
         yield f"Correlation: {pairs}."
-    yield from (f"Note: {text}." for text in outcome.remarks)
-    yield from (f"Failed: {text}." for text in [*outcome.failures(), *outcome.hints])
+    yield from (Message(f"Note: {marked(text)}.") for text in outcome.remarks)
+    yield from (Message(f"Failed: {marked(text)}.") for text in outcome.failures()[1:])

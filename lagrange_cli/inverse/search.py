@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import DataError
+from ..errors import DataError, Message, arg
 from ..files import rotations
 from .checks import CHANCE, LARGEST, Residuals
 from .known import Known, compared, estimates, scaled_known, selects_any, time_power, whole_turns
@@ -112,7 +112,7 @@ def best_fit(
     for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
         if recording.angles.keys() == {alone} and needed not in known:
             when = ", 0 if the top is released from rest" * (alone == "theta")
-            raise DataError(f"{alone} alone does not determine a top: give {needed}{when}")
+            raise DataError(f"{alone} alone does not determine a top: give {arg(needed)}{when}")
     signals = signals_in(recording)
     frequency, visible = oscillation_in(signals)
     lasts = frequency * recording.t[-1] >= 1
@@ -406,7 +406,10 @@ def _against_known(
             notes.append(text)
     if problem.free and "steady" in known:
         texts.append(
-            "known psidot0 = steady contradicts the recording, which nutates: omit psidot0"
+            Message(
+                "known psidot0 = steady contradicts the recording, which nutates: "
+                f"omit {arg('psidot0')}"
+            )
         )
     return notes, texts, distances
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from .checks import CHANCE, Residuals
+from ..errors import Message, arg
+from .checks import CHANCE, Mistake, Residuals
 from .known import WEIGHT, Known, compared
 from .outcome import Number, Outcome
 from .recording import Recording
@@ -102,7 +103,7 @@ def steady_outcome(
         recording, means, whole, is_slow = _direction(recording, means, tilt, notes)
         is_sure |= is_slow
     elif "phi" in means:
-        notes.append("without the tilt neither r0 nor C follows: give theta0")
+        notes.append(Message(f"without the tilt neither r0 nor C follows: give {arg('theta0')}"))
     numbers: dict[str, Number] = {}
     for name, key, size in (
         ("theta", f"mean_tilt_{unit}", scale),
@@ -248,21 +249,25 @@ def _faults(
     recording: Recording, turn: _Mean, r0: float, result: Outcome, frequency: float
 ) -> list[str]:
     """Return why the motion is not a steady precession, besides the residuals."""
-    found = []
+    found = list[str]()
     for rest in result.residuals.values():
         if not rest.is_coarse and rest.structure(frequency)[1] < CHANCE / 10:
-            found.append("the motion is not a steady precession: the angles oscillate")
+            wrong = "the motion is not a steady precession: the angles oscillate"
+            found.append(Mistake(wrong))
             break
     if "psi" not in recording.angles:
         found.append("no nutation is visible, and without psi no precession rate")
     elif not abs(turn.value) > _SURE * turn.std:
         found.append("no nutation is visible, and the precession rate is not determined")
     elif turn.value * r0 < 0 and (recording.kind == "attitude" or "r0" in result.known):
-        found.append("C/A < 0 is impossible: spin and precession have opposite signs")
+        wrong = "C/A < 0 is impossible: spin and precession have opposite signs"
+        found.append(Mistake(wrong))
     scatter = float(np.nanstd(recording.angles.get("theta", np.zeros(1))))
     if scatter > _MOST_TILT and not recording.sigma:
         off = math.degrees(scatter)
-        found.append(f"the tilt varies by {off:.2g} degrees: give sigma if this is noise")
+        noise = f"give {arg('sigma')} if this is noise"
+        found.append(Message(f"the tilt varies by {off:.2g} degrees: {noise}"))
     elif recording.t.size < _LEAST_ROWS and not recording.sigma:
-        found.append(f"{recording.t.size} rows are too few to tell nutation from noise: give sigma")
+        few = f"{recording.t.size} rows are too few to tell nutation from noise"
+        found.append(Message(f"{few}: give {arg('sigma')}"))
     return found

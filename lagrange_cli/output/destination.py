@@ -1,7 +1,6 @@
 """Destination of output: a file that is replaced once all is written, or standard output.
 
-`Output` is a destination with a format; it writes a text, a record or rows.  Formats of
-rows and tables are imported when they are needed, because `lagtop solve` starts often.
+`Output` is a destination with a format; it writes documents and rows.
 """
 
 from __future__ import annotations
@@ -11,19 +10,22 @@ import io
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
-from ..arithmetic.text import NumberText, value_text
-from ..errors import CannotWriteError, LagtopError
+from ..arithmetic.text import NumberText
+from ..errors import CannotWriteError
+from .formats import format_of
 from .terminal import is_screen, printable, width_of
-from .text import csv_text, json_text
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .formats import Texts
-    from .report import Keys
+    from .document import Document
+    from .formats.base import Format
+
+Texts = Sequence[Sequence[str]]
+"""A block of rows with numbers as text; an empty text is a missing number."""
 
 
 class Output(NamedTuple):
@@ -34,30 +36,23 @@ class Output(NamedTuple):
     is_named: bool = False
     """Whether the user named the format."""
 
-    def text(self, text: str) -> None:
-        """Write a text, without control characters if the output is a terminal."""
+    @property
+    def format(self) -> Format:
+        """The format, imported when it is used."""
+        return format_of(self.fmt)
+
+    def document(self, document: Document) -> None:
+        """Write a document.  Raises LagtopError if the format cannot hold it."""
         with opened(self.path) as stream:
-            stream.write((printable(text) if is_screen(self.path) else text).encode())
+            stream.write(self.bytes_of(document))
 
-    def record(self, record: Mapping[str, Any], keys: Callable[[], Keys]) -> None:
-        """Write one record; a table shows it by its `keys`.  Raises LagtopError for Parquet."""
-        if self.fmt == "parquet":
-            raise LagtopError("format parquet holds tables: use json or csv", "format")
-        if self.fmt in {"json", "ndjson"}:
-            self.text(f"{_json_value(record)}\n")
-        elif self.fmt == "csv":
-            self.text(f"{','.join(record)}\n{','.join(map(csv_text, record.values()))}\n")
-        else:
-            from .report import record_text
+    def bytes_of(self, document: Document) -> bytes:
+        """Return a document in the format, without control characters on a terminal."""
+        written: bytes = self._safe(self.format.document(document, width_of(self.path)))
+        return written
 
-            text = record_text(record, keys(), width_of(self.path))
-            with opened(self.path) as stream:
-                stream.write(text.encode())
-
-    def table(self, names: Sequence[str], blocks: Iterable[Array | Texts]) -> None:
+    def rows(self, names: Sequence[str], blocks: Iterable[Array | Texts]) -> None:
         """Write rows in blocks: arrays, or lists of numbers as text."""
-        from .formats import block_text
-
         columns = (
             [[*map(NumberText, x)] for x in zip(*rows, strict=True)]
             if isinstance(rows, list)
@@ -65,37 +60,21 @@ class Output(NamedTuple):
             for rows in blocks
             if len(rows)
         )
-        self.blocks(names, (block_text(x, names, self.fmt) for x in columns))
+        self.blocks(names, (self.format.block(x, names) for x in columns))
 
-    def blocks(self, names: Sequence[str], blocks: Iterable[bytes]) -> None:
-        """Write blocks made by `formats.block_text`, with the header and footer of the format."""
-        from .formats import write
-
-        if is_screen(self.path):
-            names = [printable(name) for name in names]
-            blocks = (printable(block.decode()).encode() for block in blocks)
+    def blocks(self, names: Sequence[str], blocks: Iterable[Any]) -> None:
+        """Write blocks that the format has encoded."""
+        each = (self._safe(block) for block in blocks if len(block))
         with opened(self.path) as stream:
-            write(stream, names, blocks, self.fmt, width_of(self.path))
+            self.format.write(stream, [*map(self._safe, names)], each, width_of(self.path))
 
-    def rows(
-        self, rows: Sequence[Mapping[str, Any]], keys: Sequence[str], names: Sequence[str] = ()
-    ) -> None:
-        """Write some rows by key; their columns have the keys, or other names, as headings."""
-        from .formats import block_text
-
-        columns = [[row.get(key) for row in rows] for key in keys]
-        self.blocks(names or keys, [block_text(columns, keys, self.fmt)])
-
-
-def _json_value(value: Any) -> str:
-    """Return a value as orjson would write it, with numbers that are written out already."""
-    if isinstance(value, Mapping):
-        members = [f'"{key}":{_json_value(x)}' for key, x in value.items()]
-        return f"{{{','.join(members)}}}"
-    if type(value) is str:
-        is_plain = value.isprintable() and not set(value) & {'"', "\\"}
-        return f'"{value}"' if is_plain else json_text(value)  # start-up: nearly all are plain
-    return value_text(value) or "null"
+    def _safe(self, written: Any) -> Any:
+        """Return what is written without control characters if the output is a terminal."""
+        if self.format.is_for_people or not is_screen(self.path):
+            return written
+        if isinstance(written, str):
+            return printable(written)
+        return printable(written.decode()).encode()
 
 
 @contextmanager

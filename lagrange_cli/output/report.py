@@ -1,28 +1,14 @@
-"""Output for people: records, rows and reports, drawn as tables by rich.
-
-`Report` is the class of all reports: budget, compare, fit, explain, stability and bench.
-"""
+"""`Report`, the class of all reports: budget, compare, fit, explain, stability and bench."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
-from io import StringIO
-from itertools import groupby
-from textwrap import fill
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from ..arithmetic.text import double_text, value_text
+from ..arithmetic.text import double_text
 from ..file_bytes import utf8_path
-from ..names import Key
-from .terminal import printable
-from .text import csv_text
-
-if TYPE_CHECKING:
-    from rich.text import Text
-
-Keys = Mapping[str, Key]
-"""Keys of a record by name, in the order of a table."""
+from .document import Document, Grid, Lines
 
 
 class Field(NamedTuple):
@@ -65,122 +51,24 @@ class Report(NamedTuple):
             {x: utf8_path(y) if isinstance(y, str) else y for x, y in z.items()} for z in values
         ]
 
-    def text(self, fmt: str, width: int | None = None) -> bytes:
-        """Return the report in a format, in the `width` of a terminal if there is one.
-
-        CSV and NDJSON hold only the rows.  JSON is one object, in which infinite numbers are null.
-        """
-        if fmt == "table":
-            return self._drawn(width).encode()
-        if fmt == "csv":
-            lines = [[field.key for field in self.fields], *(row.values() for row in self.values())]
-            text = "".join(",".join(map(csv_text, line)) + "\n" for line in lines)
-            return (printable(text) if width else text).encode()
-        import orjson
-
-        if fmt == "ndjson":
-            return b"".join(orjson.dumps(row) + b"\n" for row in self.values())
-        conditions = {name: utf8_path(x) for name, x in self.conditions.items()}
-        conclusions = [*map(utf8_path, self.conclusions)]
-        whole = {"conditions": conditions, "rows": self.values(), "conclusions": conclusions}
+    def document(self, said: Callable[[str], str] = str) -> Document:
+        """Return the report as a document whose conclusions are `said` in another way."""
+        conditions = {name: utf8_path(said(x)) for name, x in self.conditions.items()}
+        conclusions = [utf8_path(said(x)) for x in self.conclusions]
+        rows = self.values()
+        whole = {"conditions": conditions, "rows": rows, "conclusions": conclusions}
         whole |= {"units": self.units} if self.units else {}
-        return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
-
-    def _drawn(self, width: int | None) -> str:
-        """Return the rows as a table between conditions and conclusions."""
         shown = [field for field in self.fields if field.heading]
-        rows = [[field.cell(row) for field in shown] for row in self.rows]
+        cells = [[field.cell(row) for field in shown] for row in self.rows]
         numbers = [i for i, field in enumerate(shown) if not field.is_text]
-        table = drawn([field.heading for field in shown], rows, numbers, width) if rows else ""
-        conditions = [_filled(f"{x:11}{y}", width or 100, 11) for x, y in self.conditions.items()]
-        conclusions = [_filled(text, width) for text in self.conclusions]
-        texts = ["\n".join(conditions), table.rstrip("\n"), "\n".join(conclusions)]
-        return "\n\n".join(filter(None, texts)) + "\n"
-
-
-def _filled(text: str, width: int | None, indent: int = 0) -> str:
-    """Return running text, in lines that fit if there is a width."""
-    hanging = " " * indent
-    return fill(printable(text), width or 10**6, subsequent_indent=hanging, break_on_hyphens=False)
-
-
-WIDE = 110
-"""Width of a terminal, in columns, from which on the table of a record has the names too."""
-
-
-def record_text(record: Mapping[str, Any], keys: Keys, width: int | None) -> str:
-    """Return a record as a table: its summary, a line for each key with a value, and its remark.
-
-    If there is a radius, it replaces the equation.
-    """
-    from rich.text import Text
-
-    shown = ["Key", "Symbol", "Name", "Value", "Unit", "Equation"]
-    if (width or 0) < WIDE:
-        shown.remove("Name")
-    rows: list[list[str | Text]] = []
-    with_value = (x for x in keys.items() if record.get(x[0]) is not None and x[0] != "remark")
-    for group, items in groupby(with_value, lambda x: x[1].group):
-        rows.append([Text(group, "bold"), *[""] * (len(shown) - 1)])
-        for name, key in items:
-            cells = {"Key": name, "Symbol": key.symbol, "Name": key.meaning, "Unit": key.unit}
-            cells["Value"] = value_text(record[name])
-            cells["Equation"] = record.get(f"{name}_radius") or key.equation
-            rows.append([cells[heading] for heading in shown])
-    table = drawn(shown, rows, (shown.index("Value"),), width)
-    summary, remark = record.get("summary"), record.get("remark")
-    texts = [summary and fill(summary, width or 80), table.rstrip("\n"), remark and f"{remark}"]
-    return "\n\n".join(filter(None, texts)) + "\n"
-
-
-def rows_text(names: Sequence[str], rows: Sequence[Sequence[str]], width: int | None) -> str:
-    """Return rows as a table; it has a line per name if only that fits the width of a terminal."""
-    from rich.cells import cell_len
-
-    def fits(lines: Sequence[Sequence[str]]) -> bool:
-        widths = (max(map(cell_len, column)) + 2 for column in zip(*lines, strict=True))
-        return width is None or sum(widths) - 2 <= width
-
-    numbers = [str(i) for i in range(1, len(rows) + 1)]
-    upright = [["key", *numbers], *(x for x in zip(names, *rows, strict=True) if any(x[1:]))]
-    if rows and not fits([names, *rows]) and fits(upright):
-        return drawn(upright[0], upright[1:], range(1, len(rows) + 1), width)
-    return drawn(names, rows, range(len(names)), width)
-
-
-def drawn(
-    headings: Sequence[str],
-    rows: Sequence[Sequence[str | Text]],
-    numbers: Container[int],
-    width: int | None = None,
-) -> str:
-    """Return a table drawn by rich; `numbers` are the places of columns that hold numbers.
-
-    On a terminal of a `width`, texts are wrapped and headings are bold.  No digit is ever cut.
-    """
-    from rich import box
-    from rich.console import Console
-    from rich.measure import Measurement
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
-    for i, heading in enumerate(headings):
-        justify: Any = "right" if i in numbers else "left"
-        table.add_column(Text(printable(heading)), justify=justify, no_wrap=i in numbers)
-    texts = [[x if isinstance(x, Text) else Text(printable(x)) for x in row] for row in rows]
-    columns = list(zip(*texts, strict=True))
-    spaces = 3 * (len(headings) - 1)
-    if sum(max(x.cell_len for x in column) for column in columns) + spaces <= (width or 10**6):
-        texts = [[Text("\n").join(column) for column in columns]]  # rich is slow for many cells
-    for row in texts:
-        table.add_row(*row)
-    console = Console(file=StringIO(), width=10**6, force_terminal=width is not None)
-    least = Measurement.get(console, console.options, table).minimum
-    console.width = max(width or 10**6, least)
-    with console.capture() as captured:
-        console.print(table, crop=False)
-    return "".join(f"{line.rstrip()}\n" for line in captured.get().splitlines())
+        page: list[str | Grid | Lines] = []
+        if conditions:
+            page.append(Lines([f"{x:11}{y}" for x, y in conditions.items()], hanging=11))
+        if cells:
+            page.append(Grid([field.heading for field in shown], cells, numbers))
+        page += ["\n".join(conclusions)] if conclusions else []
+        asides = [f"{name}: {text}" for name, text in conditions.items()]
+        return Document([x.key for x in self.fields], rows, lambda _: page, whole, asides)
 
 
 def with_unit(text: str, unit: str | None) -> str:

@@ -30,7 +30,7 @@ from ..arithmetic.enclosures import (
 from ..arithmetic.numbers import Real
 from ..arithmetic.text import NumberText, double_text
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 from ..names import ANGLES
 from ..top.ranges import EvenPoints, Points
 from .attitude import Course, SingleSwing, start_of
@@ -171,7 +171,8 @@ def grid(
     t_min = Fraction(0) if t_min is None else t_min
     t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
     if not t_max >= t_min:
-        raise LagtopError(f"t_max must be >= t_min = {float(t_min)}, got {float(t_max)}", "t_max")
+        least = f"{arg('t_min')} = {float(t_min)}"
+        raise LagtopError(f"t_max must be >= {least}, got {float(t_max)}", "t_max")
     if dt is not None:
         if not dt > 0:
             raise LagtopError(f"dt must be > 0, got {float(dt)}", "dt")
@@ -182,7 +183,7 @@ def grid(
     try:
         return EvenPoints(t_min, step, count)
     except LagtopError as error:
-        raise LagtopError(f"the grid of times {error}") from None
+        raise LagtopError(f"the grid of times {error.marked}") from None
 
 
 def within_a_turn(angle: arb, *, plane: bool) -> arb:

@@ -19,7 +19,7 @@ from .. import __version__
 from ..errors import CannotWriteError, LagtopError
 from ..file_bytes import read_bytes
 from ..output.destination import opened
-from ..output.formats import part_file
+from ..output.formats import FORMATS, format_of
 from .plan import NumberedBlock, Part, Sweep
 
 
@@ -60,7 +60,7 @@ class Parts:
 
     def _files(self, number: int) -> tuple[Path, Path]:
         """Return the file of a part, and the file that counts its errors."""
-        part = self.path / f"part-{number:06}.{self.sweep.fmt}"
+        part = self.path / f"part-{number:06}.{FORMATS[self.sweep.fmt].extension}"
         return part, self.path / f"errors-{number:06}.json"
 
     def missing(self, blocks: Iterable[NumberedBlock], done: list[Part]) -> Iterator[NumberedBlock]:
@@ -84,7 +84,7 @@ class Parts:
             else:
                 errors.unlink(missing_ok=True)  # that of a damaged part
             with opened(str(part)) as stream:
-                stream.write(part_file(self.sweep.fmt, self.sweep.header, number, text))
+                stream.write(format_of(self.sweep.fmt).part(self.sweep.header, number, text))
 
 
 def _create(file: Path, content: bytes) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import LagtopError, SomeFailedError
 from ..files.tops import Product, TopsFile, read_tops
-from ..output.formats import block_text
+from ..output.formats import format_of
 from ..top.given import Given, gather
 from ..top.inputs import EXAMPLE, checked_double, overridden
 from ..top.ranges import Points
@@ -31,7 +31,8 @@ class Part(NamedTuple):
     """One part, computed."""
 
     number: int
-    text: bytes
+    text: Any
+    """Its rows, as the format encodes them."""
     size: int
     """The number of tops."""
     failed: int
@@ -73,7 +74,7 @@ class Sweep(NamedTuple):
         for are_numbers, run in groupby(every, lambda column: column.dtype == np.float64):
             some = [*run]
             computed += [np.stack(some, axis=1)] if are_numbers else [x.tolist() for x in some]
-        text = block_text([*given.carried, *computed], self.header, self.fmt)
+        text = format_of(self.fmt).block([*given.carried, *computed], self.header)
         return Part(number, text, given.size, len(failed), found[failed[0]] if failed else "")
 
 

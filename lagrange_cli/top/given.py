@@ -83,7 +83,9 @@ class Given(NamedTuple):
             moments = [name for name in ("A", "C") if name in self.missing]
             if moments and error.key in {"A", "C"}:
                 which = f"{' and '.join(moments)} of the worked example"
-                error = LagtopError(f"{error} (with {which}: give the whole body)", error.key)
+                error = LagtopError(
+                    f"{error.marked} (with {which}: give the whole body)", error.key
+                )
             raise self.placed(error) from None
 
     def placed(self, error: LagtopError) -> LagtopError:

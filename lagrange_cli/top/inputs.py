@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from ..arithmetic.numbers import Real, is_real
 from ..arithmetic.text import quoted
-from ..errors import LagtopError, MixedBodyWarning
+from ..errors import LagtopError, MixedBodyWarning, arg
 
 N = TypeVar("N")
 
@@ -100,7 +100,7 @@ def one_of_each(given: Iterable[str]) -> None:
     keys = set(given)
     for key, other in (*STANDS_FOR.items(), ("theta0_rad", "theta0_deg")):
         if {key, other} <= keys:
-            raise LagtopError(f"{key} and {other} are both given: leave one out", key)
+            raise LagtopError(f"{key} and {arg(other)} are both given: leave one out", key)
 
 
 def from_example(given: Mapping[str, Any]) -> dict[str, float]:

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..arithmetic.text import own_context
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 
 if TYPE_CHECKING:
     import numpy as np
@@ -155,4 +155,6 @@ def check_reach(name: str, points: Points, limit: float) -> None:
     farthest = max(points.bounds(), key=abs)
     if abs(farthest) > limit:
         wanted = f"within 2^50 periods = {limit:.3g} of 0"
-        raise LagtopError(f"{name} must be {wanted}, got {farthest} (or use digits=N)", name)
+        raise LagtopError(
+            f"{name} must be {wanted}, got {farthest} (or use {arg('digits', 'N')})", name
+        )

@@ -82,7 +82,8 @@ class SceneFile:
             try:
                 found = _value(key, value)
             except LagtopError as error:
-                raise self.error(LagtopError(str(error), key)) from None
+                error.key = key
+                raise self.error(error) from None
             self.inputs[tilt_key(key, found)] = found
 
     def error(self, error: LagtopError) -> SceneError:
@@ -91,7 +92,9 @@ class SceneFile:
         numbered = enumerate(self._text.split("\n"), 1)
         line = next((i for i, text in numbered if error.key and pattern.match(text)), None)
         place = f"{self.name}, line {line}" if line else self.name
-        return SceneError(f"{place}: {error}", error.key)
+        found = SceneError(f"{place}: {error}")  # in a file, names are keys and no options
+        found.key = error.key
+        return found
 
 
 def _value(key: str, value: object) -> Value:

@@ -98,7 +98,7 @@ def parse_value(
             raise LagtopError(f"must have no uncertainty in this command, {got}: leave it out")
         found = parse(plain, read) if parse else read(plain)
     except LagtopError as error:
-        whole = str(error).replace(f"got {quoted(number)}", got)
+        whole = error.marked.replace(f"got {quoted(number)}", got)
         if number in STEADY_WORDS:
             keys = "steady_rate_slow and steady_rate_fast"
             whole = f"must be a number unless one top is solved, got {number}: see the keys {keys}"

@@ -20,7 +20,9 @@ from lagrange_cli.cli.app import NAMES as COMMANDS
 from lagrange_cli.cli.fit import _write as write_fits
 from lagrange_cli.cli.shared import is_scene
 from lagrange_cli.output.destination import Output
-from lagrange_cli.output.report import record_text
+from lagrange_cli.output.document import record_page
+from lagrange_cli.output.formats.table import FORMAT
+from lagrange_cli.output.report import Report
 from lagrange_cli.solver.columns import COLUMNS
 from lagrange_cli.solver.keys import KEYS as SHOWN
 from lagrange_cli.solver.keys import all_keys
@@ -71,7 +73,9 @@ def test_json_and_csv_have_the_keys_in_order(lagtop: Lagtop, solved: Solved) -> 
 
 def test_a_wide_table_has_the_names_too() -> None:
     keys = {"K": SHOWN["K"]}
-    narrow, wide = (record_text({"K": 1.5}, keys, width) for width in (109, 110))
+    narrow, wide = (
+        FORMAT.page(record_page({"K": 1.5}, lambda: keys, width), width) for width in (109, 110)
+    )
     assert "first kind" in wide
     assert "first kind" not in narrow
 
@@ -221,7 +225,7 @@ OTHERS = {
     "solve --get precession": f"(did you mean {_RATES}?)",
     "solve --get theta_max": "(did you mean 'theta_max_deg'?)",
     "sweep --keys x": "Error: --keys must be among 77 names, got 'x': regime, a",
-    "jacobi --k 0.8 --format parquet": "--format parquet holds tables: use json or csv",
+    "jacobi --k 0.8 --format parquet": "--format holds only rows of numbers: use csv or json",
     "jacobi --k 0.8 --u i,K": "--u must not contain K if numbers are complex",
     "compare x.csv --plot x.bmp": "the name of a picture must end in .png, .svg or .pdf",
 }
@@ -260,8 +264,11 @@ def test_a_body_that_cannot_be_built_is_computed(line: str, bound: str, lagtop: 
     )  # C <= 2 (A - m s^2) up to rounding
 
 
-def test_one_window_of_a_fit_is_a_record_in_json(tmp_path: Path) -> None:
+def test_one_window_of_a_fit_is_a_record_in_json(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     outcome: Any = SimpleNamespace(record=lambda: {"a": 1.5}, notes=[])
+    monkeypatch.setattr("lagrange_cli.inverse.report.fit_report", lambda *_: Report({}, [], [], []))
     write_fits([outcome], "", "", Output(str(path := tmp_path / "fit"), "json"))
     assert path.read_text() == '{"a":1.5}\n'
 
@@ -328,7 +335,7 @@ def test_scenes_are_found_by_name(
 
 def test_the_exit_codes_have_one_wording(lagtop: Lagtop) -> None:
     rows = re.findall(r"(?m)^\| ([\d +N]+) \| (.*) \|$", str(errors.__doc__))
-    assert len(rows) == 7
+    assert len(rows) == 8
     shown = " ".join(lagtop("--help").stdout.split())
     written = (ROOT / "lagrange_cli" / "cli" / "README.md").read_text()
     for code, meaning in rows:

@@ -29,13 +29,34 @@ from lagrange_cli.arithmetic.text import NumberText, double_text, value_text
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
-from lagrange_cli.output.formats import block_text, part_file, write
+from lagrange_cli.output.document import (
+    Grid,
+    record_document,
+    record_page,
+    rows_document,
+    rows_grid,
+)
+from lagrange_cli.output.formats import format_of
+from lagrange_cli.output.formats.table import FORMAT, drawn
 from lagrange_cli.output.notebook import HasRecord
-from lagrange_cli.output.report import Field, Report, drawn, record_text, rows_text
+from lagrange_cli.output.report import Field, Report
 from lagrange_cli.output.text import csv_text
 from lagrange_cli.solver.keys import shown_keys
 
 NAMES = ["a", "text", 'b,"', "c", "more"]
+
+
+def write_x(path: str) -> None:
+    with opened(path) as stream:
+        stream.write(b"x")
+
+
+def table_of(page: Any, width: int | None) -> str:
+    return FORMAT.page(page, width)
+
+
+def rows_text(names: Any, rows: Any, width: int | None) -> str:
+    return table_of([rows_grid(names, rows)], width)
 
 
 def rows_of(count: int) -> tuple[list[Any], list[list[Any]]]:
@@ -51,8 +72,8 @@ def rows_of(count: int) -> tuple[list[Any], list[list[Any]]]:
 
 
 def text_of(fmt: str, names: list[str], *blocks: Any) -> str:
-    stream = io.BytesIO()
-    write(stream, names, [block_text(columns, names, fmt) for columns in blocks], fmt)
+    stream, form = io.BytesIO(), format_of(fmt)
+    form.write(stream, names, [form.block(columns, names) for columns in blocks], None)
     return stream.getvalue().decode()
 
 
@@ -73,16 +94,15 @@ def test_two_blocks_read_back_as_the_rows() -> None:
 
 
 def test_blocks_of_parquet_and_parts_read_back() -> None:
-    blocks = [
-        block_text([np.array([[1.5], [math.nan]]), [x, None]], ["a", "b"], "parquet") for x in "xy"
-    ]
+    form = format_of("parquet")
+    blocks = [form.block([np.array([[1.5], [math.nan]]), [x, None]], ["a", "b"]) for x in "xy"]
     for kept, end in ((blocks, "y"), (blocks[:1], "x")):
-        write(stream := io.BytesIO(), ["a", "b"], kept, "parquet")
+        form.write(stream := io.BytesIO(), ["a", "b"], kept, None)
         found = parquet.read_table(stream).to_pylist()
         assert found[:2] == [{"a": 1.5, "b": "x"}, {"a": None, "b": None}]
         assert found[-2:] == [{"a": 1.5, "b": end}, {"a": None, "b": None}]
-    assert [part_file("csv", ["a"], i, b"1\n") for i in (0, 1)] == [b"a\n1\n", b"1\n"]
-    assert part_file("ndjson", ["a"], 0, b"{}\n") == b"{}\n"
+    assert [format_of("csv").part(["a"], i, b"1\n") for i in (0, 1)] == [b"a\n1\n", b"1\n"]
+    assert format_of("ndjson").part(["a"], 0, b"{}\n") == b"{}\n"
 
 
 def test_numbers_that_are_written_out_keep_their_digits() -> None:
@@ -102,8 +122,8 @@ def test_a_double_has_one_text_in_every_format(x: float) -> None:
     text = double_text(x)
     assert text.encode() == orjson.dumps(x)
     assert text == value_text(x) == csv_text(x)
-    assert f"{text}\n".encode() == block_text([np.array([[x]])], ["x"], "csv")
-    assert f'{{"x":{text}}}\n'.encode() == block_text([np.array([[x]])], ["x"], "ndjson")
+    assert f"{text}\n".encode() == format_of("csv").block([np.array([[x]])], ["x"])
+    assert f'{{"x":{text}}}\n'.encode() == format_of("ndjson").block([np.array([[x]])], ["x"])
     assert math.copysign(1, float(text)) == math.copysign(1, x)
     assert float(text) == x
 
@@ -120,15 +140,15 @@ RECORD = {
 
 def test_a_record_in_json_and_csv(tmp_path: Path) -> None:
     path = tmp_path / "record"
-    Output(str(path), "json").record(RECORD, dict)
+    Output(str(path), "json").document(record_document(RECORD, dict))
     text = path.read_text(encoding="utf-8")
     assert '"a":1e-7,"b":null,"c":1.50' in text
     assert json.loads(text) == RECORD | {"c": 1.5}
-    Output(str(path), "csv").record({x: RECORD[x] for x in "abc"}, dict)
+    record = {x: RECORD[x] for x in "abc"}
+    Output(str(path), "csv").document(record_document(record, dict))
     assert path.read_text() == "a,b,c\n1e-7,,1.50\n"
-    for names, header in (((), "c,a"), ("xy", "x,y")):
-        Output(str(path), "csv").rows([RECORD], ["c", "a"], names)
-        assert path.read_text() == f"{header}\n1.50,1e-7\n"
+    Output(str(path), "csv").document(rows_document([RECORD], ["c", "a"], ["x", "y"]))
+    assert path.read_text() == "c,a\n1.50,1e-7\n"
 
 
 # tables and reports
@@ -140,7 +160,7 @@ def test_a_table_cuts_no_digit_however_narrow_the_terminal() -> None:
         record = solve(Top()).record(digits=digits)
         numbers = {str(x) for x in record.values() if x is not None}
         for width in (None, 200, 80, 40, 10):
-            shown = record_text(record, shown_keys(), width)
+            shown = table_of(record_page(record, shown_keys, width), width)
             assert numbers <= set(shown.split()), width
             assert width or [x for x in shown.splitlines() if x in groups] == groups
             assert width or digits or max(map(len, shown.splitlines())) <= 80
@@ -158,32 +178,36 @@ def test_rows_that_do_not_fit_a_terminal_stand_side_by_side() -> None:
     ]
     assert len(upright) == 2 + 9
     assert re.sub("\x1b[^m]*m", "", upright[0]).split() == ["key", "1", "2"]
-    assert len(rows_text(names, rows * 9, 60).splitlines()) == 2 + 18  # neither fits
+    several = rows_text(names, rows * 9, 60).split("\n\n")  # upright tables that fit
+    assert len(several) > 1
+    assert all(len(table.splitlines()) == 2 + 9 for table in several)
     assert "key8" in rows_text(names, [], 60)
 
 
 def test_a_cell_that_is_wrapped_moves_the_rows_below_it() -> None:
     for width in (7, 9):
-        shown = drawn(["a", "b"], [["x y z", "1"], ["w", "2"]], (), width).splitlines()[2:]
+        shown = drawn(Grid(["a", "b"], [["x y z", "1"], ["w", "2"]]), width).splitlines()[2:]
         rows = [["x", "y", "1"], ["z"], ["w", "2"]] if width == 7 else [["x", "y", "z", "1"]]
         assert [line.split() for line in shown][: len(rows)] == rows
 
 
 def test_brackets_in_cells_are_no_markup_and_control_characters_are_escaped() -> None:
-    shown = drawn(["[bold]x"], [["[red]y\x1b[31m\x9b\u202e"]], (), None)
+    shown = drawn(Grid(["[bold]x"], [["[red]y\x1b[31m\x9b\u202e"]]))
     assert shown.split() == ["[bold]x", "─" * 24, "[red]y\\x1b[31m\\x9b\\u202e"]
 
 
 def test_a_report_in_every_format() -> None:
     fields = [Field("key", "key", is_text=True), Field("value", "value"), Field("hidden")]
     rows = [SimpleNamespace(key="x,y", value=1.5, hidden=math.inf)]
-    report = Report({"samples": "3"}, fields, rows, ["Fine."], {"x": "kg"})
-    assert report.text("csv") == b'key,value,hidden\n"x,y",1.5,inf\n'
+    report_ = Report({"samples": "3"}, fields, rows, ["Fine."], {"x": "kg"})
+    report = report_.document()
+    texts = {x: format_of(x).document(report, None) for x in ("csv", "ndjson", "json", "table")}
+    assert texts["csv"] == b'key,value,hidden\n"x,y",1.5,inf\n'
     row = {"key": "x,y", "value": 1.5, "hidden": None}
-    assert json.loads(report.text("ndjson")) == row
+    assert json.loads(texts["ndjson"]) == row
     whole = {"conditions": {"samples": "3"}, "rows": [row], "conclusions": ["Fine."]}
-    assert json.loads(report.text("json")) == whole | {"units": {"x": "kg"}}
-    shown = [line.split() for line in report.text("table").decode().splitlines() if line]
+    assert json.loads(texts["json"]) == whole | {"units": {"x": "kg"}}
+    shown = [line.split() for line in texts["table"].decode().splitlines() if line]
     assert shown == [["samples", "3"], ["key", "value"], ["─" * 10], ["x,y", "1.5"], ["Fine."]]
 
 
@@ -252,7 +276,7 @@ def test_places_that_a_shell_refuses(
     (tmp_path / "file").touch()
     before = sorted(tmp_path.rglob("*"))
     with pytest.raises(CannotWriteError) as error:
-        Output(path, "csv").text("x")
+        write_x(path)
     assert str(error.value) == f"cannot write {path or repr(path)}: {why}"
     assert sorted(tmp_path.rglob("*")) == before
 
@@ -261,13 +285,13 @@ def test_a_fifo_and_a_device_are_written_in_place(tmp_path: Path) -> None:
     fifo = tmp_path / "fifo"
     os.mkfifo(fifo)
     reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
-    Output(str(fifo), "csv").text("x")
+    write_x(str(fifo))
     assert os.read(reader, 9) == b"x"
     os.close(reader)
-    Output("/dev/null", "csv").text("x")
+    write_x("/dev/null")
     assert stat.S_ISFIFO(fifo.stat().st_mode)
     with pytest.raises(CannotWriteError, match="No space left"):
-        Output("/dev/full", "csv").text("x")
+        write_x("/dev/full")
 
 
 # the terminal
@@ -325,8 +349,8 @@ def test_data_do_not_control_a_terminal(
     stdout = io.TextIOWrapper(io.BytesIO())
     monkeypatch.setattr("sys.stdout", stdout)
     monkeypatch.setattr("lagrange_cli.output.destination.is_screen", lambda _: is_screen)
-    Output("-", fmt).rows([{"id": hostile, "r0": 1.0}], ["id", "r0"])
-    Output("-", fmt).text(hostile if fmt == "csv" else "")
+    document = rows_document([{"id": hostile, "r0": 1.0}], ["id", "r0"])
+    Output("-", fmt).document(document)
     text = stdout.buffer.getvalue().decode()
     assert (hostile in text) is (fmt == "csv" and not is_screen)
     assert "evil" in text
@@ -350,15 +374,12 @@ def test_a_descriptor_is_written_to_and_its_file_is_kept(tmp_path: Path) -> None
 
 def test_texts_in_a_table_are_one_printable_line_each() -> None:
     texts = ["a\fb", "c\u2028d", "e\nf\x85", "x" * 200_000, '"\udcff']
-    blocks = [block_text([texts, np.arange(5.0)], ["text", "number"], "table")]
-    write(stream := io.BytesIO(), ["text", "number"], blocks, "table")
-    lines = stream.getvalue().decode().splitlines()
+    lines = text_of("table", ["text", "number"], [texts, np.arange(5.0)]).splitlines()
     assert len(lines) == 2 + len(texts)
     assert [line.split()[0] for line in lines[2:5]] == ["a\\x0cb", "c\\u2028d", "e\\nf\\x85"]
     assert "..." in lines[5]
-    many = [block_text([np.zeros(4000)], ["a"], "table")] * 3
     with pytest.raises(LagtopError, match="format table shows at most 10000 rows, got more"):
-        write(io.BytesIO(), ["a"], many, "table")
+        text_of("table", ["a"], *[[np.zeros(4000)]] * 3)
 
 
 @pytest.mark.slow
@@ -373,7 +394,7 @@ def test_parquet_starts_no_thread(tmp_path: Path) -> None:
         from lagrange_cli.files.trajectory import read_trajectory
         from lagrange_cli.output.destination import Output
         before = os.listdir("/proc/self/task")
-        Output({str(tmp_path / "x")!r}, "parquet").table(["t", "theta"], [np.ones((9, 2))] * 2)
+        Output({str(tmp_path / "x")!r}, "parquet").rows(["t", "theta"], [np.ones((9, 2))] * 2)
         assert len(read_trajectory({str(tmp_path / "x")!r}).elapsed) == 18
         assert os.listdir("/proc/self/task") == before
     """

@@ -1,0 +1,64 @@
+"""Parquet: rows of doubles and texts, by pyarrow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
+from io import BytesIO
+from itertools import chain
+from typing import Any, BinaryIO
+
+from ...arithmetic.text import NumberText
+from ...errors import LagtopError, UnavailableError, arg
+from ..text import json_text
+from .base import Columns, Format
+
+_OTHERS = f"with {arg('digits')} use csv or json"
+
+
+class Parquet(Format):
+    """A table of pyarrow for each block."""
+
+    only_rows = True
+
+    def block(self, columns: Columns, names: Sequence[str]) -> Any:
+        """Return a table: numbers with null for NaN, and texts."""
+        import pyarrow as pa
+
+        arrays = []
+        for column in columns:
+            if isinstance(column, Sequence):
+                if isinstance(column[0], NumberText):
+                    raise LagtopError(f"format parquet holds doubles: {_OTHERS}", "format")
+                texts = [x if x is None or type(x) is str else json_text(x) for x in column]
+                arrays.append(pa.array(texts, pa.string()))
+            else:
+                numbers = column.reshape(len(column), -1).T.copy()
+                arrays += [pa.array(x, from_pandas=True) for x in numbers]
+        return pa.table(arrays, names=list(names))
+
+    def write(
+        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Any], width: int | None
+    ) -> None:
+        """Write tables as one file, a row group for each."""
+        if width is not None:
+            raise LagtopError("format parquet is not for a terminal: use -o FILE.parquet", "format")
+        if find_spec("pyarrow") is None:
+            raise UnavailableError("format parquet needs pyarrow: pip install pyarrow", "format")
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        tables = iter(blocks)
+        first = next(tables, pa.table({name: pa.nulls(0) for name in names}))
+        # closed in any case, because a writer that is collected later writes to a closed file
+        with parquet.ParquetWriter(stream, first.schema) as writer:
+            for table in chain([first], tables):
+                writer.write_table(table)
+
+    def part(self, names: Sequence[str], number: int, block: Any) -> bytes:
+        """Return a file that is complete by itself."""
+        self.write(file := BytesIO(), names, [block], None)
+        return file.getvalue()
+
+
+FORMAT = Parquet()
