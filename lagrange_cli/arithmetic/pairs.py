@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -57,23 +56,14 @@ def two_sum(x: float | Array, y: float | Array) -> tuple[Array, Array]:
     return total, (x - (total - part)) + (y - part)
 
 
-def _compared(high: Any, low: Any) -> Callable[[DoubleDouble, DoubleDouble | float], Mask]:
-    """Return a comparison of the high parts or, if they are equal, of the low parts."""
-
-    def holds(x: DoubleDouble, other: DoubleDouble | float) -> Mask:
-        other = DoubleDouble._like(other)
-        mask: Mask = high(x.high, other.high) | (x.high == other.high) & low(x.low, other.low)
-        return mask
-
-    return holds
-
-
 class DoubleDouble:
     """The numbers high + low, where high is the double nearest to the sum.
 
     Sums, products, quotients and square roots are good to a few units of 2^-104 (relative to the
     larger term of a sum).
     """
+
+    __array_ufunc__ = None  # a product of an array and pairs is one of pairs
 
     def __init__(self, high: Array, low: Array | None = None) -> None:
         self.high = high
@@ -110,7 +100,7 @@ class DoubleDouble:
         return self._like(other) - self
 
     def __mul__(self, other: DoubleDouble | float) -> DoubleDouble:
-        if not isinstance(other, DoubleDouble) and math.frexp(other)[0] == 0.5:
+        if isinstance(other, float | int) and abs(math.frexp(other)[0]) == 0.5:
             return self.scaled(other)
         other = self._like(other)
         high, low = two_product(self.high, other.high)
@@ -121,7 +111,7 @@ class DoubleDouble:
     __radd__, __rmul__ = __add__, __mul__
 
     def __truediv__(self, other: DoubleDouble | float) -> DoubleDouble:
-        if not isinstance(other, DoubleDouble) and math.frexp(other)[0] == 0.5:
+        if isinstance(other, float | int) and abs(math.frexp(other)[0]) == 0.5:
             return self.scaled(1 / other)
         other = self._like(other)
         high = self.high / other.high
@@ -134,9 +124,6 @@ class DoubleDouble:
 
     def __rtruediv__(self, other: float) -> DoubleDouble:
         return self._like(other) / self
-
-    __gt__, __ge__ = _compared(np.greater, np.greater), _compared(np.greater, np.greater_equal)
-    __lt__, __le__ = _compared(np.less, np.less), _compared(np.less, np.less_equal)
 
     def sqrt(self) -> DoubleDouble:
         """Return the square root of numbers >= 0."""

@@ -43,17 +43,19 @@ within 1.03 % of the elementary rate.
 """
 _U = fmpq_poly([0, 1])
 """The cosine of the tilt at the start, in polynomials."""
-_UNDEFINED_AT_CONSTANT_TILT = frozenset(
-    "amplitude alpha u_quarter spin_rate_half precession_rate_half".split()
-)
-_UNDEFINED_ON_THE_VERTICAL = _UNDEFINED_AT_CONSTANT_TILT | set(
-    "u3 k k_prime modular_angle nome K K_prime E T_nutation mean_precession_rate "
-    "precession_rate_start T_precession u2_criterion".split()
-)
-_UNDEFINED_ON_THE_SEPARATRIX = frozenset(
-    "amplitude alpha K T_nutation T_spin T_precession u_quarter mean_spin_rate "
-    "mean_precession_rate spin_rate_half precession_rate_half".split()
-)
+_WITHOUT = {
+    "steady": "amplitude alpha u_quarter precession_rate_half",
+    "vertical": "u3 k k_prime mean_precession_rate precession_rate_start u2_criterion",
+    "separatrix": "amplitude alpha K mean_spin_rate mean_precession_rate u_quarter precession_rate_half",
+}
+"""The numbers that a kind of motion lacks; it also lacks those whose formulas name one of them."""
+
+
+def undefined_names(**kinds: bool) -> frozenset[str]:
+    """Return the names of the numbers that a motion of these kinds lacks."""
+    return frozenset(
+        name for kind, is_it in kinds.items() if is_it for name in _WITHOUT[kind].split()
+    )
 
 
 class Facts(NamedTuple):
@@ -128,9 +130,14 @@ class Facts(NamedTuple):
         return self.over_bottom and not self.spin
 
     @property
-    def half_on_pole(self) -> bool:
-        """The axis is vertical half a period after the start."""
-        return self.over_bottom if self.turning > 0 else self.over_top and self.turning < 0
+    def off_poles(self) -> bool:
+        """The axis does not pass over a pole."""
+        return not (self.over_top or self.over_bottom)
+
+    @property
+    def half_off_pole(self) -> bool:
+        """The axis is not vertical half a period after the start."""
+        return not (self.over_bottom if self.turning > 0 else self.over_top and self.turning < 0)
 
     @property
     def moves(self) -> bool:
@@ -165,12 +172,10 @@ class Facts(NamedTuple):
 
     @property
     def undefined(self) -> frozenset[str]:
-        """The keys of numbers that the regime does not have."""
-        if self.vertical:
-            return _UNDEFINED_ON_THE_VERTICAL
-        if self.separatrix:
-            return _UNDEFINED_ON_THE_SEPARATRIX
-        return _UNDEFINED_AT_CONSTANT_TILT if self.steady else frozenset()
+        """The names of numbers that the regime does not have."""
+        return undefined_names(
+            steady=self.steady, vertical=self.vertical, separatrix=self.separatrix
+        )
 
     def sign(self, polynomial: fmpq_poly) -> int:
         """Return the sign of a polynomial in u; 0 if D digits leave it open."""

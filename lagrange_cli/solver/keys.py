@@ -12,7 +12,8 @@ Formulas use names of keys and inputs, without the unit of an angle, and the fun
 printed one, the form that is evaluated follows after `~`.  It uses the distances of the roots,
 which are finite without torque, and exactly 0 if two roots coincide:
 
-    height = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1)
+    height = u1 - u2,    wide = a (u3 - u2),    narrow = a (u3 - u1),    far = a (u3 - u0),
+    rise = u1 - u0,    fall = u0 - u2,    above_u1 = 1 - u1,    below_u1 = 1 + u1  and so on
 
 `where` names lines of the last group.  That group also has the numbers that only remarks and
 `Motion.swing` need.  Equation numbers are Chrapan's, for release from rest.
@@ -20,7 +21,9 @@ which are finite without torque, and exactly 0 if two roots coincide:
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
 from ..names import Key
@@ -50,9 +53,10 @@ K_prime | K' | complementary integral, first kind | | (2,4)
    | ellint_F(pi/2, k_prime) ~ pi/(2*agm(1, k)) | if k > 0
 E | E | complete integral, second kind | | (7,3) | ellint_E(pi/2, k) ~ complete_E(k_prime)
 amplitude_deg | am α | amplitude of α | angle | (7,2)
-   | asin(sqrt((u3 - u2)/(u3 + 1))) ~ atan2(sqrt(wide), sqrt(a*(1 + u2)))
+   | asin(sqrt((u3 - u2)/(u3 + 1))) ~ atan2(sqrt(wide), sqrt(a*below_u2))
    | if the top is released from rest
-alpha | α | parameter of Chrapan's Π | | (1,6) | ellint_F(amplitude, k_prime)
+alpha | α | parameter of Chrapan's Π | | (1,6)
+   | ellint_F(amplitude, k_prime) ~ integral_F(sqrt(wide), sqrt(a*below_u2), k)
    | if the top is released from rest
 # Periods
 T_nutation | T | nutation period | time | (5,1) | 4*K/sqrt(a*(u3 - u2)) ~ 4*K/sqrt(wide)
@@ -64,11 +68,15 @@ T_precession | Tψ | mean precession period | time | §8 | 2*pi/abs(mean_precess
 # Turning points
 u_quarter | u(T/4) | cos ϑ at T/4 | | (5,2)
    | u3 - sqrt(u3 - u1)*sqrt(u3 - u2) ~ V | if the start is at u1
-theta_min_deg | ϑ min | least tilt | angle | (4,6) | acos(u1)
-theta_max_deg | ϑ max | greatest tilt | angle | (4,6) | acos(u2)
+theta_min_deg | ϑ min | least tilt | angle | (4,6)
+   | acos(u1) ~ 2*atan2(sqrt(above_u1), sqrt(below_u1))
+theta_max_deg | ϑ max | greatest tilt | angle | (4,6)
+   | acos(u2) ~ 2*atan2(sqrt(above_u2), sqrt(below_u2))
 # Mean rates
-mean_spin_rate | φ' mean | mean spin rate | rad/time | (6,3) | r0 - b - (P - Q)/(2*K) where P, Q
-mean_precession_rate | ψ' mean | mean precession rate | rad/time | (7,3) | (P + Q)/(2*K) where P, Q
+mean_spin_rate | φ' mean | mean spin rate | rad/time | (6,3)
+   | r0 - b - (P - Q)/(2*K) where P, Q ~ means[0]
+mean_precession_rate | ψ' mean | mean precession rate | rad/time | (7,3)
+   | (P + Q)/(2*K) where P, Q ~ means[1]
 # Rates
 spin_rate_start | φ'(0) | spin rate at the start | rad/time | (6,2) | r0 - psidot0*cos(theta0)
    | if the axis does not leave the vertical at the start
@@ -78,6 +86,8 @@ precession_rate_start | ψ'(0) | precession rate at the start | rad/time | (4,7)
    | if the axis does not leave the vertical at the start
 precession_rate_half | ψ'(T/2) | precession rate at T/2 | rad/time | (4,7)
    | (momentum_constant - b*U)/(1 - U**2) where U
+   ~ (momentum + b*(fall - rise*wide/far))
+   /((above_u1 + fall*narrow/far)*(below_u2 + rise*wide/far))
    | if the axis is not vertical half a period after the start
 # Constants of section 4
 energy_without_spin | c1 | energy without the spin part | mass len²/time² | (4,2)
@@ -109,9 +119,13 @@ psi_period_deg | ψ(T) | precession after a period | angle | §7 | mean_precessi
    | if the top nutates
 # Mean rates of the quarters
 nutation_rate_upper | ϑ' 1st | mean nutation rate, quarter after u1 | rad/time | §5
-   | 4*(acos(V) - theta_min)/T_nutation where V | if the top nutates
+   | 4*(acos(V) - theta_min)/T_nutation where V
+   ~ 8*atan2(height*k_prime/(1 + k_prime), sine_V + sqrt(above_u1*below_u1))/T_nutation
+   | if the top nutates
 nutation_rate_lower | ϑ' 2nd | mean nutation rate, quarter before u2 | rad/time | §5
-   | 4*(theta_max - acos(V))/T_nutation where V | if the top nutates
+   | 4*(theta_max - acos(V))/T_nutation where V
+   ~ 8*atan2(height/(1 + k_prime), sine_V + sqrt(above_u2*below_u2))/T_nutation
+   | if the top nutates
 spin_rate_upper | φ' 1st | mean spin rate, quarters at u1 | rad/time | §6
    | 4*integral(phidot, t1, t1 + T_nutation/4)/T_nutation ~ 4*quarter[0]/T_nutation
    | if the top nutates and does not pass over a pole
@@ -133,7 +147,7 @@ roots_gap_squared | (u3 - u2)² | square of the difference | | §8
 roots_gap | u3 - u2 | difference of u3 and u2 | | §8 | sqrt(roots_gap_squared)
 u3_twice | 2 u3 | sum plus difference | | §8 | roots_sum + roots_gap
 u2_twice | 2 u2 | sum minus difference | | §8 | roots_sum - roots_gap
-k_squared | k² | square of the modulus | | (4,19) | (u1 - u2)/(u3 - u2)
+k_squared | k² | square of the modulus | | (4,19) | (u1 - u2)/(u3 - u2) ~ m_k
 comodular_angle_deg | arcsin k' | complementary modular angle | angle | (4,21)
    | asin(k_prime) ~ atan2(k_prime, k)
 E_amplitude | E(am, k') | incomplete integral, second kind | | (7,1) | ellint_E(amplitude, k_prime)
@@ -160,10 +174,11 @@ P | | mean of (β - b)/(1 - u), times K | | (3,8)
 Q | | mean of (β + b)/(1 + u), times K | | (3,8)
    | (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2) ~ pole_integral(1)
 U | | cos ϑ half a period after the start | |
-   | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))
-   ~ u2 + (u1 - cos(theta0))*wide/(wide + a*(u2 - cos(theta0)))
+   | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0)) ~ u2 + rise*wide/far
 V | | cos ϑ between two quarters | | (5,2)
    | u3 - sqrt(u3 - u1)*sqrt(u3 - u2) ~ u1 - height*k_prime/(1 + k_prime)
+sine_V | | sin ϑ between two quarters | | (5,2)
+   | sqrt((above_u1 + height*k_prime/(1 + k_prime))*(below_u2 + height/(1 + k_prime)))
 nutation | | angle of the nutation | angle | | theta_max - theta_min
 excess | | excess of the mean rate over the elementary rate, in ppm | | §8
    | 1000000*(mean_precession_rate/precession_rate_elementary - 1)
@@ -174,28 +189,29 @@ lowest | | time at which the axis is lowest | time | | -course.h0/course.rate
 
 CONDITIONS: dict[str, Callable[[Any, Any], Any]] = {
     "": lambda x, _: True,
-    "if there is a torque": lambda x, _: x.a,
-    "if r0 is not 0": lambda x, _: x.spin,
-    "if k > 0": lambda x, _: x.a and not x.steady,
+    "if there is a torque": lambda x, _: x.a != 0,
+    "if r0 is not 0": lambda x, _: x.spin != 0,
+    "if k > 0": lambda x, _: (x.a != 0) & (not x.steady),
     "if the top moves": lambda x, _: x.moves,
     "if the top is released from rest": lambda x, _: x.released,
     "if the start is at u1": lambda x, _: x.turning > 0,
-    "if the mean spin rate is not 0": lambda _, of: not of.is_zero("mean_spin_rate"),
-    "if the mean precession rate is not 0": lambda _, of: not of.is_zero("mean_precession_rate"),
+    "if the mean spin rate is not 0": lambda _, of: of.is_zero("mean_spin_rate") ^ True,
+    "if the mean precession rate is not 0": lambda _, of: of.is_zero("mean_precession_rate") ^ True,
     "if the axis does not leave the vertical at the start": lambda x, _: x.vertical or not x.pole,
-    "if the axis is not vertical half a period after the start": lambda x, _: not x.half_on_pole,
+    "if the axis is not vertical half a period after the start": lambda x, _: x.half_off_pole,
     "if the top nutates": lambda x, _: x.nutates,
     "if the top nutates, and the axis is not vertical half a period after the start": (
-        lambda x, _: x.nutates and not x.half_on_pole
+        lambda x, _: x.nutates and x.half_off_pole
     ),
-    "if the top nutates and does not pass over a pole": (
-        lambda x, _: x.nutates and not (x.over_top or x.over_bottom)
-    ),
+    "if the top nutates and does not pass over a pole": lambda x, _: x.nutates and x.off_poles,
     "if the top nutates after release from rest": lambda x, _: x.nutates and x.released,
     "if |r0| >= r0_steady_min, and r0 is not 0 at 90 degrees": lambda x, _: x.has_steady_rate(SLOW),
     "if |r0| >= r0_steady_min and the tilt is not 90 degrees": lambda x, _: x.has_steady_rate(FAST),
 }
-"""The condition of a key, as lines and messages name it, and its test by facts and motion."""
+"""The condition of a key, as lines and messages name it, and its test by facts and motion.
+
+A test returns a bool for one motion, or an array of them (a mask) for many.
+"""
 
 
 def _read(table: str) -> Iterator[tuple[str, Key]]:
@@ -234,6 +250,26 @@ def unit_name(name: str, *, radians: bool) -> str:
 def degree_name(name: str) -> str:
     """Return the name of a key in degrees: `_rad` becomes `_deg`."""
     return f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
+
+
+@cache
+def needed(name: str) -> frozenset[str]:
+    """Return the lines that the evaluated formula of a line names."""
+    names = set(re.findall(r"[A-Za-z_]\w*", LINES[name].evaluated))
+    return frozenset(names & LINES.keys() - {name})
+
+
+def exists(name: str, facts: Any, of: Any) -> Any:
+    """Return whether a motion has a number: its formula may name only numbers that it has.
+
+    `of` tells which numbers exist.
+    """
+    if name in facts.undefined:
+        return False
+    found = True
+    for other in needed(name):
+        found = found & of.has(other)
+    return found if found is False else found & CONDITIONS[LINES[name].only](facts, of)
 
 
 LINES = {bare_name(name): key for name, key in _TABLE.items()}

@@ -49,9 +49,11 @@ def complete_E(k_prime: arb) -> arb:
     return 2 * acb.elliptic_rg(acb(0), acb(square(k_prime)), acb(1)).real
 
 
-def ellint_F(phi: arb, k: arb) -> arb:
-    """Return Legendre's integral of the first kind."""
-    return acb.elliptic_f(acb(phi), acb(square(k))).real
+def integral_F(sine: arb, cosine: arb, k: arb) -> arb:
+    """Return Legendre's integral F(phi, k') by sine and cosine of phi times one number."""
+    s2, c2 = square(sine), square(cosine)
+    terms = c2, c2 + square(k) * s2, c2 + s2
+    return sine * acb.elliptic_rf(*map(acb, terms)).real
 
 
 def ellint_E(phi: arb, k: arb) -> arb:
@@ -67,7 +69,7 @@ FUNCTIONS: dict[str, Any] = {
     "complete_E": complete_E,
     "cos": itemgetter(1),  # of theta0
     "ellint_E": ellint_E,
-    "ellint_F": ellint_F,
+    "integral_F": integral_F,
     "max": lambda x, y: x.max(arb(y)),
     "nome_of": nome_of,
     "sin": itemgetter(0),
@@ -190,6 +192,26 @@ class Numbers(dict[str, Any]):
         return arb(0) if self.facts.steady else self["u1"] - self["u2"]
 
     @property
+    def rise(self) -> arb:
+        """u1 - u0; exactly 0 for a start at u1."""
+        return arb(0) if self.facts.turning > 0 else self["u1"] - self["u0"]
+
+    @property
+    def fall(self) -> arb:
+        """u0 - u2; exactly 0 for a start at u2."""
+        return arb(0) if self.facts.turning < 0 else self["u0"] - self["u2"]
+
+    @property
+    def far(self) -> arb:
+        """a (u3 - u0)."""
+        return self["wide"] - self["a"] * self["fall"]
+
+    above_u1 = property(lambda self: 1 - self["u1"])
+    above_u2 = property(lambda self: 1 - self["u2"])
+    below_u1 = property(lambda self: 1 + self["u1"])
+    below_u2 = property(lambda self: 1 + self["u2"])
+
+    @property
     def wide(self) -> arb:
         """a (u3 - u2)."""
         return self["roots_sum_a"] - self["a"] * (self["u1"] + 2 * self["u2"])
@@ -229,6 +251,19 @@ class Numbers(dict[str, Any]):
         momentum = self["beta_plus_b" if pole > 0 else "beta_minus_b"]
         at_u1, at_u2 = 1 + pole * self["u1"], 1 + pole * self["u2"]
         return momentum * self["K"] * mean_of_inverse(at_u1, at_u2, self["m_k_prime"])
+
+    @property
+    def means(self) -> tuple[arb, arb]:
+        """The mean rates of spin and precession; on the vertical all of the rotation is spin."""
+        if self.facts.vertical:
+            return self["r0"], arb(0)
+        P, Q, double_K = self["P"], self["Q"], 2 * self["K"]
+        return self["r0"] - self["b"] - (P - Q) / double_K, (P + Q) / double_K
+
+    @property
+    def momentum(self) -> arb:
+        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
+        return self["psidot0"] * square(self["theta0"][0])
 
     @property
     def course(self) -> Course:

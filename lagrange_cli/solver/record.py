@@ -13,7 +13,7 @@ from ..errors import OutOfRangeError
 from ..names import suggestion
 from ..top.top import Top
 from .facts import Facts, Regime
-from .keys import CONDITIONS, LINES, NUMBERS, all_keys, bare_name, degree_name, record_keys
+from .keys import LINES, NUMBERS, all_keys, bare_name, degree_name, exists, needed, record_keys
 from .numbers import Numbers
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ class Solution:
         self._balls: dict[int, Numbers] = {}
         self._doubles: dict[str, Rounded | None] = {}
         self._zeros: dict[str, bool] = {}
+        self._has: dict[str, bool] = {}
         self._sampler: Sampler | None = None
 
     @property
@@ -71,8 +72,9 @@ class Solution:
         bare = bare_name(name)
         if bare not in LINES:
             return True
-        condition = CONDITIONS[LINES[bare].only]
-        return bare not in self.facts.undefined and bool(condition(self.facts, self))
+        if bare not in self._has:
+            self._has[bare] = bool(exists(bare, self.facts, self))
+        return self._has[bare]
 
     def number(self, name: str, digits: int | None = None) -> Rounded | None:
         """Return a number correctly rounded to a double or to `digits`; None if it does not exist.
@@ -98,9 +100,13 @@ class Solution:
     def absence(self, name: str) -> str:
         """Return why the motion lacks a number: `undefined in ...` or `defined only if ...`."""
         only = NUMBERS[degree_name(name)].only if degree_name(name) in NUMBERS else ""
-        if not only or bare_name(name) in self.facts.undefined:
+        if not only or self._lost(bare_name(name)):
             return f"undefined in the regime {self.regime.value!r}"
         return f"defined only {only}"
+
+    def _lost(self, bare: str) -> bool:
+        """Return whether the regime lacks a number, or one that its formula names."""
+        return bare in self.facts.undefined or any(map(self._lost, needed(bare)))
 
     @cached_property
     def path(self) -> str | None:

@@ -20,7 +20,7 @@ from ..top.given import Given, gather
 from ..top.inputs import EXAMPLE, checked_double, overridden
 from ..top.ranges import Points
 from ..top.values import STEADY_WORDS, Value
-from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records
+from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records, with_radii
 from .tops import top_arrays
 
 NumberedBlock = tuple[int, Product | TopsFile]
@@ -87,13 +87,14 @@ def plan(
     radians: bool = False,
     fmt: str = "csv",
     decimal: str = "",
+    radii: bool = False,
 ) -> tuple[Sweep, Iterator[NumberedBlock], int, Given]:
     """Return a sweep, its blocks, size and inputs, for a grid or a `path` to a file of tops.
 
     The last axis varies fastest.  The size is the number of tops, 0 for a file.  The inputs are
     those that all tops share.  Raises LagtopError.
     """
-    chosen = list(check_keys(keys, radians=radians))
+    chosen = with_radii(check_keys(keys, radians=radians), radii=radii)
     if path is None:
         found = gather(axes, scene)
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}

@@ -1,8 +1,8 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
-Tops released from rest go through `formulas` as arrays of doubles, others as arrays of pairs of
-doubles.  `solve` computes a top by itself if digits are lost, if its sizes are beyond 1e+-30, or if
-a key is not among FAST_KEYS.  An invalid top gets an `error` and no numbers.
+Blocks of tops are computed in bounded doubles; those with a number whose bound exceeds 1e-13 of its
+size, in bounded pairs of doubles; and by `solve` if it still does, or if sizes are beyond 1e+-30.
+An invalid top gets an `error` and no numbers.
 """
 
 from __future__ import annotations
@@ -12,51 +12,28 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.types import Mask
+from ..arithmetic.bounded import EPS, Bounded
 from ..errors import LagtopError
 from ..names import check_names
 from ..solver import keys as motion_record
 from ..solver.facts import FAST, Regime
-from ..solver.keys import degree_name, unit_name
+from ..solver.keys import NUMBERS, bare_name, unit_name
 from ..solver.record import FAST_WORDS, record_in_range, vertical_remark
 from ..solver.solve import solve
-from .elementary import ELEMENTARY, OF_STEADY
-from .formulas import OF_PENDULUMS, OF_RELEASED, OF_TORQUE_FREE, OF_VERTICAL, Formulas, Motions
+from .numbers import GOOD, ArrayNumbers
 from .results import ResultColumn, Results, read_inputs
 from .tops import TopArrays, top_arrays
-from .trust import OF_ANY_START, AnyStart
 
 TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
-FAST_KEYS = frozenset(
-    {*motion_record.record_keys(), *ELEMENTARY, "k_squared", "comodular_angle_deg"}
-)
-"""Keys that are formulas of the inputs or of the motion, in degrees."""
-
-
-def _remarks_on_upright(of: Motions) -> Any:
-    stable, unstable = (vertical_remark(Regime.SLEEPING, x) for x in (True, False))
-    return np.where(of.start.sleep >= 0, stable, unstable)
-
-
-def _remarks_on_released(of: Motions) -> Any:
-    """Return the remarks on fast tops: the words of `solve`, without its numbers."""
-    excess = of.pairs.b * of.pairs.b - of.pairs.a * float(FAST)
-    return np.array([None, FAST_WORDS])[(excess.high >= 0).astype(int)]
-
-
-_FORMULAS: dict[Regime | None, Formulas] = {
-    Regime.SLEEPING: OF_VERTICAL | {"remark": _remarks_on_upright},
-    Regime.HANGING: OF_VERTICAL | {"remark": lambda _: vertical_remark(Regime.HANGING, True)},
-    Regime.TORQUE_FREE: OF_TORQUE_FREE,
-    Regime.NO_SPIN: OF_PENDULUMS,
-    Regime.REGULAR: OF_RELEASED | {"remark": _remarks_on_released, "path": lambda _: "cusped"},
-    Regime.STEADY: OF_STEADY,
-    None: OF_ANY_START,
-}
-"""The formulas of each group of `TopArrays.groups`, except those of ELEMENTARY."""
+RADIUS = "_radius"
+"""The end of the name of a bound."""
+_DEGREE = Bounded(180 / np.pi, EPS * 180 / np.pi)
+_LEAST, _MOST = 1e-280, 1e280
+"""Sizes between which no rounding error is lost."""
+Rows = NDArray[np.intp]
 BLOCK_ROWS = 1 << 12
 """Number of tops computed together, so that their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
@@ -70,15 +47,18 @@ def column_keys(*, radians: bool = False) -> list[str]:
 
 
 def sweep(
-    *tops: object, keys: Sequence[str] | None = None, radians: bool = False, **inputs: ArrayLike
+    *tops: object,
+    keys: Sequence[str] | None = None,
+    radians: bool = False,
+    radii: bool = False,
+    **inputs: ArrayLike,
 ) -> Results:
     """Return the records of many tops: arrays by key, in the shape to which the inputs broadcast.
 
     Inputs are those of `Top`, as numbers, arrays or pandas Series: pass a DataFrame of inputs as
-    `sweep(**df)`.  Only `keys` are computed; angles are in degrees or `radians`.  A further key
-    costs as much as a key of the record if it is a formula of the inputs (such as
-    `stability_factor` or `Lz`), and about a millisecond per top otherwise.  If a regime has no
-    value for a key, its number is NaN and its text None.  An invalid top has an `error` and no
+    `sweep(**df)`.  Only `keys` are computed; angles are in degrees or `radians`.  A bound
+    of the error of each is at most 1e-13 of its size (of 1 for a cosine); `radii` adds it as
+    KEY_radius.  If a regime has no value for a key, its number is NaN and its text None.  An invalid top has an `error` and no
     values.  If a number is beyond the range of doubles, it is NaN, and `error` says so.  If `keys`
     lacks `error`, the results have it only if a top has an error.  Raises LagtopError for an
     unknown input or key, for uncertain inputs, or if shapes do not broadcast.
@@ -88,7 +68,7 @@ def sweep(
     """
     if tops:
         raise LagtopError("sweep takes inputs by name: pass columns by name: sweep(**df)")
-    chosen = check_keys(keys, radians=radians)
+    chosen = with_radii(check_keys(keys, radians=radians), radii=radii)
     flat, results = read_inputs(inputs)
     size = math.prod(results.shape)
     columns = empty_columns(chosen, size)
@@ -119,6 +99,12 @@ def check_keys(keys: Sequence[str] | None, *, radians: bool = False) -> Sequence
     return check_names("keys", keys, [*motion_record.all_keys(radians=radians), "error"])
 
 
+def with_radii(keys: Sequence[str], *, radii: bool) -> list[str]:
+    """Return keys and, with `radii`, the names of the bounds of their errors."""
+    numbers = {unit_name(key, radians=radians) for key in NUMBERS for radians in (False, True)}
+    return [*keys, *(f"{key}{RADIUS}" for key in keys if radii and key in numbers)]
+
+
 def records(
     tops: TopArrays,
     columns: Mapping[str, ResultColumn],
@@ -138,18 +124,27 @@ def records(
     for key, column in columns.items():
         column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
     columns["error"][[*errors]] = [*errors.values()]
-    keys = [key for key in columns if key not in inputs and key != "error"]
-    missing = np.ones(tops.m.shape, dtype=np.bool_)
-    missing[[*errors]] = False
+    keys = [key for key in columns if key not in {*inputs, "error"} and not key.endswith(RADIUS)]
+    if "psidot0" in columns and (tops.steady > 0).any():
+        keys.append("psidot0")
+    alone = np.ones(tops.m.shape, dtype=np.bool_)
+    alone[[*errors]] = False
+    wanted: dict[int, list[str]] = {}
     with np.errstate(all="ignore"):  # what an overflow or a 0/0 has touched is not trusted
         for regime, group in tops.groups().items():
-            rows = group & missing
-            if {degree_name(key) for key in keys} <= FAST_KEYS and rows.any():
-                missing &= ~_filled(tops, rows, regime, columns, keys)
-    for row in np.flatnonzero(missing).tolist():
+            rows = np.flatnonzero(group & alone)
+            left = dict.fromkeys(keys, rows) if rows.size else {}
+            for pairs in [True] if regime is None else [False, True]:
+                left = _filled(tops, left, regime, pairs, columns) if left else {}
+            for key, rows in left.items():
+                for row in rows.tolist():
+                    wanted.setdefault(row, []).append(key)
+            alone &= ~group
+    wanted |= dict.fromkeys(np.flatnonzero(alone).tolist(), keys)
+    for row, names in sorted(wanted.items()):
         try:
             motion = solve(tops.one(row))
-            record, beyond = record_in_range(motion, radians=radians, keys=keys)
+            record, beyond = record_in_range(motion, radii=True, radians=radians, keys=names)
         except LagtopError as error:
             columns["error"][row] = str(error)
             continue
@@ -160,34 +155,83 @@ def records(
         if record.get("remark"):
             record["remark"] = record["remark"].partition(":")[0]
         for key, value in record.items():
-            if value is not None:
+            if value is not None and key in columns:
                 columns[key][row] = value
     return columns
 
 
 def _filled(
     tops: TopArrays,
-    rows: Mask,
+    left: Mapping[str, Rows],
     regime: Regime | None,
+    pairs: bool,
     columns: Mapping[str, ResultColumn],
-    keys: Sequence[str],
-) -> Mask:
-    """Fill the keys of those tops of a group whose numbers can all be trusted; return these."""
-    some = tops if rows.all() else tops.part(rows)
-    at_rest = regime not in {Regime.STEADY, None}
-    start = some.start(rough=at_rest and not ELEMENTARY.keys() & {*keys})
-    kind = AnyStart if regime is None else Motions
-    motions = kind(_FORMULAS[regime] | ELEMENTARY, some, start)
-    if regime is not None:
-        motions["regime"] = regime.value
-    found = {key: motions[key] for key in keys}
-    if regime == Regime.STEADY and "psidot0" in columns:
-        found["psidot0"] = motions["psidot0"]
-    known = motions.known
-    rows[rows] = known
-    target: Any = slice(None) if rows.all() else rows  # which is faster than a mask
-    source: Any = slice(None) if known.all() else known
-    for key, value in found.items():
-        if value is not None:
-            columns[key][target] = value[source] if isinstance(value, np.ndarray) else value
-    return rows
+) -> dict[str, Rows]:
+    """Fill the rows of each key whose numbers can be trusted, and return the others by key."""
+    first, *others = left.values()
+    same = all(mine is first for mine in others)
+    rows = first if same else np.unique(np.concatenate([first, *others]))
+    of = ArrayNumbers(tops.part(rows), regime, pairs=pairs)
+    target: Any = slice(None) if rows.size == tops.m.size else rows  # which is faster
+    rest = {}
+    for key, mine in left.items():
+        if key in motion_record.TEXT_KEYS:
+            value, trusted = text_of(of, key)
+            values = {key: value}
+        else:
+            value, error, trusted = number_of(of, key)
+            values = {key: value, f"{key}{RADIUS}": error}
+        at, found = target, None
+        if not (same and np.all(trusted)):
+            sought = True if same else np.isin(rows, mine)
+            found = np.broadcast_to(sought & trusted, rows.shape)
+            at, rest[key] = rows[found], rows[sought & ~found]
+        for name in values.keys() & columns.keys():
+            value = values[name]
+            columns[name][at] = value if found is None or not np.ndim(value) else value[found]
+    return {key: mine for key, mine in rest.items() if mine.size}
+
+
+def number_of(of: ArrayNumbers, key: str) -> tuple[Any, Any, Any]:
+    """Return the numbers of a key, NaN where there is none, their bounds, and which are trusted."""
+    bare = bare_name(key)
+    has = of.has(bare)
+    if has is False or not np.any(has):
+        return np.nan, np.nan, True
+    number = of[bare].rounded()
+    if key.endswith("_deg"):
+        number = number * _DEGREE
+    value, size, error = number.value, number.size, number.error
+    limit = GOOD if is_cosine(key) else GOOD * size
+    trusted = (error <= limit) & ((size >= _LEAST) & (size <= _MOST) | (size == 0))
+    if has is True or np.all(has):
+        return value, error, trusted
+    value, error = (np.where(has, x, np.nan) for x in (value, error))
+    return value, error, trusted | ~has
+
+
+def is_cosine(key: str) -> bool:
+    """Return whether a key is a cosine, whose bound is absolute."""
+    return key in NUMBERS and "cos ϑ" in NUMBERS[key].meaning
+
+
+def text_of(of: ArrayNumbers, key: str) -> tuple[Any, Any]:
+    """Return the texts of a key, and which of them are certain."""
+    regime = of.regime
+    if key == "path":
+        return of.path
+    if key == "regime":
+        if regime is not None:
+            return regime.value, True
+        words = np.array([Regime.NO_SPIN.value, Regime.REGULAR.value], dtype=object)
+        return words[(of["r0"].doubles != 0).astype(int)], of["is_regular"]
+    if of.facts.vertical:
+        stable, unstable = (vertical_remark(Regime(regime), x) for x in (True, False))
+        return np.where(of["b"].doubles ** 2 >= 2 * of["a"].doubles, stable, unstable), True
+    if regime is None:
+        return None, of["is_regular"]
+    if regime is not Regime.REGULAR:
+        return None, True
+    excess = of["b"] * of["b"] - of["a"] * float(FAST)
+    words = np.array([None, FAST_WORDS], dtype=object)
+    return words[(excess.doubles >= 0).astype(int)], excess.size > excess.error

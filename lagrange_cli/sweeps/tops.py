@@ -13,14 +13,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.pairs import DoubleDouble, pair, two_sum
+from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, size_of
+from ..arithmetic.bounded import choose as bounded_choice
+from ..arithmetic.pairs import DoubleDouble, pair
 from ..arithmetic.types import Array, Mask
 from ..solver.facts import Regime
 from ..top.top import Top
 from ..top.values import STEADY_WORDS
 
-Doubles = Any
-"""An array of doubles, or pairs of doubles."""
 _SMALL, _LARGE = 1e-30, 1e30
 """Sizes between which no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
@@ -30,42 +30,6 @@ _LITTLE_LEFT = 1e-10
 """Ratio of a sum to its parts below which the sum has lost digits of its pairs."""
 _MOST_SPIN = 1e150
 """Size of a rate up to which sums and products of pairs cannot overflow."""
-
-
-class Start(NamedTuple):
-    """The constants of the motions and their states at t = 0."""
-
-    a: Doubles  # 2mgs/A (4,4)
-    b: Doubles  # C r0/A (4,5)
-    r0: Doubles
-    sleep: Doubles  # b^2/2 - a, from the inputs: it cancels near the threshold of sleeping
-    spin_drift: Doubles  # r0 - b/2 = r0 (2A - C)/2A, the spin rate without the nutation (6,1)
-    sin: Doubles
-    cos: Doubles  # u0
-    below: Doubles  # 1 + u0 = 2 cos^2(theta0/2)
-    above: Doubles  # 1 - u0 = 2 sin^2(theta0/2)
-    theta_rate: Doubles
-    psi_rate: Doubles
-
-    def in_doubles(self) -> Start:
-        """Return each number rounded to a double."""
-        return Start(*(x.high for x in self))
-
-    @property
-    def energy(self) -> Doubles:
-        """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4)."""
-        around = self.psi_rate * self.sin
-        return self.theta_rate * self.theta_rate + around * around
-
-    @property
-    def momentum(self) -> Doubles:
-        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
-        return self.psi_rate * self.sin * self.sin
-
-    @property
-    def spin_rate(self) -> Doubles:
-        """The spin rate phi' at the start (4,8)."""
-        return self.r0 - self.psi_rate * self.cos
 
 
 class TopArrays(NamedTuple):
@@ -150,44 +114,32 @@ class TopArrays(NamedTuple):
         ordinary &= (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
         return ordinary & ~(abs(lam - 1) < _NEAR_1)
 
-    def start(self, *, rough: bool = False) -> Start:
-        """Return constants and start of the tops in pairs of doubles; a steady rate is NaN.
+    def half_tilt(self, *, pairs: bool) -> tuple[Bounded, Bounded]:
+        """Return sine and cosine of theta0/2, in doubles or in pairs of doubles.
 
-        If `rough`, the functions of the tilt are good to a double, which is faster.
+        The half angle is taken from the nearer pole, so that its relative error is that of both.
         """
-        choose = DoubleDouble.choose
-        m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
-        a, b = (m * g * s / A).scaled(2), C * r0 / A
-        drift = r0 * DoubleDouble(*two_sum(2 * self.A, -self.C)) / A
         deg, rad = self.theta0_deg, self.theta0_rad
         given = ~np.isnan(rad)
-        down = np.where(given, rad > np.pi / 2, deg > 90)  # then the angle from the lower pole
+        down = np.where(given, rad > np.pi / 2, deg > 90)
         arc = DoubleDouble(np.where(down, 180 - deg, deg)) * _DEGREE
         if given.any():
             own = DoubleDouble(rad)
             other = DoubleDouble(np.full_like(rad, 180.0)) * _DEGREE - own
+            choose = DoubleDouble.choose
             arc = choose(given, choose(down, other, own), arc)
         half = arc.scaled(0.5)
-        if rough:
-            near, far = np.sin(half.high), np.cos(half.high)
-            sine, cosine = DoubleDouble(near + half.low * far), DoubleDouble(far - half.low * near)
+        if pairs:
+            near = _sine(half)
+            far = (1.0 - near * near).sqrt()
         else:
-            sine = _sine(half)
-            cosine = (1.0 - sine * sine).sqrt()
-        sine, cosine = choose(down, cosine, sine), choose(down, sine, cosine)
-        return Start(
-            a=a,
-            b=b,
-            r0=r0,
-            sleep=(b * b).scaled(0.5) - a,
-            spin_drift=drift.scaled(0.5),
-            sin=(sine * cosine).scaled(2),
-            cos=(cosine - sine) * (cosine + sine),
-            below=(cosine * cosine).scaled(2),
-            above=(sine * sine).scaled(2),
-            theta_rate=DoubleDouble(self.thetadot0),
-            psi_rate=DoubleDouble(self.psidot0),
-        )
+            near, far = np.sin(half.high), np.cos(half.high)
+            near, far = near + half.low * far, far - half.low * near
+        unit = 8 * PAIR_EPS if pairs else 3 * EPS
+        of_difference = np.where(given & down, 4 * PAIR_EPS, 0.0)  # pi - theta0
+        near = Bounded(near, unit * size_of(near) + of_difference)
+        far = Bounded(far, unit * size_of(far))
+        return bounded_choice(down, far, near), bounded_choice(down, near, far)
 
 
 _SINE = [pair(Fraction((-1) ** n, factorial(2 * n + 1))) for n in range(15)]
@@ -244,7 +196,9 @@ def _with_spins(tops: TopArrays, phi_rate: Array) -> TopArrays:
     """
     psi_rate, given = tops.psidot0, ~np.isnan(phi_rate)
     with np.errstate(all="ignore"):
-        spins = (DoubleDouble(phi_rate) + DoubleDouble(psi_rate) * tops.start().cos).high
+        sine, cosine = (x.value for x in tops.half_tilt(pairs=True))
+        along = DoubleDouble(psi_rate) * (cosine - sine) * (cosine + sine)
+        spins = (DoubleDouble(phi_rate) + along).high
         size = abs(phi_rate) + abs(psi_rate)
         lost = ~(abs(spins) > _LITTLE_LEFT * size) & (psi_rate != 0) | ~(size < _MOST_SPIN)
     return tops._replace(
