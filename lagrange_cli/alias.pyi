@@ -17,10 +17,10 @@ from lagrange_cli.inverse.outcome import Outcome as Outcome
 from lagrange_cli.plot import draw as draw
 from lagrange_cli.plot import draw_outcome as draw_outcome
 from lagrange_cli.plot.browser.view import view as view
-from lagrange_cli.solver.derivatives import sensitivities as sensitivities
 from lagrange_cli.solver.facts import Regime as Regime
 from lagrange_cli.solver.solve import Motion as Motion
 from lagrange_cli.solver.solve import solve as solve
+from lagrange_cli.solver.spread import sensitivities as sensitivities
 from lagrange_cli.sweeps.records import sweep as sweep
 from lagrange_cli.sweeps.results import Results as Results
 from lagrange_cli.top.given import read_scene as read_scene

@@ -27,7 +27,6 @@ from ..top.inputs import DECLARED
 from ..top.scenes import scene_names
 from ..top.values import Value, parse_range, parse_value
 from . import shared as opt
-from .table import angle_stds, warn_if_misleading
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
 FILMS = "gif", "mp4"
@@ -108,14 +107,15 @@ def plot_command(
     eye = _camera(camera, top.radians) if camera else None
     require_matplotlib()  # also for standard output, which has no name to check
     from ..plot.film import SECONDS, film_bytes
-    from ..plot.pictures import Options, figure_of
+    from ..plot.pictures import Options, angle_columns, figure_of
+    from .uncertainty import column_stds, warn_if_unfair
 
     axes = {"x": _axis("--x", x, top), "y": _axis("--y", y, top)}
     others = {"t_max": t_max} | dict(filter(None, axes.values()))
     founds = [top._replace(scene=name or None).given(**others) for name in scenes or [""]]
     uses_stds = len(founds) == 1 and "angles" in kinds
     motions = [opt.motion_of(found, uses_stds=uses_stds) for found in founds]
-    stds = angle_stds(founds[0], motions[0]) if uses_stds else None
+    stds = column_stds(founds[0], motions[0], angle_columns(motions[0])) if uses_stds else None
     options = Options(
         t_max=t_max and t_max.number,
         radians=top.radians,
@@ -125,7 +125,7 @@ def plot_command(
         **{x: y and (y[0], next(y[1].number.blocks())) for x, y in axes.items()},
         progress=with_progress,
         unit=founds[0].named,
-        stds=stds.at if stds else None,
+        stds=stds,
     )
     with ExitStack() as stack:
         if animate:
@@ -143,7 +143,7 @@ def plot_command(
                 figure = figure_of(drawn, kinds, options, title)
                 picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)
-    warn_if_misleading(stds, ["theta", "dphi", "psi"])
+    warn_if_unfair(stds)
 
 
 def _camera(text: str, radians: bool) -> tuple[float, float]:

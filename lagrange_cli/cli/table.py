@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, Any
 from ..errors import DataError, LagtopError, OutOfRangeError
 from ..output.terminal import with_progress
 from . import shared as opt
-from .app import complain
 
 if TYPE_CHECKING:
     from ..output.destination import Output
-    from ..solver.angle_stds import AngleStds
-    from ..solver.solve import Motion
+    from ..solver.spread import ColumnSpread
     from ..top.given import Given
     from ..top.values import Value
 
@@ -56,12 +54,13 @@ def table_command(
 
     Errors of angles are at most 4 units at times up to 2^50 nutation periods.  A unit is 2^-52
     max(1 rad, |angle|), or more if the axis passes near the vertical.  If inputs are uncertain, the
-    last columns are the uncertainties of the angles.
+    last columns are the uncertainties of all columns but the time.
     """
     from ..file_bytes import shown_path
     from ..files.trajectory import read_times
     from ..solver.columns import DEFAULT_COLUMNS
     from ..solver.tables import ProvedTable, grid, rows
+    from .uncertainty import column_stds, warn_if_unfair
 
     opt.exclude(n=n, dt=dt)
     for name, value in {"t_max": t_max, "t_min": t_min, "n": n, "dt": dt}.items():
@@ -76,19 +75,19 @@ def table_command(
     names = DEFAULT_COLUMNS if columns is None else columns
     how = {"radians": top.radians, "wrap": wrap}
     parts: Iterable[Any]
-    stds: AngleStds | None = None
+    stds: ColumnSpread | None = None
     bounds = {name: x.number for name, x in given.items() if x is not None}
     try:
         at = read_times(times, decimal) if times else grid(motion, n=n, **bounds)
         if proved:
             header, parts = ProvedTable(motion, names, digits, **how).rows(at, radii=certify)
         else:
-            stds = angle_stds(found, motion)
-            header, parts = rows(motion, at, names, stds=stds.at if stds else None, **how)
+            stds = column_stds(found, motion, names)
+            header, parts = rows(motion, at, names, stds=stds, **how)
         if out.format.is_for_people:
             header = _with_units(header, names, found)
         out.rows(header, with_progress(parts, "rows", at.count or None, len))
-        warn_if_misleading(stds, names)
+        warn_if_unfair(stds)
     except LagtopError as error:
         late = ": use --digits" if isinstance(error, OutOfRangeError) and error.key else ""
         if times is not None and error.key == "t":
@@ -96,33 +95,6 @@ def table_command(
         if late:
             raise OutOfRangeError(f"{error.marked}{late}", error.key) from None
         raise
-
-
-def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
-    """Return the uncertainties of the angles as a function of times, if inputs are uncertain.
-
-    If they do not exist, a warning states the reason.
-    """
-    if not found.stds:
-        return None
-    from ..solver.angle_stds import AngleStds  # for few tops only
-    from ..solver.derivatives import NO_DERIVATIVE
-
-    stds = AngleStds(motion, found.stds)
-    if stds.missing:
-        complain(f"Warning: no uncertainty of the angles: {NO_DERIVATIVE}")
-    return stds
-
-
-def warn_if_misleading(stds: AngleStds | None, names: Sequence[str]) -> None:
-    """Warn of columns for which linear propagation misleads."""
-    misled = [x for x in names if x in stds.misleading] if stds else []
-    if stds and misled:
-        first = min((stds.misleading[x] for x in misled), key=abs)
-        complain(
-            f"Warning: uncertainties of {', '.join(misled)} are not reliable from t = {first:g}: "
-            "linear propagation disagrees with motions one and two standard deviations away"
-        )
 
 
 def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> list[str]:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from ..arithmetic.text import NumberText
-from ..errors import AbsentError, LagtopError, joined
+from ..errors import AbsentError, LagtopError
 from ..names import check_names
 from ..output.destination import Output
 from ..output.report import Field, Report, uncertain_text, with_unit
-from ..solver.derivatives import DIFFERENTIABLE, NO_DERIVATIVE
-from ..solver.keys import degree_name, shown_keys, unit_name
+from ..solver.keys import NUMBERS, TEXT_KEYS, shown_keys, unit_name
 from ..solver.solve import Motion
-from ..solver.uncertainty import Contribution, FirstOrder, stds_of
+from ..solver.spread import ColumnSpread, Spread
 from ..top.given import Given
 from ..top.inputs import STANDS_FOR
 from .app import complain
 from .shared import write_report
+
+NO_SPREAD = "motions a standard deviation away lack it, or it is beyond the doubles"
 
 
 def check(found: Given, **options: object) -> None:
@@ -36,33 +37,56 @@ def with_stds(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return a record with the keys KEY_std, and the values as `value(uncertainty)` for people.
 
-    A warning names the numbers that have none.
+    A warning names the numbers that have none, and those with a doubtful one.
     """
-    uncertain = FirstOrder(motion, found.stds)
-    stds, beyond = stds_of(record, uncertain)
-    lost = [x for x in record if record[x] is not None and stds.get(f"{x}_std", 0) is None]
-    if beyond:
-        complain(f"Warning: {joined(beyond).marked}")
-    elif lost:
-        known = any(degree_name(key) in DIFFERENTIABLE for key in lost)
-        reason = NO_DERIVATIVE if known else "keys outside the record have none"
-        complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
-    misled = [
-        x
-        for x in record
-        if (std := stds.get(f"{x}_std")) is not None and uncertain.misleads(x, std)
-    ]
-    if misled:
-        complain(
-            f"Warning: uncertainties of {', '.join(misled)} are not reliable: linear propagation "
-            "disagrees with motions one and two standard deviations away"
-        )
+    spread = _spread_of(found, motion)
+    numbers = [x for x, y in record.items() if x not in TEXT_KEYS and not isinstance(y, str)]
+    present = [x for x in numbers if record[x] is not None]
+    known = {x: y for x in present if (y := spread.number(x)) and math.isfinite(y.std)}
+    if lost := [x for x in present if x not in known]:
+        complain(f"Warning: no uncertainty of {', '.join(lost)}: {NO_SPREAD}")
+    warn_of_unfair([x for x, y in known.items() if not y.fair])
+    stds = {x: y.std for x, y in known.items()}
     texts = {
-        name: NumberText(uncertain_text(_to_the_last_digit(motion, name, float(value), std), std))
-        for name, value in record.items()
-        if value is not None and (std := stds.get(f"{name}_std"))
+        name: NumberText(uncertain_text(_to_the_last_digit(motion, name, record[name], std), std))
+        for name, std in stds.items()
+        if std
     }
-    return dict(record) | stds, texts
+    return dict(record) | {f"{name}_std": stds.get(name) for name in numbers}, texts
+
+
+def _spread_of(found: Given, motion: Motion) -> Spread:
+    """Return the spread of a motion; raise LagtopError for an input that cannot change so much."""
+    spread = Spread(motion, found.stds)
+    for name, std in found.stds.items():
+        if std and not spread.beside(name, 1):
+            raise LagtopError(f"{name} has no possible value {std:g} away: change it", name)
+    return spread
+
+
+def warn_of_unfair(names: Collection[str], ending: str = "") -> None:
+    """Warn of results that do not change in proportion to the inputs."""
+    if names:
+        complain(
+            f"Warning: uncertainties of {', '.join(names)} are rough{ending}: motions two standard "
+            "deviations away are not spread twice as far as those at one; use random tops"
+        )
+
+
+def column_stds(found: Given, motion: Motion, names: Sequence[str]) -> ColumnSpread | None:
+    """Return the uncertainties of columns but the time as a function of times, if there are any."""
+    if not found.stds:
+        return None
+    from ..solver.columns import chosen_columns
+
+    chosen = [name for name in chosen_columns(names) if name != "t"]
+    return ColumnSpread(_spread_of(found, motion), chosen)
+
+
+def warn_if_unfair(stds: ColumnSpread | None) -> None:
+    """Warn of columns that do not change in proportion to the inputs, after the last row."""
+    if stds and stds.unfair:
+        warn_of_unfair(stds.unfair, f" from t = {min(stds.unfair.values(), key=abs):g}")
 
 
 def _to_the_last_digit(motion: Motion, key: str, value: float, std: float) -> float | str:
@@ -74,19 +98,36 @@ def _to_the_last_digit(motion: Motion, key: str, value: float, std: float) -> fl
     return found.value if found is not None else value
 
 
+class BudgetLine(NamedTuple):
+    """The contribution of an input to the uncertainty of a number.
+
+    The number itself has a line that ends with its uncertainty.
+    """
+
+    quantity: str
+    value: float
+    std: float
+    sensitivity: float | None = None
+    """The contribution over the uncertainty of the input."""
+    contribution: float | None = None
+    elasticity: float | None = None
+    """The relative change of the number over the relative change of the input, or None."""
+    share: float | None = None
+    """The share of the variance, or None."""
+
+
 def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Output) -> None:
     """Write the budget of a key: the contribution of each uncertain input, and the key itself.
 
-    Raises AbsentError if the motion has no such key, or it has no derivative.
+    Raises AbsentError if the motion, or one beside it, has no such key.
     """
-    check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
+    check_names("budget", [key], [unit_name(name, radians=radians) for name in NUMBERS])
     value = motion.record(radians=radians, keys=[key])[key]
     if value is None:
         raise AbsentError(f"{key} is {motion.absence(key)}")
-    uncertain = FirstOrder(motion, found.stds)
-    whole = uncertain.std(key)
-    if whole is None:
-        raise AbsentError(f"{key} has no uncertainty of first order: {NO_DERIVATIVE}")
+    whole = _spread_of(found, motion).number(key)
+    if whole is None or not math.isfinite(whole.std):
+        raise AbsentError(f"{key} has no uncertainty: {NO_SPREAD}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     units, four_digits = _units(found, [key, *given]), "{:.4g}".format
     fields = [
@@ -98,10 +139,22 @@ def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Out
         Field("elasticity", "elasticity", four_digits),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
-    rows = [*uncertain.budget(key, given), Contribution(key, value, whole)]  # last, as in EA-4/02
-    text = uncertain_text(_to_the_last_digit(motion, key, value, whole), whole)
+    sum_of_squares = math.fsum(x * x for x in whole.contributions.values())
+    lines = [
+        BudgetLine(
+            *(name, given[name], std, part / std, part),
+            elasticity=part / std * given[name] / value if value else None,
+            share=part * part / sum_of_squares if sum_of_squares else None,
+        )
+        for name, part in whole.contributions.items()
+        for std in [found.stds[name]]
+    ]
+    lines.sort(key=lambda line: -abs(line.contribution or 0.0))
+    warn_of_unfair([] if whole.fair else [key])
+    text = uncertain_text(_to_the_last_digit(motion, key, value, whole.std), whole.std)
     shown = f"{key} = {text} {units.get(key, '')}".rstrip()
-    conclusion = f"{shown}, to first order; inputs are taken as independent."
+    conclusion = f"{shown}; inputs are taken as independent."
+    rows = [*lines, BudgetLine(key, value, whole.std)]  # last, as in EA-4/02
     write_report(out, lambda: Report({"key": key}, fields, rows, [conclusion], units))
 
 

@@ -52,7 +52,7 @@ class Options(NamedTuple):
     """Azimuth and elevation (radians)."""
     look: Look = LIGHT
     stds: Callable[[Array], Any] | None = None
-    """Standard deviations (radians) of `STD_COLUMNS` at given times: bands."""
+    """Standard deviations (radians) of `angle_columns` at given times: bands."""
     key: str | None = None
     """Key of the record that a map shows."""
     x: tuple[str, ArrayLike] | None = None
@@ -250,17 +250,22 @@ def add_time_bar(axes: Sequence[Axes], label: str) -> None:
 # --- angles
 
 
+def angle_columns(motion: Motion) -> list[str]:
+    """Return the columns that `angles` draws; on the separatrix there is no mean rate."""
+    return ["theta", "phi" if motion.mean_spin_rate is None else "dphi", "psi"]
+
+
 def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """Draw tilt, precession, and the periodic part of the spin, over time."""
     look, (factor, unit) = options.look, options.angle_unit
     t_max = last_time(motion, options.t_max, 3, 3)
     t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
     spin, turn = motion.mean_spin_rate, motion.mean_precession_rate
-    order, name, about, note = [0, 1, 2], "φ", "", ""
-    if spin is not None:  # on the separatrix there is no mean rate
-        phi, order, name = phi - spin * t, [0, 3, 2], "Δφ"
+    name, about, note = "φ", "", ""
+    if spin is not None:
+        phi, name = phi - spin * t, "Δφ"
         about = f"periodic part; mean rate {spin:.4g} {options.unit('rad/time')}"
-    stds = [0 * t] * 3 if options.stds is None else options.stds(t)[order]
+    stds = [0 * t] * 3 if options.stds is None else options.stds(t)
     if motion.regime in (Regime.SLEEPING, Regime.HANGING):
         note = "spin only: there is no precession"
     elif turn is not None:

@@ -31,7 +31,6 @@ from ..arithmetic.numbers import Real
 from ..arithmetic.text import NumberText, double_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError, arg
-from ..names import ANGLES
 from ..top.ranges import EvenPoints, Points
 from .attitude import Course, SingleSwing, start_of
 from .columns import (
@@ -51,8 +50,6 @@ from .series import near
 DEFAULT_ROWS = 101
 _ROWS_AT_ONCE = 64
 """Proved rows that are returned together."""
-STD_COLUMNS = (*ANGLES, "dphi", "dpsi")
-"""The columns that have uncertainties."""
 _BALLS = {
     **{"cos": arb.cos, "sin": arb.sin, "tanh": arb.tanh, "atan2": arb.atan2, "sqrt": root},
     **{"square": square, "sign": sign, "ratio": lambda x, y: x if x.is_zero() else x / y},
@@ -122,29 +119,30 @@ def rows(
 ) -> tuple[list[str], Iterator[Array]]:
     """Return the header and blocks of rows; angles in degrees or radians, wrapped or not.
 
-    `stds` returns the uncertainties of the angles `STD_COLUMNS` at some times, a row for each.
-    They follow as last columns for each angle among the columns.  Raises LagtopError for an unknown
-    column and, before the first block, for a time out of range.
+    `stds` returns the uncertainties of all columns but the time, in radians, which follow as last
+    columns.  Raises LagtopError for an unknown column and, before the first block, for a time out
+    of range.
     """
     chosen = chosen_columns(columns)
     within = wrap or not WITHIN_A_TURN.isdisjoint(chosen)
     ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
     for name, end in zip(ends, times.bounds(), strict=False):  # empty if times are read later
         motion.sampler().check(end, name, wrap=within)
-    angles = [i for i, name in enumerate(STD_COLUMNS) if stds is not None and name in chosen]
     header = headings(chosen, radians=radians)
-    named = headings([STD_COLUMNS[i] for i in angles], radians=radians)
+    uncertain = [name for name in chosen if name != "t"] if stds else []
+    in_degrees = [chosen[name].unit == "angle" and not radians for name in uncertain]
     at = columns_at(motion, columns, radians=radians, wrap=wrap)
 
     def parts() -> Iterator[Array]:
         for t in times.blocks():
             found = at(t)
-            if stds is not None and angles:
-                spread = stds(t)[angles] if radians else np.degrees(stds(t)[angles])
+            if stds and uncertain:
+                spread = stds(t)
+                spread[in_degrees] = np.degrees(spread[in_degrees])
                 found = np.concatenate([found, six_digits(spread)])
             yield found.T
 
-    return [*header, *(f"{heading}_std" for heading in named)], parts()
+    return [*header, *(f"{x}_std" for x in headings(uncertain, radians=radians))], parts()
 
 
 def six_digits(x: Array) -> Array:

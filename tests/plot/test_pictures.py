@@ -158,7 +158,7 @@ def test_angles_are_drawn_with_mean_rates_and_periods() -> None:
 
 
 def test_bands_are_one_standard_deviation_wide() -> None:
-    stds = [[0.01], [9.0], [0.0], [0.02], [9.0]]  # of theta, phi, psi, dphi, dpsi
+    stds = [[0.01], [0.02], [0.0]]  # of theta, dphi, psi
     figure = drawn("angles", solve(Top()), stds=lambda t: np.array(stds) + 0 * t)
     for axes, std in zip(figure.axes[:2], (0.01, 0.02), strict=False):
         band = np.asarray(axes.collections[0].get_paths()[0].vertices)

@@ -1,0 +1,157 @@
+"""The spread of motions beside a motion, against the reference and random tops; derivatives.
+
+`test_frozen` compares the derivatives of fifteen records.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from lagtop import Top, sensitivities, solve, sweep
+from record_reference import reference_record, reference_state
+from scenes import EPS, EVERY_KIND, UNIT
+
+from lagrange_cli.solver.spread import ColumnSpread, Spread
+
+SCENES: dict[str, dict[str, float]] = {
+    "any start": EVERY_KIND["any start"],
+    "in radians": UNIT | {"r0": -3, "theta0_rad": 2, "thetadot0": -1.5, "psidot0": 1},
+    "near the separatrix": UNIT
+    | {"m": 0.5, "r0": 0.75, "theta0_deg": 60, "psidot0": 0.5 + 1e-9, "thetadot0": 0.559016994},
+    "near a pole": UNIT | {"r0": 2, "theta0_deg": 90, "psidot0": 2 + 1e-9, "thetadot0": 1},
+    "extreme": {"m": 1e20, "A": 1e-9, "C": 1e-10, "s": 1e-9, "g": 1e-8, "psidot0": 1e3},
+}
+QUICK = [pytest.param(x, marks=() if x == "any start" else pytest.mark.slow) for x in SCENES]
+
+
+def beside(top: Top, name: str, std: float) -> list[dict[str, Any]]:
+    """Return the inputs of the tops a standard deviation away, the larger input first."""
+    value = Fraction(getattr(top, name))
+    return [top.replace(**{name: value + side * Fraction(std)}).as_dict() for side in (1, -1)]
+
+
+@pytest.mark.parametrize("scene", QUICK)
+def test_a_contribution_is_half_the_difference_of_the_motions_beside(scene: str) -> None:
+    top, keys = Top(**SCENES[scene]), ["T_nutation", "theta_max_deg", "mean_spin_rate", "K", "Lz"]
+    for name in ("C", "psidot0"):
+        std = 1e-12 * float(getattr(top, name))
+        spread = Spread(solve(top), {name: std})
+        with mpmath.workdps(80):
+            more, less = (reference_record(x, root_digits=400) for x in beside(top, name, std))
+            for key in keys:
+                found, half = spread.number(key), float((more[key] - less[key]) / 2)
+                assert found is not None
+                assert found.contributions[name] == pytest.approx(half, rel=1e-12), key
+
+
+@pytest.mark.parametrize("scene", [x for x in QUICK if "separatrix" not in x.values[0]])
+def test_columns_are_spread_as_those_of_the_reference(scene: str) -> None:
+    top, name = Top(**SCENES[scene]), "C"
+    motion, std = solve(top), 1e-11 * SCENES[scene]["C"]
+    times = np.array([0.0, 0.3, -1e3]) * motion.T_nutation
+    found = ColumnSpread(Spread(motion, {name: std}), ["theta", "phi", "psi"])(times)
+    for t, row in zip(times.tolist(), found.T, strict=True):
+        more, less = (
+            reference_state(x, t, digits=40, root_digits=300)[:3] for x in beside(top, name, std)
+        )
+        half = [abs(float(x - y)) / 2 for x, y in zip(more, less, strict=True)]
+        size = 1 + abs(t) * abs(motion.mean_spin_rate)
+        assert row == pytest.approx(half, rel=0.01, abs=8 * EPS * size)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "stds"),
+    [
+        ({}, {"r0": 0.5, "theta0_deg": 1.0}),
+        ({}, {"thetadot0": 0.5}),  # of second order
+        ({"r0": 37.286}, {"r0": 3.0}),  # the longest period
+        ({"theta0_deg": 0.15}, {"theta0_deg": 0.1}),  # near the vertical
+        (EVERY_KIND["over the top"], {"psidot0": 1e-3}),  # jumps of the mean rates
+    ],
+)
+def test_random_tops_have_the_same_spread_or_the_number_is_named(
+    inputs: dict[str, float], stds: dict[str, float]
+) -> None:
+    motion, rng = solve(Top(**inputs)), np.random.default_rng(1)
+    keys = ["T_nutation", "theta_max_deg", "mean_spin_rate", "mean_precession_rate"]
+    drawn = {x: getattr(motion.top, x) + std * rng.standard_normal(4000) for x, std in stds.items()}
+    results = sweep(**(motion.top.parts.body | motion.top.parts.start | drawn), keys=keys)
+    for key in keys:
+        found = Spread(motion, stds).number(key)
+        assert found is not None
+        true = math.sqrt(np.nanmean((results[key] - getattr(motion, key)) ** 2))
+        assert found.std == pytest.approx(true, rel=0.05 if found.fair else 0.3), key
+
+
+def test_next_to_a_pole_the_angles_are_spread_as_elsewhere() -> None:
+    """The axis passes within 1e-14 degrees of the pole, and the precession is steep there."""
+    body = {"m": 1, "s": 1, "g": 1, "A": 0.721035951228741, "C": 1.0784295503310426}
+    start = {"r0": 2.5461170485897657, "psidot0": -2.806564349850683}
+    start |= {"thetadot0": 1.222377709272433, "theta0_deg": 110.90809218940831}
+    spread = Spread(solve(Top(**body | start)), {"theta0_deg": 0.0016972329552432642})
+    columns = ColumnSpread(spread, ["psi", "dpsi"])
+    found = np.degrees(columns(np.array([0.28579709769770545])))
+    assert found[0] == pytest.approx(8.5e-4, rel=0.01)
+    assert [*columns.unfair] == ["dpsi"]  # the mean rate jumps at the pole
+
+
+def test_at_the_end_of_a_range_one_direction_counts() -> None:
+    for inputs, stds in (({"theta0_deg": 180}, {"theta0_deg": 0.5}), ({"C": 78064}, {"C": 100.0})):
+        [name] = stds
+        found = Spread(solve(Top(**inputs)), stds).number(name)
+        assert found is not None
+        assert (found.std, found.fair) == (stds[name], True)
+
+
+def test_derivatives_are_by_the_inputs_that_were_given() -> None:
+    top = Top(m=2, A_cm=3, C=1, s=0.5, g=1, phidot0=4, psidot0=1.5, theta0_deg=50)
+    inputs = "m A_cm C s g phidot0 theta0_deg thetadot0 psidot0"
+    assert sensitivities(top, ["a"]).inputs == tuple(inputs.split())
+
+
+SINE = math.sin(math.radians(26))
+EXACT: list[tuple[dict[str, float], str, str, float | None]] = [
+    # with psidot0 the axis moves uniformly on a great circle, sin(theta0) psidot0 per time
+    ({"s": 0, "r0": 0, "theta0_deg": 26}, "mean_precession_rate", "psidot0", SINE),
+    ({"s": 0, "r0": 0, "theta0_deg": 26}, "mean_spin_rate", "r0", 1.0),
+    ({"s": 0, "r0": 0, "theta0_deg": 26}, "a", "s", 2.0),
+    # without torque over the poles T = 2 pi/theta'
+    (
+        {"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 2},
+        *("T_nutation", "thetadot0", -math.pi / 2),
+    ),
+    ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 2}, "mean_spin_rate", "r0", None),
+    ({"g": 0, "r0": 3, "theta0_deg": 0}, "a", "g", 2.0),
+    ({"g": 0, "r0": 0, "theta0_deg": 180}, "a", "g", 2.0),
+    # a pendulum that turns over passes over both poles
+    ({"r0": 0, "theta0_deg": 160, "thetadot0": 3}, "theta_max_deg", "m", 0.0),
+    ({"r0": 0, "theta0_deg": 160, "thetadot0": 3}, "mean_spin_rate", "r0", None),
+    # after release from rest psi'(T/2) = a/b = 2mgs/(C r0), whatever the tilt and A are
+    ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "theta0_deg", 0.0),
+    ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "A", 0.0),
+    ({"r0": 2, "theta0_deg": 40}, "precession_rate_half", "m", 1.0),
+    # the least r0 of steady precession is 0 at 90 degrees, and a kink of steady precession
+    ({"theta0_deg": 90, "r0": 50}, "r0_steady_min", "r0", 0.0),
+    ({"theta0_deg": 60, "r0": 1.5, "psidot0": 2}, "theta_max_deg", "r0", None),
+    # stability_factor is proportional to r0^2; the two steady rates change places at r0 = 0
+    ({"r0": 0, "theta0_deg": 120}, "stability_factor", "r0", 0.0),
+    ({"r0": 0, "theta0_deg": 120}, "steady_rate_slow", "r0", None),
+    # next to a steady precession
+    (
+        {"r0": 1.5, "psidot0": 1, "theta0_deg": 60, "thetadot0": 1e-40},
+        *("theta_max_deg", "r0", -49.6196005879),
+    ),
+]
+
+
+@pytest.mark.parametrize(("inputs", "key", "name", "value"), EXACT)
+def test_derivatives_by_hand(
+    inputs: dict[str, float], key: str, name: str, value: float | None
+) -> None:
+    found = sensitivities(Top(**UNIT | inputs), [key]).derivatives[key][name]
+    assert found == (value if value is None else pytest.approx(value, rel=1e-11, abs=0))
