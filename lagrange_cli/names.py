@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from .arithmetic.text import quoted
@@ -29,11 +29,6 @@ class Key(NamedTuple):
     """The condition of the number, such as `if r0 is not 0`; some regimes lack it too."""
     evaluated: str = ""
     """The form of the formula that the solver evaluates."""
-
-    def in_units(self, *, radians: bool, named: Callable[[str], str] = str) -> Key:
-        """Return the key with its unit as printed; `named` gives the names of units of a system."""
-        angle = "rad" if radians else "deg"
-        return self._replace(unit=angle if self.unit == "angle" else named(self.unit))
 
 
 def split_names(text: str) -> list[str]:

@@ -16,13 +16,14 @@ from ours import ManyDigits, Ours
 from lagrange_cli.solver.columns import DEFAULT_COLUMNS
 from lagrange_cli.solver.solve import solve
 from lagrange_cli.solver.tables import ProvedTable
+from lagrange_cli.top.units import Units
 
 
 def rows_of(
     top: Top, times: Sequence[Any], digits: int, *, wrap: bool = False, radians: bool = False
 ) -> list[list[Any]]:
     """Return rows of t and the three angles with `digits` digits."""
-    table = ProvedTable(solve(top), DEFAULT_COLUMNS, digits, wrap=wrap, radians=radians)
+    table = ProvedTable(solve(top), DEFAULT_COLUMNS, digits, wrap=wrap, units=Units(radians))
     return [[number.value for number in table.row(Fraction(t))] for t in times]
 
 
@@ -39,7 +40,7 @@ class Motion:
     def __init__(self, **inputs: float) -> None:
         self.motion = solve(Top(**inputs))
         self._rows: dict[Fraction, tuple[Any, ...]] = {}
-        self._table = ProvedTable(self.motion, DEFAULT_COLUMNS, DIGITS, radians=True)
+        self._table = ProvedTable(self.motion, DEFAULT_COLUMNS, DIGITS, units=Units(radians=True))
 
     @cached_property
     def numbers(self) -> dict[str, Any]:

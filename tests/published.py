@@ -20,6 +20,7 @@ from ours import ManyDigits, Ours
 from record_reference import State, reference_record, reference_state
 
 from lagrange_cli.solver.tables import ProvedTable
+from lagrange_cli.top.units import Units
 
 Many = Any
 """An mpf with many digits."""
@@ -137,7 +138,7 @@ def exact(x: Printed, *, by_reference: bool = False) -> Many:
         if by_reference:
             now = reference_state(motion(x.scene).top.as_dict(), Fraction(x.t))
         else:
-            table = ProvedTable(motion(x.scene), State._fields, DIGITS, radians=True)
+            table = ProvedTable(motion(x.scene), State._fields, DIGITS, units=Units(radians=True))
             now = State(*(mpmath.mpf(found.value) for found in table.row(Fraction(x.t))))
         value = QUANTITIES[x.quantity](now)
         if x.quantity.startswith("Rot"):  # angles of a rotation have the whole turns of the print

@@ -19,7 +19,7 @@ import pytest
 from conftest import Lagtop, columns_of
 from lagtop import LagtopError, Motion, Top, sensitivities, solve
 
-from lagrange_cli.top.inputs import STANDS_FOR
+from lagrange_cli.top.inputs import replaced_by
 
 PATH = Path(__file__).parent / "frozen.json"
 DIGEST = "d870fa94a0bbf5b29e1031af30b1e63b39125cf08c00452e015cb1b5dcd24f79"
@@ -45,9 +45,7 @@ def top_of(inputs: dict[str, Any]) -> Top:
         for name, x in inputs.items()
     }
     top = Top(**exact)
-    derived = {
-        STANDS_FOR[name]: getattr(top, STANDS_FOR[name]) for name in STANDS_FOR.keys() & inputs
-    }
+    derived = {x: getattr(top, x) for name in inputs if (x := replaced_by(name)) in {"A", "r0"}}
     return top.replace(**derived)  # at that time A and r0 were rounded to doubles
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import mpmath
@@ -28,6 +29,10 @@ Many = Any
 """A number of mpmath."""
 Quaternion = tuple[Many, ...]
 """The parts w, x, y, z of the rotation from body to space."""
+
+
+def _exact(x: Fraction) -> Many:
+    return mpmath.mpf(x.numerator) / x.denominator
 
 
 def rotation_angle(computed: Sequence[Any], exact: Quaternion) -> float:
@@ -61,14 +66,13 @@ class Reference:
     def __init__(self, top: Top) -> None:
         """Compute the roots and the start of a top, from its exact inputs."""
         with mpmath.workdps(ROOT_DIGITS):  # differences of roots may cancel
-            tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
-            spin = "r0" if top.phidot0 is None else "phidot0"
-            names = ("m", "A", "C", "s", "g", spin, "thetadot0", "psidot0", tilt)
-            given = (mpmath.mpf(x.numerator) / x.denominator for x in map(top.exact, names))
-            m, A, C, s, g, r0, theta_rate, psi_rate, theta = given
-            theta *= mpmath.pi / 180 if tilt == "theta0_deg" else 1
+            tilt, spin = top.exact_tilt, top.exact_spin
+            names = ("m", "A", "C", "s", "g", "thetadot0", "psidot0")
+            m, A, C, s, g, theta_rate, psi_rate = (_exact(top.exact(name)) for name in names)
+            degree = mpmath.mpf(1) if tilt.degrees is None else mpmath.pi / 180
+            theta = _exact(tilt.number) * degree
             u0 = mpmath.cos(theta)
-            r0 += psi_rate * u0 if spin == "phidot0" else 0
+            r0 = _exact(spin.constant) + _exact(spin.share) * psi_rate * u0
             a, b = 2 * m * g * s / A, C * r0 / A
             around = psi_rate * mpmath.sin(theta) ** 2
             beta, alpha = around + b * u0, theta_rate**2 + around * psi_rate + a * u0

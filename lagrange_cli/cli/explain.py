@@ -35,13 +35,13 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     """
     from ..solver.explanation import explanations, listed
 
-    found, radians = top.given(), top.radians
-    named = found.named
+    found = top.given()
+    units = found.units(radians=top.radians)
     if not words:
-        rows = listed(radians=radians, named=named)
+        rows = listed(units)
         opt.write_report(out, lambda: Report({}, _LISTED, rows, []))
         return
-    rows = explanations(opt.motion_of(found), words, radians=radians, named=named)
+    rows = explanations(opt.motion_of(found), words, units)
     document = Report({}, _EXPLAINED, rows, []).document()
     out.document(document._replace(page=lambda _: [Lines(_lines(row)) for row in rows]))
 

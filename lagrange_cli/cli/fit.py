@@ -110,9 +110,9 @@ def fit_command(
     given = top.given()
     known, source = known_inputs(given.inputs, given.stds), one_line(shown_path(words[0]))
     if window is None:
-        found = [fit_recording(recording, known, radians=radians)]
+        found = [fit_recording(recording, known, given.units(radians=radians))]
     else:
-        found = fit_windows(recording, window, known, radians=radians)
+        found = fit_windows(recording, window, known, given.units(radians=radians))
     failed = [x.failure() for x in found if x.failures()]
     with ExitStack() as stack:  # a file is replaced only if the report is written
         if scene_path and not failed and found[0].inputs is not None:

@@ -124,7 +124,7 @@ def plot_command(
         key=key,
         **{x: y and (y[0], next(y[1].number.blocks())) for x, y in axes.items()},
         progress=with_progress,
-        unit=founds[0].named,
+        unit=founds[0].units(radians=top.radians).named,
         stds=stds,
     )
     with ExitStack() as stack:
@@ -200,7 +200,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     from ..plot.browser.view import open_page, view
 
     found = top.given()
-    page = view(opt.motion_of(found, uses_stds=False), found.named)
+    page = view(opt.motion_of(found, uses_stds=False), found.units(radians=False).named)
     if output:
         with opened(output) as stream:
             stream.write(page.encode())

@@ -12,10 +12,11 @@ from ..names import Key, check_names
 from ..output.destination import Output
 from ..output.document import lines_document, record_document
 from ..solver.facts import Regime
-from ..solver.keys import CHAIN, all_keys, derivation_keys, key_of, shown_keys, unit_name
+from ..solver.keys import CHAIN, all_keys, derivation_keys, key_of, shown_keys
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
 from ..solver.summary import summary
+from ..top.units import Units
 from . import shared as opt
 from .app import complain
 
@@ -54,62 +55,59 @@ def solve_command(
     tilt needs none.  An input may have an uncertainty ('1587(2)').
     """
     opt.exclude(get=get, derivation=derivation, budget=budget)
-    radians = top.radians
-    if get is not None:
-        get = _selected(get, radians)
     found = top.given()
+    units = found.units(radians=top.radians)
+    if get is not None:
+        get = _selected(get, units)
     if found.stds or budget is not None or any(key.endswith("_std") for key in get or ()):
         from . import uncertainty
 
         uncertainty.check(found, digits=digits, derivation=derivation, certify=certify)
     motion = opt.motion_of(found, exact=digits is not None)
     if budget is not None:
-        budget = key_of(budget, radians=radians)
-        uncertainty.write_budget(found, motion, budget, radians, out)
+        budget = key_of(budget, units)
+        uncertainty.write_budget(found, motion, budget, units, out)
         return
-    names = _steps_of_section_8(motion, radians) if derivation else get
+    names = _steps_of_section_8(motion, units) if derivation else get
     wanted = list(dict.fromkeys(name.removesuffix("_std") for name in names)) if names else None
-    record, beyond = record_in_range(
-        motion, keys=wanted, digits=digits, radii=certify, radians=radians
-    )
+    record, beyond = record_in_range(motion, keys=wanted, digits=digits, radii=certify, units=units)
     if beyond and wanted:
         raise beyond[0]
     if beyond:
         complain(f"Warning: {joined(beyond).marked}")
-    named = found.named
     if "remark" in record:
-        record["remark"] = found.remark(record["remark"])
+        record["remark"] = units.remark(record["remark"])
     more: dict[str, Any] = {}
     if wanted is None:
         with suppress(TypeError):  # a number beyond the range of doubles is None
-            more["summary"] = summary(record, motion.facts, named)
+            more["summary"] = summary(record, motion.facts, units.named)
     shown: dict[str, Any] = {}
     if found.stds:
         record, shown = uncertainty.with_stds(found, motion, record)
     if get is not None:
         _write_selected(motion, record, shown, get, out)
         return
-    keys = shown_keys(radians=radians, named=named, requested=names is not None)
+    keys = shown_keys(units, requested=names is not None)
     if derivation:
-        keys = _keys_by_step(keys, radians)
+        keys = _keys_by_step(keys, units)
         record = {x: record[x] for x in [*keys, *record]}
-    elif found.si:
+    elif units.si:
         more["units"] = {x: key.unit for x, key in keys.items() if x in record and key.unit}
     if "regime" in record and motion.regime is Regime.SLEEPING and not motion.facts.stable:
         shown["regime"] = f"{record['regime']}, unstable"
     out.document(record_document(record, lambda: keys, more, shown))
 
 
-def _selected(words: Sequence[str], radians: bool) -> list[str]:
+def _selected(words: Sequence[str], units: Units) -> list[str]:
     """Return the keys that words or symbols name.
 
     Raises LagtopError for an unknown or a repeated key.
     """
-    keys = [key_of(word, radians=radians) for word in words]
+    keys = [key_of(word, units) for word in words]
     values = [key.removesuffix("_std") for key in keys]
     if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
         values = list(dict.fromkeys(values))
-    check_names("get", values, all_keys(radians=radians))
+    check_names("get", values, all_keys(units))
     return keys
 
 
@@ -146,7 +144,7 @@ def _absence(motion: Motion, record: dict[str, Any], key: str) -> str:
     return motion.absence(number)
 
 
-def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
+def _steps_of_section_8(motion: Motion, units: Units) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
     if motion.roots_sum is None:
         top = motion.top
@@ -155,10 +153,10 @@ def _steps_of_section_8(motion: Motion, radians: bool) -> list[str]:
             f"regime {motion.regime.value!r}, thetadot0 = {float(top.thetadot0)}, "
             f"psidot0 = {float(top.psidot0)}"
         )
-    return derivation_keys(radians=radians)
+    return derivation_keys(units)
 
 
-def _keys_by_step(keys: dict[str, Key], radians: bool) -> dict[str, Key]:
+def _keys_by_step(keys: dict[str, Key], units: Units) -> dict[str, Key]:
     """Return the keys of the steps of section 8, in order and grouped by step."""
-    chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
+    chain = {units.key(x): step for step, names in CHAIN.items() for x in names}
     return {name: keys[name]._replace(group=step) for name, step in chain.items()}

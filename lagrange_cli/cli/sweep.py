@@ -15,6 +15,7 @@ from ..file_bytes import shown_path
 from ..output.document import rows_document
 from ..output.terminal import with_progress
 from ..top.scenes import is_scene_file
+from ..top.units import Units
 from ..top.values import parse_number_or_span, parse_values
 from . import shared as opt
 from .app import complain
@@ -22,7 +23,6 @@ from .app import complain
 if TYPE_CHECKING:
     from ..output.destination import Output
     from ..sweeps.plan import NumberedBlock
-    from ..top.given import Given
 
 MOST_JOBS = 1024
 FEW = 1000
@@ -136,7 +136,7 @@ def sweep_command(
         if folder:
             folder.write(shown)
         else:
-            names = _headings(sweep.header, given, out, radians=top.radians)
+            names = _headings(sweep.header, sweep.units, out)
             out.blocks(names, (part.text for part in shown))
     if folder and folder.found:
         complain(f"Resumed: {folder.found} parts were already in {parts}")
@@ -145,14 +145,14 @@ def sweep_command(
         complain(f"Warning: {shown_path(path)} holds no tops")
 
 
-def _headings(names: Sequence[str], given: Given, out: Output, *, radians: bool) -> Sequence[str]:
+def _headings(names: Sequence[str], units: Units, out: Output) -> Sequence[str]:
     """Return the headings of keys: with units in a table for people, if inputs have units."""
-    if not (given.si and out.format.is_for_people):
+    if not (units.si and out.format.is_for_people):
         return names
     from ..output.report import with_unit
     from ..solver.keys import shown_keys
 
-    keys = shown_keys(radians=radians, named=given.named, requested=True)
+    keys = shown_keys(units, requested=True)
     return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
 
 
@@ -187,23 +187,24 @@ def find_command(
     """
     from ..inverse.find import find_tops, search_of
     from ..names import check_names
-    from ..solver.keys import all_keys, record_keys, unit_name
+    from ..solver.keys import all_keys, record_keys
     from ..solver.record import record_in_range
 
-    chosen = record_keys(radians=top.radians)
+    units = Units(top.radians)
+    chosen = record_keys(units)
     if keys is not None:
-        known = [*all_keys(radians=top.radians)]
-        named = {x: unit_name(f"{x}_deg", radians=top.radians) for x in keys}
+        known = all_keys(units)
+        named = {x: units.key(f"{x}_deg") for x in keys}
         chosen = check_names("keys", [y if y in known else x for x, y in named.items()], known)
     search, given = search_of(top.inputs, words, top.scene, radians=top.radians)
     motions, looked = find_tops(search, scan)
     opt.warn(given)
     complain(f"{len(motions)} found; {looked}")
-    records = [record_in_range(motion, radians=top.radians, keys=chosen)[0] for motion in motions]
+    units = given.units(radians=top.radians)
+    records = [record_in_range(motion, units=units, keys=chosen)[0] for motion in motions]
     for motion, record in zip(motions, records, strict=True):
         if "remark" in record:
-            record["remark"] = given.remark(record["remark"])
+            record["remark"] = units.remark(record["remark"])
         if "psidot0" in record:  # the number of a steady rate
             record["psidot0"] = float(motion.top.psidot0)
-    headings = _headings(chosen, given, out, radians=top.radians)
-    out.document(rows_document(records, chosen, headings))
+    out.document(rows_document(records, chosen, _headings(chosen, units, out)))

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import DataError, LagtopError, OutOfRangeError
 from ..output.terminal import with_progress
+from ..top.units import Units
 from . import shared as opt
 
 if TYPE_CHECKING:
     from ..output.destination import Output
     from ..solver.spread import ColumnSpread
-    from ..top.given import Given
     from ..top.values import Value
 
 
@@ -73,7 +73,7 @@ def table_command(
         raise LagtopError("--digits and --certify take inputs without uncertainties")
     motion = opt.motion_of(found, exact=digits is not None)
     names = DEFAULT_COLUMNS if columns is None else columns
-    how = {"radians": top.radians, "wrap": wrap}
+    how: Any = {"units": found.units(radians=top.radians), "wrap": wrap}
     parts: Iterable[Any]
     stds: ColumnSpread | None = None
     bounds = {name: x.number for name, x in given.items() if x is not None}
@@ -85,7 +85,7 @@ def table_command(
             stds = column_stds(found, motion, names)
             header, parts = rows(motion, at, names, stds=stds, **how)
         if out.format.is_for_people:
-            header = _with_units(header, names, found)
+            header = _with_units(header, names, how["units"])
         out.rows(header, with_progress(parts, "rows", at.count or None, len))
         warn_if_unfair(stds)
     except LagtopError as error:
@@ -97,12 +97,12 @@ def table_command(
         raise
 
 
-def _with_units(header: Sequence[str], names: Sequence[str], found: Given) -> list[str]:
+def _with_units(header: Sequence[str], names: Sequence[str], units: Units) -> list[str]:
     """Return the headings of a table for people, with units that are not part of the names."""
     from ..output.report import with_unit
     from ..solver.columns import chosen_columns
 
     chosen = chosen_columns(names).values()
-    units = ["" if column.unit == "angle" else found.named(column.unit) for column in chosen]
-    texts = [with_unit(x, unit) for x, unit in zip(header, units, strict=False)]
+    shown = ["" if column.unit == "angle" else units.named(column.unit) for column in chosen]
+    texts = [with_unit(x, unit) for x, unit in zip(header, shown, strict=False)]
     return [*texts, *header[len(texts) :]]

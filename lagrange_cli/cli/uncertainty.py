@@ -12,11 +12,12 @@ from ..errors import AbsentError, LagtopError
 from ..names import check_names
 from ..output.destination import Output
 from ..output.report import Field, Report, uncertain_text, with_unit
-from ..solver.keys import NUMBERS, TEXT_KEYS, shown_keys, unit_name
+from ..solver.keys import NUMBERS, TEXT_KEYS, shown_keys
 from ..solver.solve import Motion
 from ..solver.spread import ColumnSpread, Spread
 from ..top.given import Given
-from ..top.inputs import STANDS_FOR
+from ..top.inputs import DECLARED
+from ..top.units import Units
 from .app import complain
 from .shared import write_report
 
@@ -116,26 +117,26 @@ class BudgetLine(NamedTuple):
     """The share of the variance, or None."""
 
 
-def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Output) -> None:
+def write_budget(found: Given, motion: Motion, key: str, units: Units, out: Output) -> None:
     """Write the budget of a key: the contribution of each uncertain input, and the key itself.
 
     Raises AbsentError if the motion, or one beside it, has no such key.
     """
-    check_names("budget", [key], [unit_name(name, radians=radians) for name in NUMBERS])
-    value = motion.record(radians=radians, keys=[key])[key]
+    check_names("budget", [key], units.keys(NUMBERS))
+    value = motion.record(radians=units.radians, keys=[key])[key]
     if value is None:
         raise AbsentError(f"{key} is {motion.absence(key)}")
     whole = _spread_of(found, motion).number(key)
     if whole is None or not math.isfinite(whole.std):
         raise AbsentError(f"{key} has no uncertainty: {NO_SPREAD}")
     given = {x: float(found.inputs[x]) for x in found.stds}
-    units, four_digits = _units(found, [key, *given]), "{:.4g}".format
+    shown, four_digits = _units(found, [key, *given]), "{:.4g}".format
     fields = [
-        Field("quantity", "quantity", lambda x: with_unit(x, units.get(x)), is_text=True),
+        Field("quantity", "quantity", lambda x: with_unit(x, shown.get(x)), is_text=True),
         Field("value", "value", lambda x: f"{x:.6g}"),
         Field("std", "uncertainty", four_digits),
         Field("sensitivity", "sensitivity", four_digits),
-        Field("contribution", with_unit("contribution", units.get(key)), four_digits),
+        Field("contribution", with_unit("contribution", shown.get(key)), four_digits),
         Field("elasticity", "elasticity", four_digits),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
@@ -152,17 +153,17 @@ def write_budget(found: Given, motion: Motion, key: str, radians: bool, out: Out
     lines.sort(key=lambda line: -abs(line.contribution or 0.0))
     warn_of_unfair([] if whole.fair else [key])
     text = uncertain_text(_to_the_last_digit(motion, key, value, whole.std), whole.std)
-    shown = f"{key} = {text} {units.get(key, '')}".rstrip()
-    conclusion = f"{shown}; inputs are taken as independent."
+    value_and_unit = f"{key} = {text} {shown.get(key, '')}".rstrip()
+    conclusion = f"{value_and_unit}; inputs are taken as independent."
     rows = [*lines, BudgetLine(key, value, whole.std)]  # last, as in EA-4/02
-    write_report(out, lambda: Report({"key": key}, fields, rows, [conclusion], units))
+    write_report(out, lambda: Report({"key": key}, fields, rows, [conclusion], shown))
 
 
 def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
     """Return the units of inputs and of keys of the record, if inputs have units."""
     if not found.si:
         return {}
-    named = found.named
-    shown = shown_keys(named=named) | shown_keys(named=named, radians=True)
-    solved = {key: shown.get(STANDS_FOR.get(key, key)) for key in keys}
-    return {key: x.unit for key, x in solved.items() if x is not None and x.unit}
+    shown = {key: found.units(radians=False).named(x.unit) for key, x in DECLARED.items()}
+    for radians in (False, True):
+        shown |= {key: x.unit for key, x in shown_keys(found.units(radians=radians)).items()}
+    return {key: unit for key in keys if (unit := shown.get(key))}

@@ -18,11 +18,10 @@ from ..errors import DataError, LagtopError
 from ..file_bytes import read_text, shown_path
 from ..names import repeated
 from ..top.given import Given, gather
-from ..top.inputs import TILT, checked_double, one_of_each, overridden
+from ..top.inputs import INPUTS, STEADY_WORDS, TILT, checked_double, one_of_each, overridden
 from ..top.ranges import MOST_POINTS, Points
-from ..top.top import INPUTS
 from ..top.units import conversion
-from ..top.values import STEADY_WORDS, Value, tilt_key
+from ..top.values import Value, tilt_key
 from .columns import known_quantities, name_and_unit
 from .text_tables import Table, read_table
 
@@ -32,7 +31,7 @@ class Tops(NamedTuple):
 
     size: int
     inputs: Mapping[str, Any]
-    """For each input an array of any type, or one value for all tops; NaN if a top lacks it."""
+    """For each input an array of any type, or one value for all tops; None if a top lacks it."""
     carried: Sequence[Sequence[Any]] = ()
     """The extra columns, which are copied to the output."""
     lines: Sequence[int] | None = None
@@ -123,7 +122,8 @@ class TopsFile(NamedTuple):
                 errors[i] = str(error)
             found.append(inputs)
             carried.append([values.get(name) for name in self.carried])
-        arrays = {x: np.array([y.get(x, np.nan) for y in found], object) for x in INPUTS}
+        names = {*shared, *(x for inputs in found for x in inputs)}
+        arrays = {x: np.array([inputs.get(x) for inputs in found], object) for x in names}
         return Tops(len(lines), arrays, [*zip(*carried, strict=True)], lines, errors)
 
     def _double(self, name: str, cell: Any) -> Any:

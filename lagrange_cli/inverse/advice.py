@@ -13,6 +13,7 @@ from ..errors import DataError, LagtopError, Message, arg
 from ..files import rotations
 from ..files.rotations import within_half_turn
 from ..names import ANGLES
+from ..top.inputs import BODY, replaced_by
 from .checks import CHANCE, Mistake, MoreNoise
 from .decay import decay_of
 from .known import Known
@@ -36,7 +37,6 @@ deviation of the rows before it, over the noise of neighbours, above which these
 _WINDOWS = (5, 10, 32)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
-_BODY = ("m", "g", "s", "A", "A_cm", "C")
 _FEW, _LEAST_TIMES = 0.03, 0.25
 """Largest share of rows that are outliers, and least share of times that differ."""
 _WHOLE, _ROUNDED = 1e-4, 0.6
@@ -48,7 +48,7 @@ half, and the residual of the spin over that of the whole recording."""
 
 def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
     """Yield what makes a failed fit good, the likeliest mistakes first, and then the usual ones."""
-    body = {name: x for name, x in known.items() if name in _BODY}
+    body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
     if len(recording.angles) == 1:  # of which a known start is a part
         body = dict(known)
     is_wrong = any(not isinstance(x, MoreNoise) for x in outcome.misfits)

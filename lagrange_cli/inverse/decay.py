@@ -10,12 +10,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import LagtopError
 from ..output.report import uncertain_text
+from ..top.inputs import BODY, replaced_by
+from ..top.units import DEGREES, Units
 from .checks import CHANCE
 from .known import Known
 from .outcome import GOOD, Outcome
@@ -24,7 +27,6 @@ from .search import best_fit
 
 _SURE = 3.0
 """Standard deviations from which a decay is significant."""
-_INSTANT = ("r0", "phidot0", "theta0", "thetadot0", "psidot0", "steady")
 
 
 class Decay(NamedTuple):
@@ -54,17 +56,17 @@ class Decay(NamedTuple):
 
 
 def fit_windows(
-    recording: Recording, count: int, known: Known, *, radians: bool = False
+    recording: Recording, count: int, known: Known, units: Units = DEGREES
 ) -> list[Outcome]:
     """Return the fits of equal windows of a recording.
 
     Raises LagtopError for a bad number of windows, or for a known input of one instant.
     """
-    for name in [x for x in _INSTANT if x in known]:
+    for name in [x for x in known if replaced_by(x) not in BODY]:
         key = "psidot0" if name == "steady" else name
         raise LagtopError(f"{key} is not the same in all windows: leave it out", key)
     return [
-        best_fit(part, known, radians=radians, chance=CHANCE / count)
+        replace(best_fit(part, known, chance=CHANCE / count), units=units)
         for part in recording.windows(count)
     ]
 

@@ -23,16 +23,16 @@ from ..arithmetic.types import Array
 from ..errors import AbsentError, LagtopError, arg, check_type
 from ..names import check_names, repeated
 from ..solver.facts import Regime
-from ..solver.keys import all_keys, shown_keys, unit_name
+from ..solver.keys import all_keys, shown_keys
 from ..solver.solve import Motion, solve
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import sweep
 from ..sweeps.results import Results
 from ..top.given import Given, gather
-from ..top.inputs import overridden, warn_of
-from ..top.top import INPUTS, Top
+from ..top.inputs import INPUTS, STEADY_WORDS, overridden, warn_of
+from ..top.top import Top
+from ..top.units import Units
 from ..top.values import (
-    STEADY_WORDS,
     Span,
     exact_number,
     parse_number_or_span,
@@ -83,6 +83,8 @@ class Search(NamedTuple):
     bounds: Sequence[Condition]
     """The conditions that solutions must meet besides."""
     radians: bool
+    is_body: bool
+    """Whether the top must be a body."""
 
     @property
     def targets(self) -> dict[str, float]:
@@ -92,7 +94,10 @@ class Search(NamedTuple):
     def top(self, values: Sequence[float] | Array) -> Top:
         """Return the top with these values of the unknowns.  Raises LagtopError."""
         inputs = overridden(dict(self.fixed), dict(zip(self.spans, values, strict=True)))
-        return Top(**{x: y if x == "psidot0" else float(y) for x, y in inputs.items()})
+        top = Top(**{x: y if x == "psidot0" else float(y) for x, y in inputs.items()})
+        if self.is_body:
+            top.check_body()
+        return top
 
     def residuals(self, values: Sequence[float] | Array) -> Array:
         """Return numbers of `solve` minus their targets; NaN where a key has no number."""
@@ -121,7 +126,8 @@ def search_of(
     An unknown input is a `Span`, or a `Value` of one.  Raises LagtopError for bad options, and for
     conditions that cannot have isolated solutions.
     """
-    found = [_read_condition(text, radians=radians) for text in conditions]
+    units = Units(radians)
+    found = [_read_condition(text, units) for text in conditions]
     given = gather(values_of(inputs), scene, units=any(x.has_unit for x in found))
     if key := repeated(x.key for x in found if x.relation == "="):
         raise LagtopError(f"a condition must name each key once, got {key} twice")
@@ -144,16 +150,17 @@ def search_of(
         )
     known = {name: x for name, x in given.values.items() if name not in spans}
     fixed = shared_inputs(given._replace(values=known), varying=spans)
-    return Search(fixed, spans, goals, [x for x in found if x not in goals], radians), given
+    bounds = [x for x in found if x not in goals]
+    return Search(fixed, spans, goals, bounds, radians, given.is_body), given
 
 
-def _read_condition(text: str, *, radians: bool) -> Condition:
+def _read_condition(text: str, units: Units) -> Condition:
     """Parse `KEY=VALUE` or `KEY<VALUE`; the key of an angle may omit its unit."""
     match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
     if not match:
         raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
     name, relation, word = match.groups()
-    key, known = unit_name(f"{name}_deg", radians=radians), all_keys(radians=radians)
+    key, known = units.key(f"{name}_deg"), all_keys(units)
     if key not in known:
         (key,) = check_names("a condition", [name], known)
     if key in _WORDS:
@@ -162,7 +169,7 @@ def _read_condition(text: str, *, radians: bool) -> Condition:
             wanted, got = ", ".join(_WORDS[key]), f"{relation}{word}".removeprefix("=")
             raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
         return Condition(key, relation, word)
-    unit = shown_keys(radians=radians, requested=True)[key].unit
+    unit = shown_keys(units, requested=True)[key].unit
     value = parse_value(key, word, wanted=unit)
     has_unit = bool(value.unit) and unit not in {"deg", "rad"}
     return Condition(key, relation, float(value.number), has_unit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import islice
 from types import NoneType
 from typing import Any
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import check_type
 from ..top.given import gather
+from ..top.units import DEGREES, Units
 from ..top.values import parse_value, value_of
 from .advice import hints
 from .known import Known, known_inputs
@@ -19,12 +21,12 @@ from .recording import Recording, recording_from
 from .search import best_fit
 
 
-def fit_recording(recording: Recording, known: Known, *, radians: bool = False) -> Outcome:
+def fit_recording(recording: Recording, known: Known, units: Units = DEGREES) -> Outcome:
     """Return the fit of a recording; if it fails, `hints` say what to try.
 
     Raises DataError for a recording that cannot be fitted.
     """
-    outcome = best_fit(recording, known, radians=radians)
+    outcome = replace(best_fit(recording, known), units=units)
     if outcome.failures():
         outcome.hints += islice(hints(recording, known, outcome), 1)
     return outcome

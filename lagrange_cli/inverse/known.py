@@ -13,9 +13,20 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError, Message, arg
 from ..names import check_names
 from ..output.report import uncertain_text
-from ..top.inputs import checked_double
-from ..top.top import INPUTS, Top
-from ..top.values import STEADY_WORDS
+from ..top.forms import Quantities, equation_of, needed_by
+from ..top.inputs import (
+    BODY,
+    DECLARED,
+    FORMS,
+    INPUTS,
+    STEADY_WORDS,
+    TILT,
+    all_replaced,
+    checked_double,
+    replaced_by,
+)
+from ..top.top import Top
+from ..top.units import power_of_time
 
 Known = Mapping[str, tuple[float, float]]
 """Known inputs by key, theta0 in radians, with standard deviations, which may be 0.
@@ -32,9 +43,9 @@ _UNITS = (6.0, 2 * math.pi, 30 / math.pi, 180 / math.pi, 60.0, 100.0, 1e3, 1e4, 
 _ROUGHLY = 0.02
 """Factors between units, in either direction, and how close a contradiction is to them."""
 _CLOCK = "the unit of t"
-_RATES = ("b", "r0", "phidot0", "thetadot0", "psidot0", "mean_spin_rate", "mean_precession_rate")
-_POWERS = {"a": -2, "g": -2, "T_nutation": 1, "T_precession": 1, "precession_rate": -1}
-_POWERS |= dict.fromkeys(_RATES, -1)
+_POWERS = {"a": -2, "b": -1, "T_nutation": 1, "T_precession": 1, "precession_rate": -1}
+_POWERS |= {"mean_spin_rate": -1, "mean_precession_rate": -1}
+_POWERS |= {key: power_of_time(x.unit) for key, x in DECLARED.items()}
 
 
 def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
@@ -48,19 +59,29 @@ def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
     for name in ("m", "s", "g", "A", "C", "r0"):
         if known.get(name) == 0:
             raise LagtopError(f"{name} must not be 0 in a fit: leave it out", name)
-    if "A_cm" in known and not {"m", "s"} <= known.keys():
-        raise LagtopError("A_cm must be given with m and s, as A = A_cm + m s^2", "A_cm")
-    plain = {x: y for x, y in known.items() if x not in {"A_cm", "phidot0"}}
-    if "A_cm" in known:
-        plain["A"] = known["A_cm"] + known["m"] * known["s"] ** 2
+    for name in known.keys() & FORMS.keys():
+        body = [x for x in needed_by(name) if x in BODY]
+        if not {*body} <= known.keys():
+            wrong = f"{name} must be given with {' and '.join(body)}, as {equation_of(name)}"
+            raise LagtopError(wrong, name)
+    plain = {x: y for x, y in known.items() if x not in FORMS or replaced_by(x) == TILT}
+    whole = in_all_forms(known)
+    if whole.has("A"):
+        plain["A"] = whole["A"]
     moment = plain.get("A", known.get("C", 1.0))
-    Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **plain})  # checks the inputs
+    Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **plain}).check_body()
     pairs = {name: (value, stds.get(name, 0.0)) for name, value in known.items()}
-    for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
-        if key in pairs:
-            value, std = pairs.pop(key)
-            pairs["theta0"] = value * unit, std * unit
+    for name in [x for x in known if replaced_by(x) == TILT]:
+        unit = in_all_forms({name: 1.0})[TILT]
+        value, std = pairs.pop(name)
+        pairs[TILT] = value * unit, std * unit
     return pairs | dict.fromkeys(["steady"] * bool(words), (0.0, 0.0))
+
+
+def in_all_forms(values: Mapping[str, Any]) -> Quantities:
+    """Return quantities of a motion that has inputs in any form; the tilt is in radians."""
+    found = Quantities(values, pi=lambda: math.pi, u0=lambda: np.cos(found[TILT]))
+    return found
 
 
 def time_power(key: str) -> int:
@@ -107,18 +128,17 @@ def estimates(
     whole turns are invisible, else 0, and `spins` is true if the spin is recorded.
     """
     found = {x: v[x] for x in ("theta0", "thetadot0", "psidot0") if x in known}
-    rates = {"r0": v["r0"], "phidot0": v["r0"] - v["psidot0"] * np.cos(v["theta0"])}
-    for name in rates.keys() & known.keys() if spins else ():
-        found[name] = _nearest(rates[name], known[name][0], turn)
+    for name in (x for x in known if replaced_by(x) == "r0" and spins):
+        start = {x: v[x] for x in ("theta0", "psidot0")}
+        wanted = in_all_forms(start | {name: v["r0"] * 0 + known[name][0]})["r0"]
+        found[name] = in_all_forms(start | {"r0": _nearest(v["r0"], float(wanted[0]), turn)})[name]
     moment = v.get("A")
     if WEIGHT <= known.keys():
         implied = v["m"] * v["g"] * v["s"] / (v["a"] / 2)
-        if "A_cm" in known:
-            found["A_cm"] = implied - v["m"] * v["s"] ** 2
-        elif "A" in known:
-            found["A"] = implied
+        whole = in_all_forms({"m": v["m"], "s": v["s"], "A": implied})
+        found |= {x: whole[x] for x in known if replaced_by(x) == "A"}
         moment = implied if moment is None else moment
-    if "C" in known and moment is not None and (spins or {"r0", "phidot0"} & known.keys()):
+    if "C" in known and moment is not None and (spins or "r0" in all_replaced(known)):
         r0 = v["r0"]
         if "r0" in known:
             r0 = np.full_like(r0, known["r0"][0])
@@ -148,7 +168,8 @@ def compared(
         return far, True, f"{text}: {far:.1f} sigma"
     text = f"{text}, {_plain(far)} sigma apart"
     if name == "A" and WEIGHT <= known.keys():
-        added = given[0] + known["m"][0] * known["s"][0] ** 2
+        body = {x: known[x][0] for x in ("m", "s")}
+        added = in_all_forms(body | {"A_cm": given[0]})["A"]
         if abs(added - found[0]) <= CONTRADICTS * math.hypot(given[1], found[1]):
             text += ": it is about the centre of mass, so give "
             return far, False, Message(f"{text}{arg('A_cm')} instead")
@@ -159,11 +180,11 @@ def compared(
             times = more if factor > 1 else f"1/{_plain(1 / factor)} of it"
             text += f", about {times}: check the units, or omit {arg(name)}"
             return far, False, Message(text)
-    others = [x for x in ("m", "g", "s", "A", "A_cm", "r0") if x in known and x != name]
+    others = [x for x in known if replaced_by(x) in {*WEIGHT, "A", "r0"} and x != name]
     others += [_CLOCK] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
-    checks = dict.fromkeys(("A", "A_cm", "C"), ", ".join(others))
-    checks |= dict.fromkeys(("r0", "phidot0"), _CLOCK)
-    check = f", or check {checks[name]}" if checks.get(name) else ""
+    checks = {"A": ", ".join(others), "C": ", ".join(others), "r0": _CLOCK}
+    what = checks.get(replaced_by(name))
+    check = f", or check {what}" if what else ""
     return far, False, Message(f"{text}: omit {arg(name)}{check}")
 
 

@@ -8,10 +8,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
-from ..solver.keys import shown_keys, unit_name
+from ..solver.keys import shown_keys
 from ..sweeps.records import sweep
+from ..top.inputs import all_replaced
+from ..top.units import Units
 from .checks import Mistake
 from .known import body_numbers, time_power
 from .outcome import PERCENT, Number, Outcome
@@ -35,7 +36,7 @@ _ELEMENTARY = {
 }
 _DERIVED = (
     *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
-    *("theta_min_deg", "theta_max_deg", "stability_factor", *_ELEMENTARY),
+    *("theta_min_rad", "theta_max_rad", "stability_factor", *_ELEMENTARY),
 )
 _UNSURE, _OPEN = 0.1, 0.25
 """Standard deviations of the tilt over its distance from a pole, beyond which the precession in the
@@ -50,7 +51,6 @@ def nutating_outcome(
     scale: float,
     noise: Mapping[str, tuple[float, float]],
     *,
-    radians: bool,
     is_spin_known: bool,
     is_even: bool,
 ) -> Outcome:
@@ -61,11 +61,9 @@ def nutating_outcome(
     """
     problem, names, given = found.problem, found.problem.names, found.problem.stds
     stds = np.linalg.norm(found.spread, axis=1)
-    pairs = found.numbers(
-        lambda x: _computed(problem, x, radians=radians, is_spin_known=is_spin_known)
-    )
+    pairs = found.numbers(lambda x: _computed(problem, x, is_spin_known=is_spin_known))
     hidden = {x for x, y in zip(names, stds, strict=True) if y > _IMPROVED * given.get(x, math.inf)}
-    tilt, (factor, angle) = found.values["theta0"], angle_unit(radians=radians)
+    tilt = found.values["theta0"]
     nearness = pairs.get("theta0", (0.0, 0.0))[1] / min(tilt, math.pi - tilt)
     hidden |= {"psidot0", "psi_zero", "phi_zero"} if nearness > _UNSURE else set()
     hidden |= {"thetadot0"} if nearness > _OPEN else set()
@@ -73,10 +71,10 @@ def nutating_outcome(
     for name, (value, *spreads) in pairs.items():
         if name in hidden or not spreads[0]:  # without a spread, known inputs determine it
             continue
-        size = factor if name in _ANGLES else scale ** time_power(name)
+        size = 1.0 if name in _ANGLES else scale ** time_power(name)
         std, own = (x * size for x in spreads)
-        key = f"{name}_{angle}" if name in _ANGLES else name
-        meaning = _meaning(name, problem, pairs, radians=radians)
+        key = f"{name}_rad" if name in _ANGLES else name
+        meaning = _meaning(name, problem, pairs)
         turns = (math.pi - value) // (2 * math.pi) if name.endswith("_zero") else 0  # within a half
         numbers[key] = Number((value + 2 * math.pi * turns) * size, std, meaning, own)
     unit = found.spread / (stds[:, np.newaxis] + 1e-300)
@@ -91,8 +89,7 @@ def nutating_outcome(
     return Outcome(
         recording=recording,
         known=problem.inputs,
-        radians=radians,
-        numbers=numbers,
+        in_radians=numbers,
         motion=lambda t: problem.angles(found.x[np.newaxis], t / scale)[:, 0],
         parameters=problem.count,
         frequency=1 / scale,
@@ -135,25 +132,23 @@ def _faults(found: Minimum, *, is_even: bool) -> list[str]:
     return faults
 
 
-def _computed(
-    problem: Problem, x: Array, *, radians: bool, is_spin_known: bool
-) -> dict[str, Array]:
+def _computed(problem: Problem, x: Array, *, is_spin_known: bool) -> dict[str, Array]:
     """Return the numbers of the motion and of the body for many parameters, start in radians."""
     v = problem.values(x)
     free = {*problem.names, *["b"] * problem.is_tied, *["a"] * problem.has_torque}
     free |= {*BESIDE_POLE.values()} if problem.pole else set()
-    free |= {"r0"} if "phidot0" in problem.known else set()
+    implied = all_replaced(problem.known) - problem.known.keys()
+    free |= {"r0"} & implied
     free -= {"a"} if problem.has_torque and not problem.stds else set()
     names = [name for name in (*_MEANINGS, *problem.stds) if name in free]
     found = {name: v[name] for name in names}
     has = {name: v[name] for name in problem.known}
     has |= {"r0": v["r0"]} if problem.spins and is_spin_known else {}
-    has |= {"A": v["A"]} if "A_cm" in has else {}
+    has |= {name: v[name] for name in implied}
     found |= body_numbers(v["a"] / 2, v["b"], has)
-    keys = [unit_name(key, radians=radians) for key in _DERIVED]
     start = {"theta0_rad": v["theta0"], "thetadot0": v["thetadot0"], "psidot0": v["psidot0"]}
-    swept = sweep(keys=keys, radians=radians, m=1, A=1, C=1, s=1, g=v["a"] / 2, r0=v["b"], **start)
-    derived = {key: np.asarray(swept[key], float) for key in keys}
+    swept = sweep(keys=_DERIVED, radians=True, m=1, A=1, C=1, s=1, g=v["a"] / 2, r0=v["b"], **start)
+    derived = {key: np.asarray(swept[key], float) for key in _DERIVED}
     derived["mean_spin_rate"] = derived["mean_spin_rate"] + v["r0"] - v["b"]
     if not problem.spins:
         del derived["mean_spin_rate"]
@@ -162,16 +157,14 @@ def _computed(
     return found | derived
 
 
-def _meaning(
-    name: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]], *, radians: bool
-) -> str:
+def _meaning(name: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]]) -> str:
     if name in problem.stds:
         return "known, improved by the fit"
     if off := pairs.get(f"{name}{PERCENT}"):
         word, sigmas = ("small", "large")[off[0] > 0], off[0] / (off[1] or math.inf)
         sure = f"{sigmas:+.{int(abs(sigmas) < 10)}f} sigma"
         return f"of a fast top: {abs(off[0]):.2g} % too {word}, {sure}"
-    declared = shown_keys(radians=radians, requested=True)
+    declared = shown_keys(Units(radians=True), requested=True)
     if name in declared and name not in _MEANINGS:
         return declared[name].meaning
     return _MEANINGS.get(name, "only this product is known" if set(name) & set("*/") else "")

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..errors import AbsentError, joined
 from ..files.rotations import within_half_turn
 from ..names import ANGLES
 from ..output.notebook import HasRecord
 from ..output.report import uncertain_text
+from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, MoreNoise, Residuals, chi2_bounds
 from .known import Known
 from .recording import Recording, shifted_origin
@@ -44,6 +44,10 @@ class Number(NamedTuple):
     def __str__(self) -> str:
         return uncertain_text(self.value, self.std)
 
+    def scaled(self, size: float) -> Number:
+        """Return the number in a smaller unit."""
+        return Number(self.value * size, self.std * size, self.meaning, self.own_std * size)
+
 
 class Curve(NamedTuple):
     """A recorded angle and the fitted motion, in the unit of angles in use."""
@@ -64,9 +68,8 @@ class Outcome(HasRecord):
 
     recording: Recording
     known: Known
-    radians: bool
-    numbers: Mapping[str, Number]
-    """The numbers by key, in the unit of angles in use."""
+    in_radians: Mapping[str, Number]
+    """The numbers by key; those of angles end in `_rad`."""
     motion: Callable[[Array], Array]
     """The fitted theta, phi and psi in radians, shape (3, times), at times since the first row."""
     parameters: int
@@ -75,6 +78,8 @@ class Outcome(HasRecord):
     """The frequency of the nutation, at which residuals are searched for structure."""
     noise: Mapping[str, tuple[float, float]]
     """The step between values, and the noise of neighbours, by channel in radians."""
+    units: Units = DEGREES
+    """The units of texts and records."""
     faults: list[str] = field(default_factory=list)
     """Why the motion is undetermined or impossible."""
     contradictions: list[str] = field(default_factory=list)
@@ -134,7 +139,7 @@ class Outcome(HasRecord):
 
     def _misfits(self) -> Iterator[str]:
         """Yield why the motion does not match the recording, the plainest reasons first."""
-        scale, unit = angle_unit(radians=self.radians)
+        scale, unit = self.units.radian, self.units.angle
         for name, rest in self.residuals.items():
             if rest.rms > LARGEST:
                 yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
@@ -188,15 +193,19 @@ class Outcome(HasRecord):
         return FAILED if self.failures() else STEADY if self.inputs is None else GOOD
 
     @property
+    def numbers(self) -> dict[str, Number]:
+        """The numbers by key, in the unit of angles in use."""
+        size = self.units.radian
+        return {
+            self.units.key(key): x.scaled(size) if key.endswith("_rad") else x
+            for key, x in self.in_radians.items()
+        }
+
+    @property
     def title(self) -> str:
         """The verdict, and chi^2 if sigma is given, for a picture."""
         chi2 = "" if self.chi2_dof is None else f", χ²/dof = {self.chi2_dof:.3g}"
         return f"Fit: {self.verdict}{chi2}"
-
-    @property
-    def angle(self) -> str:
-        """The unit of angles in use, `deg` or `rad`."""
-        return angle_unit(radians=self.radians)[1]
 
     def record(self) -> dict[str, Any]:
         """Return everything by key, flat."""
@@ -207,7 +216,7 @@ class Outcome(HasRecord):
         record |= {"t_start": self.recording.t_start, "rows": self.recording.t.size}
         record |= {"dof": self.dof, "chi2_dof": self.chi2_dof}
         record["chi2_dof_low"], record["chi2_dof_high"] = self.chi2_bounds
-        scale, unit = angle_unit(radians=self.radians)
+        scale, unit = self.units.radian, self.units.angle
         for name, rest in self.residuals.items():
             record[f"{name}_rms_{unit}"] = rest.rms * scale
             record[f"{name}_autocorrelation"] = rest.autocorrelation
@@ -236,7 +245,7 @@ class Outcome(HasRecord):
 
     def curves(self) -> Iterator[Curve]:
         """Yield the curves of the picture, one for each recorded angle."""
-        recording, (scale, _) = self.recording, angle_unit(radians=self.radians)
+        recording, scale = self.recording, self.units.radian
         t, start = recording.t, recording.t_start
         fine = np.linspace(0, t[-1], 1200)
         at_rows, at_fine = (dict(zip(ANGLES, self.motion(x), strict=True)) for x in (t, fine))

@@ -12,7 +12,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..arithmetic.types import Array
-from .known import WEIGHT, Known
+from ..top.inputs import all_replaced, replaced_by
+from .known import WEIGHT, Known, in_all_forms
 from .motions import STATE, angles
 from .recording import Recording
 from .signals import NEAR_POLE, Signal, mean_rate
@@ -79,14 +80,18 @@ class Problem:
         """The `sizes` are the standard deviations of the channels."""
         seen = recording.angles.keys()
         alone = {"psidot0"} if seen == {"theta"} else {"theta0"} if seen == {"psi"} else set()
-        shown = {*STATE} - alone | ({"r0", "phidot0"} if "phi" in seen else set())
+        shown = {*STATE} - alone | ({"r0"} if "phi" in seen else set())
         self.inputs = known
-        used = {x: y for x, y in known.items() if not (free and x in shown) and x != "steady"}
+        used = {
+            x: y
+            for x, y in known.items()
+            if not (free and replaced_by(x) in shown) and x != "steady"
+        }
         self.known = {name: value for name, (value, _) in used.items()}
         self.stds = {name: std for name, (_, std) in used.items() if std}
-        has = used.keys()
-        self.is_moment_known = "A" in has or "A_cm" in has
-        self.spins = "phi" in seen or bool({"r0", "phidot0"} & has)
+        has = all_replaced(used)
+        self.is_moment_known = "A" in has
+        self.spins = "phi" in seen or "r0" in has
         self.is_even = seen == {"theta"} and self.known.get("psidot0") == 0 and not self.spins
         """Whether b and -b give the same tilt."""
         self.has_torque = WEIGHT <= has and self.is_moment_known and not free
@@ -94,7 +99,6 @@ class Problem:
             self.spins and "C" in has and (self.is_moment_known or WEIGHT <= has) and not free
         )
         fixed = {*has, *["a"] * self.has_torque, *["b"] * self.is_tied}
-        fixed |= {"r0"} if "phidot0" in has else set()
         names = [x for x in (*STATE, *["r0"] * ("phi" in seen)) if x not in fixed]
         names += [f"{x}_zero" for x in ("psi", "phi") if x in seen]
         if pole:
@@ -131,13 +135,11 @@ class Problem:
             found["psidot0"] = found["speed"] * np.sin(turn) / np.sin(distance)
             found["psi_zero"] = found["psi_zero"] - turn
             found["phi_zero"] = found["phi_zero"] + self.pole * turn
-        if "A_cm" in self.known:
-            found["A"] = found["A_cm"] + found["m"] * found["s"] ** 2
+        found = in_all_forms(found)
+        found |= {name: found[name] for name in all_replaced(self.known)}
         weight = 2 * math.prod(found.get(x, math.nan) for x in ("m", "g", "s"))
         if self.has_torque:
             found["a"] = weight / found["A"]
-        if "phidot0" in self.known:
-            found["r0"] = found["phidot0"] + found["psidot0"] * np.cos(found["theta0"])
         if self.is_tied:
             moment = found["A"] if "A" in found else weight / found["a"]
             found["b"] = found["C"] / moment * found["r0"]
@@ -271,10 +273,8 @@ class Problem:
         value: dict[str, Any] = {**known, **dict(zip(STATE, states.T, strict=True))}
         theta, phi, psi = angles(states, t)
         if spin is not None:
-            if "r0" in known:
-                r0 = np.broadcast_to(known["r0"], len(states))
-            elif "phidot0" in known:
-                r0 = known["phidot0"] + value["psidot0"] * np.cos(value["theta0"])
+            if (whole := in_all_forms(value)).has("r0"):
+                r0 = np.broadcast_to(whole["r0"], len(states))
             else:
                 r0 = self._spin_rates(value["b"], phi, spin)
             value["r0"] = r0

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from types import SimpleNamespace
 
-from ..arithmetic.numbers import angle_unit
 from ..errors import Message, marked
 from ..output.report import Field, Report
 from .decay import decay_text
@@ -15,24 +14,27 @@ _COLUMNS = ("r0", "b", "theta0_deg", "theta0_rad", "T_nutation", "mean_precessio
 """Numbers in the rows of windows."""
 
 
-def fit_report(outcomes: Sequence[Outcome], source: str, units: str) -> Report:
+def fit_report(outcomes: Sequence[Outcome], source: str, system: str) -> Report:
     """Return the report on the fit of a file, or on its windows: a row for each of them.
 
-    `units` are those of the known inputs.
+    `system` is the one of the known inputs.
     """
     recording, known = outcomes[0].recording, outcomes[0].known
     count, channels = sum(x.recording.t.size for x in outcomes), ", ".join(recording.channels)
-    shown = [
-        f"{name} = {Number(*x, '')}{' rad' * (name == 'theta0')}"
-        if name != "steady"
-        else "psidot0 = steady"
-        for name, x in known.items()
-    ]
+    units = outcomes[0].units
+
+    def shown(name: str, value: float, std: float) -> str:
+        """Return a known input as it was typed."""
+        if name == "steady":
+            return "psidot0 = steady"
+        size, unit = (units.radian, f" {units.angle}") if name == "theta0" else (1.0, "")
+        return f"{name} = {Number(float(f'{value * size:.15g}'), std * size, '')}{unit}"
+
     conditions = {
         "data": f"{source}: {count} rows of {channels}, from t = {recording.t_start:g}",
         **({"read": ", ".join(recording.used)} if recording.used else {}),
         **({"not read": ", ".join(recording.unused)} if recording.unused else {}),
-        "known": (", ".join(shown) or "nothing") + units,
+        "known": (", ".join(shown(name, *x) for name, x in known.items()) or "nothing") + system,
         "sigma": "as given" if recording.sigma else "estimated from the residuals",
     }
     if len(outcomes) > 1:
@@ -61,7 +63,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         low, high = outcome.chi2_bounds
         bounds = f"noise {low:.3f} to {high:.3f}; {outcome.dof} dof"
         yield f"chi2/dof = {outcome.chi2_dof:.3f}, {bounds}."
-    scale, unit = angle_unit(radians=outcome.radians)
+    scale, unit = outcome.units.radian, outcome.units.angle
     rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
     yield f"RMS residual ({unit}): {rest}."
     if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):

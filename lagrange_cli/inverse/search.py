@@ -19,8 +19,18 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError, Message, arg
 from ..files import rotations
+from ..top.inputs import all_replaced
 from .checks import CHANCE, LARGEST, Residuals
-from .known import Known, compared, estimates, scaled_known, selects_any, time_power, whole_turns
+from .known import (
+    Known,
+    compared,
+    estimates,
+    in_all_forms,
+    scaled_known,
+    selects_any,
+    time_power,
+    whole_turns,
+)
 from .motions import STATE
 from .nutation import nutating_outcome
 from .outcome import FAILED, Outcome
@@ -101,7 +111,6 @@ def best_fit(
     recording: Recording,
     known: Known,
     *,
-    radians: bool = False,
     chance: float = CHANCE,
 ) -> Outcome:
     """Return the fit of one recording.
@@ -117,12 +126,12 @@ def best_fit(
     frequency, visible = oscillation_in(signals)
     lasts = frequency * recording.t[-1] >= 1
     noise = _noise(recording, signals)
-    steady = steady_outcome(recording, known, signals, noise, frequency, radians=radians)
+    steady = steady_outcome(recording, known, signals, noise, frequency)
     steady.chance, outcome = chance, steady
     if visible and lasts and steady.failures():
         both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
         for form, of_form in _forms(recording, signals, noise):
-            found = _nutation(form, known, frequency, of_form, radians=radians, both=both)
+            found = _nutation(form, known, frequency, of_form, both=both)
             if found is None:
                 continue
             found.chance = chance
@@ -190,7 +199,6 @@ def _nutation(
     frequency: float,
     noise: _Noise,
     *,
-    radians: bool,
     both: bool,
 ) -> Outcome | None:
     """Return the best fit of a nutation, with `both` directions of psi; None without a start."""
@@ -229,13 +237,12 @@ def _nutation(
         found = _constrained(found, known, turn, floors, factors)
     is_sure = abs(found.values["b"]) > _SURE * found.std("b")
     turns = abs(found.values["r0"]) / turn if turn and found.problem.spins else 0.0
-    seen = "phi" in recording.angles and not {"r0", "phidot0"} & found.problem.known.keys()
+    seen = "phi" in recording.angles and "r0" not in all_replaced(found.problem.known)
     result = nutating_outcome(
         found,
         replace(way.recording, t=recording.t),
         scale,
         noise,
-        radians=radians,
         is_spin_known=not seen or (is_sure and turns < 0.5),
         is_even=bool(turn),
     )
@@ -370,7 +377,7 @@ def _moment(v: Mapping[str, float]) -> float:
 def _usable(found: Minimum, known: Known, turn: float) -> Known:
     """Return the known inputs without a C that does not select one of the spins that look alike."""
     v, names = found.values, found.problem.names
-    is_spin_seen = turn and "r0" in names and not {"r0", "phidot0"} & known.keys()
+    is_spin_seen = turn and "r0" in names and "r0" not in all_replaced(known)
     if not is_spin_seen or "C" not in known:
         return known
     parts = [known["C"], known.get("A", (1.0, 0.0)), *((v[x], found.std(x)) for x in ("a", "b"))]
@@ -429,10 +436,9 @@ def _constrained(
     problem = Problem(old.recording, known, old.sizes, turns=old.turns, pole=old.pole)
     if turn and "r0" in old.names:
         wanted = v["r0"]
-        if "r0" in known:
-            wanted = known["r0"][0]
-        elif "phidot0" in known:
-            wanted = known["phidot0"][0] + v["psidot0"] * math.cos(v["theta0"])
+        start = {x: v[x] for x in ("psidot0", "theta0")}
+        if (whole := in_all_forms({x: y for x, (y, _) in known.items()} | start)).has("r0"):
+            wanted = float(whole["r0"])
         elif problem.is_tied:
             wanted = v["b"] * _moment(v) / known["C"][0]
         shift = whole_turns(v["r0"], wanted, turn)

@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.numbers import angle_unit
 from ..arithmetic.types import Array
 from ..errors import Message, arg
+from ..top.inputs import all_replaced
+from ..top.units import bare_name
 from .checks import CHANCE, Mistake, Residuals
-from .known import WEIGHT, Known, compared
+from .known import WEIGHT, Known, compared, in_all_forms
 from .outcome import Number, Outcome
 from .recording import Recording
 from .signals import Signal
@@ -82,14 +83,11 @@ def steady_outcome(
     signals: Mapping[str, Signal],
     noise: Mapping[str, _Pair],
     frequency: float,
-    *,
-    radians: bool,
 ) -> Outcome:
     """Return the result of a fit of a constant tilt and constant rates.
 
     The `noise` of the channels is that of `Outcome`, `frequency` that of a nutation to look for.
     """
-    scale, unit = angle_unit(radians=radians)
     alias = {"theta": "theta", "psi": "across", "phi": "along"}
     sigma = recording.sigma
     means = {
@@ -105,14 +103,14 @@ def steady_outcome(
     elif "phi" in means:
         notes.append(Message(f"without the tilt neither r0 nor C follows: give {arg('theta0')}"))
     numbers: dict[str, Number] = {}
-    for name, key, size in (
-        ("theta", f"mean_tilt_{unit}", scale),
-        ("psi", "mean_precession_rate", 1.0),
-        ("phi", "mean_spin_rate", 1.0),
+    for name, key in (
+        ("theta", "mean_tilt_rad"),
+        ("psi", "mean_precession_rate"),
+        ("phi", "mean_spin_rate"),
     ):
         if name in means:
-            value, std = (x * size for x in means[name][:2])
-            numbers[key] = Number(value, std, _MEANINGS[key.removesuffix(f"_{unit}")], std)
+            value, std = means[name][:2]
+            numbers[key] = Number(value, std, _MEANINGS[bare_name(key)], std)
     turn, spin = (means.get(x, _NONE) for x in ("psi", "phi"))
     derived = dict[str, _Pair]()
     if tilt and ("phi" in means or "r0" in known):
@@ -134,8 +132,7 @@ def steady_outcome(
     result = Outcome(
         recording=recording,
         known=known,
-        radians=radians,
-        numbers=numbers,
+        in_radians=numbers,
         motion=motion,
         parameters=2 * len(means) - ("theta" in means),
         frequency=1 / float(recording.t[-1]),
@@ -187,7 +184,7 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
     Their standard deviations are propagated from those of means and known inputs.
     """
     least, most = _RATIOS
-    is_moment_known = "A" in given or "A_cm" in given
+    is_moment_known = "A" in all_replaced(given)
     is_exact = is_moment_known and WEIGHT <= given.keys()
     unknown = [x for x in ("m", "s", "g") if x not in given]
     over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
@@ -198,7 +195,7 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
         found = {"r0": v["r0"] if "r0" in v else v["phi"] + along + whole}
         if not turn or not found["r0"]:
             return found, []
-        moment = v["A_cm"] + v["m"] * v["s"] ** 2 if "A_cm" in v else v.get("A", 1.0)
+        moment = in_all_forms(v)["A"] if is_moment_known else 1.0
         ratios = [v["C"] / moment] * 2 if "C" in v and is_moment_known else [least, most]
         slowest = found["r0"]
         if not is_sure and "phi" in v:  # psi may count in the other direction

@@ -63,7 +63,7 @@ def draw_convergence(axes: Axes, points: Sequence[tuple[float, float]]) -> None:
 def draw_fit(outcome: Outcome, figure: Figure | None = None) -> Figure:
     """Draw each channel of a recording with the fit, and its residuals below."""
     curves = [*outcome.curves()]
-    rows, unit = len(curves), outcome.angle
+    rows, unit = len(curves), outcome.units.angle
     figure = figure or Figure(figsize=(8.0, 1.0 + 2.8 * rows))
     grid = figure.subplots(2 * rows, squeeze=False, sharex="col", height_ratios=[3, 1] * rows)
     for curve, above, below in zip(curves, grid[::2, 0], grid[1::2, 0], strict=True):

@@ -17,7 +17,7 @@ up to a common positive factor.  With N = |X|^2 + |Y|^2, both 1 + u = 2 |X|^2/N 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from flint import arb
@@ -25,6 +25,7 @@ from flint import arb
 from ..arithmetic.enclosures import exact
 from ..names import ANGLES, Key, check_names
 from ..top.inputs import declared
+from ..top.units import DEGREES, Units
 from .numbers import Numbers, code_of
 
 GROUPS = {
@@ -109,8 +110,8 @@ WITHIN_A_TURN = frozenset(
 """Columns that need an angle within a turn."""
 
 
-def shown_columns(*, radians: bool = False, named: Callable[[str], str] = str) -> dict[str, Key]:
-    """Return how each of `COLUMNS` is presented; `named` gives the names of units.
+def shown_columns(units: Units = DEGREES) -> dict[str, Key]:
+    """Return how each of `COLUMNS` is presented, with its unit as printed.
 
     The formula of a group has one equation per column.
     """
@@ -118,7 +119,7 @@ def shown_columns(*, radians: bool = False, named: Callable[[str], str] = str) -
     for group, meaning in GROUPS.items():
         formula = ", ".join(f"{name} = {key.formula}" for name, key in COLUMNS[group].items())
         keys[group] = Key(group, "", meaning, formula=formula)
-    return {name: keys[name].in_units(radians=radians, named=named) for name in COLUMNS}
+    return {x: keys[x]._replace(unit=units.named(keys[x].unit)) for x in COLUMNS}
 
 
 def chosen_columns(names: Sequence[str]) -> dict[str, Key]:
@@ -132,10 +133,9 @@ def chosen_columns(names: Sequence[str]) -> dict[str, Key]:
     return {name: SCALARS[name] for name in chosen}
 
 
-def headings(columns: Iterable[str], *, radians: bool) -> list[str]:
+def headings(columns: Iterable[str], units: Units) -> list[str]:
     """Return the headings of some columns."""
-    unit = "_rad" if radians else "_deg"
-    return [name + unit * (SCALARS[name].unit == "angle") for name in columns]
+    return [units.key(name + "_deg" * (SCALARS[name].unit == "angle")) for name in columns]
 
 
 def column_constants(of: Numbers) -> dict[str, arb]:

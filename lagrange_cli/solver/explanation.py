@@ -9,14 +9,15 @@ satisfies.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
 from ..names import Key, check_names
+from ..top.units import DEGREES, Units, bare_name
 from .columns import shown_columns
 from .facts import Facts
-from .keys import KEYS, LINES, all_keys, bare_name, shown_keys, unit_name
+from .keys import KEYS, LINES, all_keys, shown_keys
 from .record import record_in_range
 from .solve import Motion
 
@@ -57,36 +58,30 @@ class Explained(NamedTuple):
     """The numbers that the motion does not have, among the value and its formula, and why."""
 
 
-def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[Explained]:
-    """Return all keys and columns; `named` gives the names of units of a system."""
-    of_record = {unit_name(name, radians=radians) for name in KEYS}
+def listed(units: Units = DEGREES) -> list[Explained]:
+    """Return all keys and columns."""
+    of_record = units.keys(KEYS)
     symbols = _symbols()
 
     def row(name: str, kind: str, key: Key) -> Explained:
         shown = key.symbol, key.meaning, key.unit, key.equation, _shown(key.formula, symbols)
         return Explained(name, kind, *shown, key.formula)
 
-    keys = shown_keys(radians=radians, named=named, requested=True)
-    columns = shown_columns(radians=radians, named=named)
+    keys = shown_keys(units, requested=True)
+    columns = shown_columns(units)
     return [
         *(row(name, "record" if name in of_record else "further", keys[name]) for name in keys),
         *(row(name, "column", columns[name]) for name in columns),
     ]
 
 
-def explanations(
-    motion: Motion,
-    names: Sequence[str],
-    *,
-    radians: bool = False,
-    named: Callable[[str], str] = str,
-) -> list[Explained]:
+def explanations(motion: Motion, names: Sequence[str], units: Units = DEGREES) -> list[Explained]:
     """Return some keys and columns, with formulas that show the numbers of a motion.
 
     A symbol stands for its key or column, if there is only one.  Raises LagtopError for an unknown
     name.
     """
-    rows = listed(radians=radians, named=named)
+    rows = listed(units)
     known = list(dict.fromkeys(row.name for row in rows))
     names = [_named_by(word, rows) if word not in known else word for word in names]
     check_names("KEY", names, known)
@@ -96,15 +91,15 @@ def explanations(
         for row in rows
         if row.name == name
     ]
-    keys = {bare_name(name): name for name in all_keys(radians=radians)}
+    keys = {bare_name(name): name for name in all_keys(units)}
     parts = [[keys[x] for x in re.findall(_NAME, row.text) if x in keys] for row in chosen]
     wanted = {*chain(names, *parts)} & {*keys.values()}
-    record, beyond = record_in_range(motion, radians=radians, keys=wanted)
+    record, beyond = record_in_range(motion, units=units, keys=wanted)
     if beyond:
         raise beyond[0]
     if "psidot0" in record:
         record["psidot0"] = float(motion.top.psidot0)  # the number of a word such as steady
-    unit = "" if radians else "°"
+    unit = "" if units.radians else "°"
     texts = _symbols() | {
         bare_name(name): f"{value:.6g}{unit if name.endswith('_deg') else ''}"
         for name, value in record.items()

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 from flint import arb, fmpq, fmpq_poly
 
-from ..arithmetic.enclosures import equal_digits, exact, sign_to
+from ..arithmetic.enclosures import equal_digits, sign_to
 from ..errors import LagtopError, check_type
-from ..top.derived import SLOW, Tilt, rates_of, rational
+from ..top.derived import SLOW, Spin, Tilt, exact_inputs, rates_of, rational
 from ..top.top import Top
 
 
@@ -63,14 +63,16 @@ class Facts(NamedTuple):
 
     top: Top
     inputs: dict[str, Fraction]
-    """The rational inputs among m, A, C, s, g, r0, phidot0, thetadot0 and psidot0."""
+    """The rational inputs among m, A, C, s, g, r0, thetadot0 and psidot0."""
     tilt: Tilt
     equal: int
     """D: two numbers that agree to D digits are equal."""
     a: Fraction
     """2mgs/A (4,4)."""
     b: fmpq_poly
-    """C r0/A (4,5), linear in u if phidot0 is given.  It is unused if psidot0 is a word."""
+    """C r0/A (4,5), linear in u if r0 is derived from the rate of phi; unused for a word."""
+    rate: Spin
+    """r0, linear in the precession if it is derived from the rate of phi."""
     spin: int
     """The sign of r0."""
     pole: int
@@ -197,17 +199,17 @@ def facts_of(top: Top) -> Facts:
     Raises LagtopError for an impossible start: precession on the vertical.
     """
     check_type("top", top, Top)
-    names = ["m", "A", "C", "s", "g", "thetadot0", "r0" if top.phidot0 is None else "phidot0"]
-    names += [] if top.steady_word else ["psidot0"]
-    inputs = {name: top.exact(name) for name in names}
+    names = ["m", "A", "C", "s", "g", "thetadot0", *["psidot0"] * (not top.steady_word)]
+    exact = exact_inputs(top.given)
+    inputs, rate = {name: exact[name] for name in names}, top.exact_spin
     m, A, C, s, g = (inputs[name] for name in ("m", "A", "C", "s", "g"))
     a, fall_rate, turn = 2 * m * g * s / A, inputs["thetadot0"], inputs.get("psidot0", Fraction(0))
-    r0 = fmpq_poly([rational(inputs[names[6]])])  # r0 or phidot0
-    if top.phidot0 is not None:
-        r0 += rational(turn) * _U
+    r0 = fmpq_poly([rational(rate.constant), rational(rate.share * turn)])
     tilt = top.exact_tilt
-    equal = equal_digits([*inputs.values(), tilt.number])
-    facts = Facts(top, inputs, tilt, equal, a, rational(C / A) * r0, 0, top.pole)
+    equal = equal_digits([*inputs.values(), rate.constant, tilt.number])
+    if not rate.share:
+        inputs["r0"] = rate.constant
+    facts = Facts(top, inputs, tilt, equal, a, rational(C / A) * r0, rate, 0, tilt.pole)
     if top.steady_word:
         return facts._replace(spin=_spin_of_a_word(facts))
     if top.pole and turn:
@@ -235,13 +237,10 @@ def _decided(facts: Facts, turn: fmpq, fall_rate: fmpq) -> Facts:
 
 
 def _spin_of_a_word(facts: Facts) -> int:
-    """Return the sign of r0 = phidot0 + psidot0 cos(theta0) if psidot0 is given by its word."""
-    top, rates = facts.top, rates_of(facts.top)
-    if top.phidot0 is None:
-        return facts.sign(facts.b)
+    """Return the sign of r0 if psidot0 is given by its word."""
+    rates = rates_of(facts.top.given)
 
     def r0(_: int) -> arb:
-        cosine = facts.tilt.sine_and_cosine()[1]
-        return exact(facts.inputs["phidot0"]) + rates.rate(str(top.steady_word)) * cosine
+        return facts.rate.ball(rates.rate(str(facts.top.steady_word)), facts.tilt)
 
-    return sign_to(r0, facts.equal)
+    return sign_to(r0, facts.equal) if facts.rate.share else facts.sign(facts.b)

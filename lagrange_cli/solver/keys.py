@@ -29,6 +29,7 @@ from typing import Any
 from ..names import Key
 from ..top.derived import FAST, SLOW
 from ..top.inputs import DECLARED, NINE, TILT
+from ..top.units import DEGREES, Units, bare_name
 
 _TEXT = """
 # Constants
@@ -237,16 +238,6 @@ def _with_definitions(key: Key) -> Key:
 _TABLE = dict(_read(_TEXT))
 
 
-def bare_name(name: str) -> str:
-    """Return the name of a key without the unit of an angle."""
-    return name.removesuffix("_deg").removesuffix("_rad")
-
-
-def unit_name(name: str, *, radians: bool) -> str:
-    """Return the name of a key in degrees or `radians`: `_deg` becomes `_rad`."""
-    return f"{name.removesuffix('_deg')}_rad" if radians and name.endswith("_deg") else name
-
-
 def degree_name(name: str) -> str:
     """Return the name of a key in degrees: `_rad` becomes `_deg`."""
     return f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
@@ -301,7 +292,7 @@ KEYS = (
 """The declaration of each key of a record by name, in the order of the groups of a table."""
 
 
-def key_of(word: str, *, radians: bool = False) -> str:
+def key_of(word: str, units: Units = DEGREES) -> str:
     """Return the key that a symbol stands for, if it stands for one only; else the word itself.
 
     The key of an uncertainty, such as `T_std`, is that of its number with `_std`.
@@ -310,31 +301,25 @@ def key_of(word: str, *, radians: bool = False) -> str:
     named = [
         name for name, key in (INPUT_KEYS | NUMBERS).items() if symbol and key.symbol == symbol
     ]
-    is_key = unit_name(degree_name(symbol), radians=radians) in all_keys(radians=radians)
-    return word if is_key or len(named) != 1 else unit_name(named[0], radians=radians) + std
+    is_key = units.key(symbol) in all_keys(units)
+    return word if is_key or len(named) != 1 else units.key(named[0]) + std
 
 
-def record_keys(*, radians: bool = False) -> list[str]:
+def record_keys(units: Units = DEGREES) -> list[str]:
     """Return all keys of a record in their order."""
-    names = [*INPUT_KEYS, "regime", *NUMBER_KEYS, "path", "remark"]
-    return [unit_name(name, radians=radians) for name in names]
+    return units.keys([*INPUT_KEYS, "regime", *NUMBER_KEYS, "path", "remark"])
 
 
-def all_keys(*, radians: bool = False) -> list[str]:
+def all_keys(units: Units = DEGREES) -> list[str]:
     """Return the keys of a record and further ones, in their order."""
-    further = [unit_name(name, radians=radians) for name in FURTHER_KEYS]
-    return [*record_keys(radians=radians), *further]
+    return [*record_keys(units), *units.keys(FURTHER_KEYS)]
 
 
-def shown_keys(
-    *, radians: bool = False, named: Callable[[str], str] = str, requested: bool = False
-) -> dict[str, Key]:
-    """Return the declaration of each key by name in a record; `named` gives the names of units."""
+def shown_keys(units: Units = DEGREES, *, requested: bool = False) -> dict[str, Key]:
+    """Return the declaration of each key by name in a record, with its unit as printed."""
     further = {name: NUMBERS[name] for name in FURTHER_KEYS} if requested else {}
-    return {
-        unit_name(name, radians=radians): key.in_units(radians=radians, named=named)
-        for name, key in (KEYS | further).items()
-    }
+    keys = (KEYS | further).items()
+    return {units.key(name): key._replace(unit=units.named(key.unit)) for name, key in keys}
 
 
 CHAIN = {
@@ -355,6 +340,6 @@ CHAIN = {
 """Keys by step of section 8, in the order of the paper."""
 
 
-def derivation_keys(*, radians: bool = False) -> list[str]:
+def derivation_keys(units: Units = DEGREES) -> list[str]:
     """Return the keys of the steps of section 8, in the order of the paper."""
-    return [unit_name(name, radians=radians) for names in CHAIN.values() for name in names]
+    return units.keys(name for names in CHAIN.values() for name in names)

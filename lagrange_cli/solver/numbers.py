@@ -132,13 +132,13 @@ class Numbers(dict[str, Any]):
 
     @property
     def r0(self) -> arb:
-        """The total spin rate, from phidot0."""
-        return self["phidot0"] + self["psidot0"] * self["u0"]
+        """The total spin rate, derived from the rate of phi."""
+        return self.facts.rate.ball(self["psidot0"], self.facts.tilt)
 
     @property
     def psidot0(self) -> arb:
         """The rate of steady precession that a word names."""
-        return rates_of(self.facts.top).rate(str(self.facts.top.steady_word))
+        return rates_of(self.facts.top.given).rate(str(self.facts.top.steady_word))
 
     @property
     def steady_rates(self) -> tuple[arb, arb]:

@@ -12,8 +12,9 @@ from ..arithmetic.enclosures import Rounded, TooFewDigitsError, decided, rounded
 from ..errors import OutOfRangeError
 from ..names import suggestion
 from ..top.top import Top
+from ..top.units import DEGREES, Units, bare_name
 from .facts import Facts, Regime
-from .keys import LINES, NUMBERS, all_keys, bare_name, degree_name, exists, needed, record_keys
+from .keys import LINES, NUMBERS, all_keys, degree_name, exists, needed, record_keys
 from .numbers import Numbers
 
 if TYPE_CHECKING:
@@ -157,20 +158,20 @@ def record_in_range(
     *,
     digits: int | None = None,
     radii: bool = False,
-    radians: bool = False,
+    units: Units = DEGREES,
     keys: Collection[str] | None = None,
 ) -> tuple[dict[str, Any], list[OutOfRangeError]]:
     """Return `Motion.record`, and an error for each number beyond the range of doubles."""
     words: dict[str, Callable[[], str | None]] = {
         "regime": lambda: motion.regime.value,
         "path": lambda: motion.path,
-        "remark": lambda: remark_of(motion, radians=radians),
+        "remark": lambda: remark_of(motion, units),
     }
-    wanted = set(record_keys(radians=radians) if keys is None else keys)
+    wanted = set(record_keys(units) if keys is None else keys)
     record: dict[str, Any] = {}
     found: dict[str, Rounded | None] = {}
     beyond = []
-    for name in all_keys(radians=radians):
+    for name in all_keys(units):
         if name in wanted and name in words:
             record[name] = words[name]()
         elif name in wanted:
@@ -202,14 +203,14 @@ FAST_WORDS = "pseudo-regular precession"
 """The remark on a fast top; in a record, numbers follow."""
 
 
-def remark_of(motion: Solution, *, radians: bool = False) -> str | None:
-    """Return a line on special properties of a motion, with angles in degrees or `radians`."""
+def remark_of(motion: Solution, units: Units = DEGREES) -> str | None:
+    """Return a line on special properties of a motion."""
     facts = motion.facts
     if facts.vertical:
         return vertical_remark(facts.regime, facts.stable)
     if facts.separatrix:
         return "rises to the vertical in infinite time"
-    return _fast_remark(motion, radians) if facts.fast else None
+    return _fast_remark(motion, units.angle) if facts.fast else None
 
 
 def vertical_remark(regime: Regime, stable: bool) -> str:
@@ -220,7 +221,7 @@ def vertical_remark(regime: Regime, stable: bool) -> str:
     return f"only phi + psi is defined; {word} (lambda = b^2/2a {sign} 1)"
 
 
-def _fast_remark(motion: Solution, radians: bool) -> str:
+def _fast_remark(motion: Solution, unit: str) -> str:
     """Return the remark on a pseudo-regular precession, numbers with three digits."""
 
     def short(name: str) -> str:
@@ -234,7 +235,7 @@ def _fast_remark(motion: Solution, radians: bool) -> str:
             raise TooFewDigitsError
         return int(found)
 
-    parts, unit = decided(excess, motion.facts.equal), "rad" if radians else "deg"
+    parts = decided(excess, motion.facts.equal)
     where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
     return (
         f"{FAST_WORDS}: nutates by {short(f'nutation_{unit}')} {unit} "

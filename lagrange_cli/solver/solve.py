@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import LagtopError, OutOfRangeWarning
 from ..names import check_names
 from ..top.top import Top
+from ..top.units import Units
 from .attitude import Swing
 from .facts import facts_of
 from .keys import KEYS, NUMBER_KEYS, NUMBERS, all_keys
@@ -103,11 +104,10 @@ class Motion(Solution):
         OutOfRangeError.  Raises LagtopError for an unknown or repeated key or for no key, and if no
         precision distinguishes a number from 0.
         """
+        units = Units(radians)
         if keys is not None:
-            keys = check_names("keys", list(keys), all_keys(radians=radians))
-        record, beyond = record_in_range(
-            self, digits=digits, radii=radii, radians=radians, keys=keys
-        )
+            keys = check_names("keys", list(keys), all_keys(units))
+        record, beyond = record_in_range(self, digits=digits, radii=radii, units=units, keys=keys)
         if beyond and keys is not None:
             raise beyond[0]
         if beyond:
@@ -196,6 +196,6 @@ class Motion(Solution):
         from .columns import chosen_columns
         from .tables import columns_at
 
-        times, at = doubles_of("t", t), columns_at(self, columns, radians=True, wrap=wrap)
+        times, at = doubles_of("t", t), columns_at(self, columns, Units(radians=True), wrap=wrap)
         found = at(times.reshape(-1)).reshape(-1, *times.shape)
         return dict(zip(chosen_columns(columns), found, strict=True))

@@ -32,6 +32,7 @@ from ..arithmetic.text import NumberText, double_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError, arg
 from ..top.ranges import EvenPoints, Points
+from ..top.units import DEGREES, Units
 from .attitude import Course, SingleSwing, start_of
 from .columns import (
     DEFAULT_COLUMNS,
@@ -75,7 +76,7 @@ _SWING = {"nutation_rate": "2*swing_rate*Y*tanh(tilting)/X"}
 
 
 def columns_at(
-    motion: Solution, columns: Sequence[str], *, radians: bool, wrap: bool
+    motion: Solution, columns: Sequence[str], units: Units, *, wrap: bool
 ) -> Callable[[Array], Array]:
     """Return a function of times that returns columns, of shape (columns, times).
 
@@ -90,7 +91,7 @@ def columns_at(
 
     @cache
     def start() -> list[float]:
-        table = ProvedTable(motion, columns, radians=radians, wrap=wrap)
+        table = ProvedTable(motion, columns, units=units, wrap=wrap)
         return [number.value for number in table.row(Fraction(0))]
 
     constants = decided(doubles, motion.facts.equal)
@@ -98,7 +99,7 @@ def columns_at(
     def found_at(t: Array) -> Array:
         found = sampler.evaluate(t, [*chosen], wrap=wrap, **constants)
         for row, column in zip(found, chosen.values(), strict=True):
-            if column.unit == "angle" and not radians:
+            if column.unit == "angle" and not units.radians:
                 np.degrees(row, out=row)
         if (first := np.flatnonzero(t == 0)).size:
             found[:, first] = np.array(start())[:, None]
@@ -113,7 +114,7 @@ def rows(
     times: Points,
     columns: Sequence[str] = DEFAULT_COLUMNS,
     *,
-    radians: bool = False,
+    units: Units = DEGREES,
     wrap: bool = False,
     stds: Callable[[Array], Array] | None = None,
 ) -> tuple[list[str], Iterator[Array]]:
@@ -128,21 +129,21 @@ def rows(
     ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
     for name, end in zip(ends, times.bounds(), strict=False):  # empty if times are read later
         motion.sampler().check(end, name, wrap=within)
-    header = headings(chosen, radians=radians)
+    header = headings(chosen, units)
     uncertain = [name for name in chosen if name != "t"] if stds else []
-    in_degrees = [chosen[name].unit == "angle" and not radians for name in uncertain]
-    at = columns_at(motion, columns, radians=radians, wrap=wrap)
+    are_angles = [chosen[name].unit == "angle" for name in uncertain]
+    at = columns_at(motion, columns, units, wrap=wrap)
 
     def parts() -> Iterator[Array]:
         for t in times.blocks():
             found = at(t)
             if stds and uncertain:
                 spread = stds(t)
-                spread[in_degrees] = np.degrees(spread[in_degrees])
+                spread[are_angles] *= units.radian
                 found = np.concatenate([found, six_digits(spread)])
             yield found.T
 
-    return [*header, *(f"{x}_std" for x in headings(uncertain, radians=radians))], parts()
+    return [*header, *(f"{x}_std" for x in headings(uncertain, units))], parts()
 
 
 def six_digits(x: Array) -> Array:
@@ -203,13 +204,13 @@ class ProvedTable:
         columns: Sequence[str],
         digits: int | None = None,
         *,
-        radians: bool = False,
+        units: Units = DEGREES,
         wrap: bool = False,
     ) -> None:
         """Raise LagtopError for an unknown column."""
-        self.motion, self.digits, self.radians, self.wrap = motion, digits, radians, wrap
+        self.motion, self.digits, self.units, self.wrap = motion, digits, units, wrap
         self.chosen = chosen_columns(columns)
-        self.header = headings(self.chosen, radians=radians)
+        self.header = headings(self.chosen, units)
         self._constants = kept(lambda digits: column_constants(motion.balls(digits)))
 
     def row(self, time: Fraction) -> list[Rounded]:
@@ -224,7 +225,7 @@ class ProvedTable:
             value: arb = columns(digits)[name]
             if self.wrap and name in REDUCED:
                 value = within_a_turn(value, plane=facts.plane)
-            in_degrees = self.chosen[name].unit == "angle" and not self.radians
+            in_degrees = self.chosen[name].unit == "angle" and not self.units.radians
             return value * 180 / arb.pi() if in_degrees else value
 
         def number(name: str) -> Rounded:

@@ -17,17 +17,15 @@ import numpy as np
 from scipy.special import ellipe, ellipeinc, ellipkinc, ellipkm1, elliprf
 
 from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, atan2, best, choose, lifted, size_of, sqrt
-from ..arithmetic.pairs import PI, DoubleDouble
+from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..solver.facts import Regime, undefined_names
 from ..solver.keys import LINES, exists
 from ..solver.numbers import code_of
-from .tops import TopArrays
+from .tops import UNKNOWN, TopArrays, pi_of
 
 GOOD = 1e-13
 """Relative error up to which a number is trusted, of a cosine absolute."""
-UNKNOWN = Bounded(np.nan, np.inf)
-"""A number that only `solve` computes."""
 _FINE = 0.9 * GOOD
 """Relative error up to which a mean rate is good enough for what is computed from it."""
 _NEWTON_STEPS, _STEPS_IN_PAIRS = 100, 3
@@ -152,16 +150,13 @@ class ArrayNumbers(dict[str, Any]):
         super().__init__(FUNCTIONS)
         self.tops, self.regime, self.pairs = tops, regime, pairs
         self.facts, self._has = GroupFacts(self), dict[str, Any]()
-        exact = DoubleDouble if pairs else np.asarray
-        for name in ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"):
+        for name in tops.inputs:
             if name != "psidot0" or regime is not Regime.STEADY:
-                self[name] = Bounded(exact(getattr(tops, name)))
-        sine, cosine = tops.half_tilt(pairs=pairs)
+                self[name] = tops.number(name, pairs=pairs)
+        sine, cosine = tops.tilt.half(pairs=pairs)
         self["theta0"] = 2.0 * (sine * cosine), (cosine - sine) * (cosine + sine)
         self["above_u0"], self["below_u0"] = 2.0 * (sine * sine), 2.0 * (cosine * cosine)
-        self["pi"] = Bounded(DoubleDouble(*map(np.float64, PI)) if pairs else np.pi, EPS)
-        if pairs:
-            self["pi"].error = EPS**2
+        self["pi"] = pi_of(pairs=pairs)
 
     def __missing__(self, name: str) -> Any:
         if name in LINES:

@@ -17,12 +17,23 @@ from ..errors import LagtopError, SomeFailedError
 from ..files.tops import Product, TopsFile, read_tops
 from ..output.formats import format_of
 from ..top.given import Given, gather
-from ..top.inputs import EXAMPLE, checked_double, overridden
+from ..top.inputs import (
+    EXAMPLE,
+    FORMS,
+    STEADY_WORDS,
+    all_replaced,
+    checked_double,
+    overridden,
+    replaced_by,
+)
 from ..top.ranges import Points
-from ..top.values import STEADY_WORDS, Value
+from ..top.units import Units
+from ..top.values import Value
 from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records, with_radii
 from .tops import top_arrays
 
+IMPOSSIBLE = "C must be <= 2 A (no rigid body has more)"
+"""The error of a top with units that no body has."""
 NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
 
@@ -53,10 +64,10 @@ class Sweep(NamedTuple):
     shared: Mapping[str, Any]
     """Inputs of tops that do not have their own; psidot0 may be a word."""
     keys: Sequence[str]
-    radians: bool
+    units: Units
     fmt: str
-    si: bool
-    """Whether inputs have units."""
+    is_body: bool
+    """Whether a top that no body is has an error: inputs have units, or defaults of a body."""
 
     def part(self, numbered: NumberedBlock) -> Part:
         """Compute one part."""
@@ -64,7 +75,10 @@ class Sweep(NamedTuple):
         given = block.arrays(self.shared)
         columns = empty_columns(self.keys, given.size)
         tops = top_arrays(given.inputs, given.size)
-        columns = records(tops, columns, given.errors, radians=self.radians)
+        errors = dict(given.errors)
+        if self.is_body:
+            errors |= dict.fromkeys(np.flatnonzero(tops.C > 2 * tops.A).tolist(), IMPOSSIBLE)
+        columns = records(tops, columns, errors)
         found = columns["error"]
         failed = np.flatnonzero(found).tolist()
         if given.lines is not None:
@@ -94,23 +108,25 @@ def plan(
     The last axis varies fastest.  The size is the number of tops, 0 for a file.  The inputs are
     those that all tops share.  Raises LagtopError.
     """
-    chosen = with_radii(check_keys(keys, radians=radians), radii=radii)
+    chosen = with_radii(check_keys(keys, Units(radians)), radii=radii)
     if path is None:
         found = gather(axes, scene)
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid, ranges = Product(points), _ranges(points)
         shared = shared_inputs(found, varying=ranges)
-        sweep = Sweep(chosen, ranges, shared, chosen, radians, fmt, found.si)
+        sweep = Sweep(
+            chosen, ranges, shared, chosen, found.units(radians=radians), fmt, found.is_body
+        )
         return sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, found
     if ranges := _ranges({name: x.number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
-    computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
+    computed = {*column_keys(), *column_keys(Units(radians=True)), *chosen, "error"}
     source = read_tops(path, computed, decimal)
     found = source.shared(axes, scene)
     shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     header = [*source.carried, *with_error]
-    sweep = Sweep(header, {}, shared, with_error, radians, fmt, found.si)
+    sweep = Sweep(header, {}, shared, with_error, found.units(radians=radians), fmt, found.is_body)
     return sweep, enumerate(source.blocks(BLOCK_ROWS)), 0, found
 
 
@@ -126,8 +142,9 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, A
     a steady rate, are not checked.
     """
     loose = set(varying)
-    if loose & {"A", "A_cm", "C"} or ("A_cm" in found.inputs and loose & {"m", "s"}):
-        loose |= {"A", "A_cm", "C"}  # C <= 2A
+    moments = {name for name in found.inputs if replaced_by(name) in {"A", "C"}}
+    if all_replaced(loose) & {"A", "C"} or (moments & FORMS.keys() and loose & {"m", "s"}):
+        loose |= moments  # C <= 2A
     numbers = {
         name: x.bounds()[0] if isinstance(x, Points) else x for name, x in found.inputs.items()
     }

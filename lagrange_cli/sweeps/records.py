@@ -19,9 +19,10 @@ from ..errors import LagtopError
 from ..names import check_names
 from ..solver import keys as motion_record
 from ..solver.facts import FAST, Regime
-from ..solver.keys import NUMBERS, bare_name, unit_name
+from ..solver.keys import LINES, NUMBERS
 from ..solver.record import FAST_WORDS, record_in_range, vertical_remark
 from ..solver.solve import solve
+from ..top.units import DEGREES, Units, bare_name
 from .numbers import GOOD, ArrayNumbers
 from .results import ResultColumn, Results, read_inputs
 from .tops import TopArrays, top_arrays
@@ -41,9 +42,9 @@ _SHARE, _LEAST_ROWS = 80, 512
 1.25 times its result."""
 
 
-def column_keys(*, radians: bool = False) -> list[str]:
+def column_keys(units: Units = DEGREES) -> list[str]:
     """Return the keys of a record, and `error`."""
-    return [*motion_record.record_keys(radians=radians), "error"]
+    return [*motion_record.record_keys(units), "error"]
 
 
 def sweep(
@@ -58,17 +59,18 @@ def sweep(
     Inputs are those of `Top`, as numbers, arrays or pandas Series: pass a DataFrame of inputs as
     `sweep(**df)`.  Only `keys` are computed; angles are in degrees or `radians`.  A bound
     of the error of each is at most 1e-13 of its size (of 1 for a cosine); `radii` adds it as
-    KEY_radius.  If a regime has no value for a key, its number is NaN and its text None.  An invalid top has an `error` and no
-    values.  If a number is beyond the range of doubles, it is NaN, and `error` says so.  If `keys`
-    lacks `error`, the results have it only if a top has an error.  Raises LagtopError for an
-    unknown input or key, for uncertain inputs, or if shapes do not broadcast.
+    KEY_radius.  If a regime has no value for a key, its number is NaN and its text None.  An
+    invalid top has an `error` and no values.  If a number is beyond the range of doubles, it is
+    NaN, and `error` says so.  If `keys` lacks `error`, the results have it only if a top has an
+    error.  Raises LagtopError for an unknown input or key, for uncertain inputs, or if shapes do
+    not broadcast.
 
     >>> sweep(r0=[[50.0], [60.0]], theta0_deg=[30.0, 90.0], keys=["T_nutation"]).to_xarray().sizes
     Frozen({'r0': 2, 'theta0_deg': 2})
     """
     if tops:
         raise LagtopError("sweep takes inputs by name: pass columns by name: sweep(**df)")
-    chosen = with_radii(check_keys(keys, radians=radians), radii=radii)
+    chosen = with_radii(check_keys(keys, Units(radians)), radii=radii)
     flat, results = read_inputs(inputs)
     size = math.prod(results.shape)
     columns = empty_columns(chosen, size)
@@ -77,7 +79,7 @@ def sweep(
         rows = slice(first, min(first + step, size))
         given = {name: x if isinstance(x, str) else x[rows] for name, x in flat.items()}
         part = {key: x[rows] for key, x in columns.items()}
-        part = records(top_arrays(given, rows.stop - first), part, {}, radians=radians)
+        part = records(top_arrays(given, rows.stop - first), part, {})
         if part["error"].any():
             columns.setdefault("error", np.full(size, None))[rows] = part["error"]
     results |= {key: x.reshape(results.shape) for key, x in columns.items()}
@@ -89,45 +91,39 @@ def empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
     return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 
 
-def check_keys(keys: Sequence[str] | None, *, radians: bool = False) -> Sequence[str]:
+def check_keys(keys: Sequence[str] | None, units: Units = DEGREES) -> Sequence[str]:
     """Return the keys, by default all of a record and `error`.
 
     Raises LagtopError for an unknown or repeated key.
     """
     if keys is None:
-        return column_keys(radians=radians)
-    return check_names("keys", keys, [*motion_record.all_keys(radians=radians), "error"])
+        return column_keys(units)
+    return check_names("keys", keys, [*motion_record.all_keys(units), "error"])
 
 
 def with_radii(keys: Sequence[str], *, radii: bool) -> list[str]:
     """Return keys and, with `radii`, the names of the bounds of their errors."""
-    numbers = {unit_name(key, radians=radians) for key in NUMBERS for radians in (False, True)}
-    return [*keys, *(f"{key}{RADIUS}" for key in keys if radii and key in numbers)]
+    return [*keys, *(f"{key}{RADIUS}" for key in keys if radii and bare_name(key) in LINES)]
 
 
 def records(
-    tops: TopArrays,
-    columns: Mapping[str, ResultColumn],
-    errors: Mapping[int, str],
-    *,
-    radians: bool = False,
+    tops: TopArrays, columns: Mapping[str, ResultColumn], errors: Mapping[int, str]
 ) -> dict[str, ResultColumn]:
     """Fill the columns of a block of tops, and return them with `error`.
 
     `errors` are those of rows that stay empty.  The result does not depend on the `numpy.errstate`
     of the caller.
     """
-    columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
-    inputs = tops._asdict() | {
-        unit_name("theta0_deg", radians=radians): tops.tilt_in(radians=radians)
-    }
+    columns = {"error": np.empty(tops.size, dtype=object), **columns}
+    inputs = tops.inputs | {x: tops.tilt.in_unit(x) for x in ("theta0_deg", "theta0_rad")}
     for key, column in columns.items():
         column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
     columns["error"][[*errors]] = [*errors.values()]
     keys = [key for key in columns if key not in {*inputs, "error"} and not key.endswith(RADIUS)]
+    units = Units(radians=any(key.endswith("_rad") for key in keys))
     if "psidot0" in columns and (tops.steady > 0).any():
         keys.append("psidot0")
-    alone = np.ones(tops.m.shape, dtype=np.bool_)
+    alone = np.ones(tops.size, dtype=np.bool_)
     alone[[*errors]] = False
     wanted: dict[int, list[str]] = {}
     with np.errstate(all="ignore"):  # what an overflow or a 0/0 has touched is not trusted
@@ -144,13 +140,13 @@ def records(
     for row, names in sorted(wanted.items()):
         try:
             motion = solve(tops.one(row))
-            record, beyond = record_in_range(motion, radii=True, radians=radians, keys=names)
+            record, beyond = record_in_range(motion, radii=True, units=units, keys=names)
         except LagtopError as error:
             columns["error"][row] = str(error)
             continue
         if beyond:
             columns["error"][row] = "; ".join(map(str, beyond))
-        for key in {"r0", "psidot0"} & columns.keys():  # some are known only to `solve`
+        for key in tops.inputs.keys() & columns.keys():  # some are known only to `solve`
             record[key] = getattr(motion.top, key)
         if record.get("remark"):
             record["remark"] = record["remark"].partition(":")[0]
@@ -172,7 +168,7 @@ def _filled(
     same = all(mine is first for mine in others)
     rows = first if same else np.unique(np.concatenate([first, *others]))
     of = ArrayNumbers(tops.part(rows), regime, pairs=pairs)
-    target: Any = slice(None) if rows.size == tops.m.size else rows  # which is faster
+    target: Any = slice(None) if rows.size == tops.size else rows  # which is faster
     rest = {}
     for key, mine in left.items():
         if key in motion_record.TEXT_KEYS:

@@ -15,9 +15,8 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..names import check_names
 from ..top.given import gather
-from ..top.inputs import EXAMPLE, overridden, warn_of
-from ..top.top import INPUTS
-from ..top.values import STEADY_WORDS, values_of
+from ..top.inputs import EXAMPLE, INPUTS, STEADY_WORDS, overridden, warn_of
+from ..top.values import values_of
 
 ResultColumn = Array | NDArray[np.object_]
 """A column: numbers (NaN if a regime has none) or texts (None if there is none)."""

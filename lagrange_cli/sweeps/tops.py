@@ -7,70 +7,137 @@ doubles and rounded once, so that the formulas begin with equal numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, size_of
-from ..arithmetic.bounded import choose as bounded_choice
-from ..arithmetic.pairs import DoubleDouble, pair
+from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, choose, size_of
+from ..arithmetic.pairs import PI, DoubleDouble, pair
 from ..arithmetic.types import Array, Mask
 from ..solver.facts import Regime
+from ..top.forms import Quantities
+from ..top.inputs import FORMS, NINE, STEADY_WORDS, TILT, replaced_by
 from ..top.top import Top
-from ..top.values import STEADY_WORDS
 
 _SMALL, _LARGE = 1e-30, 1e30
 """Sizes between which no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _NEAR_1 = 2.0**-44
 """Distance of lambda = b^2/2a from 1 below which a pair of doubles may lose lambda - 1."""
-_LITTLE_LEFT = 1e-10
-"""Ratio of a sum to its parts below which the sum has lost digits of its pairs."""
-_MOST_SPIN = 1e150
-"""Size of a rate up to which sums and products of pairs cannot overflow."""
+_KNOWN = 2.0**-66
+"""Largest relative error of an input that follows from another form."""
+UNKNOWN = Bounded(np.nan, np.inf)
+"""A number that only `solve` computes."""
 
 
-class TopArrays(NamedTuple):
-    """The inputs of `Top`, an array each; NaN where an input is not given.
+def pi_of(*, pairs: bool) -> Bounded:
+    """Return pi, in doubles or in pairs of doubles."""
+    if not pairs:
+        return Bounded(np.pi, EPS * np.pi)
+    return Bounded(DoubleDouble(*map(np.asarray, PI)), EPS**2)
 
-    Only the tilt may be NaN, in the unit that is not given, and `A_cm` and `phidot0`, which are
-    kept for tops whose r0 only `solve` computes.
-    """
 
+class Angles(NamedTuple):
+    """Tilts, each in the unit in which it was given."""
+
+    number: Array
+    in_degrees: Mask
+
+    def within(self, degrees: float, radians: float) -> Mask:
+        """Return the tilts of at least 1e-30 and at most some angle, or exactly 0."""
+        most = np.where(self.in_degrees, degrees, radians)
+        fits: Mask = (self.number == 0) | (self.number >= _SMALL) & (self.number <= most)
+        return fits
+
+    def in_unit(self, key: str) -> Array:
+        """Return the tilts under a key that ends in their unit."""
+        if key.endswith("_rad"):
+            return np.where(self.in_degrees, np.radians(self.number), self.number)
+        return np.where(self.in_degrees, self.number, np.degrees(self.number))
+
+    def half_from_pole(self) -> tuple[Mask, DoubleDouble]:
+        """Return the tilts that are nearer to the lower pole, and half the angles from the pole."""
+        number, in_degrees = self.number, self.in_degrees
+        down = number > np.where(in_degrees, 90, np.pi / 2)
+        arc = DoubleDouble(np.where(down, 180 - number, number)) * _DEGREE
+        if not in_degrees.all():
+            own = DoubleDouble(number)
+            own = DoubleDouble.choose(down, _DEGREE * 180.0 - own, own)
+            arc = DoubleDouble.choose(in_degrees, arc, own)
+        return down, arc.scaled(0.5)
+
+    def half(self, *, pairs: bool) -> tuple[Bounded, Bounded]:
+        """Return sine and cosine of half the tilts, in doubles or in pairs of doubles.
+
+        The half angle is taken from the nearer pole, so that its relative error is that of both.
+        """
+        down, half = self.half_from_pole()
+        near: Any
+        far: Any
+        if pairs:
+            near = _sine(half)
+            far = (1.0 - near * near).sqrt()
+        else:
+            near, far = np.sin(half.high), np.cos(half.high)
+            near, far = near + half.low * far, far - half.low * near
+        unit = 8 * PAIR_EPS if pairs else 3 * EPS
+        of_difference = np.where(down & ~self.in_degrees, 4 * PAIR_EPS, 0.0)  # pi - theta0
+        of_near = Bounded(near, unit * size_of(near) + of_difference)
+        of_far = Bounded(far, unit * size_of(far))
+        return choose(down, of_far, of_near), choose(down, of_near, of_far)
+
+    def cosine(self) -> Bounded:
+        """Return the cosines, in pairs of doubles."""
+        sine, cosine = self.half(pairs=True)
+        return (cosine - sine) * (cosine + sine)
+
+
+@dataclass(frozen=True)
+class TopArrays:
+    """The inputs of many tops, an array each."""
+
+    given: Mapping[str, Array]
+    """What was given, by the keys of `Top`; None in rows that have an input in another form."""
+    tilt: Angles
+    steady: Array
+    """1 or 2 for the words of a steady precession, else 0."""
     m: Array
     A: Array
     C: Array
     s: Array
     g: Array
     r0: Array
-    theta0_deg: Array
+    """NaN where only `solve` knows it."""
     thetadot0: Array
     psidot0: Array
-    theta0_rad: Array
-    phidot0: Array
-    steady: Array
-    """1 or 2 for the words of a steady precession, for which psidot0 is NaN; else 0."""
+    """NaN for a word."""
+    derived: Mapping[str, Bounded]
+    """The inputs that follow from another form, in pairs of doubles."""
+
+    @property
+    def size(self) -> int:
+        """The number of tops."""
+        return self.m.size
+
+    @property
+    def inputs(self) -> dict[str, Array]:
+        """The inputs that are numbers in any form, by their keys in a record, without the tilt."""
+        return {name: getattr(self, name) for name in NINE if name != TILT}
 
     def part(self, rows: Any) -> TopArrays:
         """Return some of the tops, by a slice, a mask or their row numbers."""
-        return TopArrays(*(x[rows] for x in self))
+        given = {name: x[rows] for name, x in self.given.items()}
+        rest = {name: x[rows] for name, x in self.inputs.items()}
+        tilt = Angles(*(x[rows] for x in self.tilt))
+        derived = {name: x[rows] for name, x in self.derived.items()}
+        return TopArrays(given=given, tilt=tilt, steady=self.steady[rows], derived=derived, **rest)
 
     def one(self, row: int) -> Top:
         """Return one top.  Raises LagtopError if it is invalid."""
-        inputs: dict[str, Any] = {x: float(y[row]) for x, y in self._asdict().items()}
-        del inputs["phidot0" if np.isnan(inputs["phidot0"]) else "r0"]
-        del inputs["theta0_rad" if np.isnan(inputs["theta0_rad"]) else "theta0_deg"]
-        if word := int(inputs.pop("steady")):
-            inputs["psidot0"] = STEADY_WORDS[word - 1]
-        return Top(**inputs)
-
-    def tilt_in(self, *, radians: bool) -> Array:
-        """Return theta0 in degrees or in radians."""
-        if radians:
-            return np.where(np.isnan(self.theta0_rad), np.radians(self.theta0_deg), self.theta0_rad)
-        return np.where(np.isnan(self.theta0_deg), np.degrees(self.theta0_rad), self.theta0_deg)
+        return Top(**{name: x.item(row) for name, x in self.given.items()})
 
     def groups(self) -> dict[Regime | None, Mask]:
         """Return the tops of ordinary size that the formulas of sweeps compute.
@@ -79,7 +146,8 @@ class TopArrays(NamedTuple):
         has those with other initial rates, with a torque and off the vertical.
         """
         ordinary, steady, falls = self._are_ordinary(), self.steady > 0, self.thetadot0 != 0
-        upright, hanging = (self.theta0_deg == 0) | (self.theta0_rad == 0), self.theta0_deg == 180
+        upright = self.tilt.number == 0
+        hanging = self.tilt.in_degrees & (self.tilt.number == 180)
         inclined, torque = ordinary & ~(upright | hanging), (self.s > 0) & (self.g > 0)
         at_rest = ~falls & (self.psidot0 == 0)
         return {
@@ -101,45 +169,22 @@ class TopArrays(NamedTuple):
         def fits(x: Array, most: float = _LARGE) -> Mask:
             return (x >= _SMALL) & (x <= most)
 
-        ordinary: Mask = (2 * self.A >= self.C) & fits(self.m) & fits(self.A) & fits(self.C)
+        ordinary: Mask = fits(self.m) & fits(self.A) & fits(self.C)
         rate: Array = np.where(self.steady > 0, 0.0, self.psidot0)
         for x in (self.s, self.g, abs(self.r0), abs(self.thetadot0), np.abs(rate)):
             ordinary &= (x == 0) | fits(x)
-        deg, rad = self.theta0_deg, self.theta0_rad
-        ordinary &= (np.isnan(rad) & ((deg == 0) | fits(deg, 180))) | (
-            np.isnan(deg) & ((rad == 0) | fits(rad, np.pi))
-        )
+        ordinary &= self.tilt.within(180, np.pi)
         torque = self.m * self.g * self.s
         lam = (self.C * self.r0) ** 2 / (4 * self.A * torque)
         ordinary &= (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
         return ordinary & ~(abs(lam - 1) < _NEAR_1)
 
-    def half_tilt(self, *, pairs: bool) -> tuple[Bounded, Bounded]:
-        """Return sine and cosine of theta0/2, in doubles or in pairs of doubles.
-
-        The half angle is taken from the nearer pole, so that its relative error is that of both.
-        """
-        deg, rad = self.theta0_deg, self.theta0_rad
-        given = ~np.isnan(rad)
-        down = np.where(given, rad > np.pi / 2, deg > 90)
-        arc = DoubleDouble(np.where(down, 180 - deg, deg)) * _DEGREE
-        if given.any():
-            own = DoubleDouble(rad)
-            other = DoubleDouble(np.full_like(rad, 180.0)) * _DEGREE - own
-            choose = DoubleDouble.choose
-            arc = choose(given, choose(down, other, own), arc)
-        half = arc.scaled(0.5)
-        if pairs:
-            near = _sine(half)
-            far = (1.0 - near * near).sqrt()
-        else:
-            near, far = np.sin(half.high), np.cos(half.high)
-            near, far = near + half.low * far, far - half.low * near
-        unit = 8 * PAIR_EPS if pairs else 3 * EPS
-        of_difference = np.where(given & down, 4 * PAIR_EPS, 0.0)  # pi - theta0
-        near = Bounded(near, unit * size_of(near) + of_difference)
-        far = Bounded(far, unit * size_of(far))
-        return bounded_choice(down, far, near), bounded_choice(down, near, far)
+    def number(self, name: str, *, pairs: bool) -> Bounded:
+        """Return an input other than the tilt, in doubles or in pairs of doubles."""
+        if (found := self.derived.get(name)) is not None:
+            return found if pairs else found.rounded()
+        exact = getattr(self, name)
+        return Bounded(DoubleDouble(exact) if pairs else exact)
 
 
 _SINE = [pair(Fraction((-1) ** n, factorial(2 * n + 1))) for n in range(15)]
@@ -159,49 +204,43 @@ def _sine(x: DoubleDouble) -> DoubleDouble:
 
 
 def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
-    """Return the inputs of tops, numbers or arrays; A_cm and phidot0 are converted to A and r0.
+    """Return the inputs of tops, each an array or one value; None where a top lacks it.
 
-    A missing input is NaN.  psidot0 may be a word of a steady precession, or an array of objects
-    with such words among its numbers.
+    psidot0 may be a word of a steady precession, or an array of objects with such words among its
+    numbers.
     """
-    rate, (slow, fast) = inputs.get("psidot0"), STEADY_WORDS
-    steady = np.float64(rate == slow) + 2 * np.float64(rate == fast)
-    if steady.any():
-        rate = np.where(steady > 0, np.nan, np.array(rate, dtype=object)).astype(float)
-    numbers = {**inputs, "psidot0": rate}
-
-    def filled(name: str) -> Array:
-        value = numbers.get(name)
-        return np.broadcast_to(np.float64(np.nan if value is None else value), (size,))
-
-    A_cm, no_rate = filled("A_cm"), np.broadcast_to(np.nan, (size,))
-    tops = TopArrays(
-        *[*map(filled, TopArrays._fields[:-2]), no_rate, np.broadcast_to(steady, (size,))]
-    )
-    if not np.isnan(A_cm).all():  # Steiner's theorem; `Top` refuses a negative A_cm
-        with np.errstate(all="ignore"):
-            s = DoubleDouble(tops.s)
-            moment = (DoubleDouble(A_cm) + DoubleDouble(tops.m) * (s * s)).high
-        cases = [np.isnan(A_cm), A_cm < 0]
-        tops = tops._replace(A=np.select(cases, [tops.A, A_cm], moment))
-    if not np.isnan(phi_rate := filled("phidot0")).all():
-        tops = _with_spins(tops, phi_rate)
-    return tops
+    given = {name: np.broadcast_to(x, (size,)) for name, x in inputs.items()}
+    turn, (slow, fast) = given["psidot0"], STEADY_WORDS
+    steady = np.broadcast_to(np.float64(turn == slow) + 2 * np.float64(turn == fast), (size,))
+    rate = np.where(steady > 0, np.nan, turn.astype(object)) if steady.any() else turn
+    numbers = {name: x.astype(float) for name, x in (given | {"psidot0": rate}).items()}
+    tilt = _tilts(numbers, size)
+    nine = {name: numbers.get(name, np.full(size, np.nan)) for name in NINE if name != TILT}
+    derived = dict[str, Bounded]()
+    for key in (x for x in numbers if x in FORMS and replaced_by(x) != TILT):
+        rows = np.array([x is not None for x in given[key]])  # the others have another form
+        name = replaced_by(key)
+        own = {x: y for x, y in numbers.items() if x == key or x not in {*FORMS, name}}
+        other = derived.get(name, Bounded(DoubleDouble(nine[name])))
+        derived[name] = choose(rows, _from_form(key, own, tilt), other)
+        nine[name] = derived[name].doubles
+    return TopArrays(given=given, tilt=tilt, steady=steady, derived=derived, **nine)
 
 
-def _with_spins(tops: TopArrays, phi_rate: Array) -> TopArrays:
-    """Return tops with r0 = phi' + psi' cos(theta0) (4,1) where phi' is given.
+def _tilts(numbers: Mapping[str, Array], size: int) -> Angles:
+    """Return the tilts of tops from both of their forms."""
+    none = np.full(size, np.nan)
+    degrees, radians = (numbers.get(x, none) for x in ("theta0_deg", "theta0_rad"))
+    in_degrees = np.isnan(radians)
+    return Angles(np.where(in_degrees, degrees, radians), in_degrees)
 
-    Where the sum may have lost digits, or psi' is a word, r0 is NaN and phidot0 is kept.
-    """
-    psi_rate, given = tops.psidot0, ~np.isnan(phi_rate)
+
+def _from_form(key: str, numbers: Mapping[str, Array], tilt: Angles) -> Bounded:
+    """Return the input that a form gives; NaN if it has lost digits, or is out of bounds."""
     with np.errstate(all="ignore"):
-        sine, cosine = (x.value for x in tops.half_tilt(pairs=True))
-        along = DoubleDouble(psi_rate) * (cosine - sine) * (cosine + sine)
-        spins = (DoubleDouble(phi_rate) + along).high
-        size = abs(phi_rate) + abs(psi_rate)
-        lost = ~(abs(spins) > _LITTLE_LEFT * size) & (psi_rate != 0) | ~(size < _MOST_SPIN)
-    return tops._replace(
-        r0=np.where(given, np.where(lost, np.nan, spins), tops.r0),
-        phidot0=np.where(given & lost, phi_rate, np.nan),
-    )
+        pairs = {name: Bounded(DoubleDouble(x)) for name, x in numbers.items()}
+        found = Quantities(pairs, pi=lambda: pi_of(pairs=True), u0=tilt.cosine)[replaced_by(key)]
+        fine = found.error <= _KNOWN * found.size
+    if FORMS[key].bound == "0 or more":
+        fine &= numbers[key] >= 0
+    return choose(fine, found, UNKNOWN)

@@ -1,8 +1,9 @@
 """Exact tilts, and inputs that are derived from others: A, r0 and the rates of steady precession.
 
 The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0.  With a = 2mgs/A (4,4) and b
-= C r0/A (4,5) this is cos(theta) Omega^2 - b Omega + a/2 = 0.  If phidot0 is given in place of r0 =
-phidot0 + Omega cos(theta), it is (1 - C/A) cos(theta) Omega^2 - C/A phidot0 Omega + a/2 = 0.
+= C r0/A (4,5) this is cos(theta) Omega^2 - b Omega + a/2 = 0.  A form of r0 may contain the rate of
+precession: for r0 = constant + share Omega cos(theta), such as phidot0 + Omega cos(theta), it is
+(1 - share C/A) cos(theta) Omega^2 - C/A constant Omega + a/2 = 0.
 """
 
 from __future__ import annotations
@@ -14,11 +15,20 @@ from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from ..arithmetic.enclosures import at_precision, equal_digits, exact, root, settled, sign_to
+from ..arithmetic.enclosures import (
+    at_precision,
+    equal_digits,
+    exact,
+    root,
+    settled,
+    sign_to,
+)
 from ..arithmetic.numbers import Real
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from .values import STEADY_WORDS
+from .forms import Quantities
+from .inputs import STEADY_WORDS
+from .units import pi_of_inputs
 
 SLOW, FAST = STEADY_WORDS
 
@@ -34,6 +44,11 @@ class Tilt(NamedTuple):
         """Return the tilt of inputs by key; the missing unit is absent or None."""
         given = (inputs.get(name) for name in ("theta0_deg", "theta0_rad"))
         return cls(*(None if x is None else Fraction(x) for x in given))
+
+    @property
+    def pole(self) -> int:
+        """1 for an upright axis, -1 for a hanging one, else 0."""
+        return int(not self.number) - int(self.degrees == 180)
 
     @property
     def number(self) -> Fraction:
@@ -73,31 +88,47 @@ def rational(x: Fraction | float) -> fmpq:
     return fmpq(*x.as_integer_ratio())
 
 
-def moment(inputs: Mapping[str, Real]) -> Fraction:
-    """Return the moment about the pivot, A = A_cm + m s^2, exactly.  Raises LagtopError."""
-    A_cm, m, s = (Fraction(inputs[name]) for name in ("A_cm", "m", "s"))
-    if A_cm < 0:
-        raise LagtopError(f"A_cm must be >= 0, got {float(A_cm)}", "A_cm")
-    return A_cm + m * s**2
+def exact_inputs(given: Mapping[str, Any]) -> Quantities:
+    """Return the inputs that were given as numbers, and in any other form, as exact fractions.
+
+    An input that depends on the cosine of the tilt has none.
+    """
+    numbers = {name: Fraction(x) for name, x in given.items() if not isinstance(x, str)}
+    return Quantities(numbers, pi=pi_of_inputs)
 
 
-def spin(inputs: Mapping[str, Real]) -> float:
-    """Return the total rate about the axis, r0 = phi' + psi' cos(theta0) (4,1), as a double."""
-    phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
-    tilt = Tilt.of(inputs)
+class Spin(NamedTuple):
+    """The total rate about the axis, r0 = constant + share psi' cos(theta0) (4,1), exactly."""
 
-    def ball(_: int) -> arb:
-        return exact(phi_rate) + exact(psi_rate) * tilt.sine_and_cosine()[1]
+    constant: Fraction
+    share: Fraction
 
-    found = settled("r0", ball, None, equal_digits([phi_rate, psi_rate, tilt.number]))
-    assert found is not None
-    return float(found.value)
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> Spin:
+        """Return the rate that was given in any form, which is linear in psi' cos(theta0)."""
+        if "r0" in given:
+            return cls(Fraction(given["r0"]), Fraction(0))
+        numbers = exact_inputs(given) | {"psidot0": 1}
+        at_0, at_1 = (Quantities(numbers | {"u0": x}, pi=pi_of_inputs)["r0"] for x in (0, 1))
+        return cls(at_0, at_1 - at_0)
+
+    def ball(self, precession: arb, tilt: Tilt) -> arb:
+        """Return r0, at the precision in use."""
+        return exact(self.constant) + exact(self.share) * precession * tilt.sine_and_cosine()[1]
+
+    def nearest(self, precession: Real, tilt: Tilt) -> float:
+        """Return r0 as a double."""
+        turn = Fraction(precession)
+        equal = equal_digits([self.constant, turn, tilt.number])
+        found = settled("r0", lambda _: self.ball(exact(turn), tilt), None, equal)
+        assert found is not None
+        return float(found.value)
 
 
 class SteadyRates(NamedTuple):
     """The rates Omega of steady precession at a tilt, lead cos(tilt) Omega^2 - b Omega + a/2 = 0.
 
-    `b` is C r0/A and `lead` 1 or, if phidot0 is given, C phidot0/A and 1 - C/A.
+    For r0 = constant + share Omega cos(tilt), b is C/A times the constant, and lead 1 - share C/A.
     """
 
     a: Fraction
@@ -113,7 +144,7 @@ class SteadyRates(NamedTuple):
 
     @property
     def is_linear(self) -> bool:
-        """Whether only the slow rate is finite: at 90 degrees, or for phidot0 if A = C."""
+        """Whether only the slow rate is finite: at 90 degrees, or if the lead is 0."""
         return not self.sign(0, self.lead)
 
     def exists(self, word: str) -> bool:
@@ -137,42 +168,44 @@ class SteadyRates(NamedTuple):
         return q / (2 * lead) if word == FAST else a / q
 
 
-def rates_of(top: Any) -> SteadyRates:
+def rates_of(given: Mapping[str, Any]) -> SteadyRates:
     """Return the rates of steady precession of a top; its own precession rate is not used."""
-    m, A, C, s, g = (Fraction(top.exact(x)) for x in ("m", "A", "C", "s", "g"))
-    spin_rate = Fraction(top.r0 if top.phidot0 is None else top.phidot0)
-    lead = Fraction(1) if top.phidot0 is None else 1 - C / A
-    tilt = top.exact_tilt
-    equal = equal_digits([m, A, C, s, g, spin_rate, tilt.number])
-    return SteadyRates(2 * m * g * s / A, C * spin_rate / A, lead, tilt, equal)
+    inputs, spin, tilt = exact_inputs(given), Spin.of(given), Tilt.of(given)
+    m, A, C, s, g = (inputs[name] for name in ("m", "A", "C", "s", "g"))
+    equal = equal_digits([m, A, C, s, g, spin.constant, tilt.number])
+    return SteadyRates(
+        2 * m * g * s / A, C * spin.constant / A, 1 - spin.share * C / A, tilt, equal
+    )
 
 
-def steady_rate_of(top: Any, word: str) -> float:
+def steady_rate_of(given: Mapping[str, Any], word: str) -> float:
     """Return the rate of steady precession that a word names as a double.  Raises LagtopError."""
+    tilt = Tilt.of(given)
     if word not in STEADY_WORDS:
         wrong = f"psidot0 must be a real number, steady or steady-fast, got {quoted(word)}"
-    elif top.thetadot0:
-        wrong = f"thetadot0 must be 0 for psidot0 = {word}, got {float(top.thetadot0)}"
-    elif top.pole:
+    elif given["thetadot0"]:
+        wrong = f"thetadot0 must be 0 for psidot0 = {word}, got {float(given['thetadot0'])}"
+    elif tilt.pole:
         wrong = f"psidot0 must be 0 if the axis is vertical, got {word} "
         wrong += "(a vertical axis cannot precess)"
     else:
-        rates = rates_of(top)
+        rates = rates_of(given)
         if rates.exists(word):
             found = settled("psidot0", lambda _: rates.rate(word), None, rates.equal)
             assert found is not None
             return float(found.value)
-        wrong = f"psidot0 cannot be {word}: {_why_not(top, rates)}"
+        wrong = f"psidot0 cannot be {word}: {_why_not(given, rates)}"
     raise LagtopError(wrong, wrong.partition(" ")[0])
 
 
-def _why_not(top: Any, rates: SteadyRates) -> str:
+def _why_not(given: Mapping[str, Any], rates: SteadyRates) -> str:
     """Return why a top has no rate of steady precession."""
-    given = "r0" if top.phidot0 is None else "phidot0"
+    inputs = exact_inputs(given)
+    name = inputs.form_of("r0")
     if rates.is_linear:
         where = "" if rates.lead == 0 else "at 90 degrees "
-        return where + ("the fast rate is infinite" if rates.b else f"{given} must not be 0")
+        return where + ("the fast rate is infinite" if rates.b else f"{name} must not be 0")
     cosine = at_precision(40, lambda: float(rates.tilt.sine_and_cosine()[1].mid()))
     size = math.sqrt(2 * float(rates.a * rates.lead) * cosine)
-    least, value = float(top.exact("A") / Fraction(top.C)) * size, float(getattr(top, given))
-    return f"|{given}| must be at least {least:.6g} at this tilt, got {given} = {value}"
+    least, value = float(inputs["A"] / inputs["C"]) * size, float(inputs[name])
+    return f"|{name}| must be at least {least:.6g} at this tilt, got {name} = {value}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,7 +13,8 @@ from .inputs import (
     BODY,
     BODY_IN_SI,
     DECLARED,
-    STANDS_FOR,
+    FORMS,
+    STEADY_WORDS,
     TILT,
     checked_double,
     from_example,
@@ -23,8 +24,8 @@ from .inputs import (
 )
 from .ranges import Points
 from .top import Top
-from .units import EXAMPLES, in_si, remark_in_si
-from .values import STEADY_WORDS, Value, tilt_key, values_of
+from .units import EXAMPLES, Units
+from .values import Value, tilt_key, values_of
 
 if TYPE_CHECKING:
     from .scenes import SceneFile
@@ -53,18 +54,18 @@ class Given(NamedTuple):
         return {name: float(x.std) for name, x in self.values.items() if x.std is not None}
 
     @property
+    def is_body(self) -> bool:
+        """Whether the top must be a body: its inputs have units, or some are of a real body."""
+        return self.si or bool(self.missing)
+
+    def units(self, *, radians: bool) -> Units:
+        """Return the units of documents about the top."""
+        return Units(radians, self.si)
+
+    @property
     def body(self) -> Mapping[str, Real]:
         """The body of the worked example, in SI or CGS."""
         return BODY_IN_SI if self.si else BODY
-
-    @property
-    def named(self) -> Callable[[str], str]:
-        """A function that returns the name of a unit such as `rad/time`, with seconds if in SI."""
-        return in_si if self.si else str
-
-    def remark(self, remark: str | None) -> str | None:
-        """Return a remark of a record with the names of units."""
-        return remark_in_si(remark) if remark and self.si else remark
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.
@@ -74,11 +75,15 @@ class Given(NamedTuple):
         """
         kept = {key: x for key, x in self.inputs.items() if key not in without}
         numbers = overridden(self.body, kept)
-        exact = exact or (self.si and bool(STANDS_FOR.keys() & numbers))  # then rounded once
+        is_derived = bool(FORMS.keys() & DECLARED.keys() & numbers.keys())
+        exact = exact or (self.si and is_derived)  # then rounded once
         try:
             for key, x in numbers.items() if not exact else ():
                 numbers[key] = x if x in STEADY_WORDS else checked_double(key, x)
-            return Top(**numbers)
+            top = Top(**numbers)
+            if self.is_body:
+                top.check_body()
+            return top
         except LagtopError as error:
             moments = [name for name in ("A", "C") if name in self.missing]
             if moments and error.key in {"A", "C"}:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import combinations
 from typing import Any, NamedTuple, TypeVar
 
 from ..arithmetic.numbers import Real, is_real
@@ -30,6 +31,12 @@ class Input(NamedTuple):
     """The unit in words; `angle` means degrees or radians."""
     default: float | None
     """The value in the worked example, in CGS; None for an alternative to another input."""
+    gives: str = ""
+    """The input that this form gives: `A`, or another form that gives one; empty for an input."""
+    formula: str = ""
+    """Its value from this form and others."""
+    inverse: str = ""
+    """The value of this form from it and others."""
 
 
 _TABLE = """
@@ -37,8 +44,9 @@ m | m | mass | mass | positive | mass | 1587
 A | A | equatorial moment
     | equatorial moment about the pivot | positive | mass len² | 39032
 A_cm | A_cm | moment about the centre of mass
-    | equatorial moment about the centre of mass: A = A_cm + m s^2 | | mass len² |
-C | C | polar moment | polar moment of inertia | positive, at most 2A | mass len² | 17458
+    | equatorial moment about the centre of mass: A = A_cm + m s^2 | 0 or more | mass len² |
+    | A | A_cm + m*s*s | A - m*s*s
+C | C | polar moment | polar moment of inertia | positive, in a body at most 2A | mass len² | 17458
 s | s | pivot to centre of mass
     | distance from the pivot to the centre of mass | 0 or more | len | 4
 g | g | gravity | gravitational acceleration | 0 or more | len/time² | 981
@@ -46,8 +54,15 @@ r0 | r0 | total spin rate
     | total spin rate about the axis, phi' + psi' cos(theta) | | rad/time | 50
 phidot0 | φ'0 | spin rate at the start
     | spin rate at the start | instead of r0 = phidot0 + psidot0 cos(theta0) | rad/time |
+    | r0 | phidot0 + psidot0*u0 | r0 - psidot0*u0
+spin_period | T_φ0 | spin period at the start
+    | time of one turn of the spin at the start | not 0, instead of phidot0 = 2 pi/spin_period
+    | time |
+    | phidot0 | 2*pi/spin_period | 2*pi/phidot0
 theta0 | ϑ0 | tilt at the start
     | tilt from the upward vertical | 0 to 180 degrees | angle | 30
+theta0_deg | ϑ0 | tilt at the start | | | deg | | theta0 | theta0_deg*pi/180 | theta0*180/pi
+theta0_rad | ϑ0 | tilt at the start | | | rad | | theta0 | theta0_rad | theta0
 thetadot0 | ϑ'0 | nutation rate at the start | nutation rate at the start | | rad/time | 0
 psidot0 | ψ'0 | precession rate at the start
     | precession rate at the start | or the word steady (slow) or steady-fast, to keep the tilt
@@ -61,45 +76,55 @@ def declared(table: str) -> Iterator[list[str]]:
         yield [cell.strip() for cell in line.split("|")]
 
 
-DECLARED = {
-    key: Input(symbol, name, meaning, bound, unit, float(default) if default else None)
-    for key, symbol, name, meaning, bound, unit, default in declared(_TABLE)
-}
-"""Every input by key, in the order used everywhere."""
-
+STEADY_WORDS = ("steady", "steady-fast")
+"""Words accepted as a precession rate: the steady rate of smaller or of larger size."""
 TILT = "theta0"
-"""The key of a tilt whose value has a unit; the keys `theta0_deg` and `theta0_rad` imply one."""
-STANDS_FOR = {"A_cm": "A", "phidot0": "r0"}
-"""The measured inputs, and the inputs of a top that they replace."""
-NINE = tuple(name for name in DECLARED if name not in STANDS_FOR)
+"""The key of a tilt whose value has a unit; its forms `theta0_deg` and `theta0_rad` imply one."""
+_ROWS = {
+    key: Input(symbol, name, meaning, bound, unit, float(default) if default else None, *form)
+    for key, symbol, name, meaning, bound, unit, default, *form in declared(_TABLE)
+}
+DECLARED = {key: x for key, x in _ROWS.items() if x.gives != TILT}
+"""Every input by key, in the order used everywhere."""
+FORMS = {key: x for key, x in _ROWS.items() if x.gives}
+"""The measured inputs that stand for others, and the tilt in each unit."""
+NINE = tuple(key for key, x in _ROWS.items() if not x.gives)
 EXAMPLE = {
     f"{name}_deg" if name == TILT else name: x.default
     for name, x in DECLARED.items()
     if x.default is not None
 }
 """The inputs of the worked example of Chrapan (1952), section 8, in CGS: the defaults."""
+INPUTS = (*EXAMPLE, *(key for key in FORMS if key not in EXAMPLE))
+"""The keys of all inputs of a top, the forms last."""
 BODY = {name: EXAMPLE[name] for name in ("m", "A", "C", "s", "g")}
 BODY_UNITS = {"m": "g", "A": "g*cm^2", "C": "g*cm^2", "s": "cm", "g": "cm/s^2"}
 _POWERS = {"m": 3, "A": 7, "C": 7, "s": 2, "g": 2}
 BODY_IN_SI = {name: Fraction(x) / 10 ** _POWERS[name] for name, x in BODY.items()}
-_SAME = STANDS_FOR | dict.fromkeys(("theta0_deg", "theta0_rad"), TILT)
+
+
+def replaced_by(key: str) -> str:
+    """Return the input that a form stands for in the end, such as r0; other keys are their own."""
+    return replaced_by(FORMS[key].gives) if key in FORMS else key
+
+
+def all_replaced(keys: Iterable[str]) -> set[str]:
+    """Return the inputs that some inputs determine in any form."""
+    return {replaced_by(key) for key in keys}
 
 
 def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
-    """Return inputs by key, overridden by the given ones.
-
-    A tilt replaces a tilt in either unit, A_cm replaces A, and phidot0 replaces r0.
-    """
-    taken = {_SAME.get(key, key) for key in given}
-    kept = {key: x for key, x in inputs.items() if _SAME.get(key, key) not in taken}
+    """Return inputs by key, overridden by the given ones, also in another form."""
+    taken = all_replaced(given)
+    kept = {key: x for key, x in inputs.items() if replaced_by(key) not in taken}
     return kept | dict(given)
 
 
 def one_of_each(given: Iterable[str]) -> None:
     """Raise LagtopError if an input is given in two ways."""
-    keys = set(given)
-    for key, other in (*STANDS_FOR.items(), ("theta0_rad", "theta0_deg")):
-        if {key, other} <= keys:
+    keys = [key for key in reversed(INPUTS) if key in {*given}]  # a form before its input
+    for key, other in combinations(keys, 2):
+        if replaced_by(key) == replaced_by(other):
             raise LagtopError(f"{key} and {arg(other)} are both given: leave one out", key)
 
 
@@ -108,10 +133,10 @@ def from_example(given: Mapping[str, Any]) -> dict[str, float]:
 
     None is missing if all given body inputs are 0, because zeros fit any units.
     """
-    own = {"A" if name == "A_cm" else name for name in given} & BODY.keys()
-    if all(isinstance(given.get(name), int | float | Fraction) and not given[name] for name in own):
+    own = {name: replaced_by(name) for name in given if replaced_by(name) in BODY}
+    if all(isinstance(given[name], int | float | Fraction) and not given[name] for name in own):
         return {}
-    return {name: value for name, value in BODY.items() if name not in own}
+    return {name: value for name, value in BODY.items() if name not in own.values()}
 
 
 def remark_on(missing: Iterable[str], words: Sequence[str]) -> str:

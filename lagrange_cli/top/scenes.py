@@ -9,9 +9,8 @@ from ..arithmetic.text import NumberText, quoted, shortened
 from ..errors import DataError, LagtopError, SceneError
 from ..file_bytes import decoded, read_bytes, shown_path
 from ..names import suggestion
-from .inputs import TILT
-from .top import INPUTS
-from .values import STEADY_WORDS, Value, parse_value, tilt_key
+from .inputs import INPUTS, STEADY_WORDS, TILT
+from .values import Value, parse_value, tilt_key
 
 _MOST_BYTES = 1 << 14
 """Most bytes of a scene file, because the run time of `tomllib` may grow with their square."""

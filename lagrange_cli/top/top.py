@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, NamedTuple, Self
@@ -11,17 +12,19 @@ from ..arithmetic.enclosures import pi_to, text_of
 from ..arithmetic.numbers import Real, unit_in_radians, unrounded
 from ..errors import LagtopError
 from ..names import suggestion
-from .derived import Tilt, moment, spin, steady_rate_of
+from .derived import Spin, Tilt, exact_inputs, steady_rate_of
 from .inputs import (
+    BODY,
     DECLARED,
     EXAMPLE,
+    INPUTS,
     NINE,
-    STANDS_FOR,
     TILT,
     checked_double,
     from_example,
     one_of_each,
     overridden,
+    replaced_by,
     warn_of,
 )
 
@@ -53,11 +56,12 @@ class Top:
     and g.  Each input is a real number: int, float, Fraction, Decimal or a NumPy scalar.  It is
     taken exactly: a number that is not a double, such as Decimal("0.1"), is kept as a Fraction.
 
-        m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
+        m, A, C     mass, equatorial and polar moment about the pivot, > 0 (C <= 2A in a body)
         A_cm        in place of A: the equatorial moment about the centre of mass, A = A_cm + m s^2
         s, g        distance from the pivot to the centre of mass, and gravity, >= 0
         r0          total spin rate: the constant angular velocity about the figure axis (any sign)
         phidot0     in place of r0: the rate of phi at t = 0, r0 = phidot0 + psidot0 cos(theta0)
+        spin_period in place of phidot0: the time of one turn of phi, phidot0 = 2 pi/spin_period
         theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
         theta0_rad  or the same in radians, 0 to pi; not both
         thetadot0   nutation rate at t = 0
@@ -87,10 +91,14 @@ class Top:
     thetadot0: Real = _EXAMPLE
     psidot0: Any = None
     theta0_rad: Real | None = None
-    steady_word: str | None = field(default=None, init=False)
-    """The word that was given for psidot0, which then is the nearest double; None for a number."""
     A_cm: Real | None = None
     phidot0: Real | None = None
+    spin_period: Real | None = None
+    given: Mapping[str, Any] = field(init=False, hash=False)
+    """The inputs that were given, by key, and the defaults of those that were not.
+
+    Attributes hold the numbers that follow: A, r0 and psidot0 in any case, None for another form.
+    """
 
     def __new__(cls, *values: Any, **inputs: Any) -> Self:
         """Return a new top.  Raises TypeError for an unknown input with the name that was meant."""
@@ -102,51 +110,50 @@ class Top:
 
     def __post_init__(self) -> None:
         """Replace missing inputs by their defaults, derive others, and check all."""
-        given = {name: x for name in INPUTS if (x := getattr(self, name)) is not None}
-        psidot0 = given.get("psidot0")
-        if word := psidot0 if isinstance(psidot0, str) else None:
-            given["psidot0"] = 0.0
-        given = {name: _checked(name, x) for name, x in given.items()}
-        one_of_each(given)
-        inputs = overridden(EXAMPLE, given)
-        for name in INPUTS:
-            object.__setattr__(self, name, inputs.get(name))
-        if self.A_cm is not None:
-            object.__setattr__(self, "A", _checked("A", float(self.exact("A"))))
-        twice, remedy = 2 * self.exact("A"), "no rigid body has more"
-        _require(twice >= self.C, "C", f"<= 2 A = {_shown(twice)}", self.C, remedy)
-        if word:
-            object.__setattr__(self, "psidot0", steady_rate_of(self, word))
-            object.__setattr__(self, "steady_word", word)
-        if self.phidot0 is not None:
-            rate = spin(inputs | {"psidot0": self.psidot0})
-            object.__setattr__(self, "r0", _checked("r0", rate))
-        if missing := from_example(given):
+        inputs = {name: x for name in INPUTS if (x := getattr(self, name)) is not None}
+        inputs = {
+            name: x if name == "psidot0" and isinstance(x, str) else _checked(name, x)
+            for name, x in inputs.items()
+        }
+        one_of_each(inputs)
+        kept = overridden(EXAMPLE, inputs)
+        given = {name: kept[name] for name in sorted(kept, key=_place)}
+        values = dict.fromkeys(INPUTS) | given | _derived(given) | {"given": given}
+        for name, x in values.items():
+            object.__setattr__(self, name, x)
+        if missing := from_example(inputs):
+            self.check_body()
             warn_of(missing, stacklevel=4)
 
     def __repr__(self) -> str:
-        given = self.parts.body | self.parts.start
-        return f"Top({', '.join(f'{name}={x!r}' for name, x in given.items())})"
+        return f"Top({', '.join(f'{name}={x!r}' for name, x in self.given.items())})"
 
     def as_dict(self) -> dict[str, Any]:
         """Return the inputs by key as given; of two inputs that replace each other, one is None."""
-        inputs = {name: getattr(self, name) for name in INPUTS}
-        derived = {name: None for key, name in STANDS_FOR.items() if inputs[key] is not None}
-        return inputs | derived | {"psidot0": self.steady_word or self.psidot0}
+        return {name: self.given.get(name) for name in INPUTS}
 
     def exact(self, name: str) -> Fraction:
-        """Return an input as a fraction; A is exact if it is derived from A_cm.
+        """Return an input as a fraction, also in a form in which it was not given.
 
         A rate that is derived from the tilt is irrational: then `name` must not be r0 or psidot0.
         """
-        if name == "A" and self.A_cm is not None:
-            return moment(self.as_dict())
-        return Fraction(getattr(self, name))
+        found: Fraction = exact_inputs(self.given)[name]
+        return found
 
     @property
     def exact_tilt(self) -> Tilt:
         """The tilt, with its exact sine and cosine."""
-        return Tilt.of(self.as_dict())
+        return Tilt.of(self.given)
+
+    @property
+    def exact_spin(self) -> Spin:
+        """The total rate r0, linear in the precession if it is derived from the rate of phi."""
+        return Spin.of(self.given)
+
+    @property
+    def steady_word(self) -> str | None:
+        """The word that was given for psidot0, which then is the nearest double, or None."""
+        return word if isinstance(word := self.given["psidot0"], str) else None
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
@@ -154,24 +161,25 @@ class Top:
         An input replaces another way to give it: A replaces A_cm, r0 replaces phidot0, a tilt in
         radians one in degrees, and vice versa.  Raises LagtopError.
         """
-        return type(self)(**overridden(self.parts.body | self.parts.start, changes))
+        return type(self)(**overridden(self.given, changes))
 
     @property
     def parts(self) -> BodyAndStart:
         """The inputs by key in two parts, `body` and `start`, such as for a sweep of one body."""
-        given = {name: x for name, x in self.as_dict().items() if x is not None}
-        body = ("m", "A" if self.A_cm is None else "A_cm", "C", "s", "g")
-        return BodyAndStart({name: given.pop(name) for name in body}, given)
+        body = {name: x for name, x in self.given.items() if replaced_by(name) in BODY}
+        start = {name: x for name, x in self.given.items() if name not in body}
+        return BodyAndStart(body, start)
 
     def inputs(self, *, radians: bool = False) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
-        tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
-        values: dict[str, Any] = {name: getattr(self, name) for name in INPUTS}
-        if values[tilt] is None:
-            other: Any = self.theta0_deg if radians else self.theta0_rad
-            degree = unit_in_radians(radians=False)
-            values[tilt] = float(other) * (degree if radians else 1 / degree)
-        return {key: values[key] for key in (tilt if name == TILT else name for name in NINE)}
+        tilt, number = self.exact_tilt, float(self.exact_tilt.number)
+        if radians and tilt.radians is None:
+            number *= unit_in_radians(radians=False)
+        elif not radians and tilt.degrees is None:
+            number /= unit_in_radians(radians=False)
+        key = f"{TILT}_rad" if radians else f"{TILT}_deg"
+        keys = (key if name == TILT else name for name in NINE)
+        return {x: number if (y := getattr(self, x)) is None else y for x in keys}
 
     @property
     def is_released(self) -> bool:
@@ -181,16 +189,19 @@ class Top:
     @property
     def pole(self) -> int:
         """1 if the axis starts upright, -1 if it hangs, else 0."""
-        if self.theta0_deg == 0 or self.theta0_rad == 0:
-            return 1
-        return -1 if self.theta0_deg == 180 else 0
+        return self.exact_tilt.pole
+
+    def check_body(self) -> None:
+        """Raise LagtopError for C > 2A, which no body has; as numbers, they can be computed."""
+        twice, remedy = 2 * self.exact("A"), "no rigid body has more"
+        _require(twice >= self.exact("C"), "C", f"<= 2 A = {_shown(twice)}", self.C, remedy)
 
     def caveat(self) -> str | None:
         """Return a line on a body that cannot be built, or None; A may be off by its rounding."""
         A, offset = self.exact("A"), Fraction(self.m) * Fraction(self.s) ** 2
         limit, rounding = 2 * (A - offset), A * _EPS
         if limit + rounding <= 0:
-            bound = f"A > m s^2, got {float(self.A)}"
+            bound = f"A > m s^2 = {float(offset)}, got {float(self.A)}"
         elif self.C > limit + rounding:
             bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
         else:
@@ -199,13 +210,28 @@ class Top:
 
     def as_text(self) -> str:
         """Return the inputs as a text, such as `m=1587.0 A=39032.0`, without rates that are 0."""
-        given = {name: x for name, x in self.as_dict().items() if x is not None}
-        kept = (x for x in given.items() if x[1] or x[0] not in {"thetadot0", "psidot0"})
+        kept = (x for x in self.given.items() if x[1] or x[0] not in {"thetadot0", "psidot0"})
         return " ".join(f"{name}={value}" for name, value in kept)
 
 
-INPUTS = tuple(name for name in Top.__slots__ if name != "steady_word")
-"""The keys of all inputs of a top, with the alternatives to A and r0."""
+def _place(name: str) -> int:
+    """Return the place of an input among the nine."""
+    return NINE.index(replaced_by(name))
+
+
+def _derived(given: Mapping[str, Any]) -> dict[str, Real]:
+    """Return A, psidot0 and r0 as numbers, those that are derived as the nearest doubles.
+
+    Raises LagtopError if a top cannot have them.
+    """
+    exact, turn = exact_inputs(given), given["psidot0"]
+    A = given.get("A") or _checked("A", float(exact["A"]))
+    if isinstance(turn, str):
+        turn = steady_rate_of(given, turn)
+    r0 = given.get("r0")
+    if r0 is None:
+        r0 = _checked("r0", Spin.of(given).nearest(turn, Tilt.of(given)))
+    return {"A": A, "psidot0": turn, "r0": r0}
 
 
 def _checked(name: str, value: Any) -> Real:
@@ -215,17 +241,19 @@ def _checked(name: str, value: Any) -> Real:
         raise LagtopError(f"{name} must be finite, got {nearest}", name)
     if value and not nearest and not isinstance(value, Fraction):
         raise LagtopError(f"{name} must be 0 or at least 5e-324 in size, got {value!s}", name)
-    number = unrounded(value, nearest)
+    number: Real = unrounded(value, nearest)
     _require(-_LARGEST <= number <= _LARGEST, name, "within 1e100 in size", number, _UNITS)
     bound = DECLARED[name].bound if name in DECLARED else ""
     if bound.startswith("positive"):
         _require(number > 0, name, "> 0", number)
         _require(number >= _SMALLEST, name, ">= 1e-100", number, _UNITS)
     if bound == "0 or more":
-        remedy = f"for {_OTHER_END[name]} use 180 - theta0 and -r0"
+        remedy = f"for {_OTHER_END[name]} use 180 - theta0 and -r0" if name in _OTHER_END else ""
         _require(number >= 0, name, ">= 0", number, remedy)
+    if bound.startswith("not 0"):
+        _require(not -_SMALLEST < number < _SMALLEST, name, "1e-100 or more in size", number)
     if name.startswith(f"{TILT}_"):
-        exact = Fraction(number)
+        exact: Fraction = Fraction(number)
         in_degrees = name.endswith("deg")
         most = Fraction(180) if in_degrees else pi_to(exact.denominator.bit_length() + 20)
         wanted = "in [0, 180]" if in_degrees else "in [0, pi rad]"

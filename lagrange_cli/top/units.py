@@ -5,8 +5,11 @@ Results are in kg, m, s and rad if inputs have units.  A tilt stays in degrees o
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Iterable
 from fractions import Fraction
+from functools import cache
 from typing import NamedTuple
 
 from ..arithmetic.enclosures import pi_to
@@ -15,8 +18,8 @@ from ..errors import LagtopError
 from ..names import suggestion
 from .inputs import DECLARED, TILT
 
-PI_DIGITS = 1100
-"""Digits of pi in units of angle: more than any result has."""
+_PI_DIGITS = 1100
+"""Digits of pi in inputs: more than any result has."""
 
 
 class Unit(NamedTuple):
@@ -33,6 +36,51 @@ class Unit(NamedTuple):
         sums = tuple(x + power * y for x, y in zip(self.dimensions, other.dimensions, strict=True))
         pi = self.power_of_pi + power * other.power_of_pi
         return Unit(self.size * other.size**power, pi, sums)
+
+
+class Units(NamedTuple):
+    """The units of a request: of its angles, and SI if its inputs have units."""
+
+    radians: bool = False
+    si: bool = False
+
+    @property
+    def angle(self) -> str:
+        """The name of the unit of angles."""
+        return "rad" if self.radians else "deg"
+
+    @property
+    def radian(self) -> float:
+        """The size of a radian in the unit of angles."""
+        return 1.0 if self.radians else 180 / math.pi
+
+    def key(self, name: str) -> str:
+        """Return the key of a number in a document: that of an angle ends in its unit."""
+        bare = bare_name(name)
+        return name if bare == name else f"{bare}_{self.angle}"
+
+    def keys(self, names: Iterable[str]) -> list[str]:
+        """Return the keys of numbers in a document."""
+        return [self.key(name) for name in names]
+
+    def named(self, unit: str) -> str:
+        """Return a unit such as `angle` or `rad/time` as a document names it."""
+        if unit == "angle":
+            return self.angle
+        return in_si(unit) if self.si else unit
+
+    def remark(self, remark: str | None) -> str | None:
+        """Return a remark with seconds in place of units of time, if the units are SI."""
+        return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark) if remark and self.si else remark
+
+
+DEGREES = Units()
+"""The units of documents by default."""
+
+
+def bare_name(name: str) -> str:
+    """Return the name of a key without the unit of an angle."""
+    return name.removesuffix("_deg").removesuffix("_rad")
 
 
 _TABLE = """
@@ -76,6 +124,12 @@ _ASKED = {
 }
 
 
+@cache
+def pi_of_inputs() -> Fraction:
+    """Return pi as inputs have it, in units of angle and in periods."""
+    return pi_to(_PI_DIGITS)
+
+
 def unit_of_text(text: str) -> Unit:
     """Return the product of units in a text: `kg*m^2`, `kg m²` or `1/s`.  Raises LagtopError."""
     text = text.strip().translate(_RAISED)
@@ -90,6 +144,11 @@ def unit_of_text(text: str) -> Unit:
         found = found.times(unit, int(match[3] or 1) * (-1 if match[1] == "/" else 1))
         place = match.end()
     return found
+
+
+def power_of_time(unit: str) -> int:
+    """Return the power of time in a unit such as `rad/time`."""
+    return 0 if unit == "angle" else unit_of_text(in_si(unit)).dimensions[2]
 
 
 def is_unit(text: str) -> bool:
@@ -138,15 +197,10 @@ def conversion(key: str, unit: str, wanted: str | None = None) -> tuple[Fraction
     if is_tilt and given.power_of_pi:
         return conversion(key, unit, "deg")
     powers_of_pi = given.power_of_pi - into.power_of_pi
-    return given.size / into.size * pi_to(PI_DIGITS) ** powers_of_pi, wanted
+    return given.size / into.size * pi_of_inputs() ** powers_of_pi, wanted
 
 
 def in_si(unit: str) -> str:
     """Return a unit such as `mass len²` or `rad/time` with the SI names of its parts."""
     names = {"mass": "kg", "len": "m", "time": "s"}
     return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
-
-
-def remark_in_si(remark: str) -> str:
-    """Return a remark with seconds in place of units of time."""
-    return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)

@@ -19,14 +19,12 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
-from .inputs import TILT
+from .inputs import STEADY_WORDS, TILT
 from .ranges import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 from .units import conversion
 
 LOG = "log:"
 """Prefix of a range with equal ratios."""
-STEADY_WORDS = ("steady", "steady-fast")
-"""Words accepted as a precession rate: the steady rate of smaller or of larger size."""
 _UNIT = re.compile(r"(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*", re.DOTALL)
 """Any text from its first letter, which begins no exponent; `1/` may precede."""
 _DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)"

@@ -28,6 +28,7 @@ from lagrange_cli.plot.pictures import (
 )
 from lagrange_cli.plot.reports import draw_errors, draw_fit
 from lagrange_cli.plot.style import DARK, LIGHT, Look, figure_bytes, styled
+from lagrange_cli.top.units import Units
 
 
 def drawn(kind: str, *motions: Motion, title: str | None = None, **options: Any) -> Any:
@@ -314,7 +315,7 @@ def test_a_fit_is_drawn_with_its_residuals() -> None:
     t = np.linspace(0, 1, 9)
     curve = {"t": t, "data": t**2, "residual": t**3, "fine_t": t, "curve": 2 * t}
     curves = [SimpleNamespace(name=x, **curve) for x in ("theta", "psi")]
-    outcome: Any = SimpleNamespace(curves=lambda: curves, angle="deg", title="good")
+    outcome: Any = SimpleNamespace(curves=lambda: curves, units=Units(), title="good")
     outcome.recording = SimpleNamespace(time_unit="s")
     with styled(LIGHT):
         above, below, psi, last = draw_fit(outcome).axes

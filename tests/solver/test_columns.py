@@ -27,6 +27,7 @@ from lagrange_cli.solver import sampling
 from lagrange_cli.solver.columns import COLUMNS, Columns
 from lagrange_cli.solver.sampling import period_of, whole_periods
 from lagrange_cli.solver.tables import ProvedTable
+from lagrange_cli.top.units import Units
 
 TIMES = [0.375, -7.25, 2.0**-40, -(2.0**-40), 1e3, -1e6, 1e12]
 TURN = 2 * pi_to(60)
@@ -41,9 +42,9 @@ def test_proved_rows_are_those_of_the_reference(name: str) -> None:
     """Thirty digits of every column, of dphi, dpsi and wrapped angles; and the radii of doubles."""
     inputs, motion = Top(**EVERY_KIND[name]).as_dict(), solve(Top(**EVERY_KIND[name]))
     record = reference_record(inputs, radians=True)
-    many = ProvedTable(motion, [*COLUMNS_OF_STATE, "dphi", "dpsi"], 30, radians=True)
-    doubles = ProvedTable(motion, COLUMNS_OF_STATE, radians=True)
-    wrapped = ProvedTable(motion, list(MEANS), 30, radians=True, wrap=True)
+    many = ProvedTable(motion, [*COLUMNS_OF_STATE, "dphi", "dpsi"], 30, units=Units(radians=True))
+    doubles = ProvedTable(motion, COLUMNS_OF_STATE, units=Units(radians=True))
+    wrapped = ProvedTable(motion, list(MEANS), 30, units=Units(radians=True), wrap=True)
     for t in (-7.25, 1e12)[: 1 if "separatrix" in name else None]:
         with mpmath.workdps(120):
             exact = reference_columns(inputs, t)
@@ -68,7 +69,7 @@ def test_proved_rows_are_those_of_the_reference(name: str) -> None:
 def errors(motion: Motion, times: Iterable[float]) -> Iterator[float]:
     """Yield the errors of angles and quaternion, wrapped angles and waves at times."""
     names = ["theta", "phi", "psi", "quaternion", "dphi", "dpsi", "thetadot", "phidot", "psidot"]
-    listed, table = list(times), ProvedTable(motion, names, 40, radians=True)
+    listed, table = list(times), ProvedTable(motion, names, 40, units=Units(radians=True))
     found = motion.table(listed, names[:4]) | motion.table(listed, names[4:6])
     wrapped = motion.angles(listed, wrap=True)
     for angle, name in zip(motion.angles(listed), found, strict=False):
@@ -104,7 +105,7 @@ def test_doubles_are_those_of_proved_rows(name: str) -> None:
     theta, phi, psi = motion.angles([0.0])
     assert (theta[0], phi[0], psi[0]) == (motion.sampler().tilt, 0, 0)
     proved, doubles = (
-        ProvedTable(motion, COLUMNS_OF_STATE, radians=True),
+        ProvedTable(motion, COLUMNS_OF_STATE, units=Units(radians=True)),
         motion.table(times, COLUMNS_OF_STATE),
     )
     rates = (motion.a**0.5, top.r0, top.thetadot0, top.psidot0)

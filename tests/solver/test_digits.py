@@ -20,6 +20,7 @@ from scenes import EVERY_KIND, NAMED, UNIT
 from lagrange_cli.errors import OutOfRangeError, OutOfRangeWarning
 from lagrange_cli.solver.keys import NUMBERS, all_keys
 from lagrange_cli.solver.tables import ProvedTable
+from lagrange_cli.top.units import Units
 
 HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
 WORDS = ("steady", "steady-fast")
@@ -234,7 +235,7 @@ def test_rational_columns(
     inputs: dict[str, Any], t: float | str, columns: str, expected: str
 ) -> None:
     """Ties among them, which are rounded to even: 0.15 and 2.5 in one digit."""
-    table = ProvedTable(solve(Top(**UNIT | inputs)), columns.split(), 1, radians=True)
+    table = ProvedTable(solve(Top(**UNIT | inputs)), columns.split(), 1, units=Units(radians=True))
     assert [x.value for x in table.row(Fraction(str(t)))] == expected.split()
 
 

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from lagrange_cli.solver.columns import COLUMNS, SCALARS, shown_columns
 from lagrange_cli.solver.explanation import explanations, listed
 from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys, bare_name
+from lagrange_cli.top.units import Units
 
 TOPS = {
     "worked example": Top(),
@@ -64,7 +65,7 @@ def evaluated(formula: str, names: dict[str, Any]) -> tuple[Any, Any]:
 @pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
 def test_the_formula_of_a_key_or_column_gives_its_number(top: Top) -> None:
     motion = solve(top)
-    record = motion.record(radians=True, keys=all_keys(radians=True))
+    record = motion.record(radians=True, keys=all_keys(Units(radians=True)))
     numbers = {bare_name(key): x for key, x in record.items() if isinstance(x, float)}
     columns = motion.table([0.3 * motion.T_nutation], list(COLUMNS)[1:])
     numbers |= {name: float(x[0]) for name, x in columns.items()}
@@ -103,8 +104,8 @@ def test_the_formula_with_numbers_gives_the_number(name: str) -> None:
     motion, checked = solve((TOPS | OVER_POLES)[name]), 0
     names, keys = functions(motion), ["mean_spin_rate", "mean_precession_rate"]
     if name in TOPS:
-        keys = [key for key in all_keys(radians=True) if key != "remark"]
-    for row in explanations(motion, keys, radians=True):
+        keys = [key for key in all_keys(Units(radians=True)) if key != "remark"]
+    for row in explanations(motion, keys, Units(radians=True)):
         if not row.numbers or "∫" in row.numbers or row.kind == "column":
             continue
         limits = re.findall(r"\(limit over the (\w+) pole\)", row.numbers)

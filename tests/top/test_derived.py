@@ -16,6 +16,7 @@ from lagtop import LagtopError, Regime, Top, solve, sweep
 from scenes import UNIT
 
 from lagrange_cli.solver.tables import ProvedTable
+from lagrange_cli.top.units import Units
 
 
 def test_parallel_axes_are_exact_and_rounded_once() -> None:
@@ -144,7 +145,7 @@ def test_the_tilt_of_a_steady_precession_stays_exactly(inputs: Any, word: str) -
     motion = solve(Top(**inputs, psidot0=word))
     assert motion.regime is (Regime.TORQUE_FREE if inputs.get("g") == 0 else Regime.STEADY)
     assert motion.record(digits=30)["psidot0"] == word
-    table = ProvedTable(motion, ["theta", "u", "energy", "Lz"], 50, radians=True)
+    table = ProvedTable(motion, ["theta", "u", "energy", "Lz"], 50, units=Units(radians=True))
     late, start = ([x.value for x in table.row(Fraction(t))] for t in (10**6, 0))
     assert late == start
 

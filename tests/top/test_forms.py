@@ -1,0 +1,101 @@
+"""The table of forms of inputs: each row means the same wherever an input is read."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import fields
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from conftest import Lagtop, assert_one_line
+from lagtop import Top, find, fit, sensitivities, solve, sweep
+
+from lagrange_cli.bench.reference import Reference
+from lagrange_cli.top.forms import Quantities
+from lagrange_cli.top.inputs import DECLARED, FORMS, INPUTS, replaced_by
+
+BODY = {"m": 0.5, "A": 4.45e-3, "C": 2.5e-3, "s": 0.08, "g": 9.81}
+TOP = Top(**BODY, r0=52.0, theta0_deg=30, psidot0=2.0)
+MEASURED = [key for key in FORMS if key in DECLARED]
+
+
+def in_form(top: Top, key: str) -> dict[str, Any]:
+    """Return the inputs of a top, one of them in another form, in doubles."""
+    numbers = {name: float(x) for name, x in top.inputs(radians=True).items()}
+    known = Quantities(numbers, pi=lambda: math.pi, u0=lambda: math.cos(numbers["theta0_rad"]))
+    return {x: y for x, y in top.given.items() if x != replaced_by(key)} | {key: known[key]}
+
+
+def test_every_form_is_an_input_of_a_top_and_an_option(lagtop: Lagtop) -> None:
+    assert {x.name for x in fields(Top)} == {*INPUTS, "given"}
+    shown = lagtop("solve", "--help").stdout
+    assert all(f"--{name.replace('_', '-')} " in shown for name in DECLARED)
+
+
+@pytest.mark.parametrize("key", MEASURED)
+def test_a_form_gives_the_same_motion_everywhere(key: str, tmp_path: Path, lagtop: Lagtop) -> None:
+    inputs, keys = in_form(TOP, key), ["A", "r0", "T_nutation", "k"]
+    top = Top(**inputs)
+    exact = solve(top).record(keys=keys)
+    assert exact == pytest.approx(solve(TOP).record(keys=keys), rel=1e-12)
+    assert Reference(top).k2 == pytest.approx(exact["k"] ** 2, rel=1e-14)
+    assert sensitivities(top, ["k"]).inputs.count(key) == 1
+    swept = sweep(keys=keys, **inputs | {key: [inputs[key], 1.01 * inputs[key]]})
+    assert [swept[x][0] for x in keys] == pytest.approx([exact[x] for x in keys], rel=1e-11)
+    scene, tops = tmp_path / "scene.toml", tmp_path / "tops.csv"
+    scene.write_text("".join(f"{x} = {y}\n" for x, y in inputs.items()))
+    assert json.loads(lagtop("solve", scene, "--format", "json").stdout)["k"] == exact["k"]
+    tops.write_text(f"{','.join(inputs)}\n{','.join(map(str, inputs.values()))}\n")
+    assert float(lagtop("sweep", tops, "--keys", "k").stdout.split()[1].strip(",")) == swept["k"][0]
+    rows = f"{json.dumps(inputs)}\n{json.dumps(TOP.given)}"  # the second row has the input itself
+    mixed = lagtop("sweep", "-", "--keys", "k", input=rows).stdout.split()[1:]
+    assert [float(x.strip(",")) for x in mixed] == pytest.approx([exact["k"]] * 2, rel=1e-11)
+    ends = 0.9 * inputs[key], 1.05 * inputs[key]
+    (found,) = find({"k": exact["k"]}, scan=9, **inputs | {key: ends})
+    assert getattr(found.top, key) == pytest.approx(inputs[key], rel=1e-9)
+
+
+@pytest.mark.parametrize("key", MEASURED)
+def test_a_form_is_a_known_input_of_a_fit(key: str) -> None:
+    inputs, t = in_form(TOP, key), np.linspace(0, 2, 150)
+    noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, 150))
+    theta, phi, psi = solve(TOP).angles(t) + noise
+    names = ("m", "g", "s", key) if replaced_by(key) == "A" else (key,)
+    known = {x: inputs[x] for x in names}
+    right = fit(t, theta=theta, phi=phi, psi=psi, known=known)
+    assert right.verdict == "good"
+    wrong = fit(t, theta=theta, phi=phi, psi=psi, known=known | {key: f"{1.3 * inputs[key]}(1)"})
+    assert any(f"known {key} = " in x and "contradicts" in x for x in wrong.failures())
+
+
+def test_a_period_is_exact_to_the_digits(lagtop: Lagtop) -> None:
+    words = ["--digits", "900", "--get", "r0", "--psidot0", "0.3", "--theta0", "40"]
+    with mpmath.workdps(950):
+        cosine = mpmath.cos(40 * mpmath.pi / 180)
+        exact = 2 * mpmath.pi / mpmath.mpf("0.1256") + mpmath.mpf("0.3") * cosine
+        expected = mpmath.nstr(exact, 900)
+    assert lagtop("solve", "--spin-period", "0.1256", *words).stdout.strip() == expected
+
+
+def test_a_period_with_units_and_an_uncertainty(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "scene.toml"
+    body = 'm = "0.5 kg"\nA = "4.45e-3 kg m^2"\nC = "2.5e-3 kg m^2"\ns = "8 cm"\ng = "1 g_0"\n'
+    path.write_text(body + 'spin_period = "125.6(4) ms"\n')
+    record = json.loads(lagtop("solve", path, "--format", "json").stdout)
+    assert record["r0"] == pytest.approx(2 * math.pi / 0.1256, rel=1e-15)
+    assert record["r0_std"] == pytest.approx(record["r0"] * 0.4 / 125.6, rel=1e-6)
+
+
+def test_impossible_periods(lagtop: Lagtop) -> None:
+    zero = lagtop("solve", "--spin-period", "0")
+    assert_one_line(zero, 2, "--spin-period must be 1e-100 or more in size")
+    both = lagtop("solve", "--spin-period", "1", "--r0", "3")
+    assert_one_line(both, 2, "--spin-period and --r0 are both given")
+    assert Top(spin_period=-0.5).r0 == -4 * math.pi
+    assert sweep(spin_period=[0.0, 1.0], keys=["r0", "error"])["error"][0].startswith("spin_period")
+    assert Top(spin_period=Fraction(1, 10), psidot0="steady").steady_word == "steady"
