@@ -95,7 +95,8 @@ class Bounded:
         return Bounded(abs(self.value), self.error)
 
     def __sub__(self, other: Operand) -> Bounded:
-        return self + -other
+        found: Bounded = self + -other
+        return found
 
     def __rsub__(self, other: float) -> Bounded:
         return -self + other
@@ -152,7 +153,7 @@ def best(x: Bounded, y: Bounded) -> Bounded:
     return choose((x.error <= y.error) | np.isnan(y.error), x, y)
 
 
-def lifted(function: Callable[..., Array], *slopes: Callable[..., Array]) -> Callable[..., Bounded]:
+def lifted(function: Callable[..., Array], *slopes: Callable[..., Any]) -> Callable[..., Bounded]:
     """Return a function of doubles as one of bounded numbers, from the sizes of its derivatives.
 
     The function itself is in error by at most 16 roundings.

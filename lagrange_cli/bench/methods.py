@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.rotations import of_angles
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..files.rotations import of_angles
 from ..inverse.motions import angles
 from ..solver.solve import Motion, solve
 from ..top.top import Top

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import click
-
 from ..errors import LagtopError
 from ..file_bytes import shown_path
 from ..output.terminal import one_line
@@ -19,6 +17,7 @@ if TYPE_CHECKING:
     from ..comparison.compare import Convergence
     from ..output.destination import Output
     from ..output.report import Report
+    from ..recordings.options import Reading
 
 
 @opt.command(
@@ -28,23 +27,7 @@ if TYPE_CHECKING:
     "table --columns t,axis --r0 -50 | lagtop compare - || true",
 )
 @opt.top("[SCENE] TRAJECTORY...", is_scene=is_scene_file)
-@opt.columns
-@opt.quaternion_order
-@opt.euler_sequence
-@opt.option(
-    "--rates-frame",
-    metavar="FRAME",
-    type=click.Choice(["body", "space"]),
-    default="body",
-    help="Frame of the angular velocity: body or space.",
-)
-@opt.option(
-    "--align",
-    metavar="WORD,...",
-    type=opt.LIST,
-    help="Other axes: axis=y, up=y, left (left-handed).  From the first row: start (zero of spin "
-    "and precession), time (zero of t).",
-)
+@opt.recording
 @opt.option(
     "--step-sizes",
     type=opt.Parsed("X,...", opt.parse_numbers),
@@ -56,20 +39,14 @@ if TYPE_CHECKING:
     default="0.001",
     help="Acceptable error in rad.",
 )
-@opt.decimal
 @opt.plot
 @opt.output("table")
 def compare_command(
     top: opt.TopOptions,
+    reading: Reading,
     words: list[str],
-    columns: list[str] | None,
-    quaternion_order: str,
-    euler_sequence: str,
-    rates_frame: str,
-    align: list[str] | None,
     step_sizes: list[float] | None,
     max_error: float,
-    decimal: str,
     plot: str | None,
     out: Output,
 ) -> None:
@@ -82,22 +59,19 @@ def compare_command(
     The exit code is 1 unless the verdict on every trajectory is fine.
     """
     from ..comparison.compare import compared
-    from ..comparison.differences import Alignment
-    from ..comparison.report import comparison_report, read
-    from ..files.observed import Conventions
+    from ..comparison.report import comparison_report
+    from ..recordings.reading import read_recording
 
     if not words:
         raise LagtopError("no trajectory: give a file, or - for standard input")
     if words.count("-") > 1:
         raise LagtopError("standard input can be read only once, got - twice")
-    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, top.radians).checked()
-    alignment = Alignment.of(align or [])
     motion = opt.motion_of(top.given(), uses_stds=False)
     found: Convergence | None = None
 
     def find() -> Report:
         nonlocal found
-        trajectories = [read(x, conventions, alignment, columns, decimal) for x in words]
+        trajectories = [read_recording(x, reading) for x in words]
         results, found = compared(motion, trajectories, max_error, step_sizes)
         if top.scene is None and not top.inputs:
             complain("Warning: no scene and no inputs: compared with the worked example")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +16,7 @@ from .app import worded
 
 if TYPE_CHECKING:
     from ..inverse.outcome import Outcome
+    from ..recordings.options import Reading
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
@@ -27,15 +27,6 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
     if not all(value for *_, value in parts):
         raise LagtopError(f"must be one number or theta=0.3,psi=0.5, got {quoted(text)}")
     return {name.strip(): opt.parse_positive(value) for name, _, value in parts}
-
-
-def _parse_align(text: str) -> dict[str, str]:
-    """Return the axes of `up=AXIS,axis=AXIS`."""
-    words = split_names(text)
-    if wrong := [word for word in words if not re.fullmatch("(up|axis)=-?[xyz]", word)]:
-        axes = "up=x, up=-x and so on, or axis=x, axis=-x and so on"
-        raise LagtopError(f"must be among {axes}, got {wrong[0]}")
-    return dict(word.split("=") for word in words)
 
 
 @opt.command(
@@ -52,28 +43,15 @@ def _parse_align(text: str) -> dict[str, str]:
     "residuals]",
 )
 @opt.option("--window", type=opt.count(), help="Fit N equal windows, and the decay of the spin.")
-@opt.option(
-    "--align",
-    metavar="WORD,...",
-    type=opt.Parsed("WORD,...", _parse_align),
-    help="Other axes: up=y if y of space points up, axis=y if y is the figure axis of a sensor.",
-)
-@opt.columns
-@opt.quaternion_order
-@opt.euler_sequence
-@opt.decimal
+@opt.recording
 @opt.plot
 @opt.output("table", extensions=["toml"])
 def fit_command(
     top: opt.TopOptions,
+    reading: Reading,
     words: list[str],
     sigma: float | dict[str, float] | None,
     window: int | None,
-    align: dict[str, str] | None,
-    columns: list[str] | None,
-    quaternion_order: str,
-    euler_sequence: str,
-    decimal: str,
     plot: str | None,
     out: Output,
 ) -> None:
@@ -89,11 +67,11 @@ def fit_command(
     -o FILE.toml a good fit is written as a scene.
     """
     from ..file_bytes import shown_path
-    from ..files.observed import Conventions
     from ..inverse.decay import fit_windows
     from ..inverse.fit import fit_recording
     from ..inverse.known import known_inputs
-    from ..inverse.recording import read_recording
+    from ..inverse.measured import measured
+    from ..recordings.reading import read_recording
 
     if len(words) != 1:
         remedy = "fit each file alone" if words else "give a file, or - for standard input"
@@ -103,10 +81,7 @@ def fit_command(
         raise LagtopError("--window cannot be used with -o FILE.toml")
     opt.check_plot(plot, out.path)
     radians = top.radians
-    conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
-    recording = read_recording(
-        words[0], columns, decimal, conventions=conventions, sigma=sigma, **(align or {})
-    )
+    recording = measured(read_recording(words[0], reading), sigma)
     given = top.given()
     known, source = known_inputs(given.inputs, given.stds), one_line(shown_path(words[0]))
     if window is None:

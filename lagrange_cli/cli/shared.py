@@ -108,25 +108,51 @@ decimal = option(
     callback=lambda _, __, mark: {None: "", "point": ".", "comma": ","}.get(mark, mark),
     help="Decimal mark of the file: point or comma.  [default: detected]",
 )
-columns = option(
-    "--columns",
-    type=LIST,
-    help="Names of all columns; axis, quaternion and matrix stand for all of their parts, _ skips "
-    "a column.  A name may have a unit: 't [ms]'.",
-)
-quaternion_order = option(
-    "--quaternion-order",
-    metavar="ORDER",
-    type=click.Choice(["wxyz", "xyzw"]),
-    default="wxyz",
-    help="Order of a quaternion whose names do not show it: wxyz or xyzw.",
-)
-euler_sequence = option(
-    "--euler-sequence",
-    metavar="SEQ",
-    default="xyz",
-    help="Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
-)
+_DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
+_READING = {
+    "columns": option(
+        "--columns",
+        type=LIST,
+        help="Names of all columns; axis, quaternion and matrix stand for all of their parts, _ "
+        "skips a column.  A name may have a unit: 't [ms]'.",
+    ),
+    "align": option(
+        "--align",
+        metavar="WORD,...",
+        type=LIST,
+        help="Axes of the data: up=y, axis=y, left (left-handed), conjugate (from space to body).  "
+        "From the first row: start (zero of spin and precession), time (zero of t).",
+    ),
+    "quaternion_order": option(
+        "--quaternion-order",
+        metavar="ORDER",
+        type=click.Choice(["wxyz", "xyzw"]),
+        default="wxyz",
+        help="Order of a quaternion whose names do not show it: wxyz or xyzw.",
+    ),
+    "euler_sequence": option(
+        "--euler-sequence",
+        metavar="SEQ",
+        default="xyz",
+        help="Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
+    ),
+    "rates_frame": option(
+        "--rates-frame",
+        metavar="FRAME",
+        type=click.Choice(["body", "space"]),
+        default="body",
+        help="Frame of the angular velocity: body or space.",
+    ),
+    "dt": option(
+        "--dt",
+        type=Parsed("X", parse_positive),
+        help="Time between two rows without a time, or between two frames.",
+    ),
+    "t_from": option("--from", "t_from", type=_DOUBLE, help="First time to read."),
+    "t_to": option("--to", "t_to", type=_DOUBLE, help="Last time to read."),
+    "decimal": decimal,
+}
+"""The options of a reading by argument."""
 
 
 def _scenes_or_files(ctx: click.Context, param: click.Parameter, begun: str) -> list[Any]:
@@ -143,6 +169,24 @@ scenes = click.argument("scenes", nargs=-1, metavar="[SCENE]...", shell_complete
 def extension(path: str) -> str:
     """Return the extension of a file, in lower case and without its dot."""
     return os.path.splitext(path)[1][1:].lower()
+
+
+def recording(function: F) -> F:
+    """Declare the options of a reading, which become `reading`."""
+
+    @wraps(function)
+    def run(top: TopOptions, **others: Any) -> None:
+        from ..recordings.options import Reading  # start-up
+
+        given = {x: others.pop(x) for x in _READING}
+        given = {x: y for x, y in given.items() if y is not None}
+        reading = Reading.of(radians=top.radians, **given)
+        function(top=top, reading=reading, **others)
+
+    found: Any = run
+    for declare in reversed(_READING.values()):
+        found = declare(found)
+    return cast(F, found)
 
 
 def digits(most: int) -> Callable[[F], F]:

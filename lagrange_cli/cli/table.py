@@ -57,7 +57,7 @@ def table_command(
     last columns are the uncertainties of all columns but the time.
     """
     from ..file_bytes import shown_path
-    from ..files.trajectory import read_times
+    from ..recordings.times import read_times
     from ..solver.columns import DEFAULT_COLUMNS
     from ..solver.tables import ProvedTable, grid, rows
     from .uncertainty import column_stds, warn_if_unfair

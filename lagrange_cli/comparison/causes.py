@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from functools import cache, partial
-from itertools import product
 
 import numpy as np
 
+from ..arithmetic import rotations
 from ..arithmetic.types import Array
-from ..errors import LagtopError, arg
-from ..files import rotations
-from .differences import Alignment, ExactMotion, Run, angles_of, errors, sizes, start_of
-from .mistakes import Cause, Undo, mistakes
+from ..errors import arg
+from ..recordings.frames import alignment_of, frames_of, in_frames, turn_of
+from ..recordings.options import Alignment
+from ..recordings.recording import Recording
+from .differences import ExactMotion, errors, sizes, start_of
+from .mistakes import Cause, mistakes
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
@@ -26,19 +27,9 @@ _FEW, _SOME, _LEAST = 12, 300, 3
 """Rows on which causes are tried first and then, and the least number of rows."""
 _MOST_SHIFTS = 500
 _NONE = Cause("")
-_AXES = "z", "y", "x", "-z", "-y", "-x"
-_FRAMES = [
-    *(Alignment(x, x) for x in _AXES[:3]),
-    *(Alignment(x, x, left=True) for x in _AXES[:3]),
-    *(Alignment(y, x) for x, y in product(_AXES, repeat=2) if x != y),
-]
-"""All frames with lagtop's axes in another order or direction, the likeliest first.
-
-A right-handed frame with z down is left-handed with z up, except for its zero angles.
-"""
 
 
-def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
+def likely_causes(exact: ExactMotion, run: Recording, limit: float) -> list[Cause]:
     """Return the cause of an error, and another one that leaves as little, if there is one.
 
     A cause explains an error if it removes nine tenths.  Of those that bring the error below the
@@ -50,7 +41,7 @@ def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
     if np.isfinite(search.errors(_NONE, _SOME)[0]).sum() < _LEAST:
         return []
     found = next(filter(None, (search.best(*x) for x in search.groups())), [])
-    if len(found) == 1 and found[0].align and found[0].align[:3] != run.align[:3]:
+    if len(found) == 1 and found[0].align and found[0].align.frame != run.align.frame:
         mirrored = search.aligned(search.mistakes, in_other=False)
         found = search.best([*found, *mirrored], limit)
     parts = (x for x in next(search.groups())[0] if not search.spoils(x))
@@ -58,25 +49,17 @@ def likely_causes(exact: ExactMotion, run: Run, limit: float) -> list[Cause]:
 
 
 class _Search:
-    def __init__(self, exact: ExactMotion, run: Run, limit: float) -> None:
+    def __init__(self, exact: ExactMotion, run: Recording, limit: float) -> None:
         self.run, self.given, self.limit = run, exact, limit
         self.mistakes = mistakes(exact.motion.top, run)
-        self.tilt = cache(self._tilt)
         self.some = cache(lambda undo: (undo(run) if undo else run).few(_SOME))
         """Returns some rows of the trajectory as it was meant."""
         self.enough = min(EXPLAINS * self.error(_NONE, _SOME), _PART)
 
-    def _tilt(self, undo: Undo | None, frame: Alignment) -> float:
-        """Return the tilt of the first row, NaN if it is not known, infinity without a frame."""
-        with suppress(LagtopError):  # a frame that needs more than is given
-            seen = angles_of(self.some(undo).few(1)._replace(align=frame).observed())
-            return float(seen.get("theta", [math.nan])[0])
-        return math.inf
-
     def errors(self, cause: Cause, most: int = 0) -> Array:
         """Return the errors with a cause corrected, on at most `most` rows or on all."""
         run = self.some(cause.undo).few(most) if most else cause.undone(self.run)
-        return errors(cause.exact or self.given, run._replace(align=cause.align or run.align))
+        return errors(cause.exact or self.given, run.read_as(align=cause.align or run.align))
 
     def error(self, cause: Cause, most: int = 0) -> float:
         """Return the greatest error without a cause, infinite if no row is finite."""
@@ -113,23 +96,37 @@ class _Search:
             near = max(self.given.motion.T_nutation or 0.0, 10 * span / self.run.t.size)
             yield self.shifts(near), self.limit
             yield self.shifts(span), self.limit
+            yield self.turned(), two
             yield self.aligned(self.mistakes, in_other=False), two
             yield self.aligned(self.mistakes, in_other=True), two
             yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops], two
 
     def aligned(self, causes: Iterable[Cause], in_other: bool) -> list[Cause]:
-        """Return each cause with the alignments under which the first row has the exact tilt."""
+        """Return each cause with other zeros of the angles or of the clock, perhaps in other axes.
+
+        The axes are those in which the motion is seen.
+        """
         found, given = [], self.run.align
-        frames = [x for x in _FRAMES if x[:3] != given[:3]] if in_other else [given]
-        times = sorted({given.time, given.time or bool(self.run.t[0])})
         for cause in causes:
-            run, exact = self.some(cause.undo).few(_FEW), cause.exact or self.given
-            for time, start, frame in product(times, sorted({given.start, True}), frames):
-                tilt = exact.at(run.t[:1] * (not time))["theta"][0]
-                align = frame._replace(start=start, time=time)
-                if align != given and not abs(self.tilt(cause.undo, frame) - tilt) > self.enough:
-                    found.append(_named(align, exact, run).with_other(cause))
+            run, exact = self.some(cause.undo), cause.exact or self.given
+            for time in sorted({given.time, given.time or bool(self.run.t[0])}):
+                align: Alignment | None = run.align._replace(time=time)
+                if in_other:
+                    align = _seen_in(exact, run.read_as(align=align))
+                if align and in_other is (align.frame != run.align.frame):
+                    both = [align._replace(start=x) for x in sorted({given.start, True})]
+                    few = run.few(_FEW)
+                    found += [_named(x, exact, few).with_other(cause) for x in both if x != given]
         return found
+
+    def turned(self) -> list[Cause]:
+        """Return frames of any direction, if the motion is seen in other ones."""
+        seen = self.some(None).observed()
+        space, body = frames_of(seen, self.given.at(seen.t)["quaternion"]) or (None, None)
+        if space is None or body is None:
+            return []
+        turns = f"space is turned by {turn_of(space)}, and that of the body by {turn_of(body)}"
+        return [Cause(f"the frame of {turns}", partial(in_frames, space=space, body=body))]
 
     def shifts(self, reach: float) -> list[Cause]:
         """Return the shift of the clock, at most about `reach`, that explains most."""
@@ -149,23 +146,33 @@ class _Search:
             shifts = best + step * np.arange(-count, count + 1.0)
             best = float(shifts[np.argmin(np.nan_to_num(error(shifts), nan=np.inf))])
             count = 10
-        return [Cause(f"the clock is shifted by {best:.5g}", partial(Run.timed, shift=best))]
+        return [Cause(f"the clock is shifted by {best:.5g}", partial(Recording.timed, shift=best))]
 
 
-def _named(align: Alignment, exact: ExactMotion, run: Run) -> Cause:
+def _seen_in(exact: ExactMotion, run: Recording) -> Alignment | None:
+    """Return the axes in which an exact motion is seen, None if they are no axes."""
+    now = run.align
+    plain = Alignment(conjugate=now.conjugate, time=now.time)
+    seen = run.read_as(align=plain).observed()
+    frames = frames_of(seen, exact.at(seen.t)["quaternion"])
+    axes = frames and alignment_of(frames)
+    return axes and plain._replace(up=axes.up, axis=axes.axis, left=axes.left)
+
+
+def _named(align: Alignment, exact: ExactMotion, run: Recording) -> Cause:
     given, words, names = run.align, [align], []
-    if align[:3] == given[:3] and align.start and not given.start:
-        seen = run._replace(align=align._replace(start=False)).observed()
+    if align.frame == given.frame and align.start and not given.start:
+        seen = run.read_as(align=align._replace(start=False)).observed()
         turns = np.asarray(start_of(seen, exact.at(seen.t)) or (0.0, 0.0))
         phi, psi = np.degrees(rotations.within_half_turn(turns))
         starts = {"psi": psi, "phi": phi}.items()
         names = [" and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > 1e-3)]
-    elif align[:3] != given[:3] and align.left:
+    elif align.frame != given.frame and align.left:
         names = [f"the frame is left-handed with {align.up} up"]
         if run.few(1).observed().quaternion is not None:  # else the axis is not turned too
             words.append(Alignment(f"-{align.up}", f"-{align.up}", start=True, time=align.time))
             names[0] += f", or has {align.up} down"
-    elif align[:3] != given[:3]:
+    elif align.frame != given.frame:
         names = [f"{align.up} is up and the figure axis is the body's {align.axis} axis"]
     if align.time and not given.time:
         names.append(f"the clock starts at {run.t[0]:.10g}")

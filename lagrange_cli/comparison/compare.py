@@ -12,14 +12,14 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type, joined
 from ..file_bytes import shown_path
-from ..files.columns import QUANTITIES
-from ..files.observed import Conventions, quantities_of
-from ..names import ANGLES, check_names
+from ..names import ANGLES
 from ..output.notebook import HasRecord
+from ..recordings.options import Reading
+from ..recordings.recording import Recording, recording_of
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 from .causes import likely_causes
-from .differences import CONSERVED, Alignment, ExactMotion, Run, blocks
+from .differences import CONSERVED, ExactMotion, blocks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,6 +68,7 @@ class Comparison(HasRecord):
     rows_missing: int = _key("the number of rows with empty cells", 0)
     columns: str | None = _key("the columns of the file that are used")
     unused: str | None = _key("its other columns")
+    read: str | None = _key("what the columns were read as")
     compared: str = _key("the quantity of the error: attitude, axis, angles or rates", "")
     error_max: float | None = _key("greatest error of that quantity")
     error_final: float | None = _key("its error in the last row")
@@ -158,29 +159,19 @@ def compare(
     >>> figure = found.plot()
     """
     check_type("top", top, Top, Motion)
-    given = {key: x for key, x in arrays.items() if x is not None}
-    if not given:
-        raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
-    check_names("arrays", [*given], [x for x in QUANTITIES if x != "t"])
     if not max_error > 0:
         raise LagtopError(f"max_error must be > 0, got {max_error}", "max_error")
-    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
-    rows = quantities_of(t, given)
-    times, rows["missing"] = rows["t"][:, 0], np.zeros_like(rows["t"])
-    steps = np.diff(times)
-    if not times.size or not ((steps >= 0).all() or (steps <= 0).all()):
-        raise LagtopError("t must have times that increase, or decrease, from row to row", "t")
-    for key, x in given.items():
-        if isinstance(x, np.ma.MaskedArray):
-            rows["missing"] += np.ma.getmaskarray(x).reshape(rows[key].shape).any(1, keepdims=True)
+    options: dict[str, Any] = {"quaternion_order": quaternion_order, "align": align}
+    options |= {"euler_sequence": euler_sequence, "rates_frame": rates_frame}
+    run = recording_of(t, arrays, Reading.of(radians=True, **options))
     motion = top if isinstance(top, Motion) else solve(top)
-    return compared(motion, [Run(rows, conventions, Alignment.of(align))], max_error)[0][0]
+    return compared(motion, [run], max_error)[0][0]
 
 
 @np.errstate(all="ignore")  # rows that are not finite raise no warnings
 def compared(
     motion: Motion,
-    runs: Sequence[Run],
+    runs: Sequence[Recording],
     limit: float = LIMIT,
     step_sizes: Sequence[float] | None = None,
 ) -> tuple[list[Comparison], Convergence | None]:
@@ -215,7 +206,7 @@ def compared(
     return results, found
 
 
-def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
+def _measured(exact: ExactMotion, run: Recording, step: float | None) -> Comparison:
     """Return a comparison without its verdict and its cause."""
     try:
         parts = [
@@ -223,9 +214,9 @@ def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
             for x in blocks(exact, run)
         ]
     except LagtopError as wrong:
-        if "file" not in run.about or wrong.key != "t":
+        if run.source.file is None or wrong.key != "t":
             raise
-        raise DataError.at(shown_path(run.about["file"]), wrong) from None
+        raise DataError.at(shown_path(run.source.file), wrong) from None
     found = {name: np.concatenate([x.pop(name) for x in parts]) for name in [*parts[0]]}
     t, error, known = found.pop("t"), found["error"], dict[str, Any]()
     for name, values in found.items():
@@ -237,10 +228,13 @@ def _measured(exact: ExactMotion, run: Run, step: float | None) -> Comparison:
             known[key] = float(greatest) if np.isfinite(greatest) else None
         if name in ANGLES:
             known[f"{name}_drift"] = _slope(t, values)
-    missing = run.given["missing"][:, 0] > 0
+    missing, source = run.missing, run.source
     lost = np.isnan(error) & ~missing
     return Comparison(
-        **run.about,
+        file=source.file,
+        columns=", ".join(source.used) or None,
+        unused=", ".join(source.unused) or None,
+        read="; ".join(source.lines) or None,
         step=step,
         rows=t.size,
         rows_missing=int(missing.sum()),

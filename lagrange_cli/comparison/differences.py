@@ -3,133 +3,28 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import quoted
+from ..arithmetic import rotations
+from ..arithmetic.rotations import within_half_turn
 from ..arithmetic.types import Array, Mask
-from ..errors import LagtopError
-from ..files import rotations
-from ..files.observed import Conventions, Observed, Quantities, observe, rows_of
-from ..files.rotations import within_half_turn
 from ..names import ANGLES
+from ..recordings.observed import Observed
+from ..recordings.recording import Recording
 from ..solver.facts import Regime
 from ..solver.solve import Motion
 from ..top.top import Top
 
-WORDS = {
-    "axis=y": "the figure axis is the body's y axis (or x, -x, -y, -z)",
-    "up=y": "up is the y axis of space (or x, -x, -y, -z)",
-    "left": "both frames are left-handed; the figure axis is then the axis of `up`, unless given",
-    "start": "spin and precession are 0 in the first row",
-    "time": "the first row is at time 0",
-}
-"""The words of an alignment, with their meanings."""
 CONSERVED = {"energy_drift", "Lz_drift", "pivot_slip"}
 """Differences that are counted from the first row."""
 _Z = np.array([0.0, 0.0, 1.0])
-_UNREAL, _UNITY = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, -1.0, 0.0]])
-"""Half turns: reversed, they turn y round as in Unreal, or exchange x and y, as Unity does."""
 _NEAR_POLE, _OFF_POLE = 1e-9, 0.01
 """Sines of the tilt: up to which only one angle is defined, and from which the azimuth is exact."""
 _BLOCK, _KEPT = 1 << 14, 300
 """Rows of a block, and the most times whose exact motion is kept."""
-
-
-class Alignment(NamedTuple):
-    """Changes of a trajectory before it is compared."""
-
-    axis: str = "z"
-    up: str = "z"
-    left: bool = False
-    start: bool = False
-    time: bool = False
-
-    @classmethod
-    def of(cls, words: str | Sequence[str]) -> Alignment:
-        """Return the alignment of some words, or of a text in which commas separate them.
-
-        Raises LagtopError for an unknown word.
-        """
-        found: dict[str, Any] = {}
-        for word in filter(None, words.split(",")) if isinstance(words, str) else words:
-            if not re.fullmatch("(axis|up)=-?[xyz]|left|start|time", str(word).strip()):
-                wanted = f"align must be among {', '.join(WORDS)}"
-                raise LagtopError(f"{wanted}, got {quoted(word)}", "align")
-            key, _, axis = str(word).strip().partition("=")
-            found[key] = axis or True
-        if "left" in found:
-            found.setdefault("axis", found.get("up", "z"))
-        return cls(**found)
-
-    def __str__(self) -> str:
-        words = [f"axis={self.axis}"] * self.has_axis + [f"up={self.up}"] * (self.up != "z")
-        words += [x for x in ("left", "start", "time") if getattr(self, x)]
-        return ",".join(words) or "up=z"
-
-    @property
-    def has_axis(self) -> bool:
-        """Whether the figure axis is another one than usual in such a frame."""
-        return self.axis != (self.up if self.left else "z")
-
-    def framed(self, run: Observed) -> Observed:
-        """Return a motion in the frames of lagtop.
-
-        A left-handed frame is a right-handed one whose axes are all reversed.  Raises LagtopError
-        if the attitude is not complete enough.
-        """
-        if self[:3] == Alignment()[:3]:
-            return run
-        if run.quaternion is None and (self.has_axis or run.axis is None):
-            needs = "the axis or the whole attitude, and align axis the whole attitude"
-            raise LagtopError(f"align up and align left need {needs}: omit them", "align")
-        frames = rotations.to_z(self.up), rotations.to_z(self.axis)
-        if not self.left:
-            return run.turned(*frames)
-        mirror = _UNREAL if self.up[-1] == "z" else _UNITY
-        run = run.turned(*(rotations.product(mirror, x) for x in frames))
-        return run if run.axis is None else replace(run, axis=-run.axis)
-
-
-class Run(NamedTuple):
-    """A trajectory as it is given, and how it is read."""
-
-    given: Quantities
-    """Arrays of quantities, with all angles in radians.
-
-    The array `missing` is 1 in rows with empty cells, which count as far as they have numbers.
-    """
-    conventions: Conventions
-    align: Alignment = Alignment()
-    begins: float = 0.0
-    """The time of the first row, if the times are counted from there."""
-    about: Mapping[str, Any] = {}
-    """The keys of a comparison that describe the file."""
-
-    @property
-    def t(self) -> Array:
-        """The times of all rows."""
-        return self.given["t"][:, 0] + self.begins
-
-    def timed(self, factor: float = 1.0, shift: float = 0.0) -> Run:
-        """Return the trajectory with another unit of time, or an earlier clock."""
-        given = {**self.given, "t": self.given["t"] * factor}
-        return self._replace(given=given, begins=self.begins * factor - shift)
-
-    def few(self, most: int) -> Run:
-        """Return at most `most` rows, evenly spread."""
-        every = -(-len(self.given["t"]) // most)
-        return self._replace(given=rows_of(self.given, slice(None, None, every)))
-
-    def observed(self, rows: slice = slice(None)) -> Observed:
-        """Return the motion of some rows, in the frames of lagtop and with its clock."""
-        seen = self.align.framed(observe(rows_of(self.given, rows), self.conventions))
-        begins = -self.given["t"][0, 0] if self.align.time else self.begins
-        return replace(seen, t=seen.t + begins)
 
 
 class ExactMotion:
@@ -192,7 +87,7 @@ def start_of(seen: Observed, exact: dict[str, Array]) -> tuple[float, float] | N
     return phi, psi
 
 
-def blocks(exact: ExactMotion, run: Run) -> Iterator[dict[str, Array]]:
+def blocks(exact: ExactMotion, run: Recording) -> Iterator[dict[str, Array]]:
     """Yield the times `t` of some rows and their differences from the exact motion, by name.
 
     `attitude`, `axis` and the angles are in radians; `rates` are over the size of the rates of the
@@ -213,11 +108,11 @@ def blocks(exact: ExactMotion, run: Run) -> Iterator[dict[str, Array]]:
             angles = {key: x - shifts[key] for key, x in seen.angles.items()}
             seen = seen.turned(rotations.about_z(-start[1]), rotations.about_z(start[0]))
             seen = replace(seen, angles=angles)
-        missing = run.given["missing"][rows, 0] > 0
+        missing = run.missing[rows]
         yield {"t": seen.t} | _differences(exact.motion, seen, states, missing)
 
 
-def errors(exact: ExactMotion, run: Run) -> Array:
+def errors(exact: ExactMotion, run: Recording) -> Array:
     """Return the error of each row and that of its rates, if they are given; shape (2, n)."""
     found = ([x["error"], x.get("rates", x["error"])] for x in blocks(exact, run))
     return np.concatenate([*found], axis=1)

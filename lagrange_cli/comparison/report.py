@@ -1,4 +1,4 @@
-"""Trajectories in files, and the report on them."""
+"""The report on trajectories."""
 
 from __future__ import annotations
 
@@ -7,16 +7,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..arithmetic.text import shortened
-from ..arithmetic.types import Array
-from ..errors import DataError, LagtopError, Message, arg, joined, marked
-from ..file_bytes import shown_path, utf8_path
-from ..files.observed import Conventions, Quantities, observe
-from ..files.trajectory import read_trajectory
+from ..errors import Message, arg, joined, marked
+from ..file_bytes import shown_path
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import one_line
 from ..solver.solve import Motion
 from .compare import COMPARISON_KEYS, LIMIT, Comparison, Convergence
-from .differences import Alignment, Run
 
 _WRONG_NORM, _FEW = 1e-6, 0.03
 """The least distance of a norm from 1 that is said, and the largest share of rows that are few."""
@@ -30,50 +26,6 @@ _COLUMNS = (
     Field("energy_drift", "energy", short),
 )
 """The columns of the table."""
-
-
-def read(
-    path: str,
-    conventions: Conventions,
-    align: Alignment,
-    columns: Sequence[str] | None = None,
-    decimal: str = "",
-) -> Run:
-    """Return the trajectory in a file, or on standard input for `-`.
-
-    `columns` names all columns from the left; `decimal` is the decimal mark.  Raises DataError for
-    a bad or unreadable file.
-    """
-    file = read_trajectory(path, columns, decimal)
-    rows = file.values(radians=conventions.radians)
-    if not len(rows["t"]):
-        raise DataError(f"{file.name} must have at least one row of numbers")
-    file.check_times(rows["t"][:, 0])
-    begins, rows["t"] = float(rows["t"][0, 0]), file.elapsed.reshape(-1, 1)
-    conventions = file.conventions(conventions)
-    try:
-        Run(rows, conventions, align).observed(slice(1))
-        used = _used(rows, conventions)
-    except LagtopError as error:
-        raise DataError.at(file.name, error) from None
-    given = {key: rows[key] for key in used}
-    missing = [x for key, x in file.missing().items() if key in used]
-    given["missing"] = np.any(missing, axis=0).reshape(-1, 1).astype(float)
-    idle = [file.names[i] for key in rows.keys() - used for i in file.quantities[key].columns]
-    about = {"file": utf8_path(path), "columns": ", ".join(x for x in file.used if x not in idle)}
-    about["unused"] = ", ".join([*file.unused, *idle])
-    return Run(given, conventions, align, begins, {x: y for x, y in about.items() if y})
-
-
-def _used(rows: Quantities, conventions: Conventions) -> set[str]:
-    """Return the quantities that the motion depends on, whatever their numbers."""
-    unit = [1.0, 0.0, 0.0, 0.0]  # repeated it is a quaternion, a vector, or the identity matrix
-    first = {key: np.resize(unit, (1, x.shape[1])) for key, x in rows.items()}
-
-    def motion(**changed: Array) -> str:
-        return repr(observe(first | changed, conventions))
-
-    return {key for key, x in first.items() if motion(**{key: np.nan * x}) != motion()}
 
 
 def comparison_report(
@@ -96,6 +48,7 @@ def comparison_report(
 def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iterator[str]:
     if x.columns:
         yield f"Columns: {x.columns}." + f" Not used: {x.unused}." * bool(x.unused)
+        yield f"Read as {x.read}."
     yield f"{sentence(x)}."
     if x.rows_missing:
         yield f"{x.rows_missing} of {x.rows} rows have empty cells."

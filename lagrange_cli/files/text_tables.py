@@ -39,11 +39,14 @@ _LONGEST_LINE = 1 << 22
 """Most characters of each of the first rows, which are searched for headings."""
 _AT_ONCE = 1 << 20
 _SWAPPED = str.maketrans(",.", ".,")
-_DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
+_DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eEdD][+-]?\d+)?"  # D as Fortran writes it
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
+_EXPONENT = str.maketrans("dD", "ee")
+_MISSING = {None, "", "NA", "N/A", "#N/A", "NULL", "null", "None"}
+"""Cells that are empty, as programs write them."""
 CountKnown = Callable[[Sequence[str]], int]
 """Returns the number of known headings in a row, which distinguishes headings from titles."""
 
@@ -181,7 +184,7 @@ class Table:
         values, empty, lines = array("d"), bytearray(), array("q")
         for number, cells in self._checked_rows():
             lines.append(number)
-            empty.extend(cells[i] in (None, "") for i in columns)
+            empty.extend(cells[i] in _MISSING for i in columns)
             values.extend(self._double(number, i, names[i], cells[i]) for i in columns)
         shape = (len(lines), len(columns))
         mask = np.frombuffer(empty, np.bool_).reshape(shape)
@@ -189,13 +192,13 @@ class Table:
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
-        if cell is None or cell == "":
+        if cell in _MISSING:
             return float("nan")
         if type(cell) in {int, float}:
             return float(cell)
         plain = self.plain(cell) if isinstance(cell, str) else ""
         if "," not in plain and _NUMBER.fullmatch(plain):
-            return float(plain)
+            return float(plain.translate(_EXPONENT))
         try:
             return float(self.number(cell))
         except LagtopError as error:
@@ -210,7 +213,8 @@ class Table:
         other, mark = ("point", ".") if self.decimal == "," else ("comma", ",")
         is_other = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
         try:
-            return parse_number(self.plain(cell))
+            plain = self.plain(cell)
+            return parse_number(plain.translate(_EXPONENT) if _NUMBER.fullmatch(plain) else plain)
         except LagtopError:
             if not is_other and self.decimal != ",":
                 raise
@@ -370,7 +374,7 @@ def _splits(text: str, decimal: str = "") -> dict[str, list[str]]:
 
 
 def _are_numbers(cells: Sequence[str]) -> bool:
-    return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x)
+    return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x not in _MISSING)
 
 
 def _has_number(row: Mapping[str, Sequence[str]]) -> bool:

@@ -22,8 +22,11 @@ from ..top.inputs import INPUTS, STEADY_WORDS, TILT, checked_double, one_of_each
 from ..top.ranges import MOST_POINTS, Points
 from ..top.units import conversion
 from ..top.values import Value, tilt_key
-from .columns import known_quantities, name_and_unit
+from .headings import name_and_unit, plain_name
 from .text_tables import Table, read_table
+
+_TIMES = {"t", "time", "timestamp"}
+"""Names of a time, which a file of tops does not have."""
 
 
 class Tops(NamedTuple):
@@ -158,7 +161,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
             column = tilt_key(column, Value(factor, unit))
             units[column] = Value(factor, unit)
         columns.append(column)
-    if not units and known_quantities(headings) > 1:
+    if not units and any(plain_name(x)[0] in _TIMES for x in headings):
         shown = shortened(", ".join(headings), 120)
         wrong = f"must hold tops, got a recording with the columns {shown}"
         raise DataError(f"{name} {wrong}: pass it to fit or compare")

@@ -4,28 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError, Message, arg
-from ..files import rotations
-from ..files.rotations import within_half_turn
-from ..names import ANGLES
+from ..recordings.frames import alignment_of, in_frames, own_frames, turn_of
+from ..recordings.misreadings import misreadings
+from ..recordings.options import Alignment
 from ..top.inputs import BODY, replaced_by
 from .checks import CHANCE, Mistake, MoreNoise
 from .decay import decay_of
 from .known import Known
+from .measured import Measured, frames_of, measured
 from .outcome import GOOD, STEADY, Outcome
-from .recording import Recording, frames_of, reoriented
 from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
-_AXES = ("x", "y", "-x", "-y", "-z")
 _MEANINGS = {"up": "of the data points up", "axis": "is the figure axis"}
-_ROWS = 250
-"""Rows at which axes are compared."""
+_ROWS, _AS_CALM = 250, 0.01
+"""Rows at which axes are compared, and the noise above that of the recording that is no more."""
 _OTHER_AXIS, _CALMER, _OUTLYING, _NOISY = 0.35, 0.1, 30.0, 2.0
 """When a trial fit is worth its time.  Harmonics of the nutation must leave less noise; the least
 differences of its logarithm are those per angle in another frame, in a part or in windows, and
@@ -46,7 +46,7 @@ _LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
 half, and the residual of the spin over that of the whole recording."""
 
 
-def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]:
+def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     """Yield what makes a failed fit good, the likeliest mistakes first, and then the usual ones."""
     body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
     if len(recording.angles) == 1:  # of which a known start is a part
@@ -60,7 +60,8 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     even = evenly_timed(recording)
     if even is not None and _is_good(even, known, also=STEADY):
         yield f"t is rounded: write it with more digits (the rows are {even.frame:.6g} apart)"
-    yield from _frames(recording, body)
+    is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
+    yield from _readings(recording, known, body, is_far=is_far)
     noise = _calmness(recording)
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if 0 < len(wrong) <= _FEW * recording.t.size:
@@ -73,16 +74,13 @@ def hints(recording: Recording, known: Known, outcome: Outcome) -> Iterator[str]
     if row and noise - _calmness(free) > _CALMER and _is_good(free, body):
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: leave out the rows before the release"
-    is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
-    others = _other_angles(replace(recording, sigma={})) if is_far else ()
-    yield from (words for other, words in others if _is_good(other, known))
     yield from _decays(recording, body, outcome, noise)
     start = [x for x in ("theta0", "psidot0") if x in known]
     short = ", and that the recording lasts for a period of the nutation"
     yield f"check {', '.join([*start, 'columns'])}, units and axes{short * (not outcome.inputs)}"
 
 
-def _is_good(recording: Recording, known: Known, also: str = GOOD) -> bool:
+def _is_good(recording: Measured, known: Known, also: str = GOOD) -> bool:
     """Return whether a fit is good and needs no faster spin or reversed angle."""
     found = _tried(recording, known)
     if found is None or found.verdict not in {GOOD, also}:
@@ -90,7 +88,7 @@ def _is_good(recording: Recording, known: Known, also: str = GOOD) -> bool:
     return not found.recording.is_mirrored and found.is_spin_slow
 
 
-def _tried(recording: Recording, known: Known, chance: float = CHANCE) -> Outcome | None:
+def _tried(recording: Measured, known: Known, chance: float = CHANCE) -> Outcome | None:
     """Return a fit, or None if the recording does not determine a top without other inputs."""
     try:
         return best_fit(recording, known, chance=chance)
@@ -98,7 +96,7 @@ def _tried(recording: Recording, known: Known, chance: float = CHANCE) -> Outcom
         return None
 
 
-def evenly_timed(recording: Recording) -> Recording | None:
+def evenly_timed(recording: Measured) -> Measured | None:
     """Return a recording at even times, if its times are these after rounding to some digits."""
     t = recording.t_start + recording.t
     sizes = (10.0**-k for k in range(9))
@@ -113,66 +111,54 @@ def evenly_timed(recording: Recording) -> Recording | None:
     return None
 
 
-def _frames(recording: Recording, known: Known) -> Iterator[str]:
-    """Yield the axes of space and of the body in whose frame a top explains the motion."""
-    if recording.kind == "angles" or recording.is_turned:
-        return
-    few = recording.thinned(_ROWS)
-    least = _calmness(few) - _OTHER_AXIS * len(few.angles)
-    if recording.kind == "attitude":
-        last = _scalar_last(recording)
-        if _calmness(last.thinned(_ROWS)) < least and _is_good(last, known):
-            where = f"on the command line, {arg('quaternion_order', 'xyzw')}"
-            yield Message(f"the quaternion is in the order x, y, z, w: give w first ({where})")
-    tried = [{"up": x} for x in _AXES]
-    if recording.kind == "attitude":
-        tried += [{"axis": x} for x in _AXES] + [{"up": x, "axis": x} for x in ("x", "y")]
-    noise = [_calmness(reoriented(few, **one)) for one in tried]
-    best = tried[int(np.argmin(noise))]
-    opposite = {word: x[1:] if x.startswith("-") else f"-{x}" for word, x in best.items()}
-    for one in [*[best, opposite] * (min(noise) < least), {"up": "-z"}]:
-        if _is_good(reoriented(recording, **one), known):
-            words = " and ".join(f"the {x} axis {_MEANINGS[word]}" for word, x in one.items())
-            if one == {"up": "-z"} and recording.kind == "axis":
-                words += ", or the marker is opposite to the centre of mass"
-            align = ",".join(f"{word}={x}" for word, x in one.items())
-            yield Message(f"{words}: use {arg('align', align)}")
+def _readings(recording: Measured, known: Known, body: Known, *, is_far: bool) -> Iterator[str]:
+    """Yield the misreadings without which the fit is good.
+
+    A reading is worth a fit if its nutation leaves no more noise beside harmonics.
+    """
+    calm = _calmness(recording.thinned(_ROWS)) + _AS_CALM
+    is_angles = recording.kind == "angles"
+    for row in misreadings(recording.source) if is_far or not is_angles else ():
+        other = None
+        if row.kind in {"attitude", "frame"}:
+            with suppress(DataError):  # such as a tilt beyond 180 degrees
+                other = measured(row.undo(recording.source))
+        if other is None or not (is_angles or _calmness(other.thinned(_ROWS)) < calm):
+            continue
+        if _is_good(other, known if is_angles else body):
+            yield Message(f"{row.name}: {row.remedy}")
+    if not is_angles and recording.source.align.frame == Alignment().frame:
+        yield from _frames(recording, body)
 
 
-def _scalar_last(recording: Recording) -> Recording:
-    """Return the recording of an attitude whose quaternions were given in the order x, y, z, w."""
-    read = rotations.of_angles(*(recording.angles[name] for name in ANGLES))
-    return replace(recording, angles=rotations.angles_of(np.roll(read, 1, axis=-1)))
+def _frames(recording: Measured, known: Known) -> Iterator[str]:
+    """Yield the frames in which a top explains the motion, or the opposite ones."""
+    source = recording.source
+    up, body = own_frames(source.observed()) or (np.eye(3), np.eye(3))
+    for space in (up, up * [1, -1, -1]):
+        align = alignment_of((space, body), left=False)
+        other = source.read_as(align=align) if align else in_frames(source, space, body)
+        if align == Alignment() or not _is_good(measured(other), known):
+            continue
+        if align is None:
+            yield f"space is turned by {turn_of(space)}, the body by {turn_of(body)}"
+            continue
+        named = {"up": align.up, "axis": align.axis}
+        words = [f"the {x} axis {_MEANINGS[key]}" for key, x in named.items() if x != "z"]
+        opposite = ", or the marker is opposite to the centre of mass"
+        is_opposite = align.up == "-z" and recording.kind == "axis"
+        where = f"{' and '.join(words)}{opposite * is_opposite}"
+        yield Message(f"{where}: use {arg('align', align)}")
 
 
-def _calmness(recording: Recording) -> float:
+def _calmness(recording: Measured) -> float:
     """Return the logarithm of the noise that harmonics of one frequency leave, over the angles."""
     signals = signals_in(recording)
     frequency, _ = oscillation_in(signals)
     return sum(math.log(x) for x in noise_of(signals, frequency, recording).values())
 
 
-def _other_angles(recording: Recording) -> Iterator[tuple[Recording, str]]:
-    """Yield the recording with another meaning of its angles, and this meaning in words."""
-    angles = recording.angles
-    if recording.kind != "angles":
-        return
-    larger = {x: np.degrees(y) for x, y in angles.items()}
-    bounded = [larger["theta"]] if "theta" in larger else larger.values()
-    if all(np.nanmax(np.abs(x)) <= 2 * np.pi for x in bounded):
-        wrapped = {x: y if x == "theta" else within_half_turn(y) for x, y in larger.items()}
-        words = "the angles are in radians: give their columns names such as theta_rad"
-        yield replace(recording, angles=wrapped), words
-    if "theta" in angles and np.nanmax(angles["theta"]) <= np.pi / 2:
-        from_horizontal = {**angles, "theta": np.pi / 2 - angles["theta"]}
-        words = "theta is measured from the horizontal: name its column elevation"
-        yield replace(recording, angles=from_horizontal), words
-    if {"phi", "psi"} <= angles.keys():
-        words = "phi and psi are exchanged: here phi is the spin and psi the precession"
-        yield recording.exchanged, words
-
-
-def release(recording: Recording) -> int:
+def release(recording: Measured) -> int:
     """Return the row in which a top that was held begins to move, or 0.
 
     The first rows of a top that is held differ only by noise.
@@ -193,7 +179,7 @@ def release(recording: Recording) -> int:
     return row if _HELD < row < recording.t.size - 2 * _HELD else 0
 
 
-def _decays(recording: Recording, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
+def _decays(recording: Measured, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
     """Yield the number of windows that are all good and show a decay, or a decay within windows."""
     counts, lost = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size], ""
     for count in counts:

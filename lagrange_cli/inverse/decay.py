@@ -21,8 +21,8 @@ from ..top.inputs import BODY, replaced_by
 from ..top.units import DEGREES, Units
 from .checks import CHANCE
 from .known import Known
+from .measured import Measured
 from .outcome import GOOD, Outcome
-from .recording import Recording
 from .search import best_fit
 
 _SURE = 3.0
@@ -56,7 +56,7 @@ class Decay(NamedTuple):
 
 
 def fit_windows(
-    recording: Recording, count: int, known: Known, units: Units = DEGREES
+    recording: Measured, count: int, known: Known, units: Units = DEGREES
 ) -> list[Outcome]:
     """Return the fits of equal windows of a recording.
 

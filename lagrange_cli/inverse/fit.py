@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 from types import NoneType
@@ -11,17 +11,19 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from ..errors import check_type
+from ..recordings.options import Reading
+from ..recordings.recording import recording_of
 from ..top.given import gather
 from ..top.units import DEGREES, Units
 from ..top.values import parse_value, value_of
 from .advice import hints
 from .known import Known, known_inputs
+from .measured import Measured, measured
 from .outcome import Outcome
-from .recording import Recording, recording_from
 from .search import best_fit
 
 
-def fit_recording(recording: Recording, known: Known, units: Units = DEGREES) -> Outcome:
+def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> Outcome:
     """Return the fit of a recording; if it fails, `hints` say what to try.
 
     Raises DataError for a recording that cannot be fitted.
@@ -35,22 +37,21 @@ def fit_recording(recording: Recording, known: Known, units: Units = DEGREES) ->
 def fit(
     t: ArrayLike,
     *,
-    theta: ArrayLike | None = None,
-    phi: ArrayLike | None = None,
-    psi: ArrayLike | None = None,
-    axis: ArrayLike | None = None,
-    quaternion: ArrayLike | None = None,
     sigma: Mapping[str, float] | float | None = None,
     known: Mapping[str, Any] | None = None,
+    quaternion_order: str = "wxyz",
+    euler_sequence: str = "xyz",
+    align: str | Sequence[str] = (),
+    **arrays: ArrayLike | None,
 ) -> Outcome:
     """Fit a top to a recording; the results are in `record()`.
 
-    Times have the shape (n,), angles too (radians, up to whole turns, NaN where missing).  Instead
-    of angles, pass the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to
-    space, shape (n, 4).  `sigma` is a standard deviation in radians, or a mapping by channel; by
-    default it is estimated from the residuals.  `known` are known inputs by key, which are tested
-    against the recording.  Texts such as `"0.070(5)"`, and numbers of uncertainties, are uncertain;
-    units are converted to SI.  Raises LagtopError, DataError for a recording that cannot be fitted.
+    Pass an attitude, angles, the figure axis or the position of a marker as arrays, and their
+    conventions, as to `compare`; rates are not used.  `sigma` is a standard deviation in radians,
+    or a mapping by channel; by default it is estimated from the residuals.  `known` are known
+    inputs by key, which are tested against the recording.  Texts such as `"0.070(5)"`, and numbers
+    of uncertainties, are uncertain; units are converted to SI.  Raises LagtopError, DataError for a
+    recording that cannot be fitted.
 
     >>> t = np.linspace(0, 2, 200)
     >>> noise = np.random.default_rng(2).normal(scale=1e-3, size=(3, 200))
@@ -64,9 +65,9 @@ def fit(
     (39000.0, 592)
     """
     check_type("known", known, Mapping, NoneType)
-    recording = recording_from(
-        t, sigma=sigma, theta=theta, phi=phi, psi=psi, axis=axis, quaternion=quaternion
-    )
+    options: dict[str, Any] = {"quaternion_order": quaternion_order, "align": align}
+    reading = Reading.of(radians=True, euler_sequence=euler_sequence, **options)
+    recording = measured(recording_of(t, arrays, reading), sigma)
     given = {
         name: parse_value(name, x, uncertain=True, steady=name == "psidot0")
         if isinstance(x, str)

@@ -15,9 +15,9 @@ from ..top.inputs import all_replaced
 from ..top.units import Units
 from .checks import Mistake
 from .known import body_numbers, time_power
+from .measured import Measured
 from .outcome import PERCENT, Number, Outcome
 from .problem import BESIDE_POLE, Minimum, Problem
-from .recording import Recording
 
 _MEANINGS = {
     "a": "2mgs/A (4,4)",
@@ -47,7 +47,7 @@ _IMPROVED = 0.999
 
 def nutating_outcome(
     found: Minimum,
-    recording: Recording,
+    recording: Measured,
     scale: float,
     noise: Mapping[str, tuple[float, float]],
     *,

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.rotations import within_half_turn
 from ..arithmetic.types import Array
 from ..errors import AbsentError, joined
-from ..files.rotations import within_half_turn
 from ..names import ANGLES
 from ..output.notebook import HasRecord
 from ..output.report import uncertain_text
+from ..recordings.doubts import shifted_origin
 from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, MoreNoise, Residuals, chi2_bounds
 from .known import Known
-from .recording import Recording, shifted_origin
+from .measured import Measured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -66,7 +67,7 @@ class Curve(NamedTuple):
 class Outcome(HasRecord):
     """The result of a fit of one recording, by a nutating top or by a steady precession."""
 
-    recording: Recording
+    recording: Measured
     known: Known
     in_radians: Mapping[str, Number]
     """The numbers by key; those of angles end in `_rad`."""
@@ -170,7 +171,8 @@ class Outcome(HasRecord):
     @cached_property
     def origin(self) -> list[str]:
         """Where the pivot is if the origin of a marker is elsewhere, as a failure; else empty."""
-        if (offset := shifted_origin(self.recording)) is None:
+        marker = self.recording.position
+        if marker is None or (offset := shifted_origin(marker)) is None:
             return []
         shown = ", ".join(f"{x:.2g}" for x in offset)
         return [
@@ -214,6 +216,8 @@ class Outcome(HasRecord):
             record |= {key: number.value, f"{key}_std": number.std}
         record |= {f"{key}_known_sigmas": x for key, x in self.distances.items()}
         record |= {"t_start": self.recording.t_start, "rows": self.recording.t.size}
+        if lines := self.recording.source.source.lines:
+            record["read"] = "; ".join(lines)
         record |= {"dof": self.dof, "chi2_dof": self.chi2_dof}
         record["chi2_dof_low"], record["chi2_dof_high"] = self.chi2_bounds
         scale, unit = self.units.radian, self.units.angle

@@ -14,8 +14,8 @@ from scipy.optimize import least_squares
 from ..arithmetic.types import Array
 from ..top.inputs import all_replaced, replaced_by
 from .known import WEIGHT, Known, in_all_forms
+from .measured import Measured
 from .motions import STATE, angles
-from .recording import Recording
 from .signals import NEAR_POLE, Signal, mean_rate
 
 _DEPENDENT = 1e-7
@@ -67,7 +67,7 @@ class Problem:
 
     def __init__(
         self,
-        recording: Recording,
+        recording: Measured,
         known: Known,
         sizes: Array,
         *,
@@ -108,7 +108,7 @@ class Problem:
         """The number of parameters without a prior."""
         self.names = [*names, *self.stds]
 
-    def of(self, recording: Recording, sizes: Array | None = None, pole: int = 0) -> Problem:
+    def of(self, recording: Measured, sizes: Array | None = None, pole: int = 0) -> Problem:
         """Return the same problem for another form of the recording, or of a start at a pole."""
         sizes = self.sizes if sizes is None else sizes
         known, free, turns, pole = self.inputs, self.free, self.turns, pole or self.pole

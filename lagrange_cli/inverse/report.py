@@ -20,6 +20,7 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: str) -> Report:
     `system` is the one of the known inputs.
     """
     recording, known = outcomes[0].recording, outcomes[0].known
+    read = recording.source.source
     count, channels = sum(x.recording.t.size for x in outcomes), ", ".join(recording.channels)
     units = outcomes[0].units
 
@@ -32,8 +33,8 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: str) -> Report:
 
     conditions = {
         "data": f"{source}: {count} rows of {channels}, from t = {recording.t_start:g}",
-        **({"read": ", ".join(recording.used)} if recording.used else {}),
-        **({"not read": ", ".join(recording.unused)} if recording.unused else {}),
+        **({"read": "; ".join(read.lines)} if read.lines else {}),
+        **({"not read": ", ".join(read.unused)} if read.unused else {}),
         "known": (", ".join(shown(name, *x) for name, x in known.items()) or "nothing") + system,
         "sigma": "as given" if recording.sigma else "estimated from the residuals",
     }

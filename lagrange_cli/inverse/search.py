@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic import rotations
 from ..arithmetic.types import Array
 from ..errors import DataError, Message, arg
-from ..files import rotations
 from ..top.inputs import all_replaced
 from .checks import CHANCE, LARGEST, Residuals
 from .known import (
@@ -31,11 +31,11 @@ from .known import (
     time_power,
     whole_turns,
 )
+from .measured import LEAST_ROWS, Measured
 from .motions import STATE
 from .nutation import nutating_outcome
 from .outcome import FAILED, Outcome
 from .problem import STEPS, Minimum, Problem, mean_squares
-from .recording import LEAST_ROWS, Recording
 from .signals import (
     Signal,
     binned,
@@ -80,9 +80,9 @@ _Noise = Mapping[str, tuple[float, float]]
 class Data(NamedTuple):
     """A recording in units of its nutation period, and what is known of its noise."""
 
-    recording: Recording
-    coarse: Recording
-    fine: Recording
+    recording: Measured
+    coarse: Measured
+    fine: Measured
     signals: Mapping[str, Signal]
     """The signals of the coarse recording."""
     sizes: Array
@@ -92,7 +92,7 @@ class Data(NamedTuple):
     """2 pi per frame if whole turns of the spin are invisible, else 0."""
 
     @classmethod
-    def of(cls, recording: Recording, floors: Array) -> Data:
+    def of(cls, recording: Measured, floors: Array) -> Data:
         """Return the data of a recording in units of its nutation period."""
         signals, periods = signals_in(recording), float(recording.t[-1])
         most, few = (int(max(x * periods, _LEAST_BINS)) for x in (_COARSE, _FINE))
@@ -108,7 +108,7 @@ class Data(NamedTuple):
 
 
 def best_fit(
-    recording: Recording,
+    recording: Measured,
     known: Known,
     *,
     chance: float = CHANCE,
@@ -155,7 +155,7 @@ def best_fit(
     return outcome
 
 
-def _noise(recording: Recording, signals: Mapping[str, Signal]) -> _Noise:
+def _noise(recording: Measured, signals: Mapping[str, Signal]) -> _Noise:
     """Return the step between values, and the noise of neighbours, of each channel."""
     if recording.kind != "angles":
         tilt, psi = (recording.angles[x][recording.present[0]] for x in ("theta", "psi"))
@@ -172,8 +172,8 @@ def _noise(recording: Recording, signals: Mapping[str, Signal]) -> _Noise:
 
 
 def _forms(
-    recording: Recording, signals: Mapping[str, Signal], noise: _Noise
-) -> Iterator[tuple[Recording, _Noise]]:
+    recording: Measured, signals: Mapping[str, Signal], noise: _Noise
+) -> Iterator[tuple[Measured, _Noise]]:
     """Yield the forms in which a recording is fitted, and their noise.
 
     Angles of an axis that may pass a pole are an axis or an attitude first: the noise of psi and
@@ -194,7 +194,7 @@ def _forms(
 
 
 def _nutation(
-    recording: Recording,
+    recording: Measured,
     known: Known,
     frequency: float,
     noise: _Noise,

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..arithmetic.types import Array
-from .recording import Recording, are_whole
+from .measured import Measured, are_whole
 
 _MOST_ROWS, _STEP, _EXACT, _ROWS_PER_PERIOD = 700, 0.12, 1e-5, 2.2
 """Rows of the search for a frequency, its step and its precision over the inverse duration, and its
@@ -83,7 +83,7 @@ def passes_pole(tilt: Signal) -> bool:
     return bool(distance.min() < min(NEAR_POLE, distance.max() / 5))
 
 
-def signals_in(recording: Recording) -> dict[str, Signal]:
+def signals_in(recording: Measured) -> dict[str, Signal]:
     """Return the signals of a recording by angle."""
     found = {}
     for name, values in recording.angles.items():
@@ -109,7 +109,7 @@ def mean_rate(t: Array, y: Array, frame: float) -> float:
     return float(rates[np.argmax(spectrum)])
 
 
-def binned(recording: Recording, signals: Mapping[str, Signal], most: int) -> Recording:
+def binned(recording: Measured, signals: Mapping[str, Signal], most: int) -> Measured:
     """Return the recording averaged over at most about `most` bins of equally many rows.
 
     A bin with a missing cell is missing.  If most are, the recording is thinned instead.  Angles
@@ -203,7 +203,7 @@ def _best_frequency(used: list[Signal]) -> tuple[float, float, float]:
 
 
 def noise_of(
-    signals: Mapping[str, Signal], frequency: float, recording: Recording
+    signals: Mapping[str, Signal], frequency: float, recording: Measured
 ) -> dict[str, float]:
     """Return the noise of each channel in radians, as harmonics of the nutation leave it."""
     found = {name: x.averaged(4000).finest(frequency)[1] for name, x in signals.items()}

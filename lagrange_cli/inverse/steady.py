@@ -19,8 +19,8 @@ from ..top.inputs import all_replaced
 from ..top.units import bare_name
 from .checks import CHANCE, Mistake, Residuals
 from .known import WEIGHT, Known, compared, in_all_forms
+from .measured import Measured
 from .outcome import Number, Outcome
-from .recording import Recording
 from .signals import Signal
 
 _MOST_TILT, _LEAST_ROWS = 0.04, 30
@@ -55,7 +55,7 @@ _NONE = _Mean(0.0, 0.0, 0.0)
 
 
 def _mean(
-    signal: Signal, name: str, recording: Recording, step: float, sigma: float | None
+    signal: Signal, name: str, recording: Measured, step: float, sigma: float | None
 ) -> _Mean:
     """Return the mean tilt, or the slope of a straight line through spin or precession.
 
@@ -78,7 +78,7 @@ def _mean(
 
 
 def steady_outcome(
-    recording: Recording,
+    recording: Measured,
     known: Known,
     signals: Mapping[str, Signal],
     noise: Mapping[str, _Pair],
@@ -147,8 +147,8 @@ def steady_outcome(
 
 
 def _direction(
-    recording: Recording, means: dict[str, _Mean], tilt: _Mean, notes: list[str]
-) -> tuple[Recording, dict[str, _Mean], float, bool]:
+    recording: Measured, means: dict[str, _Mean], tilt: _Mean, notes: list[str]
+) -> tuple[Measured, dict[str, _Mean], float, bool]:
     """Return recording and means with psi in the direction of the spin, the whole turns per row
     that r0 exceeds its visible rate by, and if the direction is sure.
 
@@ -243,7 +243,7 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
 
 
 def _faults(
-    recording: Recording, turn: _Mean, r0: float, result: Outcome, frequency: float
+    recording: Measured, turn: _Mean, r0: float, result: Outcome, frequency: float
 ) -> list[str]:
     """Return why the motion is not a steady precession, besides the residuals."""
     found = list[str]()

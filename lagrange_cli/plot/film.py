@@ -12,9 +12,9 @@ import numpy as np
 from matplotlib import animation
 from matplotlib.figure import Figure
 
+from ..arithmetic.rotations import rotated
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
-from ..files.rotations import rotated
 from ..solver.solve import Motion
 from .pictures import Options, camera_of, draw_globe, last_time, project, sampled, scale
 from .style import styled

@@ -46,7 +46,8 @@ _U = fmpq_poly([0, 1])
 _WITHOUT = {
     "steady": "amplitude alpha u_quarter precession_rate_half",
     "vertical": "u3 k k_prime mean_precession_rate precession_rate_start u2_criterion",
-    "separatrix": "amplitude alpha K mean_spin_rate mean_precession_rate u_quarter precession_rate_half",
+    "separatrix": "amplitude alpha K u_quarter precession_rate_half "
+    "mean_spin_rate mean_precession_rate",
 }
 """The numbers that a kind of motion lacks; it also lacks those whose formulas name one of them."""
 

@@ -43,7 +43,7 @@ def _by_relative_errors(value: Array, *parts: Bounded, least: Any = 16.0) -> Bou
 
 
 def agm(one: float, k: Bounded) -> Bounded:
-    """Return the arithmetic-geometric mean of 1 and k, whose relative error is at most that of k."""
+    """Return the arithmetic-geometric mean of 1 and k; its relative error is at most that of k."""
     k = k.rounded()
     return _by_relative_errors(np.pi / 2 / ellipkm1(k.value * k.value), k)
 
@@ -116,7 +116,7 @@ class GroupFacts:
         return np.where(self.of["thetadot0"].doubles == 0, np.where(at_u1, 1, -1), 0)
 
     def has_steady_rate(self, _: str) -> Mask:
-        """Return which tops may have a rate of steady precession; it is not certain at 90 degrees."""
+        """Return which tops may have a rate of steady precession, uncertain at 90 degrees."""
         found: Mask = ~self.of["square_of_steady"].surely(-1)
         return found
 
@@ -179,27 +179,27 @@ class ArrayNumbers(dict[str, Any]):
     # the start
 
     @property
-    def u0(self) -> Bounded:
+    def u0(self) -> Any:
         """The cosine of the tilt at the start."""
         return self["theta0"][1]
 
     @property
-    def momentum(self) -> Bounded:
+    def momentum(self) -> Any:
         """psi' sin^2(theta0) = beta - b u0 (4,5)."""
         return self["psidot0"] * self["theta0"][0] * self["theta0"][0]
 
     @property
-    def beta_minus_b(self) -> Bounded:
+    def beta_minus_b(self) -> Any:
         """beta - b."""
         return self["momentum"] - self["b"] * self["above_u0"]
 
     @property
-    def beta_plus_b(self) -> Bounded:
+    def beta_plus_b(self) -> Any:
         """beta + b."""
         return self["momentum"] + self["b"] * self["below_u0"]
 
     @property
-    def square_of_steady(self) -> Bounded:
+    def square_of_steady(self) -> Any:
         """b^2 - 2 a cos(theta0), negative if there is no steady precession."""
         return self["b"] * self["b"] - 2.0 * self["a"] * self["u0"]
 
@@ -270,17 +270,17 @@ class ArrayNumbers(dict[str, Any]):
         return (u1, u1) if self.facts.steady else (u2, u1)
 
     @property
-    def height(self) -> Bounded:
+    def height(self) -> Any:
         """u1 - u2."""
         return self["rise"] + self["fall"]
 
     @property
-    def wide(self) -> Bounded:
+    def wide(self) -> Any:
         """a (u3 - u2)."""
         return self["far"] + self["a"] * self["fall"]
 
     @property
-    def narrow(self) -> Bounded:
+    def narrow(self) -> Any:
         """a (u3 - u1)."""
         return self["far"] - self["a"] * self["rise"]
 
@@ -308,21 +308,22 @@ class ArrayNumbers(dict[str, Any]):
 
         They are computed in doubles; in pairs, if the parts cancel.
         """
-        facts, r0, b = self.facts, self["r0"], self["b"]
+        facts, r0 = self.facts, self["r0"]
         if facts.steady:
             return r0 - self["psidot0"] * self["u0"] * (not facts.vertical), self["psidot0"]
         if facts.plane:  # a half turn at the bottom
             half_turn = self["pi"] / self["T_nutation"]
             return half_turn, half_turn
         gaps, given = self["gaps"], (self["k_prime"], *self["momenta"])
-        south, north = mean_parts(*(x.rounded() for x in given), gaps.rounded())
+        south, north = mean_parts(gaps.rounded(), *(x.rounded() for x in given))
         spin, precession = (r0 + south - north).rounded(), (south + north).rounded()
         lost = ~((spin.error <= _FINE * spin.size) & (precession.error <= _FINE * precession.size))
         if self.pairs and (rows := np.flatnonzero(lost)).size:
-            south, north = mean_parts(*(x[rows] for x in given), Gaps(*(x[rows] for x in gaps)))
+            some = Gaps(*(x[rows] for x in gaps))
+            south, north = mean_parts(some, *(x[rows] for x in given))
             finer = r0[rows] + south - north, south + north
-            for x, y in zip((spin, precession), finer, strict=True):
-                y = y.rounded()
+            for x, exact in zip((spin, precession), finer, strict=True):
+                y = exact.rounded()
                 x.value[rows], x.error[rows] = y.value, y.error
         return spin, precession
 
@@ -336,7 +337,8 @@ class ArrayNumbers(dict[str, Any]):
     @property
     def is_regular(self) -> Mask:
         """Whether the roots are certainly apart."""
-        return self["narrow"].surely(1) & self["height"].surely(1)
+        found: Mask = self["narrow"].surely(1) & self["height"].surely(1)
+        return found
 
     @property
     def path(self) -> tuple[Any, Any]:
@@ -350,12 +352,12 @@ class ArrayNumbers(dict[str, Any]):
         return words[looping.astype(int)], np.logical_and.reduce(certain)
 
 
-def mean_parts(k_prime: Bounded, x: Bounded, y: Bounded, gaps: Gaps) -> list[Bounded]:
+def mean_parts(gaps: Gaps, k_prime: Bounded, x: Bounded, y: Bounded) -> list[Bounded]:
     """Return the means over a period of the partial fractions of psi' (4,7) at both poles,
 
         south = (beta - b u)/(2 (1 + u)),    north = (beta - b u)/(2 (1 - u)),
 
-    from x and y, beta - b u at u1 and u2.  Then psi' = south + north, and phi' = r0 + south - north.
+    from x and y, beta - b u at u1 and u2.  Then psi' = south + north, phi' = r0 + south - north.
 
     If x and y have one sign, a relative error is at most that of x, y and d = 1 +- u, twice that of
     k' (which changes the weight of each time), and ten roundings for each step, which only adds
@@ -393,16 +395,16 @@ def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any]
     for d1, d2 in ends:
         p = root_of(mc * d2 / d1)
         states.append((x / d1, y * mc / d1 / p, p))
-    for steps in count(1):
+    for steps in count(1):  # noqa: B007
         product = m * g
-        for i, (x, y, p) in enumerate(states):
+        for i, (v, w, p) in enumerate(states):
             q = product / p
-            states[i] = (x + y / p) * 0.5, (y + x * q) * 0.5, (p + q) * 0.5
+            states[i] = (v + w / p) * 0.5, (w + v * q) * 0.5, (p + q) * 0.5
         is_last = not np.any(size_of(m - g) > close_to * high(m))
         m, g = (m + g) * 0.5, root_of(product)
         if is_last:
             break
-    return [(x * m + y) / (m + p) for x, y, p in states], steps
+    return [(v * m + w) / (m + p) for v, w, p in states], steps
 
 
 def high(x: Any) -> Any:

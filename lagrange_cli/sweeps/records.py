@@ -222,7 +222,7 @@ def text_of(of: ArrayNumbers, key: str) -> tuple[Any, Any]:
         words = np.array([Regime.NO_SPIN.value, Regime.REGULAR.value], dtype=object)
         return words[(of["r0"].doubles != 0).astype(int)], of["is_regular"]
     if of.facts.vertical:
-        stable, unstable = (vertical_remark(Regime(regime), x) for x in (True, False))
+        stable, unstable = (vertical_remark(regime or Regime.HANGING, x) for x in (True, False))
         return np.where(of["b"].doubles ** 2 >= 2 * of["a"].doubles, stable, unstable), True
     if regime is None:
         return None, of["is_regular"]

@@ -16,8 +16,9 @@ from engines import Array, Body, dop853, wxyz
 from lagtop import Top, compare, solve
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.comparison.differences import Alignment, ExactMotion
+from lagrange_cli.comparison.differences import ExactMotion
 from lagrange_cli.comparison.mistakes import Cause
+from lagrange_cli.recordings.options import Alignment
 
 _BODIES = {
     "slim": (0.35, 8.5e-4, 4e-4, 0.03, 90, 40, 1, 3),

@@ -12,8 +12,8 @@ from lagtop import Comparison, LagtopError, Top, compare, solve
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.comparison.compare import Convergence, compared, convergence
-from lagrange_cli.comparison.differences import Run
-from lagrange_cli.files.observed import Conventions
+from lagrange_cli.recordings.options import Reading
+from lagrange_cli.recordings.recording import Recording
 
 TOP = Top(thetadot0=1, psidot0=3)
 T = np.linspace(0, 2, 201)
@@ -192,8 +192,8 @@ def with_steps(
     given = [
         {"t": t[:, np.newaxis], "quaternion": y[:, :4], "missing": 0 * y[:, :1]} for t, y in runs
     ]
-    conventions = Conventions("wxyz", radians=True)
-    rows, found = compared(solve(TOP), [Run(x, conventions) for x in given], 1e-3, steps)
+    reading = Reading(radians=True)
+    rows, found = compared(solve(TOP), [Recording(x, reading) for x in given], 1e-3, steps)
     assert found
     return rows, found
 
@@ -301,14 +301,14 @@ def test_starts_on_the_vertical() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, "compare must be given an attitude"),
+        ({}, "an attitude, an axis, angles or rates must be given"),
         ({"angle_rates": RATES}, "angle_rates must come with an attitude or a part of it"),
         ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
         ({"euler": PHI, "euler_sequence": "xxy"}, "euler_sequence must be "),
         ({"rates": RATES, "rates_frame": "world"}, "rates_frame must be "),
         ({"quaternion": Q, "align": ["up=w"]}, "align must be among axis=y"),
         ({"theta": THETA, "align": ["left"]}, "align left need the axis or the whole attitude"),
-        ({"axis": Q[:, 1:], "align": "axis=y"}, "align axis the whole attitude: omit them"),
+        ({"axis": Q[:, 1:], "align": "axis=y"}, "conjugate the attitude: omit them"),
         ({"rates": RATES, "align": ["up=y", "start"]}, "align up and align left need the axis"),
         ({"t": [0, 1, 0.5], "theta": [0.1] * 3}, "t must have times that increase"),
         ({"t": [0, math.inf], "theta": [0.1] * 2}, "t must be finite and within"),

@@ -18,7 +18,9 @@ from pyarrow import parquet
 
 from lagrange_cli.errors import DataError, LagtopError
 from lagrange_cli.files.tops import read_tops
-from lagrange_cli.files.trajectory import read_times, read_trajectory
+from lagrange_cli.recordings.options import Reading
+from lagrange_cli.recordings.reading import read_recording
+from lagrange_cli.recordings.times import read_times
 from lagrange_cli.top.given import read_scene
 
 
@@ -65,10 +67,8 @@ def read_by_all(path: str) -> None:
             assert "\n" not in "".join(block.arrays({}).errors.values())
 
     def trajectory(columns: list[str] | None) -> None:
-        file = read_trajectory(path, columns)
-        values = file.values(radians=True)
-        file.check_times(values["t"][:, 0])
-        assert len({len(x) for x in values.values()}) == 1
+        found = read_recording(path, Reading(columns))
+        assert len({len(x) for x in found.given.values()}) == 1
 
     readers: list[Callable[[], object]] = [tops, lambda: read_times(path), lambda: read_scene(path)]
     readers += [lambda: trajectory(None), lambda: trajectory(["t", "theta"])]

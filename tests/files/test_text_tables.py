@@ -12,9 +12,11 @@ from conftest import Lagtop, assert_one_line
 
 from lagrange_cli.errors import DataError
 from lagrange_cli.files import text_tables
-from lagrange_cli.files.columns import name_and_unit
+from lagrange_cli.files.headings import name_and_unit
 from lagrange_cli.files.tops import read_tops
-from lagrange_cli.files.trajectory import read_times, read_trajectory
+from lagrange_cli.recordings.options import Reading
+from lagrange_cli.recordings.reading import read_recording
+from lagrange_cli.recordings.times import read_times
 
 
 def times(path: Path, decimal: str) -> list[float]:
@@ -24,8 +26,7 @@ def times(path: Path, decimal: str) -> list[float]:
 
 def of_a_trajectory(path: Path, decimal: str) -> list[float]:
     """Return the times of a trajectory."""
-    found = read_trajectory(str(path), None, decimal).values(radians=True)
-    return [*map(float, found["t"][:, 0])]
+    return [*map(float, read_recording(str(path), Reading(decimal=decimal)).t)]
 
 
 def of_tops(path: Path, decimal: str) -> list[float]:
@@ -180,15 +181,18 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> N
     cells = ["0.1", "-1e-320", "1.7976931348623157e308", "3.", ".5", "+7", "2e22"] * 30
     rows = [f"{i},{x}" for i, x in enumerate(cells)]
     path.write_text("t,theta\n" + "\n".join(rows))
-    plain = read_trajectory(str(path)).values(radians=True)["theta"][:, 0].tolist()
+    plain = read_recording(str(path), Reading(radians=True)).given["theta"][:, 0].tolist()
     assert plain == list(map(float, cells))
     rows[3:5] = ['"3","3."', "4,.5", "4.5,nan"]
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
-    assert read_trajectory(str(path)).values(radians=True)["theta"][:, 0].tolist()[:5] == plain[:5]
+    assert (
+        read_recording(str(path), Reading(radians=True)).given["theta"][:, 0].tolist()[:5]
+        == plain[:5]
+    )
     rows[100] = "100,x"
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
     with pytest.raises(DataError, match="line 103, column 2: theta must be a finite decimal"):
-        read_trajectory(str(path)).values(radians=True)
+        read_recording(str(path), Reading())
 
 
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
@@ -198,17 +202,15 @@ def test_missing_cells_and_words_are_read_at_once_as_one_by_one(mark: str, tmp_p
     rows = "0,1,a,2 1,,b,3 2,4,,5 3,nan,c, ,,d, 5,,e, 6,-nan,f,6".split()
     for texts in (rows, rows[:-1], [*rows[:-1], '"7",,,'], [*rows, '"7",,,']):
         path.write_text("\n".join(["t,theta,note,psi", *texts]).replace(",", mark))
-        file = read_trajectory(str(path))
-        values = np.concatenate([*file.values(radians=True).values()], axis=1)
-        missing = np.stack([*file.missing().values()], axis=1)
-        assert file.where(4).endswith("line 7")  # the fifth row is empty in all used columns
+        file = read_recording(str(path), Reading(radians=True))
+        values = np.concatenate([file.given[x] for x in ("t", "theta", "psi", "missing")], axis=1)
+        missing = file.missing[:, np.newaxis]
         found.append((values[:5], missing[:5]))
         assert len(values) == len(texts) - 1
     for values, missing in found[1:]:
         assert np.array_equal(values, found[0][0], equal_nan=True)
         assert np.array_equal(missing, found[0][1])
-    assert not missing[3, 1]
-    assert missing[:, 1].tolist() == [False, True, False, False, True]
+    assert missing[:, 0].tolist() == [False, True, False, True, True]
 
 
 NAMED = {
@@ -223,10 +225,10 @@ NAMED = {
 def test_columns_that_are_named(text: str, tmp_path: Path) -> None:
     """Titles in words do not count; a run that ends before the other one has no more rows."""
     (tmp_path / "file").write_text(text)
-    file = read_trajectory(str(tmp_path / "file"), names := NAMED[text].split())
-    assert file.used == [x for x in names if x != "_"]
-    assert file.values(radians=True)["t"][:, 0].tolist() == [0.5, 1.5]
-    assert file.elapsed.tolist() == [0, 1]
+    file = read_recording(str(tmp_path / "file"), Reading(names := NAMED[text].split()))
+    assert file.source.used == [x for x in names if x != "_"]
+    assert file.t.tolist() == [0.5, 1.5]
+    assert file.given["t"][:, 0].tolist() == [0, 1]
 
 
 def test_what_was_read(tmp_path: Path) -> None:
@@ -234,14 +236,13 @@ def test_what_was_read(tmp_path: Path) -> None:
     path.write_text(
         '{"t":1,"rotation":{"x":0,"y":0,"z":0,"w":1},"angularVelocity":[1,2,null],"n":3}\n'
     )
-    file = read_trajectory(str(path))
-    assert list(file.quantities) == ["t", "quaternion", "rates"]
-    assert file.unused == ["n"]
-    assert file.used[1:5] == [f"rotation.{x}" for x in "xyzw"]
-    missing = {key: x.tolist() for key, x in file.missing().items()}
-    assert missing == {"t": [False], "quaternion": [False], "rates": [True]}
+    file = read_recording(str(path), Reading())
+    assert {*file.given} == {"t", "quaternion", "rates", "missing"}
+    assert file.source.unused == ["n"]
+    assert file.source.used[1:5] == [f"rotation.{x}" for x in "xyzw"]
+    assert file.missing.tolist() == [True]
     path.write_text('{"t":1,"q":[1,0,0,0]}\n')
-    assert list(read_trajectory(str(path)).quantities) == ["t", "quaternion"]
+    assert {*read_recording(str(path), Reading()).given} == {"t", "quaternion", "missing"}
 
 
 def test_unix_times_keep_their_digits(tmp_path: Path) -> None:
@@ -250,7 +251,7 @@ def test_unix_times_keep_their_digits(tmp_path: Path) -> None:
         digits = [f"{i:09}" for i in (5, 1_000_006, 2_000_007)]
         rows = "".join(f"{start}{x},30\n" for x in digits)
         (tmp_path / "file").write_text(f"{heading},theta\n{rows}")
-        found = read_trajectory(str(tmp_path / "file")).elapsed
+        found = read_recording(str(tmp_path / "file"), Reading()).given["t"][:, 0]
         assert found.tolist() == pytest.approx([0, 0.001000001, 0.002000002], rel=1e-14), zeros
 
 

@@ -19,23 +19,27 @@ from lagtop import LagtopError
 from pyarrow import parquet
 from scipy.spatial.transform import Rotation
 
+from lagrange_cli.arithmetic import rotations
 from lagrange_cli.errors import DataError
-from lagrange_cli.files import rotations, trajectory
-from lagrange_cli.files.columns import QUANTITIES, expanded, quantities_in
-from lagrange_cli.files.observed import Conventions, observe, quantities_of
-from lagrange_cli.files.trajectory import read_times, read_trajectory
+from lagrange_cli.files import binary_tables
+from lagrange_cli.recordings.observed import observe, quantities_of
+from lagrange_cli.recordings.options import Reading
+from lagrange_cli.recordings.quantities import QUANTITIES, expanded, quantities_in
+from lagrange_cli.recordings.reading import read_recording
+from lagrange_cli.recordings.times import read_times
 
 PI, ROWS = math.pi, 50
 DATA = np.random.default_rng(1).normal(size=(ROWS, 5))
 DATA[:, 0] = np.linspace(-1, 3, ROWS)
 
 
-def read(path: Path | str, columns: list[str] | None = None) -> dict[str, Any]:
-    """Return every quantity of a file, with checked times."""
-    file = read_trajectory(str(path), columns)
-    found = file.values(radians=True)
-    file.check_times(found["t"][:, 0])
-    return found
+def read(
+    path: Path | str, columns: list[str] | None = None, decimal: str = "", *, radians: bool = True
+) -> dict[str, Any]:
+    """Return every quantity of a file."""
+    options = Reading(columns=columns, decimal=decimal, radians=radians)
+    found = read_recording(str(path), options)
+    return {**found.given, "t": found.t[:, np.newaxis]}
 
 
 def test_parquet_is_read(tmp_path: Path) -> None:
@@ -43,8 +47,8 @@ def test_parquet_is_read(tmp_path: Path) -> None:
     table = pa.table({"note": ["x"] * ROWS, **numbers})
     parquet.write_table(table, tmp_path / "a", row_group_size=7)
     found = read(tmp_path / "a")
-    with_commas = read_trajectory(str(tmp_path / "a"), None, ",")
-    assert np.array_equal(with_commas.values(radians=True)["t"], found["t"])
+    with_commas = read(tmp_path / "a", None, ",")
+    assert np.array_equal(with_commas["t"], found["t"])
     assert np.array_equal(found["t"][:, 0], DATA[:, 0])
     assert np.array_equal(found["quaternion"], DATA[:, 1:])
 
@@ -119,14 +123,14 @@ def twice() -> bytes:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "must hold a trajectory, got no cells"),
+        (b"", "must hold a recording, got no cells"),
         (
             b"t,theta\n0,1\n\n# c\n1,1_0\n",
             "line 5, column 2: theta must be a finite decimal number, got '1_0' (leave",
         ),
         (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
-        (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),
-        (b"t,theta\n0,1\n-1,2\n-1,3\n0,3\n", "line 5: t must not turn back, got 0.0 after -1"),
+        (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1:"),
+        (b"t,theta\n0,1\n-1,2\n-1,3\n0,3\n", "line 5: t must not turn back, got 0 after -1:"),
         (b"t,qw,qx,qy,qz,p,q,r\n0,,,,,1,2,3\n", "quaternion is empty (qw, qx, qy, qz): remove"),
         (b"0 1\n", "has no header: name its 2 columns, for example columns=t,quaternion ('t ["),
         (b"t,x,y\n0,1,2\n", "got 't', 'x', 'y': z is missing"),
@@ -169,12 +173,10 @@ def test_a_parquet_file_beyond_the_limit_is_refused(
     columns = {"t": np.arange(rows), "note": words, "theta": np.zeros(rows)}
     parquet.write_table(pa.table(columns), path)
     assert read(path)["t"].size == rows
-    for times, kind in (([0, 1], pa.timestamp("ms")), (["0", "1"], pa.string())):
-        dated = pa.table({"note": [0.0, 1.0], "t": pa.array(times, kind), "theta": [1.0, 2.0]})
-        parquet.write_table(dated, tmp_path / "dated")
-        with pytest.raises(DataError, match=f"t must be numbers, got {kind}".replace("[", r"\[")):
-            read(tmp_path / "dated")
-    monkeypatch.setattr(trajectory, "LARGEST_FILE", 300_000)
+    dated = pa.table({"t": pa.array([0, 1], pa.timestamp("ms")), "theta": [1.0, 2.0]})
+    parquet.write_table(dated, tmp_path / "dated")
+    assert read(tmp_path / "dated")["t"].ravel().tolist() == [0, 1e-3]
+    monkeypatch.setattr(binary_tables, "LARGEST_FILE", 300_000)
     with pytest.raises(DataError, match="must have at most 12500 numbers, has 20000"):
         read(path)
 
@@ -182,9 +184,9 @@ def test_a_parquet_file_beyond_the_limit_is_refused(
 def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text('t,note,theta,note,run\n0,"a",1,b,7\n1,"c; ""d""",2,d,8.0\n')
-    file = read_trajectory(str(path))
-    assert sorted(file.quantities) == ["t", "theta"]
-    assert file.unused == ["note", "note", "run"]
+    file = read_recording(str(path), Reading())
+    assert sorted(file.given) == ["missing", "t", "theta"]
+    assert file.source.unused == ["note", "note", "run"]
 
 
 @pytest.mark.parametrize(
@@ -211,7 +213,7 @@ def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
 def test_units_in_headings(text: str, found: dict[str, list[float]], tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text(f"{text}\n", "utf-8")
-    values = read_trajectory(str(path)).values(radians=False)
+    values = read(path, radians=False)
     for key, exact in found.items():
         assert values[key][0] == pytest.approx(exact, rel=1e-15)
     assert float(next(iter(read_times(str(path)).exact))) == values["t"][0, 0]
@@ -220,8 +222,8 @@ def test_units_in_headings(text: str, found: dict[str, list[float]], tmp_path: P
 @pytest.mark.parametrize(
     ("names", "found"),
     [
-        (["t", "theta", "axis"], [0.5, PI / 2]),
-        (["t [s]", "theta_rad", "axis"], [500, 90]),
+        (["t", "theta", "_", "_", "_"], [0.5, PI / 2]),
+        (["t [s]", "theta_rad", "_", "_", "_"], [500, 90]),
         (["t [min]", "theta", "_", "_", "_"], [3e4, PI / 2]),
     ],
 )
@@ -234,23 +236,23 @@ def test_names_keep_the_units_of_headings(
     objects = dict(zip(headings, (500, 90, 0, 0, 1), strict=True))
     for content in (text, json.dumps([objects, objects | {"Zeit [ms]": 501}])):
         (tmp_path / "file").write_text(content)
-        values = read_trajectory(str(tmp_path / "file"), names).values(radians=False)
+        values = read(tmp_path / "file", names, radians=False)
         row = -1 if content is text else 0
         assert [values["t"][row, 0], values["theta"][row, 0]] == pytest.approx(found)
 
 
 def test_names_keep_the_units_of_headings_in_a_comment(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("# t [ms],theta [rad]\n500,1\n")
-    values = read_trajectory(str(tmp_path / "file"), ["t", "theta"]).values(radians=False)
+    values = read(tmp_path / "file", ["t", "theta"], radians=False)
     assert [*values["t"][0], *values["theta"][0]] == [0.5, 1]
 
 
 def test_a_unit_is_the_fault_of_the_file_or_of_the_names(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("clock [rpm],tilt\n0,1\n")
     with pytest.raises(DataError, match=r"file: t must have a unit such as s or ms, got .* 'rpm'"):
-        read_trajectory(str(tmp_path / "file"), ["t", "theta"])
+        read(tmp_path / "file", ["t", "theta"])
     with pytest.raises(LagtopError, match=r"^t must have a unit such as s or ms, got .* 'rpm'"):
-        read_trajectory(str(tmp_path / "file"), ["t [rpm]", "theta"])
+        read(tmp_path / "file", ["t [rpm]", "theta"])
 
 
 def test_bad_names_of_columns(tmp_path: Path) -> None:
@@ -264,14 +266,13 @@ def test_bad_names_of_columns(tmp_path: Path) -> None:
 def test_conventions_and_masks_of_a_trajectory(tmp_path: Path) -> None:
     """The names of columns imply a frame, but not against one that is given."""
     (tmp_path / "a").write_text("t,omega_body_x,omega_body_y,omega_body_z\n0,1,2,3\n")
-    file = read_trajectory(str(tmp_path / "a"))
-    assert [file.conventions(Conventions(rates=x)).rates for x in ("body", "space")] == [
-        "body",
-        "space",
-    ]
+    for frame in ("body", "space"):
+        file = read_recording(str(tmp_path / "a"), Reading(rates_frame=frame))
+        assert file.reading.rates_frame == frame
     (tmp_path / "b").write_text("t,roll,pitch,yaw\n0,1,2,3\n")
-    file = read_trajectory(str(tmp_path / "b"))
-    assert [file.conventions(Conventions(euler=x)).euler for x in ("xyz", "XYZ")] == ["xyz", "XYZ"]
+    for sequence in ("xyz", "XYZ"):
+        file = read_recording(str(tmp_path / "b"), Reading(euler_sequence=sequence))
+        assert file.reading.euler_sequence == sequence
     masked = np.ma.masked_array([1.0, 2.0], [False, True])
     assert np.isnan(quantities_of([0, 1], {"theta": masked})["theta"]).ravel().tolist() == [0, 1]
 
@@ -321,9 +322,9 @@ def test_rates_of_angles_turn_the_body() -> None:
     parts = dict(zip(("theta", "phi", "psi"), np.split(angles, 3, axis=1), strict=True))
     given = {"t": np.arange(9.0)[:, np.newaxis], "angle_rates": rates}
     exact = (before.inv() * after).as_rotvec() / (2 * step)
-    assert observe(given | parts, Conventions()).body_rates == pytest.approx(exact, abs=1e-8)
+    assert observe(given | parts, Reading()).body_rates == pytest.approx(exact, abs=1e-8)
     tilt = given | {"theta": parts["theta"], "position": after.apply([0, 0, 4])}
-    assert observe(tilt, Conventions()).angles.keys() == {"theta"}
+    assert observe(tilt, Reading()).angles.keys() == {"theta"}
 
 
 @pytest.mark.parametrize("bad", [math.inf, math.nan, 1e200])
@@ -334,7 +335,7 @@ def test_a_row_that_is_not_finite_has_no_direction_and_raises_no_warning(
     names = ["theta", "phi", "psi"] if key == "angles" else [key]
     bad = math.inf if key == "angles" else bad
     given = {name: np.full((1, QUANTITIES[name].size), bad) for name in names}
-    seen = observe({"t": np.zeros((1, 1)), **given}, Conventions())
+    seen = observe({"t": np.zeros((1, 1)), **given}, Reading())
     seen = seen.turned(rotations.to_z("y"), rotations.to_z("x"))
     direction = seen.axis if seen.quaternion is None else seen.quaternion
     assert direction is not None

@@ -391,11 +391,11 @@ def test_parquet_starts_no_thread(tmp_path: Path) -> None:
         import os
         import numpy as np
         import pyarrow.csv, pyarrow.parquet
-        from lagrange_cli.files.trajectory import read_trajectory
+        from lagrange_cli.recordings.reading import Reading, read_recording
         from lagrange_cli.output.destination import Output
         before = os.listdir("/proc/self/task")
         Output({str(tmp_path / "x")!r}, "parquet").rows(["t", "theta"], [np.ones((9, 2))] * 2)
-        assert len(read_trajectory({str(tmp_path / "x")!r}).elapsed) == 18
+        assert len(read_recording({str(tmp_path / "x")!r}, Reading()).t) == 18
         assert os.listdir("/proc/self/task") == before
     """
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -6,7 +6,6 @@ the README of `compare` are generated from them.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import NamedTuple
@@ -16,9 +15,10 @@ import numpy as np
 from ..arithmetic.text import quoted, shortened
 from ..arithmetic.types import Array
 from ..errors import LagtopError, arg
+from ..files.headings import name_and_unit, plain_name
 from ..names import ANGLES, suggestion
 from ..top.inputs import declared
-from ..top.units import SPELLINGS, conversion, is_unit
+from ..top.units import conversion, is_unit
 
 SKIPPED = "_"
 """The name of an ignored column."""
@@ -78,6 +78,7 @@ angle_rates | rad/time | rates of tilt, spin and precession in radians per unit 
 
 _SPELLINGS = """
 t | t time timestamp times simtime xvalue | |
+t | frame frames framenumber | | frames
 quaternion | quaternion quat q orientation attitude xquat rot rotation | w x y z | wxyz
 quaternion | | w x y z | wxyz
 quaternion | quaternion quat q orientation attitude rotation rot | 0 1 2 3 |
@@ -129,37 +130,17 @@ QUANTITIES = {
 }
 """The quantities by name, in the order of preference for the attitude."""
 
+_TIMES = {name for names, _ in QUANTITIES["t"].spellings for name in names}
+
 _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITIES.items()}
 
 _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
 """Units that mean those of the scene, as in a drawn table."""
 
-_ASCII = "theta theta phi phi psi omega dot ' 0".split()
-_GREEK = dict(
-    zip(map(ord, "\u03b8\u03d1\u03c6\u03d5\u03c8\u03c9\u0307\u2032\u2080"), _ASCII, strict=True)
-)
-"""ASCII spellings of the Greek letters, a dot above, a prime, and a subscript 0."""
-
-
-def name_and_unit(heading: str) -> tuple[str, str]:
-    """Return the name in a heading, in ASCII, and its unit, empty if it has none.
-
-    The unit is in brackets, in parentheses or after a blank: `t [ms]`, `theta (deg)`, `r0 rpm`.
-    Brackets around numbers belong to the name, as in `omega[0]`.
-    """
-    text = re.sub(r"(theta|phi|psi)'", r"\1dot", heading.strip().translate(_GREEK))
-    match = re.fullmatch(r"(.*\S)\s*[\[(]([^\[\]()]*)[\])]", text)
-    if match is None or re.fullmatch(r"[\d\s,]+", match[2]):
-        match = re.fullmatch(r"(.*\S)\s+([^\W\d_]\S*|°\S*)", text)
-        if match is None or not is_unit(match[2]):
-            return text, ""
-    unit = match[2].strip()
-    return match[1], SPELLINGS.get(unit, unit)
-
 
 def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     """Return the quantities of some columns; a column belongs to the first quantity that fits."""
-    plain = [plain_name(name) for name in names]
+    plain = _plain_names(names)
     words = {word: i for i, (word, _) in reversed([*enumerate(plain)])}
     found: dict[str, FoundQuantity] = {}
     for key, quantity in QUANTITIES.items():
@@ -172,26 +153,18 @@ def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     return found
 
 
+def _plain_names(names: Sequence[str]) -> list[tuple[str, str | None]]:
+    """Return the plain names and units of columns; T beside another time is a temperature."""
+    found = [plain_name(name) for name in names]
+    if sum(word in _TIMES for word, _ in found) < 2:
+        return found
+    return [("", None) if name == "T" else x for name, x in zip(names, found, strict=True)]
+
+
 def known_quantities(names: Sequence[str]) -> int:
     """Return the number of quantities that some headings name; 0 without a time."""
     found = quantities_in(names)
     return len(found) if "t" in found else 0
-
-
-def plain_name(name: str) -> tuple[str, str | None]:
-    """Return a name in lower-case letters and digits only, and its unit, also that of `theta_deg`.
-
-    Only the last two parts of a path count, as in `/imu/orientation/x` or `pose.orientation.x`.
-    """
-    text, unit = name_and_unit(name)
-    text = text.lower()
-    if text.startswith("/"):
-        text = "/".join(text.split("/")[-2:])
-    text = ".".join(text.split(".")[-2:])
-    ending = re.search(r"(deg|rad)(?:rees|ians)?$", text)
-    if ending and unit in {"", ending[1]} and (rest := text[: ending.start()].rstrip(" _.")):
-        text, unit = rest, ending[1]
-    return re.sub(r"[^a-z0-9]", "", text), unit or None
 
 
 def with_units_of(headings: Sequence[str], names: Sequence[str]) -> list[str]:
@@ -206,20 +179,23 @@ def with_units_of(headings: Sequence[str], names: Sequence[str]) -> list[str]:
     return named
 
 
-def found_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
+def found_in(names: Sequence[str], *, needs_time: bool = True) -> dict[str, FoundQuantity]:
     """Return the quantities of a trajectory, a time among them (see `in_known_unit`).
 
     Raises LagtopError for columns without a time or a quantity besides; the key of the error is
     `columns` if a quantity is named twice.
     """
     found = quantities_in(names)
-    if "t" not in found or len(found) < 2:
+    if (needs_time and "t" not in found) or len({*found} - {"t"}) < 1:
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
-        lacks_z = {"x", "y"} <= {*names} and "z" not in names
-        remedy = "z is missing" if lacks_z else f"name them, {NAMING}"
+        remedy = f"name them, {NAMING}"
+        if {"x", "y"} <= {*names} and "z" not in names:
+            remedy = "z is missing"
+        elif found and "t" not in found:
+            remedy = f"the time is missing, give {arg('dt')} if the rows are equally spaced"
         raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
-    plain = [plain_name(name)[0] for name in names]
+    plain = [word for word, _ in _plain_names(names)]
     for key, quantity in found.items():
         angle = {x[0] for x, _ in QUANTITIES[key].spellings} if key in ANGLES else set()
         for i in quantity.columns:

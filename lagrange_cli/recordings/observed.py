@@ -3,50 +3,25 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arithmetic import rotations
 from ..arithmetic.arrays import doubles_of
-from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import ANGLES
-from . import rotations
-from .columns import QUANTITIES
+from .options import Alignment, Reading
+from .quantities import QUANTITIES
 
-ORDERS = ("wxyz", "xyzw")
 Quantities = Mapping[str, Array]
-"""Arrays of shape (n, parts) by the name of the quantity (see `files.columns`)."""
-
-
-class Conventions(NamedTuple):
-    """Conventions of quantities whose names do not imply them."""
-
-    quaternion: str | None = None
-    """Order of the parts, `wxyz` or `xyzw`; None to determine it from the first row."""
-    euler: str = "xyz"
-    """Sequence of axes in SciPy's notation: lower case for space, upper case for the body."""
-    rates: str = "body"
-    """Frame of the angular velocity, `body` or `space`."""
-    radians: bool = False
-    """Whether angles without a unit are in radians."""
-
-    def checked(self) -> Conventions:
-        """Return the conventions.  Raises LagtopError for an unknown one."""
-        axes = r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})"  # neighbours differ
-        for key, pattern, wanted, got in (
-            ("quaternion_order", "wxyz|xyzw", "wxyz or xyzw", self.quaternion or ORDERS[0]),
-            ("rates_frame", "body|space", "body or space", self.rates),
-            ("euler_sequence", axes, "three axes, such as xyz (space) or XYZ (body)", self.euler),
-        ):
-            if not re.fullmatch(pattern, str(got)):
-                raise LagtopError(f"{key} must be {wanted}, got {quoted(got)}", key)
-        return self
+"""Arrays of shape (n, parts) by the name of the quantity (see `recordings.quantities`)."""
+_UNREAL, _UNITY = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, -1.0, 0.0]])
+"""Half turns: reversed, they turn y round as in Unreal, or exchange x and y, as Unity does."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +34,7 @@ class Observed:
     axis: Array | None = None
     """Figure axis in space, shape (n, 3)."""
     angles: Mapping[str, Array] = field(default_factory=dict)
-    """Tilt, spin and precession in radians, if only some of them are given."""
+    """Tilt, spin and precession in radians, if these are given and no other frames."""
     body_rates: Array | None = None
     space_rates: Array | None = None
     norm: Array | None = None
@@ -80,11 +55,12 @@ class Observed:
         if self.quaternion is not None:
             in_space = rotations.product(space, self.quaternion)
             turned["quaternion"] = rotations.product(in_space, rotations.conjugate(body))
+            turned["angles"] = {}
         return replace(self, **turned)
 
 
 @np.errstate(all="ignore")  # rows that are not finite raise no warnings
-def observe(given: Quantities, conventions: Conventions) -> Observed:
+def observe(given: Quantities, reading: Reading) -> Observed:
     """Return the motion from its quantities, with all angles in radians.
 
     The first quantity that gives all of the attitude, or most of it, is used.  Raises LagtopError
@@ -93,14 +69,14 @@ def observe(given: Quantities, conventions: Conventions) -> Observed:
     alone = angles_in(given)
     found: dict[str, Any] = {"t": given["t"][:, 0]}
     if "quaternion" in given:
-        order = conventions.quaternion or ORDERS[0]
-        found |= _directed("quaternion", given["quaternion"][:, [*map(order.index, "wxyz")]])
+        parts = [*map(reading.quaternion_order.index, "wxyz")]
+        found |= _directed("quaternion", given["quaternion"][:, parts])
     elif "matrix" in given:
         found["quaternion"], found["norm"] = rotations.of_matrix(given["matrix"])
     elif len(alone) == len(ANGLES):
-        found["quaternion"] = rotations.of_angles(**alone)
+        found |= {"quaternion": rotations.of_angles(**alone), "angles": alone}
     elif "euler" in given:
-        found["quaternion"] = rotations.of_scipy("euler", conventions.euler, given["euler"])
+        found["quaternion"] = rotations.of_scipy("euler", reading.euler_sequence, given["euler"])
     elif "rotvec" in given:
         found["quaternion"] = rotations.of_scipy("rotvec", given["rotvec"])
     elif "axis" in given:
@@ -111,7 +87,7 @@ def observe(given: Quantities, conventions: Conventions) -> Observed:
     if not {"quaternion", "axis"} & found.keys():
         found["angles"] = alone
     if "rates" in given:
-        found[f"{conventions.rates}_rates"] = given["rates"]
+        found[f"{reading.rates_frame}_rates"] = given["rates"]
     elif "angle_rates" in given and "quaternion" in found:
         at = rotations.angles_of(found["quaternion"])
         rates = rotations.body_rates(at["theta"], at["phi"], *given["angle_rates"].T)
@@ -120,6 +96,27 @@ def observe(given: Quantities, conventions: Conventions) -> Observed:
         wanted = "an attitude or a part of it, such as theta, phi and psi"
         raise LagtopError(f"angle_rates must come with {wanted}, got none", "angle_rates")
     return Observed(**found)
+
+
+def framed(seen: Observed, align: Alignment) -> Observed:
+    """Return a motion in the frames of lagtop.
+
+    A left-handed frame is a right-handed one whose axes are all reversed.  Raises LagtopError
+    if the attitude is not complete enough.
+    """
+    if align.frame == Alignment().frame:
+        return seen
+    if seen.quaternion is None and (align.has_axis or align.conjugate or seen.axis is None):
+        needs = "the axis or the whole attitude, and align axis and conjugate the attitude"
+        raise LagtopError(f"align up and align left need {needs}: omit them", "align")
+    if align.conjugate and seen.quaternion is not None:
+        seen = replace(seen, quaternion=rotations.conjugate(seen.quaternion), angles={})
+    frames = rotations.to_z(align.up), rotations.to_z(align.axis)
+    if not align.left:
+        return seen.turned(*frames)
+    mirror = _UNREAL if align.up[-1] == "z" else _UNITY
+    seen = seen.turned(*(rotations.product(mirror, x) for x in frames))
+    return seen if seen.axis is None else replace(seen, axis=-seen.axis)
 
 
 def angles_in(given: Quantities) -> dict[str, Array]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.types import Array
+from .types import Array
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 HALF_TURN_X = np.array([0.0, 1.0, 0.0, 0.0])
@@ -140,3 +140,9 @@ def body_rates(
         around * cos - thetadot * sin,
         psidot * np.cos(theta) + phidot,
     )
+
+
+def to_matrix(rotation: Array) -> Array:
+    """Return the matrices of rotations, shape (n, 3, 3)."""
+    columns = [rotated(rotation, np.broadcast_to(x, (len(rotation), 3))) for x in np.eye(3)]
+    return np.stack(columns, axis=-1)

@@ -1,0 +1,112 @@
+"""The options of a reading: how `fit` and `compare` understand a file or arrays."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.text import quoted
+from ..errors import LagtopError
+
+WORDS = {
+    "axis=y": "the figure axis is the body's y axis (or x, -x, -y, -z)",
+    "up=y": "up is the y axis of space (or x, -x, -y, -z)",
+    "left": "both frames are left-handed; the figure axis is then the axis of `up`, unless given",
+    "conjugate": "the attitude is given from space to body",
+    "start": "spin and precession are 0 in the first row (compare only)",
+    "time": "the first row is at time 0",
+}
+"""The words of an alignment, with their meanings."""
+
+
+OPTION_OF = {"quaternion": "quaternion_order", "euler": "euler_sequence", "rates": "rates_frame"}
+"""The option for the convention of a quantity."""
+
+
+class Alignment(NamedTuple):
+    """Changes of a recording before it is used."""
+
+    axis: str = "z"
+    up: str = "z"
+    left: bool = False
+    conjugate: bool = False
+    start: bool = False
+    time: bool = False
+
+    @classmethod
+    def of(cls, words: str | Sequence[str]) -> Alignment:
+        """Return the alignment of some words, or of a text in which commas separate them.
+
+        Raises LagtopError for an unknown word.
+        """
+        found: dict[str, Any] = {}
+        for word in filter(None, words.split(",")) if isinstance(words, str) else words:
+            if not re.fullmatch("(axis|up)=-?[xyz]|left|conjugate|start|time", str(word).strip()):
+                wanted = f"align must be among {', '.join(WORDS)}"
+                raise LagtopError(f"{wanted}, got {quoted(word)}", "align")
+            key, _, axis = str(word).strip().partition("=")
+            found[key] = axis or True
+        if "left" in found:
+            found.setdefault("axis", found.get("up", "z"))
+        return cls(**found)
+
+    def __str__(self) -> str:
+        words = [f"axis={self.axis}"] * self.has_axis + [f"up={self.up}"] * (self.up != "z")
+        words += [x for x in self._fields[2:] if getattr(self, x)]
+        return ",".join(words) or "up=z"
+
+    @property
+    def frame(self) -> tuple[str, str, bool, bool]:
+        """The frames of the attitude."""
+        return self[:4]
+
+    @property
+    def has_axis(self) -> bool:
+        """Whether the figure axis is another one than usual in such a frame."""
+        return self.axis != (self.up if self.left else "z")
+
+
+class Reading(NamedTuple):
+    """How a recording is read: the options of `fit` and `compare`, on the command line too."""
+
+    columns: Sequence[str] | None = None
+    """The names of all columns of a file from the left."""
+    quaternion_order: str = "wxyz"
+    euler_sequence: str = "xyz"
+    """Axes in SciPy's notation: lower case for space, upper case for the body."""
+    rates_frame: str = "body"
+    """Frame of the angular velocity, `body` or `space`."""
+    align: Alignment = Alignment()
+    decimal: str = ""
+    """The decimal mark of a file, empty if its first rows decide."""
+    dt: float | None = None
+    """The time between two rows, or between two frames if the file counts them."""
+    t_from: float = -np.inf
+    t_to: float = np.inf
+    """The first and the last time, as the file counts them."""
+    radians: bool = False
+    """Whether angles without a unit are in radians."""
+
+    @classmethod
+    def of(cls, *, align: str | Sequence[str] = (), **given: Any) -> Reading:
+        """Return the options after checks.  Raises LagtopError for a bad one."""
+        found = cls(align=Alignment.of(align), **given)
+        axes = r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})"  # neighbours differ
+        for key, pattern, wanted in (
+            ("quaternion_order", "wxyz|xyzw", "wxyz or xyzw"),
+            ("rates_frame", "body|space", "body or space"),
+            ("euler_sequence", axes, "three axes, such as xyz (space) or XYZ (body)"),
+        ):
+            if not re.fullmatch(pattern, str(got := getattr(found, key))):
+                raise LagtopError(f"{key} must be {wanted}, got {quoted(got)}", key)
+        if not found.t_from < found.t_to:
+            raise LagtopError(f"t_from must be < t_to, got {found.t_from:g}, {found.t_to:g}")
+        return found
+
+    @property
+    def angle(self) -> float:
+        """The usual unit of angles in radians."""
+        return 1.0 if self.radians else np.pi / 180
