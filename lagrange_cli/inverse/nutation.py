@@ -146,7 +146,8 @@ def _computed(problem: Problem, x: Array, *, is_spin_known: bool) -> dict[str, A
     has |= {"r0": v["r0"]} if problem.spins and is_spin_known else {}
     has |= {name: v[name] for name in implied}
     found |= body_numbers(v["a"] / 2, v["b"], has)
-    start = {"theta0_rad": v["theta0"], "thetadot0": v["thetadot0"], "psidot0": v["psidot0"]}
+    start: dict[str, Any] = {"theta0_rad": v["theta0"]}
+    start |= {x: v[x] for x in ("thetadot0", "psidot0")}
     swept = sweep(keys=_DERIVED, radians=True, m=1, A=1, C=1, s=1, g=v["a"] / 2, r0=v["b"], **start)
     derived = {key: np.asarray(swept[key], float) for key in _DERIVED}
     derived["mean_spin_rate"] = derived["mean_spin_rate"] + v["r0"] - v["b"]
