@@ -32,7 +32,7 @@ _MODULES = {
     "find": "inverse.find",
     "fit": "inverse.fit",
     "read_scene": "top.given",
-    "sensitivities": "solver.spread",
+    "sensitivities": "account.spread",
     "solve": "solver.solve",
     "sweep": "sweeps.records",
     "view": "plot.browser.view",

@@ -1,5 +1,6 @@
 """Installed as `lagtop-stubs`: the public names of `lagtop` for type checkers."""
 
+from lagrange_cli.account.spread import sensitivities as sensitivities
 from lagrange_cli.comparison.compare import Comparison as Comparison
 from lagrange_cli.comparison.compare import compare as compare
 from lagrange_cli.errors import AbsentError as AbsentError
@@ -20,7 +21,6 @@ from lagrange_cli.plot.browser.view import view as view
 from lagrange_cli.solver.facts import Regime as Regime
 from lagrange_cli.solver.solve import Motion as Motion
 from lagrange_cli.solver.solve import solve as solve
-from lagrange_cli.solver.spread import sensitivities as sensitivities
 from lagrange_cli.sweeps.records import sweep as sweep
 from lagrange_cli.sweeps.results import Results as Results
 from lagrange_cli.top.given import read_scene as read_scene

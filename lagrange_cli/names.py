@@ -24,7 +24,7 @@ class Key(NamedTuple):
     unit: str = ""
     equation: str = ""
     formula: str = ""
-    """The formula, written with names of keys, such as `2*m*g*s/A`; see `solver.explanation`."""
+    """The formula, written with names of keys, such as `2*m*g*s/A`; see `account.explanation`."""
     only: str = ""
     """The condition of the number, such as `if r0 is not 0`; some regimes lack it too."""
     evaluated: str = ""

@@ -16,7 +16,8 @@ PACKAGE = ROOT / "lagrange_cli"
 FILES = sorted(set(PACKAGE.rglob("*.py")) - {PACKAGE / "alias.py"})
 
 LAYERS = [
-    *("__main__", "cli", "bench comparison", "plot", "inverse", "sweeps recordings", "solver"),
+    *("__main__", "cli", "bench comparison", "plot", "inverse"),
+    *("account sweeps recordings", "solver"),
     *("elliptic files output", "top", "names file_bytes", "arithmetic", "errors"),
 ]
 """A subpackage imports only from the lines below its own."""

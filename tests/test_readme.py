@@ -19,13 +19,13 @@ from errata import figures_table
 from published import published_table
 
 import lagrange_cli
+from lagrange_cli.account.explanation import listed
 from lagrange_cli.cli.app import NAMES, main
 from lagrange_cli.comparison.compare import COMPARISON_KEYS, VERDICTS
 from lagrange_cli.output.formats import FORMATS
 from lagrange_cli.plot import KINDS, SHEET
 from lagrange_cli.recordings.options import WORDS
 from lagrange_cli.recordings.quantities import QUANTITIES
-from lagrange_cli.solver.explanation import listed
 from lagrange_cli.solver.keys import FURTHER_KEYS, NUMBERS
 from lagrange_cli.top.inputs import DECLARED, TILT
 

@@ -13,8 +13,8 @@ from ..top.scenes import scene_names, scene_remark
 from . import shared as opt
 
 if TYPE_CHECKING:
+    from ..account.explanation import Explained
     from ..output.destination import Output
-    from ..solver.explanation import Explained
 
 
 @opt.command(
@@ -33,7 +33,7 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
     record.  Pass keys to solve --get, sweep --keys, find --keys and plot --key, and columns to
     table --columns.
     """
-    from ..solver.explanation import explanations, listed
+    from ..account.explanation import explanations, listed
 
     found = top.given()
     units = found.units(radians=top.radians)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
+from ..account.summary import summary
 from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError, joined
 from ..names import Key, check_names
@@ -15,7 +16,6 @@ from ..solver.facts import Regime
 from ..solver.keys import CHAIN, all_keys, derivation_keys, key_of, shown_keys
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
-from ..solver.summary import summary
 from ..top.units import Units
 from . import shared as opt
 from .app import complain

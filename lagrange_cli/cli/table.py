@@ -11,8 +11,8 @@ from ..top.units import Units
 from . import shared as opt
 
 if TYPE_CHECKING:
+    from ..account.spread import ColumnSpread
     from ..output.destination import Output
-    from ..solver.spread import ColumnSpread
     from ..top.values import Value
 
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from ..account.spread import ColumnSpread, Spread
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
 from ..names import check_names
@@ -14,7 +15,6 @@ from ..output.destination import Output
 from ..output.report import Field, Report, uncertain_text, with_unit
 from ..solver.keys import NUMBERS, TEXT_KEYS, shown_keys
 from ..solver.solve import Motion
-from ..solver.spread import ColumnSpread, Spread
 from ..top.given import Given
 from ..top.inputs import DECLARED
 from ..top.units import Units

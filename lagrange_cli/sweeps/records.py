@@ -120,7 +120,6 @@ def records(
         column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
     columns["error"][[*errors]] = [*errors.values()]
     keys = [key for key in columns if key not in {*inputs, "error"} and not key.endswith(RADIUS)]
-    units = Units(radians=any(key.endswith("_rad") for key in keys))
     if "psidot0" in columns and (tops.steady > 0).any():
         keys.append("psidot0")
     alone = np.ones(tops.size, dtype=np.bool_)
@@ -137,7 +136,16 @@ def records(
                     wanted.setdefault(row, []).append(key)
             alone &= ~group
     wanted |= dict.fromkeys(np.flatnonzero(alone).tolist(), keys)
-    for row, names in sorted(wanted.items()):
+    _solve(tops, dict(sorted(wanted.items())), columns)
+    return columns
+
+
+def _solve(
+    tops: TopArrays, wanted: Mapping[int, Sequence[str]], columns: Mapping[str, ResultColumn]
+) -> None:
+    """Fill the keys of some rows by `solve`, and their errors."""
+    units = Units(radians=any(key.endswith("_rad") for key in columns))
+    for row, names in wanted.items():
         try:
             motion = solve(tops.one(row))
             record, beyond = record_in_range(motion, radii=True, units=units, keys=names)
@@ -153,7 +161,6 @@ def records(
         for key, value in record.items():
             if value is not None and key in columns:
                 columns[key][row] = value
-    return columns
 
 
 def _filled(
@@ -221,6 +228,11 @@ def text_of(of: ArrayNumbers, key: str) -> tuple[Any, Any]:
             return regime.value, True
         words = np.array([Regime.NO_SPIN.value, Regime.REGULAR.value], dtype=object)
         return words[(of["r0"].doubles != 0).astype(int)], of["is_regular"]
+    return _remark(of)
+
+
+def _remark(of: ArrayNumbers) -> tuple[Any, Any]:
+    regime = of.regime
     if of.facts.vertical:
         stable, unstable = (vertical_remark(regime or Regime.HANGING, x) for x in (True, False))
         return np.where(of["b"].doubles ** 2 >= 2 * of["a"].doubles, stable, unstable), True

@@ -191,14 +191,8 @@ def test_two_causes_are_one() -> None:
     written = Cause("written", lambda run: run, remedy="x=1")
     top = Cause("top", exact=ExactMotion(solve(TOPS["toy"])))
     framed = Cause("framed", align=Alignment(left=True), remedy="y=2")
-    assert written.with_other(top) == (
-        "written; top",
-        written.undo,
-        top.exact,
-        None,
-        "x=1",
-        math.inf,
-    )
+    both = Cause("written; top", written.undo, top.exact, remedy="x=1")
+    assert written.with_other(top) == both
     assert framed.with_other(top)[:4] == ("framed; top", None, top.exact, framed.align)
     assert framed.with_other(written)[1:5] == (written.undo, None, framed.align, "y=2 and x=1")
 

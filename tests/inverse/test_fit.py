@@ -24,7 +24,7 @@ from lagrange_cli.inverse.advice import evenly_timed, release
 from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.decay import decay_of, fit_windows
 from lagrange_cli.inverse.known import known_inputs
-from lagrange_cli.inverse.measured import measured
+from lagrange_cli.inverse.measured import Measured, measured
 from lagrange_cli.inverse.motions import angles, nutating
 from lagrange_cli.inverse.outcome import Outcome
 from lagrange_cli.inverse.problem import Problem
@@ -41,7 +41,8 @@ TRUTH = {"a": 2 * 0.5 * 9.81 * 0.08 / 4.45e-3, "b": 2.5e-3 / 4.45e-3 * 52.36, "r
 LAB = {"m": 0.5, "g": 9.81, "s": 0.08}
 
 
-def recording_from(t, **arrays):
+def recording_from(t: Array, **arrays: Array) -> Measured:
+    """Return the measured motion in arrays of radians."""
     return measured(recording_of(t, arrays, Reading(radians=True)))
 
 

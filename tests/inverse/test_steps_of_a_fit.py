@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli.inverse.checks import CHANCE, Residuals
 from lagrange_cli.inverse.decay import decay_of
 from lagrange_cli.inverse.known import compared
-from lagrange_cli.inverse.measured import measured
+from lagrange_cli.inverse.measured import Measured, measured
 from lagrange_cli.inverse.motions import angles
 from lagrange_cli.inverse.outcome import Number
 from lagrange_cli.inverse.signals import (
@@ -33,7 +33,8 @@ from lagrange_cli.recordings.recording import recording_of
 BODY = {"m": 0.5, "A": 4.45e-3, "C": 2.5e-3, "s": 0.08, "g": 9.81}
 
 
-def recording_from(t, **arrays):
+def recording_from(t: Array, **arrays: Array) -> Measured:
+    """Return the measured motion in arrays of radians."""
     return measured(recording_of(t, arrays, Reading(radians=True)))
 
 

@@ -22,8 +22,8 @@ from hard_scenes import HARD_KINDS, in_doubles
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
 from scipy.spatial.transform import Rotation
 
+from lagrange_cli.account.summary import PHRASES, summary
 from lagrange_cli.plot.style import DARK, LIGHT
-from lagrange_cli.solver.summary import PHRASES, summary
 from lagrange_cli.top.scenes import scene_names
 from lagrange_cli.top.units import in_si
 

@@ -17,8 +17,8 @@ from lagtop import LagtopError, Top, solve
 from record_reference import reference_record
 from scenes import UNIT
 
+from lagrange_cli.account.summary import summary
 from lagrange_cli.solver.keys import FURTHER_KEYS, derivation_keys
-from lagrange_cli.solver.summary import summary
 
 SENTENCES = {
     "": "The axis nutates between 30.00 and 73.92 deg every 0.4293 time units and precesses at "

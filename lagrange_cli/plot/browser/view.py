@@ -12,11 +12,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from ...account.summary import PHRASES
 from ...errors import LagtopError, check_type
 from ...output.notebook import Document
 from ...solver.keys import KEYS
 from ...solver.solve import Motion, solve
-from ...solver.summary import PHRASES
 from ...top.given import read_scene
 from ...top.inputs import DECLARED
 from ...top.scenes import scene_names

@@ -14,12 +14,12 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 from ..names import Key, check_names
+from ..solver.columns import shown_columns
+from ..solver.facts import Facts
+from ..solver.keys import KEYS, LINES, all_keys, shown_keys
+from ..solver.record import record_in_range
+from ..solver.solve import Motion
 from ..top.units import DEGREES, Units, bare_name
-from .columns import shown_columns
-from .facts import Facts
-from .keys import KEYS, LINES, all_keys, shown_keys
-from .record import record_in_range
-from .solve import Motion
 
 _NAME = r"[A-Za-z_]\w*"
 _WORDS = {

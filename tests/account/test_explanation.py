@@ -12,10 +12,10 @@ from lagtop import Motion, Top, solve
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from lagrange_cli.account.explanation import explanations, listed
 from lagrange_cli.solver.columns import COLUMNS, SCALARS, shown_columns
-from lagrange_cli.solver.explanation import explanations, listed
-from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys, bare_name
-from lagrange_cli.top.units import Units
+from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys
+from lagrange_cli.top.units import Units, bare_name
 
 TOPS = {
     "worked example": Top(),

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from .facts import Facts
+from ..solver.facts import Facts
 
 _ENDS = "between {least} and {most} {angle}"
 
