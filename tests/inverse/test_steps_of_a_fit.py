@@ -12,6 +12,7 @@ from engines import Body, dop853
 from lagtop import Top, fit, solve
 from scipy.spatial.transform import Rotation
 
+from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inverse.checks import CHANCE, Residuals
 from lagrange_cli.inverse.decay import decay_of
 from lagrange_cli.inverse.known import compared

@@ -88,7 +88,7 @@ def test_a_period_with_units_and_an_uncertainty(tmp_path: Path, lagtop: Lagtop) 
     path.write_text(body + 'spin_period = "125.6(4) ms"\n')
     record = json.loads(lagtop("solve", path, "--format", "json").stdout)
     assert record["r0"] == pytest.approx(2 * math.pi / 0.1256, rel=1e-15)
-    assert record["r0_std"] == pytest.approx(record["r0"] * 0.4 / 125.6, rel=1e-6)
+    assert record["r0_std"] == pytest.approx(record["r0"] * 0.4 / 125.6, rel=1e-4)  # not linear
 
 
 def test_impossible_periods(lagtop: Lagtop) -> None:
