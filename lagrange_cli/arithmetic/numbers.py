@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from operator import index
 from typing import Any
@@ -31,13 +30,3 @@ def unrounded(value: Any, nearest: float) -> Real:
     if exact == nearest or not hasattr(exact, "as_integer_ratio"):
         return nearest
     return Fraction(*exact.as_integer_ratio())
-
-
-def angle_unit(*, radians: bool) -> tuple[float, str]:
-    """Return the size of one radian in the unit of angles in use, and the name of this unit."""
-    return (1.0, "rad") if radians else (180 / math.pi, "deg")
-
-
-def unit_in_radians(*, radians: bool) -> float:
-    """Return the size in radians of the unit of angles in use, a radian or a degree."""
-    return 1.0 if radians else math.pi / 180

@@ -6,7 +6,6 @@ from contextlib import ExitStack
 from fractions import Fraction
 from os.path import exists, splitext
 
-from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError, arg
 from ..names import suggestion
 from ..output.destination import opened
@@ -25,6 +24,7 @@ from ..plot.style import (
 )
 from ..top.inputs import DECLARED
 from ..top.scenes import scene_names
+from ..top.units import Units
 from ..top.values import Value, parse_range, parse_value
 from . import shared as opt
 
@@ -104,7 +104,7 @@ def plot_command(
         raise LagtopError(f"a film needs --animate: write --animate {output} instead of -o")
     fmt = "svg" if output in (None, "-") else check_picture(output, FORMATS)
     film = check_picture(animate, FILMS) if animate else ""
-    eye = _camera(camera, top.radians) if camera else None
+    eye = _camera(camera, Units(top.radians)) if camera else None
     require_matplotlib()  # also for standard output, which has no name to check
     from ..plot.film import SECONDS, film_bytes
     from ..plot.pictures import Options, angle_columns, figure_of
@@ -118,13 +118,12 @@ def plot_command(
     stds = column_stds(founds[0], motions[0], angle_columns(motions[0])) if uses_stds else None
     options = Options(
         t_max=t_max and t_max.number,
-        radians=top.radians,
+        units=founds[0].units(radians=top.radians),
         camera=eye,
         look=DARK if dark else LIGHT,
         key=key,
         **{x: y and (y[0], next(y[1].number.blocks())) for x, y in axes.items()},
         progress=with_progress,
-        unit=founds[0].units(radians=top.radians).named,
         stds=stds,
     )
     with ExitStack() as stack:
@@ -146,11 +145,10 @@ def plot_command(
     warn_if_unfair(stds)
 
 
-def _camera(text: str, radians: bool) -> tuple[float, float]:
+def _camera(text: str, units: Units) -> tuple[float, float]:
     """Return azimuth and elevation (radians) of a text such as `30,-15`."""
-    unit = unit_in_radians(radians=radians)
     try:
-        azimuth, elevation = (x * unit for x in opt.parse_numbers(text))
+        azimuth, elevation = (x / units.radian for x in opt.parse_numbers(text))
     except ValueError:  # of a number, or of another count of numbers
         wanted = "AZIMUTH,ELEVATION such as 30,15"
         raise LagtopError(f"--camera must be {wanted}, got {text!r}") from None
@@ -165,7 +163,7 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Valu
     if not equals:
         raise LagtopError(f"{option} must be INPUT=[log:]start:stop:count, got {text!r}")
     is_tilt = name in DECLARED and DECLARED[name].unit == "angle"
-    angle = "rad" if top.radians else "deg"
+    angle = Units(top.radians).angle
     try:
         return name, parse_value(name, grid, parse_range, wanted=angle if is_tilt else None)
     except LagtopError as error:

@@ -148,8 +148,8 @@ _READING = {
         type=Parsed("X", parse_positive),
         help="Time between two rows without a time, or between two frames.",
     ),
-    "t_from": option("--from", "t_from", type=_DOUBLE, help="First time to read."),
-    "t_to": option("--to", "t_to", type=_DOUBLE, help="Last time to read."),
+    "t_min": option("--t-min", type=_DOUBLE, help="First time to read."),
+    "t_max": option("--t-max", type=_DOUBLE, help="Last time to read."),
     "decimal": decimal,
 }
 """The options of a reading by argument."""

@@ -49,6 +49,7 @@ def draw(
     from ..errors import LagtopError, check_type  # start-up
     from ..names import check_names  # start-up
     from ..solver.solve import Motion  # start-up
+    from ..top.units import Units  # start-up
 
     check_type("motion", motion, Motion)
     check_type("kind", kind, str)
@@ -67,7 +68,7 @@ def draw(
     if len(axes) != count:
         raise LagtopError(f"ax must be {count} axes, got {len(axes)}", "ax")
     look = DARK if dark else LIGHT
-    options = Options(t_max, radians, look=look, key=key, x=x, y=y)
+    options = Options(t_max, Units(radians), look=look, key=key, x=x, y=y)
     axes[0].set_title(picture(motion, axes, options), pad=18)
     if kind == "sphere":
         add_time_bar(axes, options.time_label)

@@ -69,7 +69,7 @@ def film_figure(
     (shaft,) = ax.plot([], [], color=look.ink, lw=1.4)
     (tip,) = ax.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
     clock = ax.text(0.02, 0.97, "", transform=ax.transAxes)
-    unit = options.unit("time").replace("time", "")
+    unit = options.units.named("time").replace("time", "")
     decimals = max(0, 2 - math.floor(math.log10(t_max)))
     foot = pace_of(t_max * PER_SECOND / frames, unit)
     if np.abs(np.diff(motion.angles(times).phi)).max(initial=0.0) > math.pi / 3:

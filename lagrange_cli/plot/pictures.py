@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import ArrayLike
 
-from ..arithmetic.numbers import Real, angle_unit
+from ..arithmetic.numbers import Real
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import check_names
@@ -31,6 +31,7 @@ from ..solver.solve import Motion
 from ..sweeps.records import sweep
 from ..top.inputs import DECLARED, NINE
 from ..top.top import Top
+from ..top.units import DEGREES, Units
 from .style import LIGHT, Look, plain
 
 MOST_PERIODS, SAMPLES_PER_PERIOD = 1000, 200
@@ -47,7 +48,7 @@ class Options(NamedTuple):
     """What a picture shows, and how; by default a picture chooses its own times, camera and map."""
 
     t_max: Real | None = None
-    radians: bool = False
+    units: Units = DEGREES
     camera: tuple[float, float] | None = None
     """Azimuth and elevation (radians)."""
     look: Look = LIGHT
@@ -59,18 +60,11 @@ class Options(NamedTuple):
     """Input along the horizontal axis of a map, and its values."""
     y: tuple[str, ArrayLike] | None = None
     progress: Progress = silent
-    unit: Callable[[str], str] = str
-    """Returns the name of a unit such as `rad/time` in the units of the inputs."""
-
-    @property
-    def angle_unit(self) -> tuple[float, str]:
-        """The size of one radian in the unit of angles, and the name of that unit."""
-        return angle_unit(radians=self.radians)
 
     @property
     def time_label(self) -> str:
         """The label of an axis of time."""
-        return f"t ({self.unit('time').replace('time', 'input units')})"
+        return f"t ({self.units.named('time').replace('time', 'input units')})"
 
 
 def scale(look: Look) -> ListedColormap:
@@ -222,7 +216,7 @@ def draw_globe(
     least, most = (math.radians(x or 0.0) for x in (motion.theta_min_deg, motion.theta_max_deg))
     limits = {"ϑ min": least, "ϑ max": most} if least < most else {"ϑ =": least}
     for (name, tilt), dashes in zip(limits.items(), ("-", (0, (7, 2, 1, 2))), strict=False):
-        text = f"{name} {tilt * options.angle_unit[0]:.4g}{' rad' if options.radians else '°'}"
+        text = f"{name} {tilt * options.units.radian:.4g}{' rad' if options.units.radians else '°'}"
         draw_circle(ax, camera, tilt, color=look.lines[0], lw=1.2, ls=dashes, label=text)
 
 
@@ -257,20 +251,20 @@ def angle_columns(motion: Motion) -> list[str]:
 
 def angles(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """Draw tilt, precession, and the periodic part of the spin, over time."""
-    look, (factor, unit) = options.look, options.angle_unit
+    look, factor, unit = options.look, options.units.radian, options.units.angle
     t_max = last_time(motion, options.t_max, 3, 3)
     t, theta, phi, psi = sampled(motion, t_max, ["theta", "phi", "psi"])
     spin, turn = motion.mean_spin_rate, motion.mean_precession_rate
     name, about, note = "φ", "", ""
     if spin is not None:
         phi, name = phi - spin * t, "Δφ"
-        about = f"periodic part; mean rate {spin:.4g} {options.unit('rad/time')}"
+        about = f"periodic part; mean rate {spin:.4g} {options.units.named('rad/time')}"
     stds = [0 * t] * 3 if options.stds is None else options.stds(t)
     if motion.regime in (Regime.SLEEPING, Regime.HANGING):
         note = "spin only: there is no precession"
     elif turn is not None:
         axes[2].plot(t, turn * t * factor, color=look.ink, lw=0.9, ls=(0, (4, 3)), zorder=3)
-        note = f"dashed: mean rate {turn:.4g} {options.unit('rad/time')}"
+        note = f"dashed: mean rate {turn:.4g} {options.units.named('rad/time')}"
     rows = ("ϑ", theta, ""), (name, phi, about), ("ψ", psi, note)
     for ax, (name, angle, text), std, colour in zip(axes, rows, stds, look.lines, strict=True):
         if np.abs(angle).max() < 1e-13:  # rounding errors of an angle that is 0
@@ -330,14 +324,15 @@ def cubic(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
         ax.annotate(name, (root, 0.0), offsets[name], **place)
     values = ",   ".join(f"{name} = {root:.7g}" for name, root in known.items())
     ax.set_xlabel(f"u = cos ϑ;   {values}", fontsize="small")
-    ax.set_ylabel(f"f(u) ({options.unit('1/time²')})")
+    ax.set_ylabel(f"f(u) ({options.units.named('1/time²')})")
     ax.locator_params(axis="x", nbins=5 if width > 1e-4 else 2)
     return "The cubic f(u) = u̇² (4,9), the motion shaded"
 
 
 def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """Draw the nutation rate against the tilt, and the separatrix."""
-    (ax,), look, (factor, unit) = axes, options.look, options.angle_unit
+    (ax,), look, units = axes, options.look, options.units
+    factor, unit = units.radian, units.angle
     _, theta, rate = sampled(motion, last_time(motion, None, 1, 1), ["theta", "thetadot"])
     ax.axhline(0.0, color=look.quiet, lw=0.9)
     ax.plot(theta * factor, rate, color=look.lines[0], label="this motion")
@@ -354,7 +349,7 @@ def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
         why = "without torque" if a == 0 else "the upright top is stable with this spin"
         ax.plot([], [], ls="none", label=f"no separatrix: {why}")
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
-    ax.set(xlabel=f"tilt ϑ ({unit})", ylabel=f"nutation rate ϑ̇ ({options.unit('rad/time')})")
+    ax.set(xlabel=f"tilt ϑ ({unit})", ylabel=f"nutation rate ϑ̇ ({options.units.named('rad/time')})")
     ax.margins(0.06)
     ax.locator_params(axis="x", nbins=5)
     return "Nutation in the phase plane"
@@ -372,9 +367,9 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     key = degree_name(options.key or "mean_precession_rate")
     check_names("key", [key], [*WORDS, *NUMBERS])
     grid = grid_of(motion.top, options)
-    tilt = "theta0_rad" if options.radians else "theta0_deg"
+    tilt = options.units.key("theta0_deg")
     (x, xs), (y, ys) = ((tilt if x == "theta0" else x, values) for x, values in grid.items())
-    inputs: dict[str, Any] = dict(motion.top.inputs(radians=options.radians))
+    inputs: dict[str, Any] = dict(motion.top.inputs(radians=options.units.radians))
     own = float(inputs[x]), float(inputs[y])
     inputs["psidot0"] = motion.top.as_dict()["psidot0"]  # it may be a word
     inputs |= {x: xs[np.newaxis, :], y: ys[:, np.newaxis]}
@@ -383,7 +378,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     borders = {"border of stability (upright top)": (found["stability_factor"] - 1, look.ink, "--")}
     if key == "path":  # beta - b u, and with it the precession, is 0 at u1, at u = 1 or at u = -1
         size = np.nanmax(np.abs(found["b"]), initial=0.0) or 1.0
-        tilts = inputs[tilt] / options.angle_unit[0]
+        tilts = inputs[tilt] / options.units.radian
         b, around = found["b"] / size, inputs["psidot0"] / size * np.sin(tilts) ** 2
         beta = b * np.cos(tilts) + around * (b != 0)  # a top without spin has no cusps
         borders["cusped"] = beta - b * found["u1"], look.ink, "-"
@@ -394,7 +389,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
             ax.plot([], [], dashes, color=colour, label=label)
     for side, (name, points) in zip("xy", grid.items(), strict=True):
         declared = DECLARED[name]
-        unit = options.angle_unit[1] if declared.unit == "angle" else options.unit(declared.unit)
+        unit = options.units.named(declared.unit)
         known = "" if "len" in unit or "mass" in unit else f" ({unit})"
         ax.set(**{f"{side}label": f"{declared.name} {declared.symbol}{known}"})
         if points[0] > 0 and np.ptp(np.diff(np.log(points))) < 1e-9 < np.ptp(np.diff(points)):
@@ -414,7 +409,7 @@ def grid_of(top: Top, options: Options) -> dict[str, Array]:
     threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
     most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
     x = options.x or ("r0", (np.arange(200) + 0.5) * most / 200)
-    y = options.y or ("theta0", np.radians(np.linspace(1.0, 179.0, 100)) * options.angle_unit[0])
+    y = options.y or ("theta0", np.radians(np.linspace(1.0, 179.0, 100)) * options.units.radian)
     if x[0] == y[0]:
         raise LagtopError(f"x and y must be two inputs, got {x[0]} twice")
     grid = {name: np.asarray(values, float) for name, values in (x, y)}
@@ -444,9 +439,9 @@ def draw_numbers(ax: Axes, grid: Any, values: Any, key: str, options: Options) -
     The colours span the numbers without the lowest and the highest 1 %, which may be a peak.
     """
     look, declared = options.look, NUMBERS[key]
-    unit = options.unit(declared.unit)
+    unit = options.units.named(declared.unit)
     if declared.unit == "angle":  # keys of angles are in degrees
-        values, unit = np.radians(values) * options.angle_unit[0], options.angle_unit[1]
+        values = np.radians(values) * options.units.radian
     shown = np.ma.masked_invalid(values)
     if not shown.count():
         raise LagtopError(f"no map: {key} is undefined for all of these tops")

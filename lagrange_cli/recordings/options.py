@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.text import quoted
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 
 WORDS = {
     "axis=y": "the figure axis is the body's y axis (or x, -x, -y, -z)",
@@ -84,8 +84,8 @@ class Reading(NamedTuple):
     """The decimal mark of a file, empty if its first rows decide."""
     dt: float | None = None
     """The time between two rows, or between two frames if the file counts them."""
-    t_from: float = -np.inf
-    t_to: float = np.inf
+    t_min: float = -np.inf
+    t_max: float = np.inf
     """The first and the last time, as the file counts them."""
     radians: bool = False
     """Whether angles without a unit are in radians."""
@@ -102,8 +102,9 @@ class Reading(NamedTuple):
         ):
             if not re.fullmatch(pattern, str(got := getattr(found, key))):
                 raise LagtopError(f"{key} must be {wanted}, got {quoted(got)}", key)
-        if not found.t_from < found.t_to:
-            raise LagtopError(f"t_from must be < t_to, got {found.t_from:g}, {found.t_to:g}")
+        if not found.t_min < found.t_max:
+            ends = f"{found.t_min:g} and {found.t_max:g}"
+            raise LagtopError(f"t_min must be < {arg('t_max')}, got {ends}", "t_min")
         return found
 
     @property

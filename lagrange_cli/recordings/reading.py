@@ -224,7 +224,7 @@ class _File:
 
 def _within(recording: Recording, name: str) -> Recording:
     """Return the rows in the range of time that was asked for."""
-    first, last = recording.reading.t_from, recording.reading.t_to
+    first, last = recording.reading.t_min, recording.reading.t_max
     kept = np.flatnonzero((recording.t >= first) & (recording.t <= last))
     if not kept.size:
         raise DataError(f"{name} has no rows from t = {first:g} to {last:g}")

@@ -23,10 +23,11 @@ from typing import Any
 from flint import arb
 
 from ..arithmetic.enclosures import exact
+from ..arithmetic.formulas import evaluated
 from ..names import ANGLES, Key, check_names
 from ..top.inputs import declared
 from ..top.units import DEGREES, Units
-from .numbers import Numbers, code_of
+from .numbers import Numbers
 
 GROUPS = {
     "axis": "figure axis in space: axis_x, axis_y, axis_z",
@@ -172,5 +173,5 @@ class Columns(dict[str, Any]):
         self.formulas = formulas
 
     def __missing__(self, name: str) -> Any:
-        found = self[name] = eval(code_of(self.formulas[name]), {}, self)
+        found = self[name] = evaluated(self.formulas[name], self)
         return found

@@ -9,16 +9,15 @@ mean of 1/(1 - u), and the limits.  Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
-import re
-from functools import cache, partial
+from functools import partial
 from itertools import pairwise
 from operator import itemgetter
-from types import CodeType
 from typing import Any
 
 from flint import acb, arb, arb_poly, ctx
 
 from ..arithmetic.enclosures import TooFewDigitsError, at_precision, exact, fraction, root, sign
+from ..arithmetic.formulas import evaluated
 from ..top.derived import rates_of
 from .attitude import Course, course_of
 from .facts import Facts
@@ -79,18 +78,6 @@ FUNCTIONS: dict[str, Any] = {
 """The functions of formulas."""
 
 
-_SQUARED = re.compile(r"(\w+(?:\([^()]*\))?|\([^()]*\))\*\*2")
-"""A square of a name, a function or a sum: Arb has no power of a ball that contains 0."""
-
-
-@cache
-def code_of(formula: str) -> CodeType:
-    """Return a formula compiled for `eval`, with `square(x)` for `x**2`."""
-    text = _SQUARED.sub(r"square(\1)", formula)
-    assert "**" not in text, formula
-    return compile(text, "<formula>", "eval")
-
-
 class Numbers(dict[str, Any]):
     """The numbers of a motion by name, in balls of some digits; each is computed on first use.
 
@@ -108,7 +95,7 @@ class Numbers(dict[str, Any]):
 
     def _value(self, name: str) -> Any:
         if name in LINES:
-            return eval(code_of(LINES[name].evaluated), {}, self)
+            return evaluated(LINES[name].evaluated, self)
         if name in self.facts.inputs:
             return exact(self.facts.inputs[name])
         return getattr(self, name)

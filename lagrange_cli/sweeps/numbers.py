@@ -17,11 +17,11 @@ import numpy as np
 from scipy.special import ellipe, ellipeinc, ellipkinc, ellipkm1, elliprf
 
 from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, atan2, best, choose, lifted, size_of, sqrt
+from ..arithmetic.formulas import evaluated
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..solver.facts import Regime, undefined_names
 from ..solver.keys import LINES, exists
-from ..solver.numbers import code_of
 from .tops import UNKNOWN, TopArrays, pi_of
 
 GOOD = 1e-13
@@ -160,7 +160,7 @@ class ArrayNumbers(dict[str, Any]):
 
     def __missing__(self, name: str) -> Any:
         if name in LINES:
-            value = eval(code_of(LINES[name].evaluated), {}, self)
+            value = evaluated(LINES[name].evaluated, self)
         else:
             value = getattr(self["gaps"], name) if name in Gaps._fields else getattr(self, name)
         self[name] = value

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache
-from types import CodeType
 from typing import Any
 
+from ..arithmetic.formulas import code_of, evaluated
 from .inputs import FORMS
 
 
@@ -44,7 +44,7 @@ class Quantities(dict[str, Any]):
         raise KeyError(name)
 
     def _computed(self, name: str, formula: str) -> Any:
-        value = self[name] = eval(_code(formula), {}, self)
+        value = self[name] = evaluated(formula, self)
         return value
 
 
@@ -56,15 +56,10 @@ def _giving(name: str) -> list[str]:
 
 def needed_by(key: str) -> tuple[str, ...]:
     """Return the names in the formula of a form, other than its own."""
-    return tuple(name for name in _code(FORMS[key].formula).co_names if name != key)
+    return tuple(name for name in code_of(FORMS[key].formula).co_names if name != key)
 
 
 def equation_of(key: str) -> str:
     """Return the formula of a form, such as A = A_cm + m s^2."""
     form = FORMS[key]
     return f"{form.gives} = {form.formula.replace('s*s', 's^2').replace('*', ' ')}"
-
-
-@cache
-def _code(formula: str) -> CodeType:
-    return compile(formula, "<formula>", "eval")

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple, Self
 
 from ..arithmetic.enclosures import pi_to, text_of
-from ..arithmetic.numbers import Real, unit_in_radians, unrounded
+from ..arithmetic.numbers import Real, unrounded
 from ..errors import LagtopError
 from ..names import suggestion
 from .derived import Spin, Tilt, exact_inputs, steady_rate_of
@@ -28,7 +28,7 @@ from .inputs import (
     warn_of,
 )
 
-_EPS = Fraction(1, 1 << 52)
+_EPS, _DEGREE = Fraction(1, 1 << 52), math.pi / 180
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
 _LARGEST = 1e100
 _UNITS = "choose other units"
@@ -174,9 +174,9 @@ class Top:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         tilt, number = self.exact_tilt, float(self.exact_tilt.number)
         if radians and tilt.radians is None:
-            number *= unit_in_radians(radians=False)
+            number *= _DEGREE
         elif not radians and tilt.degrees is None:
-            number /= unit_in_radians(radians=False)
+            number /= _DEGREE
         key = f"{TILT}_rad" if radians else f"{TILT}_deg"
         keys = (key if name == TILT else name for name in NINE)
         return {x: number if (y := getattr(self, x)) is None else y for x in keys}

@@ -99,7 +99,7 @@ def test_the_globe_shows_axes_limits_and_the_start() -> None:
         assert np.nanmax(x) == pytest.approx(math.sin(math.radians(tilt)), abs=1e-4)
     assert shown["z"].get_position() == pytest.approx((0.0, 1.24 * math.cos(0.5)))
     assert [*shown["z"].xy] == [0, 0]  # where its arrow begins
-    assert "ϑ max 1.29 rad" in labelled(drawn("sphere", motion, radians=True).axes[0])
+    assert "ϑ max 1.29 rad" in labelled(drawn("sphere", motion, units=Units(radians=True)).axes[0])
     still = drawn("sphere", solve(read_scene("sleeping-top")))
     shown, eye = labelled(still.axes[0]), camera_of(np.array([[0.0, 0.0, 1.0]]), Options())
     assert "the axis stays here" in shown
@@ -222,7 +222,12 @@ def test_sampled_curves_are_smooth() -> None:
 
 def test_a_map_shows_the_number_of_each_top() -> None:
     r0, tilt = np.geomspace(20, 90, 20), np.geomspace(0.5, 2.5, 9)
-    given: Any = {"x": ("r0", r0), "y": ("theta0", tilt), "key": "theta_max_deg", "radians": True}
+    given: Any = {
+        "x": ("r0", r0),
+        "y": ("theta0", tilt),
+        "key": "theta_max_deg",
+        "units": Units(radians=True),
+    }
     axes, bar = drawn("map", solve(Top()), **given).axes
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
     assert axes.get_ylabel().endswith("(rad)")
@@ -265,7 +270,7 @@ def test_a_map_of_paths_shows_cusps_at_the_border() -> None:
 
 
 def test_a_film_shows_the_top_its_trace_and_the_time() -> None:
-    motion, options = solve(Top()), Options(t_max=1.0, unit=lambda unit: "s")
+    motion, options = solve(Top()), Options(t_max=1.0, units=Units(si=True))
     figure, show = film_figure(motion, options, 11)
     show(6)
     (axes,) = figure.axes

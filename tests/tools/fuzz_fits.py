@@ -369,7 +369,8 @@ def checked(seed: int, *, easy: bool = False, look: str = "") -> Result:
     plain = {x for x, y in case.known.items() if "+/-" not in str(y)}
     shown, off, right = "", dict[str, float](), False
     try:
-        outcome = fit(case.t, **case.arrays, sigma=case.sigma, known=case.known)
+        arrays: dict[str, Any] = dict(case.arrays)
+        outcome = fit(case.t, **arrays, sigma=case.sigma, known=case.known)
         word = outcome.verdict
     except LagtopError as error:
         word, shown = "refused", str(error)
