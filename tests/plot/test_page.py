@@ -18,17 +18,21 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
-from hard_scenes import HARD_KINDS, in_doubles
+from hard_scenes import COSINES, HARD_KINDS, in_doubles
+from hard_scenes import KINDS as KINDS_OF_TOPS
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
+from scenes import EVERY_KIND, UNIT
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.account.summary import PHRASES, summary
+from lagrange_cli.plot.browser.view import page_scene
 from lagrange_cli.plot.style import DARK, LIGHT
 from lagrange_cli.top.scenes import scene_names
 from lagrange_cli.top.units import in_si
 
 MOTION_JS = ROOT / "lagrange_cli" / "plot" / "browser" / "motion.js"
-KINDS = ("generic", "from rest", "slow", "near a pole", "near steady", "no spin")
+ORDINARY = ("generic", "from rest", "slow", "no spin")
+KINDS = (*ORDINARY, "near a pole", "near steady")
 HARD = ("near separatrix", "tiny tilt", "tiny tilt with rates", "next to a cusp")
 PERIODS = 0.1, 0.5, 1.3, 4.6, 9.95, 19.7
 LIMIT = 1e-7
@@ -65,9 +69,9 @@ def computed(motions: Sequence[Motion]) -> list[dict[str, Any]]:
         {data}
         console.log(JSON.stringify(tasks.map(({{ scene, times }}) => {{
             const motion = motionOf(scene);
-            const {{ isSketch, record }} = motion;
+            const {{ doubt = null, record }} = motion;
             const angles = times.map((t) => Object.values(motion.angles(t)));
-            return {{ isSketch, record, angles, words: sentence(motion, phrases, "time") }};
+            return {{ doubt, record, angles, words: sentence(motion, phrases, "time") }};
         }})));"""
     command = [node, "--input-type=module", "-"]
     done = subprocess.run(command, input=code, capture_output=True, check=True, text=True)
@@ -76,7 +80,7 @@ def computed(motions: Sequence[Motion]) -> list[dict[str, Any]]:
 
 
 def scene_of(motion: Motion) -> dict[str, float]:
-    return {name: float(x) for name, x in motion.top.inputs().items()}
+    return page_scene(motion)
 
 
 def times_of(motion: Motion) -> list[float]:
@@ -84,18 +88,18 @@ def times_of(motion: Motion) -> list[float]:
     return [x * unit for x in PERIODS]
 
 
-def errors(motions: Sequence[Motion]) -> list[tuple[float, bool]]:
-    """Return the greatest error of the attitude of each motion, and whether it is a sketch."""
+def errors(motions: Sequence[Motion]) -> list[tuple[float, str | None]]:
+    """Return the greatest error of the attitude of each motion, and why it is a sketch."""
     found = []
     for motion, page in zip(motions, computed(motions), strict=True):
         angles = np.array(page["angles"], float)  # null is NaN
         if np.isnan(angles).any():  # SciPy has no such rotation
-            found.append((math.inf, page["isSketch"]))
+            found.append((math.inf, page["doubt"]))
             continue
         theta, phi, psi = angles.T
         shown = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=1))
         away = (motion.rotation(times_of(motion)) * shown.inv()).magnitude().max()
-        found.append((float(away), page["isSketch"]))
+        found.append((float(away), page["doubt"]))
     return found
 
 
@@ -103,7 +107,8 @@ def test_named_scenes_move_as_lagtop_says() -> None:
     names = scene_names()
     found = dict(zip(names, errors([solve(read_scene(x)) for x in names]), strict=True))
     sketches = {name for name, (_, is_sketch) in found.items() if is_sketch}
-    assert sketches == {"near-separatrix", "whittaker-71"}  # the second one is the separatrix
+    # steady in decimals; next to the separatrix, and on it
+    assert sketches == {"kinon-betsch-cone", "near-separatrix", "whittaker-71"}
     assert {name for name, (error, _) in found.items() if not error <= LIMIT} <= sketches
 
 
@@ -115,23 +120,66 @@ def test_random_scenes_move_as_lagtop_says(kinds: Sequence[str], count: int) -> 
     vertical = [Top(theta0_deg=x, r0=20, thetadot0=y) for x in (0, 180) for y in (-1, 0, 1)]
     found = errors([*random_motions(kinds, count, 20261123), *(solve(x) for x in vertical)])
     assert max(error for error, is_sketch in found if not is_sketch) <= LIMIT
-    ordinary = found[: len(KINDS) * count]
-    assert sum(is_sketch for _, is_sketch in ordinary) <= 0.02 * len(ordinary)
+    ordinary = [is_sketch for _, is_sketch in found[: len(ORDINARY) * count]]
+    assert sum(map(bool, ordinary)) <= 0.05 * len(ordinary)
 
 
-def test_the_sentence_and_the_numbers_are_those_of_solve() -> None:
+def assert_that_of_solve(motion: Motion, page: dict[str, Any]) -> None:
+    """Check the sentence and the numbers of a page that is no sketch."""
+    assert page["words"] == summary(motion.record(), motion.facts), motion.top
+    for key, number in page["record"].items():
+        exact = getattr(motion, key)
+        assert (number is None) == (exact is None), (key, motion.top)
+        size = 1e-12 if key in COSINES else 0.0
+        assert number is None or number == pytest.approx(exact, rel=1e-6, abs=size), (key, motion)
+
+
+PAGES: dict[str, tuple[dict[str, Any], str | None]] = {
+    "nearly 180 degrees": ({"r0": 34, "theta0_deg": 179.979}, None),
+    "nearly upright": ({"r0": 90, "theta0_deg": 0.02}, None),
+    "from the pole": ({"theta0_deg": 0, "r0": 115.4, "thetadot0": -3}, None),
+    "over both poles": (UNIT | {"g": 2, "r0": 0, "theta0_deg": 0, "thetadot0": 1}, None),
+    "over the lower pole": (
+        {"m": 1, "s": 1, "g": 2, "A": 8, "C": 8, "r0": -1}
+        | {"theta0_deg": 90, "thetadot0": 2, "psidot0": 1},
+        None,
+    ),
+    "fast": ({"r0": 9e5}, None),
+    "a tie": ({"theta0_deg": 45.625}, None),
+    "loops that are nearly cusps": (UNIT | {"r0": 3, "theta0_deg": 50, "psidot0": -1e-10}, None),
+    "too fast": ({"r0": 4.8e18}, "the nutation is lost in double precision"),
+    "next to the vertical": ({"theta0_deg": 1e-4}, "the axis starts next to the vertical"),
+}
+"""Scenes that the page described wrongly, and why the page is only a sketch."""
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_the_page_decides_its_words_as_solve_does(name: str) -> None:
+    inputs, doubt = PAGES[name]
+    motion = solve(Top(**inputs))
+    (page,) = computed([motion])
+    assert page["doubt"] == doubt
+    if not doubt:
+        assert_that_of_solve(motion, page)
+
+
+@pytest.mark.parametrize("count", [4, pytest.param(100, marks=pytest.mark.slow)])
+def test_the_sentence_and_the_numbers_are_those_of_solve(count: int) -> None:
     motions = [solve(read_scene(x)) for x in scene_names()]
-    motions += [solve(Top(psidot0=x)) for x in (-4, 4)]
-    motions += [solve(Top(theta0_deg=0, r0=r)) for r in (60, 50, 0)]
-    motions += [solve(Top(theta0_deg=120, r0=0, thetadot0=x)) for x in (0, 40)]
+    motions += [solve(Top(**x)) for x in EVERY_KIND.values()]
+    for kind, scene_of_kind in KINDS_OF_TOPS.items():
+        rng = Random(f"page {kind}")
+        for _ in range(count):
+            with suppress(LagtopError):  # precession on the vertical, or a size beyond the page
+                motion = solve(Top(**in_doubles(scene_of_kind(rng))))
+                page_scene(motion)
+                motions.append(motion)
+    clear = 0
     for motion, page in zip(motions, computed(motions), strict=True):
-        if page["isSketch"]:
-            continue
-        assert page["words"] == summary(motion.record(), motion.facts)
-        for key, number in page["record"].items():
-            exact = getattr(motion, key)
-            if exact is not None and number is not None:
-                assert number == pytest.approx(exact, rel=1e-8, abs=1e-12), key
+        if not page["doubt"]:
+            assert_that_of_solve(motion, page)
+            clear += 1
+    assert clear >= 0.6 * len(motions)
 
 
 def test_the_file_is_small_and_asks_for_nothing() -> None:
@@ -244,11 +292,19 @@ def test_a_session_in_the_browser(browser: Browser) -> None:
 def test_bad_values_are_named_and_leave_the_motion(browser: Browser) -> None:
     browser.open()
     browser.ask("set('field-C', '-1')")
-    assert browser.ask("return at('error').textContent") == "C must be positive, at most 2A"
+    assert browser.ask("return at('error').textContent").startswith("C must be positive")
     assert browser.ask("return document.body.className") == "bad"
-    browser.ask("set('field-psidot0', '-3'); set('field-theta0_deg', '0')")
+    browser.ask("set('field-C', '17458'); set('field-psidot0', '-3'); set('field-theta0_deg', '0')")
     assert browser.ask("return at('error').textContent").startswith("ψ'0 must be 0")
-    browser.ask("at('fix').click(); set('field-theta0_deg', '30'); set('field-psidot0', '-3')")
+    browser.ask("set('field-psidot0', '0')")  # both zeros count
+    assert "upright" in browser.ask("return at('words').textContent")
+    assert "r0 sleeping" in browser.ask("return at('record').textContent")
+    assert browser.ask("return at('scenes').selectedOptions[0].textContent") == (
+        "this scene (edited)"
+    )
+    browser.ask("set('field-theta0_deg', '30'); set('field-psidot0', '-3')")
+    browser.ask("set('field-theta0_deg', '0'); at('fix').click()")
+    browser.ask("set('field-theta0_deg', '30'); set('field-psidot0', '-3')")
     assert browser.ask("return [at('error').textContent, document.body.className]") == ["", ""]
     slider = "at('field-{}').nextElementSibling.{}"
     ends = [("m", "min"), ("A", "min"), ("C", "max"), ("theta0_deg", "max")]

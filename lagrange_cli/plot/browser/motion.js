@@ -24,8 +24,11 @@ function pairOf(half, product) {
   return half < 0 ? pair.reverse() : pair;
 }
 
-/** The roots of (4,9) by distances without cancellation: u1 - u0, u0 - u2, 1 - u1, 1 - u2, u3 - 1, u3 - u1. */
-function rootsOf({ a, b, u0, above, sin, swing, along, rise, N }) {
+/** The roots of (4,9) by distances without cancellation: u1 - u0, u0 - u2, 1 - u1, 1 - u2, u3 - 1, u3 - u1.
+ *
+ * `loss` bounds the relative error of u1 - u2 and u3 - u1.
+ */
+function rootsOf({ a, b, u0, above, sin, swing, along, rise, N, turning }) {
   const [p, q, r] = [2 * u0 - (swing + b * b) / a, (2 * (b * along - u0 * swing)) / a - sin * sin, rise / a];
   const radius = Math.sqrt(Math.max(p * p - 3 * q, 0)) / 3;
   const ratio = ((p * q) / 6 - (p / 3) ** 3 - r / 2) / radius ** 3 || 0;
@@ -33,15 +36,98 @@ function rootsOf({ a, b, u0, above, sin, swing, along, rise, N }) {
   const angle = Math.acos(clamped(ratio, -1, 1)) / 3 + (isNear ? (2 * Math.PI) / 3 : 0);
   let root = 2 * radius * Math.cos(angle) - p / 3;  // Viète's, polished by Newton's method
   for (let i = 0; i < 3; i += 1) root -= (((root + p) * root + q) * root + r) / ((3 * root + 2 * p) * root + q) || 0;
-  let [toTop, fromLow] = isNear ? [0, Math.max(-root, 0)] : pairOf((q + r / root) / (2 * root), r / root);
+  const half = (q + r / root) / (2 * root);
+  let [toTop, fromLow] = isNear ? [0, Math.max(-root, 0)] : pairOf(half, r / root);
+  if (turning > 0) toTop = 0;
+  if (turning < 0) fromLow = 0;
   const low = above + fromLow;
-  const [beyond, top] = pairOf((fromLow - p) / 2 - above, N ** 2 / (a * low) || 0);
+  const product = N ** 2 / (a * low) || 0;  // of 1 - u1 and u3 - 1
+  const middle = (2 * ((swing - b * N) / a - above) - product) / low;
+  const [beyond, top] = pairOf(middle / 2, product);
   const gap = beyond + top;
-  if (isNear) {
-    toTop = Math.max(above - top, 0);
-    if (toTop < fromLow) toTop = rise / (a * fromLow * (gap + toTop));
+  if (isNear && turning <= 0) toTop = top < above / 2 ? above - top : rise / (a * fromLow * (above + beyond));
+  const [size, wide] = [(2 * Math.abs(b * along) + 2 * Math.abs(u0 * swing)) / a + sin * sin, toTop + fromLow];
+  const sizeOfGap = (2 * (swing + Math.abs(b * N))) / a + 2 * above + product;
+  const loss = 1e-15 * Math.max(isNear ? 0 : size / Math.abs(root * wide) || 0, sizeOfGap / (low * gap) || 0);
+  return { toTop, fromLow, top: turning > 0 ? above : top, low, beyond, gap, loss };
+}
+
+/** The sign of the sum of the products of `constant`, and of x times those of `slope`; NaN if doubles leave it open.
+ *
+ * All products have the same number of factors.  An x of `quarters` / 4 is exact.
+ */
+function signOf(constant, slope, x, quarters) {
+  const total = (products, part) => products.reduce((sum, product) => sum + part(product.reduce((y, z) => y * z)), 0);
+  const value = total(constant, Number) + x * total(slope, Number);
+  const size = total(constant, Math.abs) + total(slope, Math.abs);
+  if (Math.abs(value) > 1e-14 * size || !size) return Math.sign(value);
+  const whole = (y) => BigInt(y * 2 ** 200);  // inputs are at least 1e-30
+  const exact = (products) => products.reduce((sum, product) => sum + product.map(whole).reduce((y, z) => y * z), 0n);
+  const [p, q] = [exact(constant), exact(slope)];
+  if (q && quarters === null) return NaN;  // no polynomial with such coefficients is 0 at an irrational cosine
+  return Math.sign(Number(4n * p + BigInt(quarters ?? 0) * q));
+}
+
+/** The signs of the polynomials that decide the motion, as in `solver/facts.py`. */
+function signsOf({ m, A, C, s, g, r0, theta0_deg: tilt, thetadot0, psidot0 }, u0) {
+  const level = tilt % 60 && tilt % 90 ? null : Math.round(4 * u0);
+  const squared = tilt % 30 && tilt % 45 ? null : Math.round(4 * u0 * u0);
+  const [pole, torque, spin] = [{ 0: 1, 180: -1 }[tilt] ?? 0, [2 * m, g, s], [C, r0]];
+  const minus = pole > 0 ? 0 : signOf([[A, psidot0], [-C, r0]], [[A, psidot0]], u0, level);
+  const plus = pole < 0 ? 0 : signOf([[A, psidot0], [C, r0]], [[-A, psidot0]], u0, level);
+  const over = minus || (pole && !thetadot0) ? 1 : signOf(
+    [[A, thetadot0, thetadot0], [-2 * m, g, s], [psidot0, ...spin]], [torque, [-psidot0, ...spin]], u0, level,
+  );
+  const start = () => signOf([torque, [-2 * psidot0, ...spin]], [[2 * A, psidot0, psidot0]], u0, level);
+  const fall = thetadot0 ? 1 : pole ? 0 : start();
+  const turns = [[psidot0, psidot0, ...spin, ...spin], [-2 * m, g, s, psidot0, ...spin]];
+  const stop = signOf(  // of f at beta/b, where the precession stops
+    [[thetadot0, thetadot0, ...spin, ...spin], ...turns], turns.map(([x, ...rest]) => [-x, ...rest]), u0 * u0, squared,
+  );
+  const stable = signOf([[...spin, ...spin], [-4 * A, m, g, s]], [], 0, null) >= 0;
+  return { pole, minus, plus, over, fall, stop, stable };
+}
+
+/** The kind of motion, as `Facts` of the solver decides it. */
+function factsOf(scene, u0) {
+  const { m, g, s, r0, thetadot0, psidot0 } = scene;
+  const { pole, minus, plus, over, stop, stable, ...signs } = signsOf(scene, u0);
+  const fall = scene.steady ? 0 : signs.fall;
+  const steady = !fall;
+  const vertical = pole !== 0 && steady;
+  const separatrix = Boolean(m * g * s) && !minus && !over && !vertical;
+  const overTop = !steady && !separatrix && !minus && over >= 0;
+  const overBottom = !plus && !steady;
+  const plane = overBottom && !r0;
+  const stops = minus * plus < 0;  // |beta| < |b|
+  let path = stops && stop > 0 ? "looping" : "wavy";
+  if ((!thetadot0 && !psidot0) || (stops && !stop && !separatrix)) path = "cusped";
+  const isOpen = [minus, plus, over, fall, r0 ? stop : 0].some(Number.isNaN);
+  return {
+    ...{ vertical, steady, separatrix, overTop, overBottom, plane, stable, isOpen, minus, plus },
+    path: plane || steady ? null : path,
+    turning: pole || (thetadot0 ? 0 : fall),
+  };
+}
+
+/** The mean precession by the midpoint rule over the amplitude, and a bound of its relative error. */
+function meanPrecession({ toTop, fromLow, top, high, foot, gap, along, b }) {
+  const band = toTop + fromLow;
+  function meanOf(n) {
+    let [sum, size, weights] = [0, 0, 0];
+    for (let j = 0; j < n; j += 1) {
+      const x = (Math.PI * (j + 0.5)) / (2 * n);
+      const [s2, c2] = [Math.sin(x) ** 2, Math.cos(x) ** 2];
+      const weight = 1 / Math.sqrt(gap + band * s2);
+      const slowed = weight / ((top + band * s2) * (foot + band * c2));  // psi' = (beta - b u)/(1 - u^2)
+      sum += slowed * (along + b * (fromLow * s2 - toTop * c2));
+      size += slowed * (Math.abs(along) + Math.abs(b) * (fromLow * s2 + toTop * c2));
+      weights += weight;
+    }
+    return [sum / weights, size / weights];
   }
-  return { toTop, fromLow, top, low, beyond, gap };
+  const [[mean, size], [coarse]] = [meanOf(64), meanOf(32)];
+  return { mean, loss: (Math.abs(mean - coarse) + 1e-15 * size) / Math.abs(mean) };
 }
 
 /** The half of the quaternion with a zero at these sn^2, cn^2, dn^2: its size and its angle without the mean rate. */
@@ -61,20 +147,29 @@ function halfOf(squares, quarter, nome) {
   return { at, slope: 1 - total((n, up, down) => (2 * n + 1) * (down - up)) / whole };
 }
 
-/** The motion of a scene: its numbers, `angles(t)` in radians, and whether it is only a sketch. */
+/** The motion of a scene: its numbers, `angles(t)` in radians, and why it is only a sketch, if it is. */
 export function motionOf(scene) {
   const { m, A, C, s, g, r0, theta0_deg: tilt, thetadot0, psidot0 } = scene;
   const [torque, b, half] = [(2 * m * g * s) / A, (C * r0) / A, (tilt * Math.PI) / 360];
-  const [u0, sin] = [Math.cos(2 * half), tilt === 180 ? 0 : Math.sin(2 * half)];
+  const ownSpin = (r0 * (A - C)) / A;  // r0 - b
+  const isRight = tilt % 60 === 0 || tilt % 90 === 0;
+  const u0 = isRight ? Math.round(2 * Math.cos(2 * half)) / 2 : Math.cos(2 * half);
+  const sin = tilt === 180 ? 0 : Math.sin(2 * half);
+  const facts = factsOf(scene, u0);
+  const { vertical, steady, separatrix, turning } = facts;
   const [above, up] = [2 * Math.sin(half) ** 2, tilt === 180 ? 0 : 2 * Math.cos(half) ** 2];  // 1 -+ u0
   const along = psidot0 * sin * sin;
   const swing = thetadot0 ** 2 + psidot0 * along;
   const rise = (thetadot0 * sin) ** 2;
-  const isVertical = !sin && !thetadot0;
-  const isStill = isVertical || !(torque || b || swing);
+  const isStill = vertical || !(torque || b || swing);
   const a = torque || 1e-16 * (swing + b * b) || 1;  // hardly any torque instead of none
-  const [N, S] = [along - b * above, along + b * up];  // beta - b, beta + b
-  const { toTop, fromLow, top, low, beyond, gap } = rootsOf({ a, b, u0, above, sin, swing, along, rise, N });
+  const N = facts.minus ? along - b * above : 0;  // beta - b
+  const S = facts.plus ? along + b * up : 0;  // beta + b
+  const found = rootsOf({ a, b, u0, above, sin, swing, along, rise, N, turning });
+  const [toTop, fromLow] = steady ? [0, 0] : [found.toTop, found.fromLow];
+  const { beyond, loss } = found;
+  const [top, low] = [steady ? above : found.top, above + fromLow];
+  const gap = beyond + top;
   const [high, most] = [up + toTop, up + toTop + gap];  // 1 + u1, 1 + u3
   const foot = S ** 2 / (a * high * most);  // 1 + u2
   const band = Math.max(toTop + fromLow, 1e-30);
@@ -104,49 +199,70 @@ export function motionOf(scene) {
     const p = plusRate * t - signS * (plus - plus0);
     const q = minusRate * t - signN * (minus - minus0);
     const theta = 2 * Math.atan2(Math.sqrt(low * Math.sqrt(m1)) * side, Math.sqrt(high) * upright);
-    return { theta, phi: p - q + (r0 - b) * t, psi: p + q };
+    return { theta, phi: p - q + ownSpin * t, psi: p + q };
   }
 
-  const period = !isStill && m1 > 1e-16 ? cycle : null;
-  const spin = isVertical ? r0 : period && plusRate - minusRate + r0 - b;
-  const turn = period && plusRate + minusRate;
+  const period = isStill || separatrix ? null : cycle;
+  const sum = { mean: plusRate + minusRate, loss: 0 };
+  sum.loss = (1e-14 * (Math.abs(plusRate) + Math.abs(minusRate))) / Math.abs(sum.mean);
+  const other = meanPrecession({ toTop, fromLow, top, high, foot, gap, along, b });
+  const turn = sum.loss < other.loss || period === null || facts.overTop || facts.overBottom ? sum : other;
+  const isIdle = isStill && !vertical;
+  // Without torque the sum or the difference of both rates is 0; over both poles each is one turn per period.
+  const isFree = !torque && !facts.overTop && !facts.overBottom;
+  const loops = isFree && facts.minus * facts.plus < 0;
+  const alike = (isFree && !loops) || (facts.overTop && facts.overBottom);
+  const turns = isIdle || loops ? 0 : period && turn.mean;
+  const spin = vertical ? r0 : isIdle ? 0 : period && (alike ? 0 : plusRate - minusRate) + ownSpin;
+  const spinSize = Math.abs(plusRate) + Math.abs(minusRate) + Math.abs(r0) + Math.abs(b);
   const turnTime = (rate) => (rate ? (2 * Math.PI) / Math.abs(rate) : null);
-  const tiltOf = (down, upward) => (isVertical ? tilt : 2 * DEGREE * Math.atan2(Math.sqrt(down), Math.sqrt(upward)));
+  const tiltOf = (down, upward) => 2 * DEGREE * Math.atan2(Math.sqrt(down), Math.sqrt(upward));
+  const least = turning > 0 || steady ? tilt : tiltOf(top, high);
+  const greatest = turning < 0 || steady ? tilt : tiltOf(low, foot);
   const fromVertical = Math.min(tilt, 180 - tilt);
-  const isSwinging = !isVertical && torque > 0;
   const k = Math.sqrt(m0);
-  const [atTop, atLow] = [N + b * top, N + b * low];  // beta - b u, as the precession
-  const curved = atTop * atLow < 0 ? "looping" : "wavy";
-  const constant = isStill || band < 1e-7;  // a double root has half of the digits
-  const plane = !r0 && !along;
   const usual = (2 * Math.PI) / (Math.sqrt(torque) + Math.abs(b) + Math.sqrt(swing) || 1);
-  let regime = period || constant ? "regular" : "separatrix";
-  if (isVertical) regime = tilt ? "hanging" : "sleeping";
+  const isLost = (sum, ...terms) => sum && terms.some((each) => Math.abs(each) > 1e7 * Math.abs(sum));
+  const doubts = {
+    "the axis starts next to the vertical": fromVertical > 0 && fromVertical < 1e-3,
+    "the axis passes next to the vertical": isLost(N, along, b * above) || isLost(S, along, b * up),
+    "the motion is next to the separatrix": torque > 0 && 1 - k < 5e-8,
+    "double precision does not decide the path": facts.isOpen,
+    "the nutation is lost in double precision": !steady && (loss > 1e-8 || greatest - least < 1e-12 * greatest),
+    "the mean precession is lost in double precision": period && !loops && !(turn.loss < 1e-8),
+    "the mean spin is lost in double precision": period && !alike && 1e-15 * spinSize > 1e-8 * Math.abs(spin),
+    "the spin is too fast for double precision": period && Math.abs(r0) * period > 1e7,
+  };
+  let regime = separatrix ? "separatrix" : "regular";
+  if (vertical) regime = tilt ? "hanging" : "sleeping";
   return {
     scene,
     angles,
     span: period ?? 20 * usual,
-    isSketch: !isVertical && ((fromVertical > 0 && fromVertical < 1e-3) || (torque > 0 && 1 - k < 5e-8)),
+    doubt: isStill ? undefined : Object.keys(doubts).find((each) => doubts[each]),
     facts: {
-      regime, constant, plane, spin: r0, spins: r0 !== 0, stable: b * b >= 2 * torque,
-      turns_over: plane && top === 0 && toTop > 0,
-      precesses: Math.abs(turn) > 1e-9 * Math.sqrt(a * width),
-      path: constant || plane ? null : Math.abs(atTop) < 1e-9 * Math.abs(atLow) ? "cusped" : curved,
+      regime, constant: steady, plane: facts.plane, spin: r0, spins: r0 !== 0, stable: facts.stable,
+      turns_over: facts.plane && facts.overTop, precesses: turns !== 0, path: facts.path,
     },
     record: {
-      a: torque, b, u1: isVertical ? u0 : 1 - top, u2: isVertical ? u0 : u0 - fromLow,
-      u3: isSwinging ? 1 + beyond : null, k: isSwinging && !constant ? k : null,
-      T_nutation: period, T_spin: turnTime(spin), T_precession: turnTime(turn),
-      theta_min_deg: tiltOf(top, high), theta_max_deg: tiltOf(low, foot),
-      mean_spin_rate: spin, mean_precession_rate: turn,
+      a: torque, b, u1: vertical ? u0 : 1 - top, u2: vertical ? u0 : 1 - low,
+      u3: !vertical && torque > 0 ? 1 + beyond : null, k: vertical ? null : steady || !torque ? 0 : k,
+      T_nutation: period, T_spin: turnTime(spin), T_precession: turnTime(turns),
+      theta_min_deg: least, theta_max_deg: greatest,
+      mean_spin_rate: spin, mean_precession_rate: turns,
+      ...(tilt === 0 && torque > 0
+        ? { stability_factor: (b * b) / (2 * torque), r0_sleeping: (2 * Math.sqrt(A * m * g * s)) / C } : {}),
     },
   };
 }
 
-/** A number in so many digits, as printf writes it with %#g. */
+/** A number with so many digits, as printf writes it with %#g. */
 function figures(x, digits) {
-  const [mantissa, power] = x.toExponential(digits - 1).split("e").map((part, i) => (i ? Number(part) : part));
-  if (power >= -4 && power < digits) return x.toFixed(digits - 1 - power);
+  const rest = Math.abs(x).toPrecision(100).replace(/e.*|[.]/g, "").replace(/^0+/, "").slice(digits);
+  const isTie = /^50*$/.test(rest);  // JavaScript rounds a tie up, C and Python to an even digit
+  let [mantissa, power] = x.toExponential(digits - 1).split("e");
+  if (isTie && Number(mantissa.at(-1)) % 2) mantissa = `${mantissa.slice(0, -1)}${Number(mantissa.at(-1)) - 1}`;
+  if (power >= -4 && power < digits) return Number(`${mantissa}e${power}`).toFixed(digits - 1 - power);
   return `${mantissa}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
 }
 

@@ -24,6 +24,7 @@ const FRONT = { azimuth: -62, elevation: 20, zoom: 1 };
 const camera = { ...FRONT };
 
 let scene = {};
+let draft = {};  // the typed inputs: the scene, unless it is impossible
 let motion = null;
 let curves = null;
 let [t, playing, pace, fresh] = [0, false, 1, false];
@@ -273,13 +274,14 @@ function say(field, words = "", remedy = null) {
   [at.error.textContent, at.fix.hidden, at.fix.onclick] = [words, !remedy, () => change(remedy, true)];
 }
 
-/** Change some inputs, unless they are impossible; `anew` sets the ends of the sliders. */
+/** Change some inputs, and the motion if they are possible; `anew` sets the ends of the sliders. */
 function change(changes, anew = false) {
-  const given = { ...scene, ...changes };
-  const [wrong, words, remedy] = complaint(given);
-  say(fields[wrong]?.field, words, remedy && { ...changes, ...remedy });
+  const isEdit = Object.entries(changes).some(([name, x]) => x !== draft[name]);
+  draft = { ...draft, steady: draft.steady && !isEdit, ...changes };
+  const [wrong, words, remedy] = complaint(draft);
+  say(fields[wrong]?.field, words, remedy);
   if (document.body.classList.toggle("bad", Boolean(wrong))) return;
-  scene = given;
+  scene = draft;
   motion = motionOf(scene);
   for (const [name, { label, field, slider }] of Object.entries(fields)) {
     label.textContent = `${DATA.inputs[name].symbol}  ${titleOf(DATA.inputs[name])}`;
@@ -289,13 +291,24 @@ function change(changes, anew = false) {
   }
   if (anew) pace = motion.span / 2.5;
   at.words.textContent = sentence(motion, DATA.phrases, unitOf("time"));
-  at.sketch.hidden = !motion.isSketch;
+  at.sketch.hidden = !motion.doubt;
+  at.sketch.textContent = `sketch: ${motion.doubt} (use lagtop solve)`;
+  nameScenes();
   at.record.replaceChildren();
   for (const [name, x] of Object.entries(motion.record).filter(([, value]) => value !== null)) {
     const row = at.record.insertRow();
     for (const words of [DATA.keys[name].symbol, titleOf(DATA.keys[name]), text(x)]) row.insertCell().textContent = words;
   }
   curves = null;
+}
+
+/** Mark the scene of the menu as edited if its inputs are others now. */
+function nameScenes() {
+  const own = DATA.scenes[at.scenes.value] ?? DATA.scene;
+  const isEdited = Object.keys(DATA.inputs).some((name) => own[name] !== scene[name]);
+  for (const option of at.scenes.options) {
+    option.textContent = option.value + (isEdited && option.selected ? " (edited)" : "");
+  }
 }
 
 const redraw = () => { fresh = false; };
@@ -315,15 +328,18 @@ function play(isOn) {
 
 /** Write everything that is shown into the address. */
 function link() {
+  const { steady, ...inputs } = scene;
   const view = { t, speed: at.speed.value, ...camera, scene: at.scenes.value };
-  history.replaceState(null, "", `#${new URLSearchParams({ ...scene, ...view })}`);
+  history.replaceState(null, "", `#${new URLSearchParams({ ...inputs, ...view })}`);
 }
 
 /** Show what the address says, or else the scene of the file. */
 function restore() {
   const words = new URLSearchParams(location.hash.slice(1));
   const known = Object.fromEntries([...words].map(([name, x]) => [name, number(x)]));
-  at.scenes.value = words.get("scene") in DATA.scenes ? words.get("scene") : "this scene";
+  const isOwn = ([, inputs]) => DATA.units.time === "time" && Object.keys(inputs).every((x) => inputs[x] === DATA.scene[x]);
+  const name = words.get("scene") ?? Object.entries(DATA.scenes).find(isOwn)?.[0];
+  at.scenes.value = name in DATA.scenes ? name : "this scene";
   change(DATA.scene, true);
   change(Object.fromEntries(Object.entries(known).filter(([name]) => name in DATA.inputs)), true);
   for (const name of Object.keys(camera)) if (Number.isFinite(known[name])) camera[name] = known[name];
@@ -362,7 +378,7 @@ on(document, "keydown", (event) => {
   event.preventDefault();
   KEYS[event.key]();
 });
-at.scenes.append(...["this scene", ...Object.keys(DATA.scenes)].map((name) => new Option(name)));
+at.scenes.append(...["this scene", ...Object.keys(DATA.scenes)].map((name) => new Option(name, name)));
 on(at.scenes, "change", () => {
   change(DATA.scenes[at.scenes.value] ?? DATA.scene, true);
   setTime(0);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tempfile
 import webbrowser
 from base64 import b64encode
@@ -15,7 +16,7 @@ from typing import Any
 from ...account.summary import PHRASES
 from ...errors import LagtopError, check_type
 from ...output.notebook import Document
-from ...solver.keys import KEYS
+from ...solver.keys import NUMBERS
 from ...solver.solve import Motion, solve
 from ...top.given import read_scene
 from ...top.inputs import DECLARED
@@ -23,7 +24,7 @@ from ...top.scenes import scene_names
 
 SHOWN = (
     "a b u1 u2 u3 k T_nutation T_spin T_precession theta_min_deg theta_max_deg mean_spin_rate "
-    "mean_precession_rate"
+    "mean_precession_rate stability_factor r0_sleeping"
 ).split()
 """The keys of the record that `motion.js` computes."""
 
@@ -32,7 +33,8 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     """Return the interactive page for the browser: the top in space, its curves and its numbers.
 
     `unit` names mass, len and time in the units of the inputs.  The page computes in doubles, to
-    1e-7 rad over 20 nutations, and says where it is only a sketch.  Raises LagtopError for inputs
+    1e-7 rad over 20 nutations.  It calls itself a sketch, with the reason, if doubles do not decide
+    its words or lose its numbers.  Raises LagtopError for inputs
     outside 1e-30 to 1e30.
 
     >>> view(solve(Top()))[:15]
@@ -55,20 +57,22 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
 def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
     """Return the constant DATA of the page."""
     scene = page_scene(motion)
-    inputs = {name: DECLARED[name.removesuffix("_deg")] for name in scene}
-    units = {x.unit for x in inputs.values()} | {KEYS[x].unit for x in SHOWN}
+    inputs = {name: DECLARED[name.removesuffix("_deg")] for name in motion.top.inputs()}
+    units = {x.unit for x in inputs.values()} | {NUMBERS[x].unit for x in SHOWN}
     return {
         "scene": scene,
         "scenes": {name: page_scene(solve(read_scene(name))) for name in scene_names()},
         "units": {x: unit(x) for x in sorted(units)},
         "phrases": PHRASES,
         "inputs": {name: x._asdict() for name, x in inputs.items()},
-        "keys": {x: KEYS[x]._asdict() for x in SHOWN},
+        "keys": {x: NUMBERS[x]._asdict() for x in SHOWN},
     }
 
 
 def page_scene(motion: Motion) -> dict[str, float]:
-    """Return the inputs of a motion as doubles, with the tilt in degrees.
+    """Return the inputs of a motion as doubles, with the tilt in degrees, and whether it is steady.
+
+    A rate of steady precession that is rounded to a double does not show that.
 
     Raises LagtopError for an input out of the range of the page.
     """
@@ -76,7 +80,9 @@ def page_scene(motion: Motion) -> dict[str, float]:
     for name, value in scene.items():
         if name != "theta0_deg" and value and not 1e-30 <= abs(value) <= 1e30:
             raise LagtopError(f"{name} must be from 1e-30 to 1e30 for a page, got {value}", name)
-    return scene
+    if not motion.facts.pole:  # a tilt next to the vertical must not become vertical
+        scene["theta0_deg"] = min(max(scene["theta0_deg"], 1e-300), math.nextafter(180, 0))
+    return scene | {"steady": motion.facts.steady}
 
 
 def open_page(page: Document, path: str | None) -> None:
