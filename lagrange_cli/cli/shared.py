@@ -18,7 +18,7 @@ from ..output.destination import Output, opened
 from ..output.formats import FORMATS
 from ..output.terminal import is_screen
 from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
-from ..top.units import is_unit
+from ..top.units import Units, is_unit
 from ..top.values import Value, parse_value, tilt_key
 from .app import complain, worded
 
@@ -148,6 +148,7 @@ _READING = {
         type=Parsed("X", parse_positive),
         help="Time between two rows without a time, or between two frames.",
     ),
+    "fps": option("--fps", type=Parsed("N", parse_positive), help="Frames per unit of time: 1/dt."),
     "t_min": option("--t-min", type=_DOUBLE, help="First time to read."),
     "t_max": option("--t-max", type=_DOUBLE, help="Last time to read."),
     "decimal": decimal,
@@ -180,7 +181,7 @@ def recording(function: F) -> F:
 
         given = {x: others.pop(x) for x in _READING}
         given = {x: y for x, y in given.items() if y is not None}
-        reading = Reading.of(radians=top.radians, **given)
+        reading = Reading.of(units=Units(radians=top.radians), **given)
         function(top=top, reading=reading, **others)
 
     found: Any = run

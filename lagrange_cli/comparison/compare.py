@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import repeat
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 
@@ -14,8 +14,7 @@ from ..errors import DataError, LagtopError, check_type, joined
 from ..file_bytes import shown_path
 from ..names import ANGLES
 from ..output.notebook import HasRecord
-from ..recordings.options import Reading
-from ..recordings.recording import Recording, recording_of
+from ..recordings.recording import Given, Recording, recording_of
 from ..solver.solve import Motion, solve
 from ..top.top import Top
 from .causes import likely_causes
@@ -128,14 +127,10 @@ COMPARISON_KEYS: dict[str, str] = {
 
 def compare(
     top: Top | Motion,
-    t: ArrayLike,
+    t: ArrayLike | None = None,
     *,
-    quaternion_order: str = "wxyz",
-    euler_sequence: str = "xyz",
-    rates_frame: str = "body",
-    align: str | Sequence[str] = (),
     max_error: float = LIMIT,
-    **arrays: ArrayLike | None,
+    **trajectory: Unpack[Given],
 ) -> Comparison:
     """Compare a trajectory of n rows, at the times t, with the exact motion of a top.
 
@@ -146,9 +141,10 @@ def compare(
     the pivot.  Rates: angular velocity `rates` (n, 3) in the frame of the `body` or of `space`, or
     `angle_rates` (n, 3), the rates of theta, phi, psi.
 
-    Angles are in radians; a masked element is a missing number.  `align` changes the trajectory
-    first, as in `lagtop compare`: words or a text such as "up=y,left".  A trajectory is fine up to
-    `max_error` radians.
+    Angles are in radians; a masked element is a missing number.  The options are those of `lagtop
+    compare`: `quaternion_order`, `euler_sequence`, `rates_frame`, `align` (words, or a text such as
+    "up=y,left"), `t_min` and `t_max`, and `dt` or `fps` if there is no t, or if it counts frames.
+    A trajectory is fine up to `max_error` radians.
 
     Raises LagtopError for a bad argument, and for times that are not finite or that turn back.
 
@@ -161,9 +157,7 @@ def compare(
     check_type("top", top, Top, Motion)
     if not max_error > 0:
         raise LagtopError(f"max_error must be > 0, got {max_error}", "max_error")
-    options: dict[str, Any] = {"quaternion_order": quaternion_order, "align": align}
-    options |= {"euler_sequence": euler_sequence, "rates_frame": rates_frame}
-    run = recording_of(t, arrays, Reading.of(radians=True, **options))
+    run = recording_of(t, trajectory)
     motion = top if isinstance(top, Motion) else solve(top)
     return compared(motion, [run], max_error)[0][0]
 
@@ -232,9 +226,6 @@ def _measured(exact: ExactMotion, run: Recording, step: float | None) -> Compari
     lost = np.isnan(error) & ~missing
     return Comparison(
         file=source.file,
-        columns=", ".join(source.used) or None,
-        unused=", ".join(source.unused) or None,
-        read="; ".join(source.lines) or None,
         step=step,
         rows=t.size,
         rows_missing=int(missing.sum()),
@@ -246,6 +237,7 @@ def _measured(exact: ExactMotion, run: Recording, step: float | None) -> Compari
         t=t,
         error=error,
         **known,
+        **source.record(),
     )
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import islice
 from types import NoneType
-from typing import Any
+from typing import Any, Unpack
 
 from numpy.typing import ArrayLike
 
 from ..errors import check_type
-from ..recordings.options import Reading
-from ..recordings.recording import recording_of
+from ..recordings.recording import Given, recording_of
 from ..top.given import gather
 from ..top.units import DEGREES, Units
 from ..top.values import parse_value, value_of
@@ -35,19 +34,16 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
 
 
 def fit(
-    t: ArrayLike,
+    t: ArrayLike | None = None,
     *,
     sigma: Mapping[str, float] | float | None = None,
     known: Mapping[str, Any] | None = None,
-    quaternion_order: str = "wxyz",
-    euler_sequence: str = "xyz",
-    align: str | Sequence[str] = (),
-    **arrays: ArrayLike | None,
+    **recording: Unpack[Given],
 ) -> Outcome:
     """Fit a top to a recording; the results are in `record()`.
 
-    Pass an attitude, angles, the figure axis or the position of a marker as arrays, and their
-    conventions, as to `compare`; rates are not used.  `sigma` is a standard deviation in radians,
+    Pass an attitude, angles, the figure axis or the position of a marker as arrays, and options,
+    as to `compare`; rates are not used.  `sigma` is a standard deviation in radians,
     or a mapping by channel; by default it is estimated from the residuals.  `known` are known
     inputs by key, which are tested against the recording.  Texts such as `"0.070(5)"`, and numbers
     of uncertainties, are uncertain; units are converted to SI.  Raises LagtopError, DataError for a
@@ -65,9 +61,7 @@ def fit(
     (39000.0, 592)
     """
     check_type("known", known, Mapping, NoneType)
-    options: dict[str, Any] = {"quaternion_order": quaternion_order, "align": align}
-    reading = Reading.of(radians=True, euler_sequence=euler_sequence, **options)
-    recording = measured(recording_of(t, arrays, reading), sigma)
+    seen = measured(recording_of(t, recording), sigma)
     given = {
         name: parse_value(name, x, uncertain=True, steady=name == "psidot0")
         if isinstance(x, str)
@@ -75,4 +69,4 @@ def fit(
         for name, x in (known or {}).items()
     }
     found = gather(given)
-    return fit_recording(recording, known_inputs(found.inputs, found.stds))
+    return fit_recording(seen, known_inputs(found.inputs, found.stds))

@@ -193,7 +193,7 @@ def measured(recording: Recording, sigma: Mapping[str, float] | float | None = N
         raise DataError.at(where, error) from None
     position = recording.given.get("position") if kind == "axis" else None
     raw = Measured("", recording, t, recording.begins, kind, angles, {}, position)
-    spread = {name: x * recording.reading.angle for name, x in _sigma(raw, sigma).items()}
+    spread = {name: x / recording.reading.units.radian for name, x in _sigma(raw, sigma).items()}
     return replace(raw.part(rows), sigma=spread)
 
 

@@ -216,8 +216,7 @@ class Outcome(HasRecord):
             record |= {key: number.value, f"{key}_std": number.std}
         record |= {f"{key}_known_sigmas": x for key, x in self.distances.items()}
         record |= {"t_start": self.recording.t_start, "rows": self.recording.t.size}
-        if lines := self.recording.source.source.lines:
-            record["read"] = "; ".join(lines)
+        record |= self.recording.source.source.record()
         record |= {"dof": self.dof, "chi2_dof": self.chi2_dof}
         record["chi2_dof_low"], record["chi2_dof_high"] = self.chi2_bounds
         scale, unit = self.units.radian, self.units.angle

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arithmetic import rotations
 from ..arithmetic.types import Array
+from ..top.units import RADIANS
 from .observed import Observed
 from .options import Alignment, Reading
 from .recording import Recording
@@ -138,7 +139,7 @@ def in_frames(recording: Recording, space: Array, body: Array) -> Recording:
     motion = {"quaternion": seen.quaternion, "axis": seen.axis, "rates": seen.body_rates}
     given = {x: recording.given[x] for x in ("t", "missing")}
     given |= {key: x for key, x in motion.items() if x is not None}
-    return recording._replace(given=given, reading=Reading(radians=True))
+    return recording._replace(given=given, reading=Reading(units=RADIANS))
 
 
 def turn_of(matrix: Array) -> str:

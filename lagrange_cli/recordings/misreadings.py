@@ -49,11 +49,12 @@ def misreadings(recording: Recording) -> list[Misreading]:
 
 
 def _of_clock(recording: Recording) -> Iterator[Misreading]:
-    factors = {f"t is in {x}": y for x, y in _UNITS.items()}
-    if (recording.t == np.rint(recording.t)).all():
-        factors |= {f"t counts frames, {x} per second": 1 / x for x in _FRAME_RATES}
-    for name, factor in factors.items():
-        yield Misreading(name, partial(Recording.timed, factor=factor), kind="clock")
+    factors = {f"t is in {x}": (y, "") for x, y in _UNITS.items()}
+    if recording.reading.dt is None and (recording.t == np.rint(recording.t)).all():
+        frames = {x: f"t counts frames, {x} per second" for x in _FRAME_RATES}
+        factors |= {name: (1 / x, arg("fps", x)) for x, name in frames.items()}
+    for name, (factor, remedy) in factors.items():
+        yield Misreading(name, partial(Recording.timed, factor=factor), remedy, "clock")
 
 
 def _of_conventions(recording: Recording) -> Iterator[Misreading]:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError, arg
+from ..top.inputs import checked_double
+from ..top.units import DEGREES, Units
 
 WORDS = {
     "axis=y": "the figure axis is the body's y axis (or x, -x, -y, -z)",
@@ -83,17 +85,25 @@ class Reading(NamedTuple):
     decimal: str = ""
     """The decimal mark of a file, empty if its first rows decide."""
     dt: float | None = None
-    """The time between two rows, or between two frames if the file counts them."""
+    """The time between two rows, or between two frames if the times count them."""
     t_min: float = -np.inf
     t_max: float = np.inf
     """The first and the last time, as the file counts them."""
-    radians: bool = False
-    """Whether angles without a unit are in radians."""
+    units: Units = DEGREES
+    """The units of angles whose columns have none."""
 
     @classmethod
-    def of(cls, *, align: str | Sequence[str] = (), **given: Any) -> Reading:
-        """Return the options after checks.  Raises LagtopError for a bad one."""
+    def of(
+        cls, *, align: str | Sequence[str] = (), fps: float | None = None, **given: Any
+    ) -> Reading:
+        """Return the options after checks; `fps` is 1/dt.  Raises LagtopError for a bad one."""
         found = cls(align=Alignment.of(align), **given)
+        if fps is not None:
+            if found.dt is not None:
+                raise LagtopError(f"fps is 1/{arg('dt')}: give one of them", "fps")
+            found = found._replace(dt=1 / _positive("fps", fps))
+        elif found.dt is not None:
+            _positive("dt", found.dt)
         axes = r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})"  # neighbours differ
         for key, pattern, wanted in (
             ("quaternion_order", "wxyz|xyzw", "wxyz or xyzw"),
@@ -102,12 +112,27 @@ class Reading(NamedTuple):
         ):
             if not re.fullmatch(pattern, str(got := getattr(found, key))):
                 raise LagtopError(f"{key} must be {wanted}, got {quoted(got)}", key)
-        if not found.t_min < found.t_max:
+        if not checked_double("t_min", found.t_min) < checked_double("t_max", found.t_max):
             ends = f"{found.t_min:g} and {found.t_max:g}"
             raise LagtopError(f"t_min must be < {arg('t_max')}, got {ends}", "t_min")
         return found
 
-    @property
-    def angle(self) -> float:
-        """The usual unit of angles in radians."""
-        return 1.0 if self.radians else np.pi / 180
+
+class Options(TypedDict, total=False):
+    """The options of `fit` and `compare` in Python, where angles are in radians."""
+
+    quaternion_order: str
+    euler_sequence: str
+    rates_frame: str
+    align: str | Sequence[str]
+    dt: float | None
+    fps: float | None
+    t_min: float
+    t_max: float
+
+
+def _positive(name: str, value: Any) -> float:
+    """Return a number > 0.  Raises LagtopError."""
+    if not 0 < (number := checked_double(name, value)) < np.inf:
+        raise LagtopError(f"{name} must be > 0, got {number:g}", name)
+    return number

@@ -18,7 +18,6 @@ from ..file_bytes import decoded, read_bytes, shown_path, utf8_path
 from ..files.binary_tables import BinaryTable, binary_table
 from ..files.text_tables import Table, read_table
 from .doubts import are_radians
-from .observed import rows_of
 from .options import OPTION_OF, Reading
 from .quantities import (
     NAMING,
@@ -92,11 +91,9 @@ class _File:
             if is_named and error.key == "columns":
                 raise
             raise DataError.at(self.name, error) from None
-        counts, has_dt = found.get("t", _NO_TIME).says == "frames", self.reading.dt is not None
-        if "t" in found and counts is not has_dt:
-            words = "counts frames: give" if counts else "is a time: omit"
+        if found.get("t", _NO_TIME).says == "frames" and self.reading.dt is None:
             shown = self.names[found["t"].columns[0]]
-            raise DataError(f"{self.name}: {shown} {words} {arg('dt')}")
+            raise DataError(f"{self.name}: {shown} counts frames: give {arg('fps')}")
         return found
 
     def recording(self) -> Recording:
@@ -122,7 +119,7 @@ class _File:
             [*self._lines(rows, used, radians)],
             "s" if self.quantities.get("t", _NO_TIME).unit else "units of the recording",
         )
-        return _within(Recording(given, reading, begins, source), self.name)
+        return Recording(given, reading, begins, source).within()
 
     def _empty(self) -> dict[str, Mask]:
         """Return for every quantity whether a part of it is an empty cell, by row."""
@@ -146,7 +143,7 @@ class _File:
             for key, x in raw.items()
             if QUANTITIES[key].unit == "angle" and self.quantities[key].unit is None
         }
-        return {*bare} if self.reading.radians or are_radians(bare.values()) else set()
+        return {*bare} if self.reading.units.radians or are_radians(bare.values()) else set()
 
     def _times(self, raw: Mapping[str, Array]) -> tuple[float, Array]:
         """Return the time of the first row, and times since then, each rounded once.
@@ -158,6 +155,9 @@ class _File:
         for i in np.flatnonzero(~np.isfinite(t))[:1]:
             raise DataError(f"{self._where(i)}: t must be a finite number, got {t[i]}")
         if dt is not None:
+            if (parts := np.flatnonzero(t != np.rint(t))).size:
+                wrong = f"t must count frames if {arg('dt')} or {arg('fps')} is given, got"
+                raise DataError(f"{self._where(parts[0])}: {wrong} {t[parts[0]]:g}")
             return float(t[0] * dt), ((t - t[0]) * dt).reshape(-1, 1)
         found = self.quantities["t"]
         begins = converted("t", found, t[:1], radians=True)
@@ -213,27 +213,13 @@ class _File:
             details = [found.unit or _UNITS.get(quantity.unit, "")]
             if quantity.unit == "angle":
                 details = [found.unit or "radians" if key in radians else "degrees"]
-                is_guess = key in radians and not self.reading.radians
+                is_guess = key in radians and not self.reading.units.radians
                 details += ["they jump by 6.28"] * is_guess
             if key == "position":
                 distance = float(np.nanmedian(np.linalg.norm(rows[key], axis=1)))
                 details.append(f"{distance:.4g} from the origin")
             more = ", ".join(filter(None, [found.says, *details]))
             yield f"{shown}: {quantity.meaning.partition(';')[0]}" + f" ({more})" * bool(more)
-
-
-def _within(recording: Recording, name: str) -> Recording:
-    """Return the rows in the range of time that was asked for."""
-    first, last = recording.reading.t_min, recording.reading.t_max
-    kept = np.flatnonzero((recording.t >= first) & (recording.t <= last))
-    if not kept.size:
-        raise DataError(f"{name} has no rows from t = {first:g} to {last:g}")
-    if kept.size == len(recording.t):
-        return recording
-    given = rows_of(recording.given, kept)
-    t = given["t"]
-    begins = recording.begins + float(t[0, 0])
-    return recording._replace(given={**given, "t": t - t[0]}, begins=begins)
 
 
 def _table_of(path: str, decimal: str, width: int | None) -> Table | BinaryTable:

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arithmetic.types import Array, Mask
-from ..errors import LagtopError
+from ..errors import LagtopError, arg
 from ..names import check_names
+from ..top.units import RADIANS
 from .observed import Observed, Quantities, framed, observe, quantities_of, rows_of
-from .options import Alignment, Reading
+from .options import Alignment, Options, Reading
 from .quantities import QUANTITIES
 
 
@@ -29,6 +30,30 @@ class Source(NamedTuple):
     """What was read, a line for each quantity."""
     time_unit: str = "units of the recording"
     """The unit of time for labels."""
+
+    def record(self) -> dict[str, Any]:
+        """Return what was read, by key of a document."""
+        return {
+            "columns": ", ".join(self.used) or None,
+            "unused": ", ".join(self.unused) or None,
+            "read": "; ".join(self.lines) or None,
+        }
+
+
+class Given(Options, total=False):
+    """What `fit` and `compare` take in Python: arrays with a row for each time, and options."""
+
+    quaternion: ArrayLike | None
+    matrix: ArrayLike | None
+    theta: ArrayLike | None
+    phi: ArrayLike | None
+    psi: ArrayLike | None
+    euler: ArrayLike | None
+    rotvec: ArrayLike | None
+    axis: ArrayLike | None
+    position: ArrayLike | None
+    rates: ArrayLike | None
+    angle_rates: ArrayLike | None
 
 
 class Recording(NamedTuple):
@@ -78,6 +103,19 @@ class Recording(NamedTuple):
         every = -(-len(self.given["t"]) // most)
         return self._replace(given=rows_of(self.given, slice(None, None, every)))
 
+    def within(self) -> Recording:
+        """Return the rows in the range of time of the reading.  Raises LagtopError for none."""
+        first, last = self.reading.t_min, self.reading.t_max
+        kept = np.flatnonzero(~((self.t < first) | (self.t > last)))
+        if not kept.size:
+            span = f"t goes from {self.t.min():g} to {self.t.max():g}"
+            raise LagtopError(f"no row has a time from {first:g} to {last:g}: {span}", "t_min")
+        if kept.size == len(self.t):
+            return self
+        given = rows_of(self.given, kept)
+        t = given["t"]
+        return self._replace(given=given | {"t": t - t[0]}, begins=self.begins + float(t[0, 0]))
+
     def observed(self, rows: slice = slice(None)) -> Observed:
         """Return the motion of some rows, in the frames of lagtop and with its clock."""
         seen = framed(observe(rows_of(self.given, rows), self.reading), self.align)
@@ -85,18 +123,24 @@ class Recording(NamedTuple):
         return replace(seen, t=seen.t + begins)
 
 
-def recording_of(
-    t: ArrayLike, arrays: Mapping[str, ArrayLike | None], reading: Reading
-) -> Recording:
-    """Return the recording in the arguments of `fit` or `compare`, with angles in radians.
+def recording_of(t: ArrayLike | None, arguments: Mapping[str, Any]) -> Recording:
+    """Return the recording in the arguments of `fit` or `compare` (see `Given`).
 
-    Raises LagtopError for arrays of a wrong shape, and for times that turn back.
+    The times `t` may be left out, or count frames, if `dt` or `fps` is given.  Raises LagtopError
+    for arrays of a wrong shape, and for times that turn back.
     """
-    given = {key: x for key, x in arrays.items() if x is not None}
+    options = {key: x for key, x in arguments.items() if key in Options.__annotations__}
+    given = {key: x for key, x in arguments.items() if x is not None and key not in options}
+    reading = Reading.of(units=RADIANS, **options)
     if not given:
         raise LagtopError("an attitude, an axis, angles or rates must be given, got none")
     check_names("arrays", [*given], [x for x in QUANTITIES if x != "t"])
-    rows = quantities_of(t, given)
+    if t is None and reading.dt is None:
+        raise LagtopError(f"t must be given, or {arg('dt')} or {arg('fps')}", "t")
+    first = np.atleast_1d(np.asarray(next(iter(given.values())), object))
+    rows = quantities_of(np.arange(float(len(first))) if t is None else t, given)
+    if reading.dt is not None:
+        rows["t"] = rows["t"] * reading.dt
     times, rows["missing"] = rows["t"][:, 0], np.zeros_like(rows["t"])
     steps = np.diff(times)
     if not times.size or not ((steps >= 0).all() or (steps <= 0).all()):
@@ -104,7 +148,7 @@ def recording_of(
     for key, x in given.items():
         if isinstance(x, np.ma.MaskedArray):
             rows["missing"] += np.ma.getmaskarray(x).reshape(rows[key].shape).any(1, keepdims=True)
-    return Recording(rows, reading)
+    return Recording(rows, reading).within()
 
 
 def used_in(rows: Quantities, reading: Reading) -> set[str]:

@@ -74,8 +74,8 @@ class Units(NamedTuple):
         return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark) if remark and self.si else remark
 
 
-DEGREES = Units()
-"""The units of documents by default."""
+DEGREES, RADIANS = Units(), Units(radians=True)
+"""The units of documents by default, and of numbers in Python."""
 
 
 def bare_name(name: str) -> str:

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli.comparison.compare import Convergence, compared, convergence
 from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.recording import Recording
+from lagrange_cli.top.units import RADIANS
 
 TOP = Top(thetadot0=1, psidot0=3)
 T = np.linspace(0, 2, 201)
@@ -192,7 +193,7 @@ def with_steps(
     given = [
         {"t": t[:, np.newaxis], "quaternion": y[:, :4], "missing": 0 * y[:, :1]} for t, y in runs
     ]
-    reading = Reading(radians=True)
+    reading = Reading(units=RADIANS)
     rows, found = compared(solve(TOP), [Recording(x, reading) for x in given], 1e-3, steps)
     assert found
     return rows, found

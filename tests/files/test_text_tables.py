@@ -17,6 +17,7 @@ from lagrange_cli.files.tops import read_tops
 from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.reading import read_recording
 from lagrange_cli.recordings.times import read_times
+from lagrange_cli.top.units import RADIANS
 
 
 def times(path: Path, decimal: str) -> list[float]:
@@ -181,12 +182,12 @@ def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> N
     cells = ["0.1", "-1e-320", "1.7976931348623157e308", "3.", ".5", "+7", "2e22"] * 30
     rows = [f"{i},{x}" for i, x in enumerate(cells)]
     path.write_text("t,theta\n" + "\n".join(rows))
-    plain = read_recording(str(path), Reading(radians=True)).given["theta"][:, 0].tolist()
+    plain = read_recording(str(path), Reading(units=RADIANS)).given["theta"][:, 0].tolist()
     assert plain == list(map(float, cells))
     rows[3:5] = ['"3","3."', "4,.5", "4.5,nan"]
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
     assert (
-        read_recording(str(path), Reading(radians=True)).given["theta"][:, 0].tolist()[:5]
+        read_recording(str(path), Reading(units=RADIANS)).given["theta"][:, 0].tolist()[:5]
         == plain[:5]
     )
     rows[100] = "100,x"
@@ -202,7 +203,7 @@ def test_missing_cells_and_words_are_read_at_once_as_one_by_one(mark: str, tmp_p
     rows = "0,1,a,2 1,,b,3 2,4,,5 3,nan,c, ,,d, 5,,e, 6,-nan,f,6".split()
     for texts in (rows, rows[:-1], [*rows[:-1], '"7",,,'], [*rows, '"7",,,']):
         path.write_text("\n".join(["t,theta,note,psi", *texts]).replace(",", mark))
-        file = read_recording(str(path), Reading(radians=True))
+        file = read_recording(str(path), Reading(units=RADIANS))
         values = np.concatenate([file.given[x] for x in ("t", "theta", "psi", "missing")], axis=1)
         missing = file.missing[:, np.newaxis]
         found.append((values[:5], missing[:5]))

@@ -27,6 +27,7 @@ from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.quantities import QUANTITIES, expanded, quantities_in
 from lagrange_cli.recordings.reading import read_recording
 from lagrange_cli.recordings.times import read_times
+from lagrange_cli.top.units import Units
 
 PI, ROWS = math.pi, 50
 DATA = np.random.default_rng(1).normal(size=(ROWS, 5))
@@ -37,7 +38,7 @@ def read(
     path: Path | str, columns: list[str] | None = None, decimal: str = "", *, radians: bool = True
 ) -> dict[str, Any]:
     """Return every quantity of a file."""
-    options = Reading(columns=columns, decimal=decimal, radians=radians)
+    options = Reading(columns=columns, decimal=decimal, units=Units(radians=radians))
     found = read_recording(str(path), options)
     return {**found.given, "t": found.t[:, np.newaxis]}
 

@@ -30,7 +30,6 @@ from lagrange_cli.inverse.outcome import Outcome
 from lagrange_cli.inverse.problem import Problem
 from lagrange_cli.inverse.search import best_fit
 from lagrange_cli.recordings.doubts import shifted_origin
-from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.recording import recording_of
 
 sys.path.append(str(Path(__file__).parents[1] / "tools"))
@@ -43,7 +42,7 @@ LAB = {"m": 0.5, "g": 9.81, "s": 0.08}
 
 def recording_from(t: Array, **arrays: Array) -> Measured:
     """Return the measured motion in arrays of radians."""
-    return measured(recording_of(t, arrays, Reading(radians=True)))
+    return measured(recording_of(t, arrays))
 
 
 def motion_of(top: Top, t: Array) -> dict[str, Array]:

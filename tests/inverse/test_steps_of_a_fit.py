@@ -28,7 +28,6 @@ from lagrange_cli.inverse.signals import (
     step_between,
 )
 from lagrange_cli.inverse.starts import starts
-from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.recording import recording_of
 
 BODY = {"m": 0.5, "A": 4.45e-3, "C": 2.5e-3, "s": 0.08, "g": 9.81}
@@ -36,7 +35,7 @@ BODY = {"m": 0.5, "A": 4.45e-3, "C": 2.5e-3, "s": 0.08, "g": 9.81}
 
 def recording_from(t: Array, **arrays: Array) -> Measured:
     """Return the measured motion in arrays of radians."""
-    return measured(recording_of(t, arrays, Reading(radians=True)))
+    return measured(recording_of(t, arrays))
 
 
 @pytest.mark.parametrize(
