@@ -19,8 +19,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-MARK = "\x1d"
-"""The character on both sides of an argument in a text; no name of a file contains it."""
+MARK = "\ud800"
+"""What stands on both sides of an argument in a text: half of a surrogate pair.
+
+No decoder of a file, of a file name or of JSON returns it, so that none of them can forge a mark.
+"""
 
 
 def arg(name: str, value: object = None) -> str:

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import pytest
 from click.testing import CliRunner, Result
 from hypothesis import HealthCheck, settings
+from markdown_it import MarkdownIt
 
 from lagrange_cli.cli.app import main
 
@@ -96,6 +97,20 @@ def columns_of(text: str) -> dict[str, list[str]]:
     """Return the columns of a CSV by their headings."""
     rows = dicts(text)
     return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+def tables_of(text: str) -> list[list[list[str]]]:
+    """Return the cells of all tables in Markdown as a reader sees them."""
+    found: list[list[list[str]]] = []
+    for token in MarkdownIt("commonmark").enable("table").parse(text):
+        if token.type == "table_open":
+            found.append([])
+        elif token.type == "tr_open":
+            found[-1].append([])
+        elif token.type == "inline" and token.level >= 3 and found:
+            shown = "".join(x.content for x in token.children or [])
+            found[-1][-1].append(shown)
+    return found
 
 
 def process(*args: str, check: bool = True, **extra: Any) -> subprocess.CompletedProcess[bytes]:

@@ -16,7 +16,7 @@ from .text import json_text
 Keys = Mapping[str, Key]
 """Keys of a record by name, in the order of a table."""
 WIDE = 110
-"""Width of a terminal, in columns, from which on the table of a record has the names too."""
+"""Width in columns from which on the table of a record has the names too."""
 
 
 class Grid(NamedTuple):

@@ -1,17 +1,19 @@
-"""Display in notebooks: tables, the record of a motion, and documents in a frame."""
+"""Display in notebooks: results as documents in Markdown, and a web page in a frame."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from ..names import Key
+from .document import WIDE, Grid, record_page, shown_text
+from .formats.markdown import FORMAT
 
 
-class Document(str):
-    """An HTML document as text, which a notebook shows in a frame."""
+class WebPage(str):
+    """A page of HTML as text, which a notebook shows in a frame."""
 
     __slots__ = ()
 
@@ -20,7 +22,7 @@ class Document(str):
         return f'<iframe style="{style}" srcdoc="{escape(self)}"></iframe>'
 
     def save(self, path: str | Path) -> None:
-        """Write the document to a file.  Raises OSError."""
+        """Write the page to a file.  Raises OSError."""
         Path(path).write_text(self, encoding="utf-8")
 
 
@@ -30,24 +32,12 @@ class HasRecord:
     verdict: Any
     record: Callable[[], dict[str, Any]]
 
-    def _repr_html_(self) -> str:
-        """Return the results as a table for a notebook, without keys that have none."""
-        record = self.record()
-        return html_table(self.verdict, (x for x in record.items() if x[1] is not None))
+    def _repr_markdown_(self) -> str:
+        """Return the verdict and a table of the keys that have a value."""
+        rows = [[key, shown_text(x)] for key, x in self.record().items() if x is not None]
+        return FORMAT.page([f"Verdict: {self.verdict}", Grid(["Key", "Value"], rows, [1])], None)
 
 
-def record_html(caption: str, record: Mapping[str, Any], keys: Mapping[str, Key]) -> str:
-    """Return a record as an HTML table: key, symbol, meaning, value and unit."""
-    rows = (
-        (name, keys[name].symbol, keys[name].meaning, value, keys[name].unit)
-        for name, value in record.items()
-        if value is not None
-    )
-    return html_table(caption, rows)
-
-
-def html_table(caption: str, rows: Iterable[Sequence[Any]]) -> str:
-    """Return rows as an HTML table."""
-    texts = ([escape(str(x)) for x in row] for row in rows)
-    lines = "".join(f"<tr><td>{'</td><td>'.join(row)}</td></tr>" for row in texts)
-    return f"<table><caption>{escape(caption)}</caption>{lines}</table>"
+def record_markdown(record: Mapping[str, Any], keys: Mapping[str, Key]) -> str:
+    """Return a record as Markdown, with the name of each key."""
+    return FORMAT.page(record_page(record, lambda: keys, WIDE), None)

@@ -29,7 +29,7 @@ def printable(text: str, kept: str = "\n") -> str:
 
 def one_line(text: str) -> str:
     """Return a text as one printable line, with the middle left out of a long one."""
-    line = printable(" ".join(text.split()))
+    line = printable(" ".join(x.strip() for x in text.strip().split("\n")), "")
     if len(line) <= MOST_CHARACTERS:
         return line
     half = (MOST_CHARACTERS - 40) // 2

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
     from ..arithmetic.types import Array
-    from ..output.notebook import Document
+    from ..output.notebook import WebPage
     from .sampling import Angles
 
 
@@ -117,19 +117,19 @@ class Motion(Solution):
     def __repr__(self) -> str:
         return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
 
-    def _repr_html_(self) -> str:
-        from ..output.notebook import record_html  # start-up
+    def _repr_markdown_(self) -> str:
+        from ..output.notebook import record_markdown  # start-up
 
-        return record_html(self.regime, self.record(), KEYS)
+        return record_markdown(self.record(), KEYS)
 
-    def view(self) -> Document:
+    def view(self) -> WebPage:
         """Return an animated page of the top, for a notebook or, with `save`, for a browser.
 
         Raises LagtopError for inputs beyond the range of the page's arithmetic.
         """
         from .. import view  # the face of the package: pictures are drawn by a subpackage above
 
-        page: Document = view(self)
+        page: WebPage = view(self)
         return page
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:

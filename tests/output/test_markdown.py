@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from conftest import Lagtop, dicts
+from conftest import Lagtop, dicts, tables_of
 from hypothesis import given
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
@@ -14,25 +14,9 @@ from lagrange_cli.output.document import Grid
 from lagrange_cli.output.formats.markdown import FORMAT
 from lagrange_cli.output.terminal import printable
 
-Cells = list[list[str]]
-
-
-def tables_of(text: str) -> list[Cells]:
-    """Return the cells of all tables as a reader sees them."""
-    found: list[Cells] = []
-    for token in MarkdownIt("commonmark").enable("table").parse(text):
-        if token.type == "table_open":
-            found.append([])
-        elif token.type == "tr_open":
-            found[-1].append([])
-        elif token.type == "inline" and token.level >= 3 and found:
-            shown = "".join(x.content for x in token.children or [])
-            found[-1][-1].append(shown)
-    return found
-
 
 @given(st.lists(st.lists(st.text(), min_size=2, max_size=2), min_size=1, max_size=4))
-def test_any_text_in_a_cell_is_read_back(rows: Cells) -> None:
+def test_any_text_in_a_cell_is_read_back(rows: list[list[str]]) -> None:
     (found,) = tables_of(FORMAT.page([Grid(["a", "b"], rows)], None))
     assert found[1:] == [[printable(" ".join(x.split())) for x in row] for row in rows]
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import sys
 from fractions import Fraction
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from conftest import tables_of
 from lagtop import LagtopError, Top, compare, fit, solve
 from matplotlib.figure import Figure
 from scenes import EVERY_KIND
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.errors import UnavailableError
+from lagrange_cli.output.document import shown_text
 
 SEPARATRIX = EVERY_KIND["separatrix in a plane"]
 MOTION = solve(Top(theta0_deg=30, psidot0=3))
@@ -91,7 +92,6 @@ def test_a_fit_and_a_judgement_show_themselves() -> None:
         figure = shown.plot(Figure())
         assert len(figure.axes) == (6 if shown is outcome else 1)
         assert all(axes.lines for axes in figure.axes)
-        table = ElementTree.fromstring(shown._repr_html_())
-        assert [x.text for x in table.iter("caption")] == [shown.verdict]
-        cells = {row[0].text: row[1].text for row in table.iter("tr")}
-        assert cells == {key: str(x) for key, x in shown.record().items() if x is not None}
+        assert shown._repr_markdown_().startswith(f"Verdict: {shown.verdict}\n\n")
+        ((_, *rows),) = tables_of(shown._repr_markdown_())
+        assert dict(rows) == {x: shown_text(y) for x, y in shown.record().items() if y is not None}

@@ -15,7 +15,7 @@ from typing import Any
 
 from ...account.summary import PHRASES
 from ...errors import LagtopError, check_type
-from ...output.notebook import Document
+from ...output.notebook import WebPage
 from ...solver.keys import NUMBERS
 from ...solver.solve import Motion, solve
 from ...top.given import read_scene
@@ -29,7 +29,7 @@ SHOWN = (
 """The keys of the record that `motion.js` computes."""
 
 
-def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
+def view(motion: Motion, unit: Callable[[str], str] = str) -> WebPage:
     """Return the interactive page for the browser: the top in space, its curves and its numbers.
 
     `unit` names mass, len and time in the units of the inputs.  The page computes in doubles, to
@@ -51,7 +51,7 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
         digest = b64encode(sha256(part.encode()).digest()).decode()
         html = html.replace(f"{{{name} hash}}", f"'sha256-{digest}'")  # permits only this part
         html = html.replace(f"{{{name}}}", part)
-    return Document(html)
+    return WebPage(html)
 
 
 def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
@@ -85,7 +85,7 @@ def page_scene(motion: Motion) -> dict[str, float]:
     return scene | {"steady": motion.facts.steady}
 
 
-def open_page(page: Document, path: str | None) -> None:
+def open_page(page: WebPage, path: str | None) -> None:
     """Open a page in the user's browser, from the file at `path` or from a new temporary file.
 
     Raises LagtopError if no browser is found.
