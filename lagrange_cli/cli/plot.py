@@ -5,12 +5,13 @@ from __future__ import annotations
 from contextlib import ExitStack
 from fractions import Fraction
 from os.path import exists, splitext
+from typing import Any
 
 from ..errors import LagtopError, arg
 from ..names import suggestion
 from ..output.destination import opened
 from ..output.terminal import is_screen, with_progress
-from ..plot import KINDS, SHEET
+from ..plot import CAPTION, KINDS, SHEET
 from ..plot.style import (
     DARK,
     FORMATS,
@@ -43,11 +44,19 @@ FILMS = "gif", "mp4"
 @opt.option("--t-max", type=opt.TIME, help="Last time.  [default: a few nutation periods]")
 @opt.option("--key", metavar="KEY", help="Key of `map`.  [default: mean_precession_rate]")
 @opt.option("--x", metavar="RANGE", help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
-@opt.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0]")
+@opt.option(
+    "--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0=1:179:100 in deg]"
+)
 @opt.option(
     "--camera", metavar="AZ,EL", help="Azimuth and elevation in deg, or rad.  [default: in front]"
 )
 @opt.option("--title", metavar="TEXT", help="Title of the picture, or '' for none.")
+@opt.option(
+    "--caption",
+    metavar="KEY,...",
+    help="Inputs and results below each scene, or '' for none.  "
+    f"[default: {','.join(CAPTION)} for one scene]",
+)
 @opt.option("--dark", is_flag=True, help="Dark background.")
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
 @opt.option("--animate", metavar="FILE", help="Write a film of the top: FILE.gif or FILE.mp4.")
@@ -62,6 +71,7 @@ def plot_command(
     y: str | None,
     camera: str | None,
     title: str | None,
+    caption: str | None,
     dark: bool,
     dpi: Fraction | None,
     animate: str | None,
@@ -78,10 +88,10 @@ def plot_command(
     map     a key of the record over two inputs
     all     sphere, angles, cubic and phase on one sheet (default)
 
-    Several scenes are drawn side by side.
+    Several scenes fill a slide.
     """
-    expanded = {kind: [kind] for kind in KINDS} | {SHEET: [kind for kind in KINDS if kind != "map"]}
-    named = [word for word in words if word in expanded] or [SHEET]
+    expanded = {kind: (kind,) for kind in KINDS} | SHEET
+    named = [word for word in words if word in expanded] or [*SHEET]
     kinds = list(dict.fromkeys(kind for word in named for kind in expanded[word]))
     scenes = [word for word in words if word not in expanded]
     for word in scenes:
@@ -122,9 +132,10 @@ def plot_command(
         camera=eye,
         look=DARK if dark else LIGHT,
         key=key,
-        **{x: y and (y[0], next(y[1].number.blocks())) for x, y in axes.items()},
         progress=with_progress,
         stds=stds,
+        x=_points(axes["x"]),
+        y=_points(axes["y"]),
     )
     with ExitStack() as stack:
         if animate:
@@ -139,10 +150,17 @@ def plot_command(
                 for name, motion in drawn
             )
             with styled(options.look):
-                figure = figure_of(drawn, kinds, options, title)
+                figure = figure_of(drawn, kinds, options, title, _caption(caption, len(motions)))
                 picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)
     warn_if_unfair(stds)
+
+
+def _caption(text: str | None, scenes: int) -> list[str]:
+    """Return the keys of the caption; by default only one scene has one."""
+    if text is None:
+        return [*CAPTION] if scenes == 1 else []
+    return text.split(",") if text else []
 
 
 def _camera(text: str, units: Units) -> tuple[float, float]:
@@ -153,6 +171,11 @@ def _camera(text: str, units: Units) -> tuple[float, float]:
         wanted = "AZIMUTH,ELEVATION such as 30,15"
         raise LagtopError(f"--camera must be {wanted}, got {text!r}") from None
     return azimuth, elevation
+
+
+def _points(axis: tuple[str, Value] | None) -> tuple[str, Any] | None:
+    """Return the input along an axis and the array of its values."""
+    return axis and (axis[0], next(axis[1].number.blocks()))
 
 
 def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Value] | None:

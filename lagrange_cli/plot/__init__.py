@@ -19,8 +19,10 @@ if TYPE_CHECKING:
 
 KINDS = "sphere", "angles", "cubic", "phase", "map"
 """The kinds of picture."""
-SHEET = "all"
-"""The name of the sheet, which holds sphere, angles, cubic and phase."""
+SHEET = {"all": ("sphere", "angles", "cubic", "phase")}
+"""The name and the kinds of the sheet."""
+CAPTION = "r0", "T_nutation", "mean_precession_rate"
+"""The keys below the picture of one scene."""
 
 
 def draw(

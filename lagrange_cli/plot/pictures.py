@@ -26,7 +26,7 @@ from ..errors import LagtopError
 from ..names import check_names
 from ..output.terminal import Progress, silent
 from ..solver.facts import Regime
-from ..solver.keys import NUMBERS, degree_name
+from ..solver.keys import NUMBERS, all_keys, degree_name, shown_keys
 from ..solver.solve import Motion
 from ..sweeps.records import sweep
 from ..top.inputs import DECLARED, NINE
@@ -60,6 +60,8 @@ class Options(NamedTuple):
     """Input along the horizontal axis of a map, and its values."""
     y: tuple[str, ArrayLike] | None = None
     progress: Progress = silent
+    whole: bool = False
+    """Show whole spheres, which have the same scale, instead of the parts around the paths."""
 
     @property
     def time_label(self) -> str:
@@ -149,15 +151,15 @@ def project(camera: Array, points: Array) -> tuple[Array, Array]:
 def sphere(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     """Draw the path of the figure axis on the unit sphere, with the direction, coloured by time.
 
-    The path fills the picture, which may cut the sphere.  Above six nutation periods the line is
-    finer.  `add_time_bar` draws the scale of the colours.
+    The path fills the picture, which may cut the sphere, unless whole spheres are shown.  Above six
+    nutation periods the line is finer.  `add_time_bar` draws the scale of the colours.
     """
     (ax,), look = axes, options.look
     t, *columns = sampled(motion, last_time(motion, options.t_max, 3, 40), ["axis"])
     path = np.stack(columns, axis=1)
     camera = camera_of(path, options)
     moves = np.ptp(path, axis=0).max() > 1e-12
-    draw_globe(ax, motion, camera, options, path if moves else None)
+    draw_globe(ax, motion, camera, options, path if moves and not options.whole else None)
     near, far = project(camera, path)
     mark_start(ax, camera[:2] @ path[0], look, "start" if moves else "the axis stays here")
     if moves:
@@ -336,7 +338,9 @@ def phase(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     _, theta, rate = sampled(motion, last_time(motion, None, 1, 1), ["theta", "thetadot"])
     ax.axhline(0.0, color=look.quiet, lw=0.9)
     ax.plot(theta * factor, rate, color=look.lines[0], label="this motion")
-    mark_start(ax, (theta[0] * factor, float(motion.top.thetadot0)), look)
+    stays = motion.theta_min_deg == motion.theta_max_deg
+    name = "the tilt stays here" if stays else "start"
+    mark_start(ax, (theta[0] * factor, float(motion.top.thetadot0)), look, name)
     a, b = float(motion.a), float(motion.b)
     if b * b < 2 * a:  # with alpha = a and beta = b, (4,9) is
         # theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2)
@@ -468,6 +472,8 @@ PICTURES: dict[str, tuple[Callable[[Motion, Sequence[Axes], Options], str], int,
 }
 """The function of each kind, which draws on axes and returns a title; the number of its axes, one
 below the other; and the width and height of one picture (inches)."""
+WHOLE = 4.6, 5.0
+"""The width and height of a whole sphere (inches)."""
 
 
 def figure_of(
@@ -475,33 +481,81 @@ def figure_of(
     kinds: Sequence[str],
     options: Options,
     title: str | None = None,
+    caption: Sequence[str] = (),
 ) -> Figure:
     """Return a figure with a panel for each kind of each scene, a name and a motion.
 
-    Several scenes stand side by side, with their names in the titles; several kinds of one scene
-    fill a square.  A `title` above the figure, which may be empty, replaces those of the panels.
+    The panels of several scenes fill a slide, with the names of the scenes above them.  A `title`
+    above the figure replaces the names of the kinds; an empty one omits all names.  The keys of
+    `caption` are printed below the panels of a scene.  Raises LagtopError for an unknown key.
     """
-    panels = [(*scene, kind) for kind in kinds for scene in scenes]
-    columns = len(scenes) if len(scenes) > 1 else math.ceil(math.sqrt(len(kinds)))
+    several = len(scenes) > 1
+    options = options._replace(whole=several)
+    panels = [(i, kind) for kind in kinds for i in range(len(scenes))]
+    sizes = [WHOLE if several and kind == "sphere" else PICTURES[kind][2] for kind in kinds]
+    width, height = np.max(sizes, axis=0)
+    columns = columns_on_slide(len(panels), width / height)
+    if several and len(kinds) > 1:
+        columns = len(scenes)
     rows = -(-len(panels) // columns)
-    width, height = np.max([PICTURES[kind][2] for kind in kinds], axis=0)
     figure = Figure(figsize=(width * columns, height * rows))
     spheres = []
     places = figure.add_gridspec(rows, columns)
-    for i, (name, motion, kind) in enumerate(panels):
-        draw, count, _ = PICTURES[kind]
-        several: Any = places[i].subgridspec(count, 1).subplots(sharex=True) if count > 1 else []
-        axes = [*several] or [figure.add_subplot(places[i])]
+    for n, (i, kind) in enumerate(panels):
+        (name, motion), (draw, count, _), place = scenes[i], PICTURES[kind], places[n]
+        column: Any = place.subgridspec(count, 1).subplots(sharex=True) if count > 1 else []
+        axes = [*column] or [figure.add_subplot(place)]
         shown = draw(motion, axes, options)
-        stem = PurePath(name).stem if len(scenes) > 1 else ""
-        if title is None:
-            both = f"{stem}: {shown}" if stem and shown not in stem else stem or shown
-            axes[0].set_title(plain(both), pad=18)
+        stem = PurePath(name).stem if several else ""
+        if title is None and shown not in stem:
+            stem = f"{stem}: {shown}" if stem else shown
+        axes[0].set_title(plain(stem) if title != "" else "", pad=18)
+        if caption and several:
+            add_caption(axes[-1], caption_of(motion, caption, options.units))
         spheres += axes * (kind == "sphere")
     add_time_bar(spheres, options.time_label)
     if title:
         figure.suptitle(plain(title), x=0.012, ha="left")
+    if caption and not several:
+        figure.supxlabel(caption_of(scenes[0][1], caption, options.units), size="medium")
     if engine := figure.get_layout_engine():  # for pictures of equal scales, two rounds do not do
         for _ in range(2):
             engine.execute(figure)
     return figure
+
+
+def caption_of(motion: Motion, keys: Sequence[str], units: Units) -> str:
+    """Return inputs and results of a motion, with their symbols and units, in one line.
+
+    Raises LagtopError for an unknown key.
+    """
+    record = motion.record(
+        keys=check_names("caption", keys, all_keys(units)), radians=units.radians
+    )
+    declared = shown_keys(units, requested=True)
+    words = []
+    for key in keys:
+        value = record[key]
+        if value is None:
+            continue
+        unit = declared[key].unit if units.si or key.endswith("deg") else ""  # names of no units
+        shown = f"{value:.4g} {unit}" if isinstance(value, float) else str(value)
+        words.append(f"{declared[key].symbol or key} = {shown}".strip())
+    return ",  ".join(words)
+
+
+def add_caption(axes: Axes, text: str) -> None:
+    """Write a text below axes: above the legend, or else below the label."""
+    if legend := axes.get_legend():
+        legend.set_title(text)
+        legend.get_title().set_fontsize("small")
+    else:
+        axes.set_xlabel(f"{axes.get_xlabel()}\n{text}".strip(), fontsize="small")
+
+
+def columns_on_slide(count: int, shape: float) -> int:
+    """Return the columns in which `count` panels of width/height `shape` are largest on 16:9."""
+    return max(
+        range(1, count + 1),
+        key=lambda columns: min(16 / 9 / columns, shape / -(-count // columns)),
+    )

@@ -22,6 +22,7 @@ from lagrange_cli.plot.pictures import (
     PICTURES,
     Options,
     camera_of,
+    columns_on_slide,
     figure_of,
     last_time,
     sampled,
@@ -117,7 +118,8 @@ def test_spheres_fill_the_picture_with_one_colour_bar(names: list[str]) -> None:
     for each, motion in zip(axes, motions, strict=True):
         assert each.collections[1].get_clim()[1] == last
         points = np.concatenate([x for x in each.collections[1].get_segments() if len(x)])
-        assert np.nanmax(points[:, 0]) - np.nanmin(points[:, 0]) > 0.7 * np.diff(each.get_xlim())[0]
+        filled = np.nanmax(points[:, 0]) - np.nanmin(points[:, 0]) > 0.7 * np.diff(each.get_xlim())
+        assert filled if len(names) == 1 else each.get_xlim() == (-1.35, 1.35)
         assert each.get_title("left").endswith(str(motion.path))
         inside = [each.get_window_extent().contains(*x.get_window_extent().min) for x in each.texts]
         assert all(inside)
@@ -128,10 +130,34 @@ def test_titles_are_short_and_replaced() -> None:
     motions = [solve(Top()), solve(Top(psidot0=1))]
     titles = [x.get_title("left") for x in drawn("cubic", *motions).axes]
     assert titles == [f"{i}: The cubic f(u) = u̇² (4,9), the motion shaded" for i in (0, 1)]
-    for title in ("$x_1$", ""):
+    for title, names in (("$x_1$", ["0", "1"]), ("", ["", ""])):
         figure = drawn("phase", *motions, title=title)
-        assert [x.get_title("left") for x in figure.axes] == ["", ""]
+        assert [x.get_title("left") for x in figure.axes] == names
         assert figure.get_suptitle() == title.replace("$", r"\$")
+
+
+@pytest.mark.parametrize(
+    ("count", "columns"), [(1, 1), (2, 2), (3, 3), (4, 2), (6, 3), (8, 4), (9, 5)]
+)
+def test_panels_fill_a_slide(count: int, columns: int) -> None:
+    assert columns_on_slide(count, 1.0) == columns
+
+
+def test_captions_are_below_the_panels() -> None:
+    motions = [solve(Top()), solve(read_scene("sleeping-top"))]
+    keys = "r0", "T_nutation", "theta0_deg", "regime"
+    words = ["r0 = 50,  T = 0.4293,  ϑ0 = 30 deg,  regime = regular"]
+    words.append("r0 = 60,  ϑ0 = 0 deg,  regime = sleeping")
+    with styled(LIGHT):
+        below = [
+            figure_of([("", x) for x in motions], [kind], Options(), None, keys).axes
+            for kind in ("sphere", "cubic")
+        ]
+        one = figure_of([("", motions[0])], ["cubic", "phase"], Options(), None, keys)
+    legends: list[Any] = [x.get_legend() for x in below[0][:2]]
+    assert [x.get_title().get_text() for x in legends] == words
+    assert [x.get_xlabel().partition("\n")[2] for x in below[1]] == words
+    assert one.get_supxlabel() == words[0]
 
 
 # --- angles, cubic and phase
@@ -389,7 +415,7 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
 def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> None:
     shown: list[Any] = []
 
-    def figure_of(scenes: Any, _: object, options: Any, __: object) -> None:
+    def figure_of(scenes: Any, _: object, options: Any, *__: object) -> None:
         shown.extend([scenes[0][1].top, options.x, options.y])
         raise LagtopError("enough")
 
