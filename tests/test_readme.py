@@ -219,7 +219,7 @@ def test_every_option_and_key_is_explained() -> None:
         (NAMES, "README.md"),
         (FORMATS, "lagrange_cli/cli/README.md"),
         ([x.extension for x in FORMATS.values() if x.extension], "lagrange_cli/cli/README.md"),
-        ([*KINDS, SHEET], "lagrange_cli/plot/README.md"),
+        ([*KINDS, *SHEET], "lagrange_cli/plot/README.md"),
     ],
 )
 def test_every_name_of_a_registry_is_on_its_page(names: Iterable[str], page: str) -> None:
