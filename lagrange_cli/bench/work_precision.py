@@ -16,6 +16,7 @@ from ..plot.style import LIGHT, plain
 from ..solver.solve import Motion
 from .measure import ERROR, RUNS, SLOW, Row, Task, looks, measure, panels_of, report_of, task_of
 from .methods import METHODS
+from .points import COSTS, Point
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +25,8 @@ PERIODS = 20.3
 """Default span in nutation periods.  It does not end at a turning point, where errors are least."""
 LOST = 0.1
 """Error (rad) above which a method no longer follows the motion."""
+LEAST = 2.0**-54
+"""Error (rad) that stands for 0 in a picture, which has a logarithmic scale."""
 SHOWN = "scene method setting periods error_rad ns_per_sample setup_ms evaluations front remark"
 
 
@@ -113,29 +116,39 @@ def conditions(tasks: Sequence[Task]) -> dict[str, str]:
     }
 
 
-def methods_figure(report: Report) -> Figure:
-    """Return a panel for each scene: error against time, or against the span if there are several.
+def methods_figure(
+    report: Report, cost: str = "ns_per_sample", points: Sequence[Point] = ()
+) -> Figure:
+    """Return a panel for each scene: error against cost, or against the span if there are several.
 
     A line joins the settings of one method.  A grey step marks the front: no other method is both
-    faster and more accurate.
+    faster and more accurate.  Hollow marks are `points` of other programs.  An error of 0 is drawn
+    as that of half an ulp of 1.
     """
     scenes = list(dict.fromkeys(row.scene for row in report.rows))
     is_long = len({row.periods for row in report.rows}) > 1
-    pair = ("periods", "error_rad") if is_long else ("error_rad", "ns_per_sample")
+    pair = ("periods", "error_rad") if is_long else ("error_rad", cost)
     wide = min(2, len(scenes))
     figure, panels = panels_of(-(-len(scenes) // wide), wide, 5 * wide + 2, 4)
     for axes, scene in zip(panels, scenes, strict=False):
-        rows = [x for x in report.rows if x.scene == scene and x.error_rad is not None]
+        rows = [
+            row._replace(error_rad=max(row.error_rad, LEAST))
+            for row in report.rows
+            if row.scene == scene and row.error_rad is not None and getattr(row, cost) is not None
+        ]
         front = sorted((row.error_rad, row.ns_per_sample) for row in rows if row.front)
-        if front and not is_long:
+        if front and not is_long and cost == "ns_per_sample":
             steps: dict[str, object] = {"color": LIGHT.faint, "lw": 7, "zorder": 0}
             axes.step(*zip(*front, strict=True), where="post", label="front", **steps)
         for name in dict.fromkeys(x.method for x in rows):
             mine = [x for x in rows if x.method == name]
-            points = sorted(map(operator.attrgetter(*pair), mine))
+            pairs = sorted(map(operator.attrgetter(*pair), mine))
             joined = is_long or not isinstance(mine[0].setting, str)
-            axes.plot(*zip(*points, strict=True), ls="-" if joined else "", **looks()[name])
-        labels = ("span (nutation periods)", ERROR) if is_long else (ERROR, "time per sample (ns)")
+            axes.plot(*zip(*pairs, strict=True), ls="-" if joined else "", **looks()[name])
+        for name in dict.fromkeys(x.method for x in points if not is_long):
+            others = sorted((max(x.error, LEAST), x.cost) for x in points if x.method == name)
+            axes.plot(*zip(*others, strict=True), "o-", mfc="none", lw=0.8, label=plain(name))
+        labels = ("span (nutation periods)", ERROR) if is_long else (ERROR, COSTS[cost])
         axes.set(xscale="log", yscale="log", xlabel=labels[0], ylabel=labels[1])
         axes.set_title(plain(scene))
     for empty in panels[len(scenes) :]:

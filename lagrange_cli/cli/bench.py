@@ -26,9 +26,10 @@ def _parse_spans(text: str) -> list[float]:
     "bench",
     "bench --methods lagtop,DOP853 --n 1000",
     "bench slow-top --methods lagtop,DOP853,Taylor --plot methods.svg",
+    "bench --r0 60 --methods lagtop,DOP853 --plot methods.svg --points mine.csv",
     "bench --spans 1,100 --methods lagtop,scipy.special --n 100",
 )
-@opt.scenes
+@opt.top("[SCENE]...", is_scene=None)
 @opt.option(
     "--spans",
     type=opt.Parsed("X,...", _parse_spans),
@@ -37,13 +38,21 @@ def _parse_spans(text: str) -> list[float]:
 @opt.option("--n", type=opt.count(MOST_TIMES), default="1e4", help="Number of times.")
 @opt.option("--methods", type=opt.LIST, help="Methods to compare.  [default: all]")
 @opt.plot
+@opt.option(
+    "--points",
+    metavar="FILE",
+    help="Add the points of other methods to the picture: CSV with method, error_rad, and "
+    "ns_per_sample or evaluations.",
+)
 @opt.output("table")
 def bench_command(
-    scenes: tuple[str, ...],
+    top: opt.TopOptions,
+    words: list[str],
     spans: list[float] | None,
     n: int,
     methods: list[str] | None,
     plot: str | None,
+    points: str | None,
     out: Output,
 ) -> None:
     """Measure the error of methods against their run time.
@@ -57,16 +66,24 @@ def bench_command(
     check a method of your own, write its trajectory to a file and use lagtop compare.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
+    from ..bench.points import read_points
     from ..bench.work_precision import PERIODS, bench, methods_figure
     from ..file_bytes import shown_path
 
-    founds = {name: opt.TopOptions({}, False, name).given() for name in scenes or ["chrapan-1952"]}
-    motions = {one_line(shown_path(name)): opt.motion_of(x) for name, x in founds.items()}
+    if points and not plot:
+        raise LagtopError("--points needs --plot FILE.svg")
+    if points and len(spans or [PERIODS]) > 1:
+        raise LagtopError("--points needs one span: the picture of several shows no cost")
+    cost, others = read_points(points) if points else ("ns_per_sample", [])
+    scenes = words or ([] if top.inputs else ["chrapan-1952"])
+    founds = {one_line(shown_path(x)): top._replace(scene=x).given() for x in scenes}
+    founds = founds or {"inputs": top.given()}
+    motions = {name: opt.motion_of(found) for name, found in founds.items()}
     opt.write_report(
         out,
         lambda: bench(motions, methods, spans or [PERIODS], n, with_progress),
         plot,
-        methods_figure,
+        lambda report: methods_figure(report, cost, others),
     )
 
 

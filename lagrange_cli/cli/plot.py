@@ -19,9 +19,9 @@ from ..plot.style import (
     LIGHT,
     MOST_DPI,
     check_picture,
+    drawing,
     figure_bytes,
     require_matplotlib,
-    styled,
 )
 from ..top.inputs import DECLARED
 from ..top.scenes import scene_names
@@ -149,7 +149,7 @@ def plot_command(
                 f"{name or 'Lagrange top'}: {motion.regime.value}, {motion.top.as_text()}"
                 for name, motion in drawn
             )
-            with styled(options.look):
+            with drawing(options.look):
                 figure = figure_of(drawn, kinds, options, title, _caption(caption, len(motions)))
                 picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)

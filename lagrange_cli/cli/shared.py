@@ -164,9 +164,6 @@ def _scenes_or_files(ctx: click.Context, param: click.Parameter, begun: str) -> 
     return scenes or list(click.Path().shell_complete(ctx, param, begun))
 
 
-scenes = click.argument("scenes", nargs=-1, metavar="[SCENE]...", shell_complete=_scenes_or_files)
-
-
 def extension(path: str) -> str:
     """Return the extension of a file, in lower case and without its dot."""
     return os.path.splitext(path)[1][1:].lower()

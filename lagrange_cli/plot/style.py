@@ -116,7 +116,23 @@ def figure_bytes(figure: Figure, fmt: str, dpi: float, title: str, text: str) ->
     return buffer.getvalue()
 
 
+@contextmanager
+def drawing(look: Look) -> Iterator[None]:
+    """Draw for a command, as `styled` does, without warnings of matplotlib.
+
+    Raises LagtopError if matplotlib cannot draw the picture.
+    """
+    with styled(look):
+        warnings.simplefilter("ignore", UserWarning)
+        try:
+            yield
+        except LagtopError:
+            raise
+        except (ArithmeticError, LookupError, RuntimeError, ValueError) as error:
+            raise LagtopError(f"matplotlib cannot draw this picture: {error}") from error
+
+
 def report_bytes(path: str, draw: Callable[..., Figure], *args: object) -> bytes:
     """Return the picture that `draw` makes of some arguments, in the format of the file name."""
-    with styled(LIGHT):
+    with drawing(LIGHT):
         return figure_bytes(draw(*args), Path(path).suffix[1:].lower(), 150, "lagtop", "a report")
