@@ -12,8 +12,12 @@ from matplotlib.figure import Figure
 
 from ..inverse.decay import decay_of, decay_text
 from ..inverse.outcome import Outcome
+from ..solver.keys import shown_keys
 from .pictures import scale
 from .style import LIGHT, plain
+
+FAILED = "#b00020"
+"""The colour of the title of a failed fit."""
 
 
 def draw_errors(
@@ -32,9 +36,12 @@ def draw_errors(
     over_time, *over_step = figure.subplots(1, 2 if steps else 1, squeeze=False)[0]
     shades = scale(LIGHT)(np.linspace(0, 1, len(results)))
     for x, colour, dashes in zip(results, shades, cycle(("-", "--", "-.", ":"))):
-        positive = np.where(x.error > 0, x.error, np.nan)  # 0 and NaN have no logarithm
+        shown = np.where(x.error > 0, x.error, np.nan)  # 0 and NaN have no logarithm
         name = plain(str(x.file or "trajectory"))
-        over_time.plot(x.t, positive, lw=1.2, color=colour, ls=dashes, label=name)
+        over_time.plot(x.t, shown, lw=1.2, color=colour, ls=dashes, label=name)
+    positive = [x.error[x.error > 0] for x in results]
+    if least := [np.quantile(x, 0.05) for x in positive if x.size]:
+        over_time.set_ylim(bottom=0.1 * min(least))  # not down to the rounding errors of a row
     over_time.axhline(limit, color=LIGHT.quiet, lw=0.8, ls=":", label="limit")
     over_time.set(yscale="log", xlabel="t (units of the trajectory)", ylabel="error (rad)")
     over_time.set_title("Error over time")
@@ -60,24 +67,46 @@ def draw_convergence(axes: Axes, points: Sequence[tuple[float, float]]) -> None:
     axes.set_xticks([], minor=True)
 
 
+def time_label(outcome: Outcome) -> str:
+    """Return the label of the times of a recording, in seconds if known inputs have units."""
+    return f"t ({'s' if outcome.units.si else outcome.recording.time_unit})"
+
+
+def result_of(outcome: Outcome) -> str:
+    """Return the verdict of a fit and its main numbers, with units if known inputs have them."""
+    found = {x: outcome.numbers[x] for x in ("a", "b", "r0", "A", "C") if x in outcome.numbers}
+    shown = {x: number for x, number in found.items() if x in "AC" or not {"A", "C"} <= {*found}}
+    units = shown_keys(outcome.units)
+    named = [
+        f"{x} = {number} {units[x].unit if outcome.units.si else ''}".rstrip()
+        for x, number in (shown | {x: found[x] for x in found if x == "r0"}).items()
+    ]
+    return ",  ".join([outcome.title, *named])
+
+
 def draw_fit(outcome: Outcome, figure: Figure | None = None) -> Figure:
-    """Draw each channel of a recording with the fit, and its residuals below."""
-    curves = [*outcome.curves()]
+    """Draw each channel of a recording with the fit, and its residuals below.
+
+    The title is the result.  That of a failed fit is red, and its curve is dashed.
+    """
+    curves, is_good = [*outcome.curves()], not outcome.failures()
     rows, unit = len(curves), outcome.units.angle
     figure = figure or Figure(figsize=(8.0, 1.0 + 2.8 * rows))
+    fit, dashes = ("fit", "-") if is_good else ("failed fit", (0, (4, 3)))
     grid = figure.subplots(2 * rows, squeeze=False, sharex="col", height_ratios=[3, 1] * rows)
     for curve, above, below in zip(curves, grid[::2, 0], grid[1::2, 0], strict=True):
         number = ("theta", "phi", "psi").index(curve.name)
         symbol, colour = "ϑφψ"[number], LIGHT.lines[number]
         above.plot(curve.t, curve.data, ".", ms=4, color=LIGHT.ink, label="data")
-        above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label="fit", alpha=0.8)
+        above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label=fit, ls=dashes, alpha=0.8)
         above.set(ylabel=f"{symbol} ({unit})")
         above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
         below.set(ylabel=f"residual\n({unit})")
-    grid[-1, 0].set_xlabel(f"t ({outcome.recording.time_unit})")
-    figure.suptitle(plain(outcome.title), x=0.012, ha="left")
+    grid[-1, 0].set_xlabel(time_label(outcome))
+    colour = LIGHT.ink if is_good else FAILED
+    figure.suptitle(plain(result_of(outcome)), x=0.012, ha="left", color=colour, wrap=True)
     return figure
 
 
@@ -92,8 +121,8 @@ def draw_decay(outcomes: Sequence[Outcome]) -> Figure:
     if decay:
         curve = [decay.value(x) for x in t]
         axes.plot(t, curve, lw=1.2, color=LIGHT.lines[1], label="exponential")
-    axes.set_xlabel(f"t ({outcomes[0].recording.time_unit})")
-    axes.set_ylabel(f"{name} (rad per unit of time)")
+    axes.set_xlabel(time_label(outcomes[0]))
+    axes.set_ylabel(f"{name} ({'rad/s' if outcomes[0].units.si else 'rad per unit of time'})")
     axes.set_title(plain(decay_text(outcomes)), loc="left", size=9)
     axes.legend()
     return figure

@@ -20,6 +20,7 @@ from lagrange_cli.bench import measure
 from lagrange_cli.bench import stability as hard
 from lagrange_cli.bench.measure import Row
 from lagrange_cli.bench.methods import METHODS, Method
+from lagrange_cli.bench.points import read_points
 from lagrange_cli.bench.reference import exact_motion, rotation_angle
 from lagrange_cli.bench.work_precision import bench, conclusions, marked, methods_figure
 from lagrange_cli.output.report import Report
@@ -69,6 +70,40 @@ def test_bad_requests_end_in_one_line(lagtop: Lagtop, args: list[str], said: str
     assert done.stdout == ""
     assert said in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("method,error_rad\na,1\n", "must have the columns method, error_rad, and ns_per_sample"),
+        ("method,error_rad,evaluations\na,-1,2\n", "line 2: error and cost must be positive"),
+        ("method,error_rad,evaluations\na,x,2\n", "line 2: "),
+        ("method,error_rad,evaluations\na,,2\n", "no row with an error and evaluations"),
+    ],
+)
+def test_points_that_cannot_be_read_end_in_one_line(
+    lagtop: Lagtop, tmp_path: Path, text: str, said: str
+) -> None:
+    (tmp_path / "mine.csv").write_text(text)
+    picture = "--plot", str(tmp_path / "x.svg"), "--points", str(tmp_path / "mine.csv")
+    done = lagtop("bench", "--methods", "lagtop", "--n", "5", *picture)
+    assert done.exit_code == 65
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_points_of_other_methods_are_drawn_with_inputs(lagtop: Lagtop, tmp_path: Path) -> None:
+    (tmp_path / "mine.csv").write_text("method,error_rad,evaluations\nmine,1e-6,300\nmine,0,20\n")
+    cost, points = read_points(str(tmp_path / "mine.csv"))
+    report = bench(WORKED, ["DOP853"], count=5)
+    (axes,) = methods_figure(report, cost, points).axes
+    (mine,) = (x for x in axes.get_lines() if x.get_label() == "mine")
+    assert np.array(mine.get_xydata()).tolist() == [[2.0**-54, 20], [1e-6, 300]]
+    assert axes.get_ylabel() == "evaluations"
+    picture = "--plot", str(tmp_path / "x.svg"), "--points", str(tmp_path / "mine.csv")
+    done = lagtop("bench", "--r0", "60", "--methods", "lagtop", "--n", "5", *picture)
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert "r0=60" in done.stdout.replace("\n", "").replace(" ", "")
 
 
 @pytest.mark.parametrize("kind", hard.HARD_KINDS)

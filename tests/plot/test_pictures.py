@@ -339,17 +339,28 @@ def test_errors_are_drawn_over_time_and_step() -> None:
         ends = [float(data(x)[1][1]) for x in slopes]
         assert sorted(ends) == pytest.approx([1e-4 / 4**n for n in (4, 2, 1)])
         single = SimpleNamespace(**vars(results[0]) | {"step": None})
-        assert len(draw_errors([single], 1e-3).axes) == 1
+        single.error[1] = 1e-20  # the rounding error of one row
+        (axes,) = draw_errors([single], 1e-3).axes
+        assert axes.get_ylim()[0] > 1e-8
 
 
-def test_a_fit_is_drawn_with_its_residuals() -> None:
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_fit_is_drawn_with_its_residuals(fails: bool) -> None:
     t = np.linspace(0, 1, 9)
     curve = {"t": t, "data": t**2, "residual": t**3, "fine_t": t, "curve": 2 * t}
     curves = [SimpleNamespace(name=x, **curve) for x in ("theta", "psi")]
-    outcome: Any = SimpleNamespace(curves=lambda: curves, units=Units(), title="good")
-    outcome.recording = SimpleNamespace(time_unit="s")
+    outcome: Any = SimpleNamespace(curves=lambda: curves, units=Units(si=True), title="Fit: good")
+    outcome.recording = SimpleNamespace(time_unit="units of the recording")
+    outcome.numbers = {"a": "1.0(1)", "A": "2.0(1)", "C": "3.0(1)", "r0": "4.0(1)"}
+    outcome.failures = lambda: ["too noisy"] * fails
     with styled(LIGHT):
-        above, below, psi, last = draw_fit(outcome).axes
+        figure = draw_fit(outcome)
+        above, below, psi, last = figure.axes
+    said = "Fit: good,  A = 2.0(1) kg m²,  C = 3.0(1) kg m²,  r0 = 4.0(1) rad/s"
+    assert figure.get_suptitle() == said
+    if fails:
+        assert labelled(above)["failed fit"].get_linestyle() == "--"
+        return
     assert data(labelled(above)["data"])[1] == pytest.approx(t**2)
     assert data(labelled(above)["fit"])[1] == pytest.approx(2 * t)
     assert data(below.get_lines()[1])[1] == pytest.approx(t**3)
