@@ -16,6 +16,7 @@ from lagrange_cli.elliptic.function_table import point
 from lagrange_cli.elliptic.functions import Functions
 from lagrange_cli.elliptic.legendre import Legendre, constants_of
 from lagrange_cli.elliptic.modulus import GivenModulus
+from lagrange_cli.top.units import RADIANS
 
 
 class ManyDigits(MPContext):  # type: ignore[misc]
@@ -106,7 +107,7 @@ class Ours:
 
         def compute() -> Any:
             legendre = Legendre(given.reduced(), given.m, None)
-            return tuple(legendre.at(self.exact(phi), radians=True))
+            return tuple(legendre.at(self.exact(phi), RADIANS))
 
         return self.evaluated(compute)[which]
 

@@ -22,6 +22,7 @@ from ..output.document import record_document
 from ..output.terminal import with_progress
 from ..top.inputs import declared
 from ..top.ranges import Points
+from ..top.units import Units
 from ..top.values import parse_values
 from . import shared as opt
 
@@ -133,17 +134,17 @@ def jacobi_command(
     asked = tuple(name for name in FAMILIES if name in named)
     parameter, imaginary = _parameter(param, asked)
     if phi is not None:
-        rows = legendre.amplitude_rows(phi, given, n, radians=rad, digits=digits)
+        rows = legendre.amplitude_rows(phi, given, n, units=Units(rad), digits=digits)
         write_functions(rows, phi.real.count, out)
     elif u is not None:
         v = parameter.nearest() if digits is None else parameter
-        request = FunctionRequest(u, given, asked, v, imaginary, rad)
+        request = FunctionRequest(u, given, asked, v, imaginary, Units(rad))
         write_functions(function_rows(request, digits), u.real.count, out)
     elif functions is not None:
         raise LagtopError("--functions needs --u")
     else:
         keys = constant_keys("Moduli", legendre.CONSTANTS)
-        record = legendre.constants_record(given, digits, n=n, radians=rad)
+        record = legendre.constants_record(given, digits, n=n, units=Units(rad))
         out.document(record_document(record, lambda: keys))
 
 
@@ -221,7 +222,7 @@ def eta_command(
     quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
     if tau is not None:
         names = check_names("columns", columns or ["eta"], eta.ETA_COLUMNS)
-        rows = eta.eta_rows(tau, quadrature, names, radians=rad, digits=digits)
+        rows = eta.eta_rows(tau, quadrature, names, units=Units(rad), digits=digits)
         write_functions(rows, tau.count, out)
         return
     if columns is not None:

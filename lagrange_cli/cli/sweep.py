@@ -116,7 +116,7 @@ def sweep_command(
         raise LagtopError(f"a sweep takes one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
     digest = digest_of(path) if path is not None and parts is not None else ""
-    how: dict[str, Any] = {"radians": top.radians, "decimal": decimal}
+    how: dict[str, Any] = {"units": Units(top.radians), "decimal": decimal}
     how |= {"keys": keys, "radii": certify}
     sweep, every_block, size, given = plan(path, top.inputs, top.scene, **how)
     opt.warn(given)
@@ -196,7 +196,7 @@ def find_command(
         known = all_keys(units)
         named = {x: units.key(f"{x}_deg") for x in keys}
         chosen = check_names("keys", [y if y in known else x for x, y in named.items()], known)
-    search, given = search_of(top.inputs, words, top.scene, radians=top.radians)
+    search, given = search_of(top.inputs, words, top.scene, units)
     motions, looked = find_tops(search, scan)
     opt.warn(given)
     complain(f"{len(motions)} found; {looked}")

@@ -21,6 +21,7 @@ from flint import arb
 from ..arithmetic.enclosures import at_precision, exact
 from ..errors import LagtopError, arg
 from ..top.ranges import MAX_PERIODS, MAX_TIME, Points, check_reach
+from ..top.units import DEGREES, Units
 from .arguments import Arguments, ExactComplex
 from .functions import Functions, Point
 from .modulus import Kind, Modulus, angle
@@ -173,7 +174,7 @@ def eta_rows(
     quadrature: Quadrature,
     names: Collection[str] = ("eta",),
     *,
-    radians: bool = False,
+    units: Units = DEGREES,
     digits: int | None = None,
 ) -> Rows:
     """Return a table of eta, its rate, h1, theta and xi' over tau, with eta = delta* at tau = 0.
@@ -194,7 +195,7 @@ def eta_rows(
         found: dict[str, Any] = {}
         for name, y in eta_columns(x.real, quadrature, *known).items():
             if name in {"tau", *names}:
-                found |= angle(name, y, in_radians=radians) if name == "theta" else {name: y}
+                found |= angle(name, y, units) if name == "theta" else {name: y}
         return found
 
     return table_rows(Arguments(tau).numbers(digits), columns, known, quadrature.inputs, digits)

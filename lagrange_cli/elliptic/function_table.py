@@ -11,6 +11,7 @@ from flint import acb, fmpq
 from ..arithmetic.enclosures import at_precision
 from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, MAX_TIME, ListedPoints, check_reach
+from ..top.units import DEGREES, Units
 from .arguments import Arguments, ExactComplex
 from .functions import THIRD, Functions, Point
 from .modulus import GivenModulus, Kind, angle, real_parts, split
@@ -36,7 +37,7 @@ class FunctionRequest(NamedTuple):
     """The parameter of omega and pi."""
     imaginary: bool = False
     """Whether the parameter of real functions is imaginary (0i counts as imaginary)."""
-    radians: bool = False
+    units: Units = DEGREES
 
     @property
     def is_real(self) -> bool:
@@ -112,7 +113,7 @@ def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Values:
     am, *values = functions.jacobi(u)
     of = dict(zip("scdn", (*values, acb(1)), strict=True))
     if has_am:
-        found |= angle("am", _on_axes(am, u, odd=True), in_radians=request.radians)
+        found |= angle("am", _on_axes(am, u, odd=True), request.units)
     for name in QUOTIENTS:
         if name in wanted:
             p, q = (of[letter] for letter in name)

@@ -21,6 +21,7 @@ from flint import acb, arb
 from ..arithmetic.enclosures import exact, nearest, sign
 from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, check_reach
+from ..top.units import DEGREES, Units
 from .arguments import Arguments, ExactComplex
 from .modulus import GivenModulus, Kind, Modulus, angle, real_parts, split
 from .tables import Cells, Rows, numbers, table_rows
@@ -73,10 +74,10 @@ class Legendre:
         self.complete = self._within(arb(1), arb(0), arb(0), Fraction(1))
         """The integrals to pi/2."""
 
-    def at(self, phi: ExactComplex, *, radians: bool = False) -> Integrals:
+    def at(self, phi: ExactComplex, units: Units = DEGREES) -> Integrals:
         """Return the integrals of an amplitude, by f(phi + pi) = f(phi) + 2 f(pi/2)."""
         square: Fraction | arb
-        if radians and phi.real:
+        if units.radians and phi.real:
             half_turns = nearest(exact(phi.real) / arb.pi())
             rest = exact(phi.real) - half_turns * arb.pi()
             side = sign(rest)
@@ -89,7 +90,7 @@ class Legendre:
             side = -1 if within < 0 else 1
             sine, cosine = exact(abs(within) / 180).sin_cos_pi()
             square = _SQUARED_SINES.get(abs(within), sine**2)
-        height = side * exact(phi.imag) * (1 if radians else arb.pi() / 180)
+        height = side * exact(phi.imag) * (1 if units.radians else arb.pi() / 180)
         found = self._within(sine, cosine, height, square)
         if not half_turns:
             return _each(lambda x: side * x, found)
@@ -160,10 +161,10 @@ def amplitude_rows(
     given: GivenModulus,
     n: Fraction | None = None,
     *,
-    radians: bool = False,
+    units: Units = DEGREES,
     digits: int | None = None,
 ) -> Rows:
-    """Return a table of F, E and, with n, Pi over amplitudes, in degrees unless `radians` is set.
+    """Return a table of F, E and, with n, Pi over amplitudes.
 
     Complex numbers have a column for each part.  F is infinite from a quarter turn on if k = 1.
     Raises LagtopError for a modulus out of range, for n with complex amplitudes and, in doubles,
@@ -175,11 +176,11 @@ def amplitude_rows(
     if phi.imag is not None and n is not None:
         raise LagtopError("phi must be real if n is given", "phi")
     for points in filter(None, (phi.real, phi.imag)) if digits is None else ():
-        check_reach("phi", points, MAX_PERIODS * (math.pi if radians else 180.0))
-    heading = "phi_rad" if radians else "phi_deg"
+        check_reach("phi", points, MAX_PERIODS * math.pi * units.radian)
+    heading = f"phi_{units.angle}"
 
     def columns(x: ExactComplex, legendre: Legendre) -> Cells:
-        found = legendre.at(x, radians=radians)._asdict()
+        found = legendre.at(x, units)._asdict()
         if n is None:
             del found["Pi"]
         if phi.imag is not None:
@@ -192,7 +193,7 @@ def amplitude_rows(
 
 
 def constants_record(
-    given: GivenModulus, digits: int | None, *, n: Fraction | None = None, radians: bool = False
+    given: GivenModulus, digits: int | None, *, n: Fraction | None = None, units: Units = DEGREES
 ) -> dict[str, Any]:
     """Return the constants of a modulus, correctly rounded to doubles or to `digits` digits.
 
@@ -202,7 +203,7 @@ def constants_record(
     given.check()
 
     def compute(_: int) -> Cells:
-        found = constants_of(given.reduced(), radians=radians)
+        found = constants_of(given.reduced(), units)
         if n is not None:
             found["Pi"] = Legendre(given.reduced(), given.m, n).complete.Pi
         row = real_parts(found) if given.kind is Kind.UNIT else split(found)
@@ -213,7 +214,7 @@ def constants_record(
     return numbers(compute, [*given.value, n or Fraction(0)], digits)
 
 
-def constants_of(modulus: Modulus, *, radians: bool = False) -> dict[str, acb | None]:
+def constants_of(modulus: Modulus, units: Units = DEGREES) -> dict[str, acb | None]:
     """Return the moduli, the nomes q = exp(-pi K'/K) (3.1.6), and the integrals of k and k'."""
     complement = modulus.complement
     K, E, _ = Legendre(modulus).complete
@@ -222,7 +223,7 @@ def constants_of(modulus: Modulus, *, radians: bool = False) -> dict[str, acb | 
     nomes = {"nome": _nome(K, K_prime)}
     if modulus.kind is Kind.UNIT:
         modular = acb(arb.atan2(modulus.k, modulus.k_prime))
-        found |= angle("modular_angle", modular, in_radians=radians)
+        found |= angle("modular_angle", modular, units)
         nomes["nome_prime"] = _nome(K_prime, K)
     return {**found, **nomes, "K": K, "K_prime": K_prime, "E": E, "E_prime": E_prime}
 

@@ -19,6 +19,7 @@ from flint import acb, arb
 
 from ..arithmetic.enclosures import exact
 from ..errors import LagtopError
+from ..top.units import Units
 from .arguments import ExactComplex
 from .tables import Cell
 
@@ -124,8 +125,7 @@ def real_parts(numbers: Mapping[str, acb | None]) -> dict[str, Cell]:
     return {name: None if z is None else z.real for name, z in numbers.items()}
 
 
-def angle(name: str, radians: Any, *, in_radians: bool) -> dict[str, Any]:
+def angle(name: str, radians: Any, units: Units) -> dict[str, Any]:
     """Return the column of an angle, `name_deg` or `name_rad`; None stays None."""
-    if in_radians or radians is None:
-        return {f"{name}_{'rad' if in_radians else 'deg'}": radians}
-    return {f"{name}_deg": radians * 180 / arb.pi()}
+    is_turned = radians is not None and not units.radians
+    return {f"{name}_{units.angle}": radians * 180 / arb.pi() if is_turned else radians}

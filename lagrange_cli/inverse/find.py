@@ -82,7 +82,7 @@ class Search(NamedTuple):
     """A target value for each unknown input, or one word, whose border is sought."""
     bounds: Sequence[Condition]
     """The conditions that solutions must meet besides."""
-    radians: bool
+    units: Units
     is_body: bool
     """Whether the top must be a body."""
 
@@ -102,7 +102,9 @@ class Search(NamedTuple):
     def residuals(self, values: Sequence[float] | Array) -> Array:
         """Return numbers of `solve` minus their targets; NaN where a key has no number."""
         try:
-            record = solve(self.top(values)).record(radians=self.radians, keys=[*self.targets])
+            record = solve(self.top(values)).record(
+                radians=self.units.radians, keys=[*self.targets]
+            )
         except LagtopError:
             return np.full(len(self.goals), np.nan)
         return np.array([record[x] for x in self.targets], float) - [*self.targets.values()]
@@ -115,18 +117,17 @@ class Search(NamedTuple):
     def sweep(self, values: Array) -> Results:
         """Return the numbers or words of the goals for each row of values of the unknowns."""
         inputs = overridden(dict(self.fixed), dict(zip(self.spans, values.T, strict=True)))
-        return sweep(keys=[*self.targets], radians=self.radians, **inputs)
+        return sweep(keys=[*self.targets], radians=self.units.radians, **inputs)
 
 
 def search_of(
-    inputs: Mapping[str, Any], conditions: Sequence[str], scene: str | None, *, radians: bool
+    inputs: Mapping[str, Any], conditions: Sequence[str], scene: str | None, units: Units
 ) -> tuple[Search, Given]:
     """Return a search from inputs, conditions and a scene file, and the inputs that were given.
 
     An unknown input is a `Span`, or a `Value` of one.  Raises LagtopError for bad options, and for
     conditions that cannot have isolated solutions.
     """
-    units = Units(radians)
     found = [_read_condition(text, units) for text in conditions]
     given = gather(values_of(inputs), scene, units=any(x.has_unit for x in found))
     if key := repeated(x.key for x in found if x.relation == "="):
@@ -151,7 +152,7 @@ def search_of(
     known = {name: x for name, x in given.values.items() if name not in spans}
     fixed = shared_inputs(given._replace(values=known), varying=spans)
     bounds = [x for x in found if x not in goals]
-    return Search(fixed, spans, goals, bounds, radians, given.is_body), given
+    return Search(fixed, spans, goals, bounds, units, given.is_body), given
 
 
 def _read_condition(text: str, units: Units) -> Condition:
@@ -212,7 +213,7 @@ def _misses(search: Search, motion: Motion, conditions: Sequence[Condition]) -> 
     """Return the values of a motion that miss conditions, as texts, and by how much."""
     missed = {}
     for x in conditions:
-        found = motion.record(radians=search.radians, keys=[x.key])[x.key]
+        found = motion.record(radians=search.units.radians, keys=[x.key])[x.key]
         if found is None or not _RELATIONS[x.relation](found, x.value):
             off = abs(found - x.value) if isinstance(found, float) else 0.0
             shown = f"{double_text(found)}, {off:.2g} off," if off else found
@@ -370,7 +371,7 @@ def find(
     texts = conditions
     if isinstance(conditions, Mapping):
         texts = [f"{key}={_text(key, x)}" for key, x in conditions.items()]
-    search, found = search_of(given, list(texts), None, radians=radians)
+    search, found = search_of(given, list(texts), None, Units(radians))
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     try:

@@ -27,7 +27,7 @@ from ..top.inputs import (
     replaced_by,
 )
 from ..top.ranges import Points
-from ..top.units import Units
+from ..top.units import DEGREES, RADIANS, Units
 from ..top.values import Value
 from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records, with_radii
 from .tops import top_arrays
@@ -98,7 +98,7 @@ def plan(
     scene: str | None = None,
     *,
     keys: Sequence[str] | None = None,
-    radians: bool = False,
+    units: Units = DEGREES,
     fmt: str = "csv",
     decimal: str = "",
     radii: bool = False,
@@ -108,25 +108,25 @@ def plan(
     The last axis varies fastest.  The size is the number of tops, 0 for a file.  The inputs are
     those that all tops share.  Raises LagtopError.
     """
-    chosen = with_radii(check_keys(keys, Units(radians)), radii=radii)
+    chosen = with_radii(check_keys(keys, units), radii=radii)
     if path is None:
         found = gather(axes, scene)
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid, ranges = Product(points), _ranges(points)
         shared = shared_inputs(found, varying=ranges)
-        sweep = Sweep(
-            chosen, ranges, shared, chosen, found.units(radians=radians), fmt, found.is_body
-        )
+        units = units._replace(si=found.si)
+        sweep = Sweep(chosen, ranges, shared, chosen, units, fmt, found.is_body)
         return sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, found
     if ranges := _ranges({name: x.number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
-    computed = {*column_keys(), *column_keys(Units(radians=True)), *chosen, "error"}
+    computed = {*column_keys(), *column_keys(RADIANS), *chosen, "error"}
     source = read_tops(path, computed, decimal)
     found = source.shared(axes, scene)
     shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     header = [*source.carried, *with_error]
-    sweep = Sweep(header, {}, shared, with_error, found.units(radians=radians), fmt, found.is_body)
+    units = units._replace(si=found.si)
+    sweep = Sweep(header, {}, shared, with_error, units, fmt, found.is_body)
     return sweep, enumerate(source.blocks(BLOCK_ROWS)), 0, found
 
 

@@ -14,6 +14,7 @@ from conftest import Lagtop
 
 from lagrange_cli.elliptic.eta import Quadrature, eta_record, eta_rows
 from lagrange_cli.top.ranges import ListedPoints
+from lagrange_cli.top.units import RADIANS
 
 
 def quadrature(
@@ -26,7 +27,7 @@ def quadrature(
 
 def rows_of(of: Quadrature, times: Iterable[Any], names: Sequence[str]) -> list[dict[str, float]]:
     """Return the rows of a table by column, the angle in radians."""
-    header, blocks = eta_rows(ListedPoints(list(map(Fraction, times))), of, names, radians=True)
+    header, blocks = eta_rows(ListedPoints(list(map(Fraction, times))), of, names, units=RADIANS)
     rows = (map(float, row) for block in blocks for row in block)
     return [dict(zip(header, row, strict=True)) for row in rows]
 

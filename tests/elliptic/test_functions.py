@@ -20,6 +20,7 @@ from lagrange_cli.elliptic.arguments import Arguments, ExactComplex, parse_compl
 from lagrange_cli.elliptic.function_table import FunctionRequest, function_rows
 from lagrange_cli.elliptic.modulus import GivenModulus
 from lagrange_cli.top.ranges import ListedPoints
+from lagrange_cli.top.units import RADIANS
 
 EVERY = ("am", "theta", "zeta", "omega", "pi")
 MODULI = ["0.3", "0.8", "0.95", "0.999", "0.7071067811865476", "0.05i", "0.8i", "20i", "1.01", "2"]
@@ -42,7 +43,9 @@ def row(
     first, second = (parse_complex(x) if isinstance(x, str) else x for x in (u, v))
     imag = None if is_real else ListedPoints([first.imag])
     arguments, modulus = Arguments(ListedPoints([first.real]), imag), parse_complex(k)
-    request = FunctionRequest(arguments, GivenModulus("k", modulus), families, second, radians=True)
+    request = FunctionRequest(
+        arguments, GivenModulus("k", modulus), families, second, units=RADIANS
+    )
     header, (((cells,),)) = function_rows(request, digits)
     return dict(zip(header, cells, strict=True))
 

@@ -17,6 +17,7 @@ from lagrange_cli.elliptic.arguments import Arguments, ExactComplex
 from lagrange_cli.elliptic.legendre import amplitude_rows
 from lagrange_cli.elliptic.modulus import GivenModulus
 from lagrange_cli.top.ranges import ListedPoints
+from lagrange_cli.top.units import Units
 
 
 def rows(
@@ -32,7 +33,7 @@ def rows(
         Arguments(real, None if is_real else imag),
         GivenModulus(name, ExactComplex(Fraction(value))),
         None if n is None else Fraction(n),
-        radians=not degrees,
+        units=Units(radians=not degrees),
     )
     names = ["F", "E", "Pi"][: 2 if n is None else 3]
     found = []
