@@ -131,6 +131,8 @@ class _Motion:
         self.digits, self.degrees = digits, 180 / mp.pi
         self.tiny = mp.mpf(10) ** (-3 * mp.mp.dps // 10)
         given = {x: exact(y) for x, y in inputs.items() if y is not None and not isinstance(y, str)}
+        if "spin_period" in given:
+            given["phidot0"] = 2 * mp.pi / given["spin_period"]
         self.m, self.C, self.s, self.g = (given[x] for x in ("m", "C", "s", "g"))
         self.A = given["A"] if "A" in given else given["A_cm"] + self.m * self.s**2
         in_degrees = given.get("theta0_deg")
@@ -256,6 +258,9 @@ class _Motion:
             "r0_steady_min": 2 * mp.sqrt(A * m * g * s * max(u0, 0)) / C,
             "precession_rate_elementary": m * g * s / (C * r0) if r0 else None,
             "T_nutation_elementary": 2 * mp.pi * A / (C * abs(r0)) if r0 else None,
+            "A_cm": A - m * s * s,
+            "phidot0": (spin := self.near(r0 - self.turn * u0, 0)),
+            "spin_period": 2 * mp.pi / spin if spin else None,
         }
         gap2 = b**2 - 2 * a * u0
         gap2 = mp.mpf(0) if abs(gap2) <= self.tiny * b**2 else gap2

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import Message, arg
-from ..top.inputs import all_replaced
+from ..top.inputs import TILT, all_replaced
 from ..top.units import bare_name
 from .checks import CHANCE, Mistake, Residuals
 from .known import WEIGHT, Known, compared, in_all_forms
@@ -96,7 +96,7 @@ def steady_outcome(
     }
     tilt = means.get("theta") or (_Mean(*known["theta0"], 0.0) if "theta0" in known else None)
     notes = ["no nutation is visible: the numbers are means over the recording"]
-    is_sure, whole = "r0" in known, 0.0
+    is_sure, whole = "r0" in all_replaced(known), 0.0
     if "phi" in means and tilt:
         recording, means, whole, is_slow = _direction(recording, means, tilt, notes)
         is_sure |= is_slow
@@ -113,7 +113,7 @@ def steady_outcome(
             numbers[key] = Number(value, std, _MEANINGS[bare_name(key)], std)
     turn, spin = (means.get(x, _NONE) for x in ("psi", "phi"))
     derived = dict[str, _Pair]()
-    if tilt and ("phi" in means or "r0" in known):
+    if tilt and ("phi" in means or is_sure):
         given = {**known, **{x: y[:2] for x, y in means.items()}, "theta": tilt[:2]}
         derived = _derived(given, whole, notes, is_sure=is_sure)
     contradictions, distances = list[str](), dict[str, float]()
@@ -184,7 +184,7 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
     Their standard deviations are propagated from those of means and known inputs.
     """
     least, most = _RATIOS
-    is_moment_known = "A" in all_replaced(given)
+    is_moment_known, is_spin_known = (x in all_replaced(given) for x in ("A", "r0"))
     is_exact = is_moment_known and WEIGHT <= given.keys()
     unknown = [x for x in ("m", "s", "g") if x not in given]
     over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
@@ -192,7 +192,10 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
     def numbers(v: Mapping[str, float]) -> tuple[dict[str, float], list[float]]:
         """Return the numbers, and the shares of the neglected term at both bounds of C/A."""
         along, turn = v.get("psi", 0.0) * math.cos(v["theta"]), v.get("psi", 0.0)
-        found = {"r0": v["r0"] if "r0" in v else v["phi"] + along + whole}
+        if is_spin_known:
+            found = {"r0": in_all_forms({**v, TILT: v["theta"], "psidot0": turn})["r0"]}
+        else:
+            found = {"r0": v["phi"] + along + whole}
         if not turn or not found["r0"]:
             return found, []
         moment = in_all_forms(v)["A"] if is_moment_known else 1.0
@@ -256,7 +259,9 @@ def _faults(
         found.append("no nutation is visible, and without psi no precession rate")
     elif not abs(turn.value) > _SURE * turn.std:
         found.append("no nutation is visible, and the precession rate is not determined")
-    elif turn.value * r0 < 0 and (recording.kind == "attitude" or "r0" in result.known):
+    elif turn.value * r0 < 0 and (
+        recording.kind == "attitude" or "r0" in all_replaced(result.known)
+    ):
         wrong = "C/A < 0 is impossible: spin and precession have opposite signs"
         found.append(Mistake(wrong))
     scatter = float(np.nanstd(recording.angles.get("theta", np.zeros(1))))

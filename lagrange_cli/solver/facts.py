@@ -16,6 +16,7 @@ from flint import arb, fmpq, fmpq_poly
 from ..arithmetic.enclosures import equal_digits, sign_to
 from ..errors import LagtopError, check_type
 from ..top.derived import SLOW, Spin, Tilt, exact_inputs, rates_of, rational
+from ..top.inputs import DECLARED, FORMS
 from ..top.top import Top
 
 
@@ -64,7 +65,7 @@ class Facts(NamedTuple):
 
     top: Top
     inputs: dict[str, Fraction]
-    """The rational inputs among m, A, C, s, g, r0, thetadot0 and psidot0."""
+    """The rational inputs among m, A, C, s, g, r0, thetadot0 and psidot0, and forms of them."""
     tilt: Tilt
     equal: int
     """D: two numbers that agree to D digits are equal."""
@@ -201,6 +202,7 @@ def facts_of(top: Top) -> Facts:
     """
     check_type("top", top, Top)
     names = ["m", "A", "C", "s", "g", "thetadot0", *["psidot0"] * (not top.steady_word)]
+    names += [name for name in top.given if name in DECLARED and name in FORMS]
     exact = exact_inputs(top.given)
     inputs, rate = {name: exact[name] for name in names}, top.exact_spin
     m, A, C, s, g = (inputs[name] for name in ("m", "A", "C", "s", "g"))

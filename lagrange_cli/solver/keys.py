@@ -28,7 +28,7 @@ from typing import Any
 
 from ..names import Key
 from ..top.derived import FAST, SLOW
-from ..top.inputs import DECLARED, NINE, TILT
+from ..top.inputs import DECLARED, FORMS, NINE, TILT
 from ..top.units import DEGREES, Units, bare_name
 
 _TEXT = """
@@ -188,6 +188,11 @@ lowest | | time at which the axis is lowest | time | | -course.h0/course.rate
 """
 
 
+def _is_not_0(name: str) -> Callable[[Any, Any], Any]:
+    """Return the test of a key whose formula divides by a number."""
+    return lambda _, of: of.is_zero(name) ^ True
+
+
 CONDITIONS: dict[str, Callable[[Any, Any], Any]] = {
     "": lambda x, _: True,
     "if there is a torque": lambda x, _: x.a != 0,
@@ -196,8 +201,8 @@ CONDITIONS: dict[str, Callable[[Any, Any], Any]] = {
     "if the top moves": lambda x, _: x.moves,
     "if the top is released from rest": lambda x, _: x.released,
     "if the start is at u1": lambda x, _: x.turning > 0,
-    "if the mean spin rate is not 0": lambda _, of: of.is_zero("mean_spin_rate") ^ True,
-    "if the mean precession rate is not 0": lambda _, of: of.is_zero("mean_precession_rate") ^ True,
+    "if the mean spin rate is not 0": _is_not_0("mean_spin_rate"),
+    "if the mean precession rate is not 0": _is_not_0("mean_precession_rate"),
     "if the axis does not leave the vertical at the start": lambda x, _: x.vertical or not x.pole,
     "if the axis is not vertical half a period after the start": lambda x, _: x.half_off_pole,
     "if the top nutates": lambda x, _: x.nutates,
@@ -235,7 +240,18 @@ def _with_definitions(key: Key) -> Key:
     return key._replace(formula=f"{formula}{where}{defined}")
 
 
-_TABLE = dict(_read(_TEXT))
+def _forms() -> Iterator[tuple[str, Key]]:
+    """Yield the forms of inputs; one that is divided by an input exists if that is not 0."""
+    for name in (x for x in FORMS if x in DECLARED):
+        form, group, only = DECLARED[name], "Inputs in other forms", ""
+        formula = form.inverse.replace("u0", "cos(theta0)").replace("s*s", "s**2")
+        if divided := re.search(r"/([a-z]\w*)", formula):
+            only = f"if {divided[1]} is not 0"
+            CONDITIONS.setdefault(only, _is_not_0(divided[1]))
+        yield name, Key(group, form.symbol, form.name, form.unit, "", formula, only, formula)
+
+
+_TABLE = dict(_read(_TEXT)) | dict(_forms())
 
 
 def degree_name(name: str) -> str:

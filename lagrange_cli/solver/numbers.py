@@ -94,10 +94,10 @@ class Numbers(dict[str, Any]):
         return value
 
     def _value(self, name: str) -> Any:
-        if name in LINES:
-            return evaluated(LINES[name].evaluated, self)
         if name in self.facts.inputs:
             return exact(self.facts.inputs[name])
+        if name in LINES:
+            return evaluated(LINES[name].evaluated, self)
         return getattr(self, name)
 
     @property

@@ -115,7 +115,8 @@ def records(
     of the caller.
     """
     columns = {"error": np.empty(tops.size, dtype=object), **columns}
-    inputs = tops.inputs | {x: tops.tilt.in_unit(x) for x in ("theta0_deg", "theta0_rad")}
+    inputs = {x: tops.tilt.in_unit(x) for x in ("theta0_deg", "theta0_rad")}
+    inputs |= {f"{x}{RADIUS}": np.zeros(tops.size) for x in tops.forms} | tops.forms | tops.inputs
     for key, column in columns.items():
         column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
     columns["error"][[*errors]] = [*errors.values()]

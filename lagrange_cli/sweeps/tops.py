@@ -127,6 +127,12 @@ class TopArrays:
         """The inputs that are numbers in any form, by their keys in a record, without the tilt."""
         return {name: getattr(self, name) for name in NINE if name != TILT}
 
+    @property
+    def forms(self) -> dict[str, Array]:
+        """The inputs that all tops have in another form, without the tilt."""
+        given = {x: y for x, y in self.given.items() if x in FORMS and replaced_by(x) != TILT}
+        return {x: y.astype(float) for x, y in given.items() if y.dtype != object or None not in y}
+
     def part(self, rows: Any) -> TopArrays:
         """Return some of the tops, by a slice, a mask or their row numbers."""
         given = {name: x[rows] for name, x in self.given.items()}
