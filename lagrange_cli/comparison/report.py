@@ -48,7 +48,7 @@ def comparison_report(
 def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iterator[str]:
     if x.columns:
         yield f"Columns: {x.columns}." + f" Not used: {x.unused}." * bool(x.unused)
-        yield f"Read as {x.read}."
+        yield from (f"Read {line}." for line in (x.read or "").split("; "))
     yield f"{sentence(x)}."
     if x.rows_missing:
         yield f"{x.rows_missing} of {x.rows} rows have empty cells."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import orjson
@@ -39,6 +40,29 @@ def _keys_in(value: Any) -> int:
     if isinstance(value, dict):
         return len(value) + sum(_keys_in(x) for x in value.values() if isinstance(x, dict | list))
     return sum(map(_keys_in, value)) if isinstance(value, list) else 0
+
+
+def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2) -> list[Any]:
+    """Return the rows in the JSON value of a file: an array, an object of columns, or one object.
+
+    Columns are lists, among which `known` counts known names.  The rows may be in an entry such as
+    `data`.  Raises LagtopError for columns of different lengths.
+    """
+    if not isinstance(value, dict):
+        return value if isinstance(value, list) else [value]
+    lists = {x: y for x, y in value.items() if isinstance(y, list)}
+    columns = {x: y for x, y in lists.items() if y and not isinstance(y[0], str)}
+    if known([*columns]):
+        sizes = {x: len(y) for x, y in columns.items()}
+        if len({*sizes.values()}) > 1:
+            raise LagtopError(f"columns must be equally long, got {shown(sizes)}")
+        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    is_row = known([x for x in value if x not in lists])
+    for inner in value.values() if depth and not is_row else ():
+        rows = rows_of_value(inner, known, depth - 1) if isinstance(inner, dict) else inner
+        if isinstance(rows, list) and len(rows) > 1 and isinstance(rows[0], dict):
+            return rows
+    return [value]
 
 
 def entries_of(row: Any, sizes: dict[str, int]) -> dict[str, Any]:

@@ -21,7 +21,7 @@ import numpy as np
 from ..arithmetic.text import parse_number, quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError, arg
-from .json_rows import MOST_CELLS, entries_of, json_value, shown
+from .json_rows import MOST_CELLS, entries_of, json_value, rows_of_value, shown
 
 _SAMPLE = 1000
 """Number of rows that decide whether numbers have decimal commas."""
@@ -44,8 +44,8 @@ _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
-_EXPONENT = str.maketrans("dD", "ee")
-_MISSING = {None, "", "NA", "N/A", "#N/A", "NULL", "null", "None"}
+EXPONENT = str.maketrans("dD", "ee")
+_MISSING = {None, "", "NA", "N/A", "#N/A", "NULL", "null", "None", "-"}
 """Cells that are empty, as programs write them."""
 CountKnown = Callable[[Sequence[str]], int]
 """Returns the number of known headings in a row, which distinguishes headings from titles."""
@@ -88,7 +88,7 @@ class Table:
     width: int
     """The number of columns."""
     rows: Iterable[tuple[int, Any]]
-    """The number of each row in messages, and its text or its JSON object."""
+    """The number of each row in messages, and its text, its JSON object or its cells."""
     delimiter: str = ","
     """Empty if rows are JSON objects."""
     decimal: str = "."
@@ -100,6 +100,8 @@ class Table:
 
     def cells(self, row: Any) -> list[Any]:
         """Return the cells of a row.  Raises LagtopError for a wrong quote and for wrong JSON."""
+        if isinstance(row, list):
+            return row
         if self.delimiter:
             return split_row(row, self.delimiter)
         found = entries_of(row, self.sizes)
@@ -142,7 +144,7 @@ class Table:
         `names` are those of all columns.  Raises DataError with the place of a cell that is no
         number.
         """
-        found = self._at_once() or self._at_once(columns) or self._one_by_one(columns, names)
+        found = self._at_once() or self._at_once(columns) or self.of_cells(columns, names)
         if found.values.shape[1] != len(columns):
             found = NumericColumns(found.values[:, columns], found.empty[:, columns], found.lines)
         kept = ~found.empty.all(axis=1)
@@ -154,6 +156,7 @@ class Table:
         Only with `columns`, a cell may be empty, and other columns may hold words.
         """
         rows, mark, lines = self.rows, self.delimiter, array("q")
+        blank = mark.strip(" ") or None  # None: any blanks
         if not isinstance(rows, Lines) or not mark or next(iter(rows), None) is None:
             return None
 
@@ -163,15 +166,17 @@ class Table:
                 swapped = (x.translate(_SWAPPED) for x in block) if self.decimal == "," else block
                 yield from map(filled, swapped) if columns else swapped
 
+        words = "|".join(map(re.escape, filter(None, _MISSING)))
+        edge, empty = (blank, "?") if blank else (r"\s", "")
+        missing = re.compile(f"(?<![^{edge}])(?:{words}){empty}(?![^{edge}])")
+
         def filled(line: str) -> str:
             """Return a line with -nan in its empty cells."""
-            if line.count(mark) != self.width - 1 or "-nan" in line or mark == " ":
+            count = line.count(blank) + 1 if blank else len(line.split())
+            if "-nan" in line or count != self.width:
                 raise ValueError
-            for _ in range(2):  # two neighbours share a delimiter
-                line = f"{mark}{line}{mark}".replace(mark * 2, f"{mark}-nan{mark}")[1:-1]
-            return line
+            return missing.sub("-nan", line)
 
-        blank = mark.strip(" ") or None  # None: any blanks
         try:
             values = np.loadtxt(texts(), delimiter=blank, usecols=columns, comments=None, ndmin=2)
         except ValueError:
@@ -180,7 +185,8 @@ class Table:
             return None
         return NumericColumns(values, np.isnan(values) & np.signbit(values) & bool(columns), lines)
 
-    def _one_by_one(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
+    def of_cells(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
+        """Return columns of numbers, read cell by cell.  Raises DataError."""
         values, empty, lines = array("d"), bytearray(), array("q")
         for number, cells in self._checked_rows():
             lines.append(number)
@@ -198,7 +204,7 @@ class Table:
             return float(cell)
         plain = self.plain(cell) if isinstance(cell, str) else ""
         if "," not in plain and _NUMBER.fullmatch(plain):
-            return float(plain.translate(_EXPONENT))
+            return float(plain.translate(EXPONENT))
         try:
             return float(self.number(cell))
         except LagtopError as error:
@@ -214,7 +220,7 @@ class Table:
         is_other = self.delimiter != "," and mark in cell and _NUMBER.fullmatch(cell)
         try:
             plain = self.plain(cell)
-            return parse_number(plain.translate(_EXPONENT) if _NUMBER.fullmatch(plain) else plain)
+            return parse_number(plain.translate(EXPONENT) if _NUMBER.fullmatch(plain) else plain)
         except LagtopError:
             if not is_other and self.decimal != ",":
                 raise
@@ -250,11 +256,13 @@ def read_table(
         raise DataError(f"{name}: a file must have at most {_MOST_LINES} lines: split it")
     sample = list(islice(Lines(text), _SAMPLE + _TITLES))
     if sample and sample[0][1].lstrip()[0] in "{[":
-        return _json_table(text, name, sample[0])
+        return _json_table(text, name, sample, known)
     for number, line in sample:
         if len(line) > _LONGEST_LINE or max(map(line.count, '\t;, "')) > MOST_CELLS:
             most = f"{_LONGEST_LINE} characters and {MOST_CELLS} cells or quotes"
             raise DataError(f"{name}, line {number}: a row must have at most {most}")
+    if (flat := _flattened(text, sample[: _TITLES + 1])) is not None:
+        return read_table(flat, name, known, decimal, width)
     texts = [line for _, line in sample[: _TITLES + 1]]
     layout = _layout(texts, known, decimal)
     headings = layout.headings
@@ -275,6 +283,28 @@ def read_table(
     first = rows[0][0] if rows else text.count("\n") + 2
     table = Table(name, headings, count, Lines(text, first), layout.delimiter)
     return replace(table, decimal=decimal or _decimal_mark(table, rows[:_SAMPLE]))
+
+
+def _flattened(text: str, sample: Sequence[tuple[int, str]]) -> str | None:
+    """Return a text whose cells hold lists such as `1,0,0,0` with a cell for each number, or None.
+
+    The cells are separated by tabs or semicolons.  The parts of q are q_0, q_1 ...
+    """
+    above = ""
+    for number, line in sample:
+        mark = next((x for x in "\t;" if x in line), ",")
+        cells = [x for x in line.split(mark) if not _MAYBE_THOUSANDS.fullmatch(x)]
+        lists = [cell.split(",") for cell in cells]
+        if any(len(x) > 2 and _are_numbers([y.strip() for y in x]) for x in lists):
+            rows = text.split("\n", number - 1)
+            names, sizes = above.split(mark), [*map(len, lists)]
+            if len(names) == len(sizes):
+                sized = zip(names, sizes, strict=True)
+                parts = [[x] if n == 1 else [f"{x}_{i}" for i in range(n)] for x, n in sized]
+                rows[-2] = mark.join(x for part in parts for x in part)
+            return "\n".join([*rows[:-1], rows[-1].replace(",", mark)])
+        above = line
+    return None
 
 
 def _heading_in_comments(
@@ -341,7 +371,9 @@ def _layout(texts: Sequence[str], known: CountKnown, decimal: str) -> _Layout:
             score = bool(fits), mark in marks, count
             if count and (found is None or score > found[0]):
                 found = score, _Layout(cells, i + 1, [*fits, *delimiters, mark][0])
-    if found:
+    above = splits[below - 1] if below else {}
+    fit = any(len(cells) == len(data[x]) for x, cells in above.items() if x in marks)
+    if found and (found[0][0] or not fit):
         return found[1]
     some = (i for i, row in enumerate(splits) if _has_number(row))
     first = next(some, min(len(texts), 1)) if below is None else below
@@ -405,11 +437,13 @@ def split_row(text: str, delimiter: str) -> list[str]:
         raise LagtopError(wrong) from None
 
 
-def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
-    """Return JSON objects, one per line or in one array."""
-    number, line = first
+def _json_table(
+    text: str, name: str, sample: Sequence[tuple[int, str]], known: CountKnown
+) -> Table:
+    """Return JSON objects, one per line or in one array, or an object of columns."""
+    number, line = sample[0]
     table = Table(name, [], 0, Lines(text, number), "")
-    if line.lstrip().startswith("["):
+    if line.lstrip().startswith("[") or len(sample) == 1 or not _is_json(line):
         whole = text.split("\n", number - 1)[-1]
         if len(whole) > LARGEST_ARRAY or whole.count(",") > _MOST_VALUES:
             most = (
@@ -417,10 +451,13 @@ def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
             )
             raise DataError(f"{name}: a JSON array must have at most {most}")
         try:
-            rows = [*enumerate(json_value(whole, number), 1)]
+            rows = rows_of_value(json_value(whole, number), known)
         except LagtopError as error:
-            raise DataError(f"{name}, {error}") from None
-        table = replace(table, rows=rows, place="row")
+            place = ", " if str(error).startswith("line") else f", line {number}: "
+            raise DataError(f"{name}{place}{error}") from None
+        table = replace(table, rows=[*enumerate(rows, 1)], place="row")
+        if rows and isinstance(rows[0], list):
+            return replace(table, headings=None, width=len(rows[0]))
     headings: dict[str, None] = {}
     wrong = None
     for number, row in table.rows:
@@ -433,3 +470,11 @@ def _json_table(text: str, name: str, first: tuple[int, str]) -> Table:
     if not headings and wrong:
         raise wrong
     return replace(table, headings=[*headings], width=len(headings))
+
+
+def _is_json(text: str) -> bool:
+    try:
+        json_value(text)
+    except LagtopError:
+        return False
+    return True

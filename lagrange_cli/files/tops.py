@@ -15,7 +15,6 @@ import numpy as np
 
 from ..arithmetic.text import quoted, shortened
 from ..errors import DataError, LagtopError
-from ..file_bytes import read_text, shown_path
 from ..names import repeated
 from ..top.given import Given, gather
 from ..top.inputs import INPUTS, STEADY_WORDS, TILT, checked_double, one_of_each, overridden
@@ -23,7 +22,8 @@ from ..top.ranges import MOST_POINTS, Points
 from ..top.units import conversion
 from ..top.values import Value, tilt_key
 from .headings import name_and_unit, plain_name
-from .text_tables import Table, read_table
+from .tables import table_in
+from .text_tables import Table
 
 _TIMES = {"t", "time", "timestamp"}
 """Names of a time, which a file of tops does not have."""
@@ -146,7 +146,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     Columns named in `computed` are neither read nor copied.  `decimal` is a point or a comma, or
     empty if the file decides.  Raises DataError.
     """
-    table = read_table(read_text(path), shown_path(path), _known_inputs, decimal)
+    table = table_in(path, _known_inputs, decimal)
     name, headings = table.name, table.headings or []
     columns, units = list[str](), dict[str, Value]()
     for heading in headings:

@@ -15,7 +15,7 @@ from ..errors import AbsentError, joined
 from ..names import ANGLES
 from ..output.notebook import HasRecord
 from ..output.report import uncertain_text
-from ..recordings.doubts import shifted_origin
+from ..recordings.doubts import pivot_of
 from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, MoreNoise, Residuals, chi2_bounds
 from .known import Known
@@ -172,13 +172,11 @@ class Outcome(HasRecord):
     def origin(self) -> list[str]:
         """Where the pivot is if the origin of a marker is elsewhere, as a failure; else empty."""
         marker = self.recording.position
-        if marker is None or (offset := shifted_origin(marker)) is None:
+        if marker is None or (pivot := pivot_of(marker)) is None:
             return []
-        shown = ", ".join(f"{x:.2g}" for x in offset)
-        return [
-            "the distance of the marker from the origin varies with its direction: is the "
-            f"origin at the pivot, or is the pivot at about ({shown})?"
-        ]
+        where = f"the pivot is at {pivot}: subtract it" if str(pivot) else "is it at the pivot?"
+        varies = "the distance of the marker from the origin varies with its direction"
+        return [f"{varies}: {where}"]
 
     @property
     def remarks(self) -> list[str]:

@@ -33,7 +33,7 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: str) -> Report:
 
     conditions = {
         "data": f"{source}: {count} rows of {channels}, from t = {recording.t_start:g}",
-        **({"read": "; ".join(read.lines)} if read.lines else {}),
+        **({"read": [*read.lines]} if read.lines else {}),
         **({"not read": ", ".join(read.unused)} if read.unused else {}),
         "known": (", ".join(shown(name, *x) for name, x in known.items()) or "nothing") + system,
         "sigma": "as given" if recording.sigma else "estimated from the residuals",

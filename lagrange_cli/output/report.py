@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
+from itertools import chain
 from typing import Any, NamedTuple
 
 from ..arithmetic.text import double_text
@@ -35,8 +36,8 @@ def fields_of(keys: Sequence[str], *shown: Field) -> list[Field]:
 class Report(NamedTuple):
     """Conditions, rows and conclusions, in every format."""
 
-    conditions: dict[str, str]
-    """Conditions of the measurement, by name."""
+    conditions: Mapping[str, str | Sequence[str]]
+    """Conditions of the measurement, by name: a text, or several lines."""
     fields: Sequence[Field]
     rows: Sequence[Any]
     """Objects with an attribute for every field."""
@@ -53,7 +54,11 @@ class Report(NamedTuple):
 
     def document(self, said: Callable[[str], str] = str) -> Document:
         """Return the report as a document whose conclusions are `said` in another way."""
-        conditions = {name: utf8_path(said(x)) for name, x in self.conditions.items()}
+        lines = {
+            name: [utf8_path(said(line)) for line in ([x] if isinstance(x, str) else x)]
+            for name, x in self.conditions.items()
+        }
+        conditions = {name: "; ".join(x) for name, x in lines.items()}
         conclusions = [utf8_path(said(x)) for x in self.conclusions]
         rows = self.values()
         whole = {"conditions": conditions, "rows": rows, "conclusions": conclusions}
@@ -63,7 +68,11 @@ class Report(NamedTuple):
         numbers = [i for i, field in enumerate(shown) if not field.is_text]
         page: list[str | Grid | Lines] = []
         if conditions:
-            page.append(Lines([f"{x:11}{y}" for x, y in conditions.items()], hanging=11))
+            named = [[name, *[""] * (len(x) - 1)] for name, x in lines.items()]
+            texts = [
+                f"{x:11}{y}" for x, y in zip(chain(*named), chain(*lines.values()), strict=True)
+            ]
+            page.append(Lines(texts, hanging=11))
         if cells:
             page.append(Grid([field.heading for field in shown], cells, numbers))
         page += ["\n".join(conclusions)] if conclusions else []

@@ -1,35 +1,53 @@
-"""What is doubtful in a recording: angles of an unknown unit, and positions that are none."""
+"""What is doubtful in a recording: angles of an unknown unit, positions, and where the pivot is."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.types import Array
+from ..arithmetic import rotations
+from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
+from ..output.report import uncertain_text
+from .observed import observe
+from .options import Reading
 
 _JUMP, _BEYOND = 4.4, 1e-3
 """Least jump by a whole turn between two rows, and how far an angle may be beyond one."""
+_SMOOTHER = 5.0
+"""Ratio of the greatest turn between two rows to the median one that shows the wrong unit."""
 _UNEVEN = 0.05
 """Greatest deviation of a marker from the nearest sphere (rms), over its radius."""
 _SURE, _LEAST_CHANGE = 5.0, 2e-3
 """Standard deviations of a shifted origin, and the least change of the distance over itself."""
+_DETERMINED = 0.2
+"""Greatest standard deviation of a coordinate of the pivot, over the distance of the marker."""
 _FLAT = 0.5
 """Curvature of a marker's path, over that of the sphere about the origin, below which it is in a
 plane, as are angular rates with a constant rate of spin."""
 _FACING = 0.5
 """Cosine between the normal of a plane and the direction of its middle, if it faces the origin."""
-_FEW = 12
+_FEW, _ENOUGH = 12, 400
+"""Rows below which nothing is doubted, and rows that show a frequency."""
 
 
-def are_radians(angles: Iterable[Array]) -> bool:
-    """Return whether angles without a unit are in radians: they stay within a turn and jump by it.
+def why_radians(bare: Mapping[str, Array], reading: Reading) -> str:
+    """Return why angles without a unit are in radians, empty if they are not.
 
-    Angles in degrees jump by 360.
+    They stay within a turn and jump by it, or Euler angles turn smoothly only in radians.
     """
-    columns = [x for y in angles for x in y.T]
-    return all(_is_within_turn(x) for x in columns) and any(map(_jumps, columns))
+    columns = [x for y in bare.values() for x in y.T]
+    if not all(_is_within_turn(x) for x in columns):
+        return ""
+    if any(map(_jumps, columns)):
+        return "they jump by 6.28"
+    if "euler" in bare:
+        rough = [_roughness(bare["euler"] * size, reading) for size in (1.0, np.pi / 180)]
+        if rough[1] > _SMOOTHER * max(rough[0], 1.0):
+            return "only so do they turn smoothly"
+    return ""
 
 
 def _is_within_turn(angle: Array) -> bool:
@@ -46,31 +64,103 @@ def _jumps(angle: Array) -> bool:
     return bool((steps > _JUMP).any())
 
 
-def shifted_origin(position: Array) -> Array | None:
-    """Return the pivot in the coordinates of a marker, if these do not begin at the pivot.
+def _roughness(euler: Array, reading: Reading) -> float:
+    """Return the greatest turn between two rows over the median one."""
+    seen = euler[np.isfinite(euler).all(axis=1)]
+    if len(seen) < _FEW:
+        return 0.0
+    turned = observe({"t": seen[:, :1], "euler": seen}, reading).quaternion
+    steps = rotations.angle_between(turned[1:], turned[:-1]) if turned is not None else np.zeros(1)
+    return float(steps.max() / (np.median(steps) or 1.0))
 
-    The distance of the marker from its origin grows by d.e if the origin is off by d, with the
+
+class Pivot(NamedTuple):
+    """The pivot in the coordinates of a marker, with standard deviations."""
+
+    at: Array
+    std: Array
+    is_determined: Mask
+
+    def __str__(self) -> str:
+        found = zip("xyz", *(x.tolist() for x in self), strict=True)
+        return ", ".join(f"{x} = {uncertain_text(y, z)}" for x, y, z, known in found if known)
+
+
+def pivot_of(position: Array) -> Pivot | None:
+    """Return the pivot of a marker if it is not at the origin of its coordinates.
+
+    The distance of the marker from the origin grows by d.e if the pivot is at d, with the
     direction e of the marker.  Returns None if the distance does not vary by more than noise.
     """
-    offset, directions, distance = _offset(position)
-    explained = directions @ offset
+    seen = position[np.isfinite(position).all(axis=1) & (position != 0).any(axis=1)]
+    if len(seen) < _FEW:
+        return None
+    distance = np.linalg.norm(seen, axis=1)
+    directions = seen / distance[:, np.newaxis]
+    directions = directions - directions.mean(axis=0)
+    explained = directions @ np.linalg.lstsq(directions, distance, rcond=1e-3)[0]
     rest = distance - distance.mean() - explained
-    noise = float(rest @ rest) / max(distance.size - 4, 1)
+    noise = float(rest @ rest) / (distance.size - 4)
     gain = float(explained @ explained) / (noise + 1e-30)
     if gain < _SURE**2 + 3 or np.ptp(explained) < _LEAST_CHANGE * distance.mean():
         return None
-    for _ in range(8):  # to first order in what is left
-        offset = offset + _offset(position - offset)[0]
-    return offset
+    centre, std = _sphere_about(seen)
+    radius = float(np.linalg.norm(seen - centre, axis=1).mean())
+    return Pivot(centre, std, std < _DETERMINED * radius)
 
 
-def _offset(marker: Array) -> tuple[Array, Array, Array]:
-    """Return the pivot to first order, a marker's directions less their mean, and its distances."""
-    distance = np.linalg.norm(marker, axis=1)
-    directions = marker / distance[:, np.newaxis]
-    directions = directions - directions.mean(axis=0)
-    basis = np.column_stack([np.ones(distance.size), directions])
-    return np.linalg.lstsq(basis, distance, rcond=1e-3)[0][1:], directions, distance
+def _sphere_about(points: Array) -> tuple[Array, Array]:
+    """Return the centre of the nearest sphere, and its standard deviations."""
+    centre, spread = _nearest_centre(points), np.full(3, np.inf)
+    for _ in range(12):
+        away = points - centre
+        distance = np.linalg.norm(away, axis=1)
+        basis = np.column_stack([away / distance[:, np.newaxis], np.ones(len(away))])
+        step = np.linalg.lstsq(basis, distance, rcond=1e-3)[0]
+        rest = distance - basis @ step
+        _, sizes, axes = np.linalg.svd(basis, full_matrices=False)
+        spread = np.linalg.norm(axes.T / np.maximum(sizes, 1e-9), axis=1)[:3]
+        spread = spread * np.sqrt(rest @ rest / (len(points) - 4))
+        centre = centre + step[:3]
+    return centre, spread
+
+
+def _nearest_centre(points: Array) -> Array:
+    """Return the centre of the sphere of which points are the least off, in squares."""
+    middle = points.mean(axis=0)
+    away = points - middle
+    basis = np.column_stack([2 * away, np.ones(len(away))])
+    *centre, _ = np.linalg.lstsq(basis, (away**2).sum(axis=1), rcond=1e-3)[0]
+    return np.asarray(middle + centre)
+
+
+def centre_above(t: Array, marks: Array) -> Array:
+    """Return the point about which a marker turns, if a camera sees it from above.
+
+    The squared distance from it is a function with the period of the nutation: it is 2 c.x less
+    than the squared distance from the origin, up to a constant.
+    """
+    from scipy.optimize import minimize_scalar  # start-up
+
+    seen = np.flatnonzero(np.isfinite(marks).all(axis=1) & np.isfinite(t))
+    rows = seen[np.linspace(0, len(seen) - 1, min(len(seen), _ENOUGH)).astype(int)]
+    if len(rows) < _FEW:
+        return np.zeros(2)
+    middle = marks[rows].mean(axis=0)
+    away, phase = marks[rows] - middle, t[rows] - t[rows[0]]
+    phase = 2 * np.pi * phase / (np.ptp(phase) or 1.0)
+
+    def fitted(cycles: float) -> tuple[float, Array]:
+        waves = [f(k * cycles * phase) for k in (1, 2, 3) for f in (np.cos, np.sin)]
+        basis = np.column_stack([2 * away, np.ones(len(away)), *waves])
+        found = np.linalg.lstsq(basis, square, rcond=1e-6)[0]
+        return float(np.linalg.norm(square - basis @ found)), found[:2]
+
+    square = (away**2).sum(axis=1)
+    counts = np.arange(1.0, len(rows) / 6, 0.25)
+    best = counts[np.argmin([fitted(x)[0] for x in counts])] if counts.size else 1.0
+    near = minimize_scalar(lambda x: fitted(x)[0], (best - 0.25, best, best + 0.25)).x
+    return np.asarray(middle + fitted(near)[1])
 
 
 def check_position(position: Array) -> None:
@@ -90,12 +180,8 @@ def check_position(position: Array) -> None:
 
 def _off_sphere(points: Array) -> float:
     """Return the deviation of points from the nearest sphere (rms), over its radius."""
-    middle = points.mean(axis=0)
-    away = points - middle
-    square = (away**2).sum(axis=1)
-    basis = np.column_stack([2 * away, np.ones(len(away))])
-    *centre, _ = np.linalg.lstsq(basis, square, rcond=1e-3)[0]
-    distances = [np.linalg.norm(points - x, axis=1) for x in (middle + centre, np.zeros(3))]
+    centres: Iterable[Array] = _nearest_centre(points), np.zeros(3)
+    distances = [np.linalg.norm(points - x, axis=1) for x in centres]
     return min(float(x.std() / (x.mean() or 1.0)) for x in distances)
 
 

@@ -50,7 +50,9 @@ class FoundQuantity(NamedTuple):
     """The indices of the columns of its parts."""
     says: str = ""
     unit: str | None = None
-    """The unit in its headings."""
+    """The unit in its headings, or the one into which they are converted by the factor."""
+    written: str = ""
+    """The unit as it is written."""
     factor: Fraction | None = None
     """The factor that converts its numbers to the units in use, if any."""
 
@@ -67,8 +69,9 @@ psi | angle | precession | psi, psi_deg, psi_rad, ψ, precession
 euler | angle | three angles of turns about coordinate axes | euler_0 ..., roll pitch yaw
 rotvec | rad | rotation vector from body to space, in radians | rotvec_x ..., rv0 rv1 rv2
 axis | | figure axis in space | axis_x axis_y axis_z
-position | m | centre of mass in space, from the pivot; read if nothing above is given
+position | m | position of a marker on the axis; read if nothing above is given
     | x y z, com_x ..., tx ty tz
+above | m | marker seen from above, which gives psi; read if nothing above is given | x y
 rates | rad/time | angular velocity in radians per unit of time
     | p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz
 angle_rates | rad/time | rates of tilt, spin and precession in radians per unit of time
@@ -78,7 +81,9 @@ angle_rates | rad/time | rates of tilt, spin and precession in radians per unit 
 
 _SPELLINGS = """
 t | t time timestamp times simtime xvalue | |
-t | frame frames framenumber | | frames
+t | | sec nanosec; secs nsecs; stampsec stampnanosec; stampsecs stampnsecs | nanoseconds
+t | elapsed elapsedtime secondselapsed sec secs seconds | |
+t | frame frames framenumber frameno | | frames
 quaternion | quaternion quat q orientation attitude xquat rot rotation | w x y z | wxyz
 quaternion | | w x y z | wxyz
 quaternion | quaternion quat q orientation attitude rotation rot | 0 1 2 3 |
@@ -99,6 +104,8 @@ rotvec | rotvec rotationvector rv | x y z; 0 1 2 |
 axis | axis figureaxis director | x y z; 0 1 2 |
 position | position com pos p t | x y z; 0 1 2 |
 position | | x y z |
+above | above | x y; 0 1 |
+above | | x y |
 rates | | p q r | body
 rates | omega w angularvelocity gyro rates | x y z; 0 1 2 |
 rates | omegabody omegalocal angularvelocitylocal wbody qvel | x y z; 0 1 2 | body
@@ -133,6 +140,9 @@ QUANTITIES = {
 _TIMES = {name for names, _ in QUANTITIES["t"].spellings for name in names}
 
 _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITIES.items()}
+
+_POSE = "r11 r12 r13 x r21 r22 r23 y r31 r32 r33 z".split()
+"""The columns of a pose, as KITTI and others write it: the rows of a rotation and a translation."""
 
 _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
 """Units that mean those of the scene, as in a drawn table."""
@@ -190,10 +200,8 @@ def found_in(names: Sequence[str], *, needs_time: bool = True) -> dict[str, Foun
         wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
         remedy = f"name them, {NAMING}"
-        if {"x", "y"} <= {*names} and "z" not in names:
-            remedy = "z is missing"
-        elif found and "t" not in found:
-            remedy = f"the time is missing, give {arg('dt')} if the rows are equally spaced"
+        if found and "t" not in found:
+            remedy = f"the time is missing, give {arg('dt')} or {arg('fps')} for even rows"
         raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
     plain = [word for word, _ in _plain_names(names)]
     for key, quantity in found.items():
@@ -221,7 +229,8 @@ def in_known_unit(key: str, found: FoundQuantity, names: Sequence[str]) -> Found
     if not own:
         raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
     into = "rad" if own == "angle" else own
-    return found._replace(unit=into, factor=conversion(key, str(unit), into)[0])
+    factor = conversion(key, str(unit), into)[0]
+    return found._replace(unit=into, written=str(unit), factor=factor)
 
 
 def converted(key: str, found: FoundQuantity, values: Array, *, radians: bool) -> Array:
@@ -241,6 +250,9 @@ def expanded(names: Sequence[str]) -> list[str]:
     """Return names of columns, `quaternion` as quaternion_0 and so on.  Raises LagtopError."""
     single: list[str] = []
     for name in names:
+        if name == "pose":
+            single += _POSE
+            continue
         word, unit = plain_name(name)
         quantity = _BY_PLAIN_NAME.get(word)
         size, ending = quantity.size if quantity else 1, f"_{unit}" if unit else ""

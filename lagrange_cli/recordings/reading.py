@@ -1,23 +1,22 @@
-"""The reading of a recording from a file or from standard input, held in memory as whole columns.
-
-The first bytes of a file determine its format, not its name: a binary table, or else text.
-"""
+"""The reading of a recording from a file or from standard input, as whole columns."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from decimal import Decimal
-from itertools import chain
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError, arg
-from ..file_bytes import decoded, read_bytes, shown_path, utf8_path
-from ..files.binary_tables import BinaryTable, binary_table
-from ..files.text_tables import Table, read_table
-from .doubts import are_radians
+from ..file_bytes import shown_path, utf8_path
+from ..files.tables import table_in
+from ..files.text_tables import EXPONENT
+from .clocks import PER_SECOND, seconds_of, unit_since_1970
+from .doubts import why_radians
 from .options import OPTION_OF, Reading
 from .quantities import (
     NAMING,
@@ -30,14 +29,14 @@ from .quantities import (
     known_quantities,
     with_units_of,
 )
-from .recording import Recording, Source, used_in
+from .recording import Recording, Source, precess_about, used_in
 
 _FINE = 1e-7
 """Largest rounding of a time, over the time between two rows, that does not matter."""
-_UNITS = {"time": "units of the recording", "rad/time": "rad per unit of time"}
-"""The units of quantities without one in their headings."""
+_FROM_0 = "from 0 in the first row"
 _MOST_NAMES = 4
 _NO_TIME = FoundQuantity(())
+_POSE_WIDTH = 12
 
 
 def read_recording(path: str, reading: Reading) -> Recording:
@@ -61,20 +60,34 @@ class _File:
     def __init__(self, path: str, reading: Reading) -> None:
         names = None if reading.columns is None else expanded(reading.columns)
         self.path, self.name, self.reading = path, shown_path(path), reading
-        self.table = _table_of(path, reading.decimal, len(names or ()) or None)
+        self.table = table_in(path, known_quantities, reading.decimal, len(names or ()) or None)
+        if not self.table.width:
+            raise DataError(f"{self.name} must hold a recording, got no cells")
         self.names = self._names(names)
         self.quantities = self._quantities(is_named=names is not None)
-        used = sorted(i for x in self.quantities.values() for i in x.columns)
+        self.time = self.quantities.get("t", _NO_TIME)
+        self.clock = self._clock()
+        kept = [x for x in self.quantities.values() if self.clock is None or x is not self.time]
+        used = sorted(i for x in kept for i in x.columns)
         self.numbers = self.table.numbers(used, self.names)
         if not len(self.numbers.lines):
             raise DataError(f"{self.name} must have at least one row of numbers")
-        self.places = {key: [*map(used.index, x.columns)] for key, x in self.quantities.items()}
+        self.raw: dict[str, Array] = {}
+        """The numbers of each quantity as they are written."""
+        self.empty: dict[str, Mask] = {}
+        """Whether a part of each quantity is an empty cell, by row."""
+        for key, found in self.quantities.items():
+            if found in kept:
+                places = [*map(used.index, found.columns)]
+                self.raw[key] = self.numbers.values[:, places]
+                self.empty[key] = self._empty(key, self.numbers.empty[:, places])
 
     def _names(self, names: Sequence[str] | None) -> Sequence[str]:
         """Return the names of all columns: those given, with the units of the headings."""
         width, headings = self.table.width, self.table.headings
         if names is None and headings is None:
-            wanted = f"name its {width} columns, {NAMING}"
+            pose = f", or {arg('columns', 'pose')} for a matrix and a translation"
+            wanted = f"name its {width} columns, {NAMING}{pose * (width == _POSE_WIDTH)}"
             raise DataError(f"{self.name} has no header: {wanted}")
         if names is None:
             return headings or ()
@@ -96,80 +109,137 @@ class _File:
             raise DataError(f"{self.name}: {shown} counts frames: give {arg('fps')}")
         return found
 
+    def _clock(self) -> dict[int, Any] | None:
+        """Return the cells of the time by row if they are dates or have colons, else None."""
+        if len(self.time.columns) != 1:
+            return None
+        cells = self.table.column(self.time.columns[0])
+        first = next((x for _, x in cells if x), "")
+        is_clock = isinstance(first, str) and seconds_of(first) is not None
+        return dict(self.table.column(self.time.columns[0])) if is_clock else None
+
+    def _empty(self, key: str, empty: Mask) -> Mask:
+        if empty.all():
+            shown = ", ".join(self._named(key))
+            remedy = f"remove its columns, or skip them with _, as in {arg('columns', 't,_')}"
+            raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
+        return np.asarray(empty.any(axis=1))
+
     def recording(self) -> Recording:
         """Return the recording, with the conventions that names imply."""
-        raw = {key: self.numbers.values[:, x] for key, x in self.places.items()}
-        empty = self._empty()
-        radians = self._radians(raw)
-        rows = {
-            key: converted(key, self.quantities[key], x, radians=key in radians)
-            for key, x in raw.items()
+        reading, lines, rows = self._implied(), dict[str, str](), dict[str, Array]()
+        begins, elapsed, lines["t"] = self._times()
+        bare = {
+            key: x
+            for key, x in self.raw.items()
+            if QUANTITIES[key].unit == "angle" and self.quantities[key].unit is None
         }
-        begins, rows["t"] = self._times(raw)
-        reading = self._implied()
+        usual = reading.units.angle
+        why = why_radians(bare, reading) if usual == "deg" else ""
+        for key, x in self.raw.items():
+            if key == "t":
+                continue
+            found = self.quantities[key]
+            unit = found.unit or ("rad" if why and key in bare else usual)
+            rows[key] = converted(key, found, x, radians=unit == "rad")
+            lines[key] = self._line(key, unit, why if key in bare else "")
+        if "position" in rows:
+            distance = float(np.nanmedian(np.linalg.norm(rows["position"], axis=1)))
+            lines["position"] += f", {distance:.4g} from the origin"
+        rows["t"] = elapsed
+        if (centre := precess_about(rows)) is not None:
+            lines["psi"] = f"{lines['above']}, about ({centre[0]:.5g}, {centre[1]:.5g})"
+            self.quantities["psi"] = self.quantities["above"]
+            self.empty["psi"] = self.empty["above"]
         Recording(rows, reading).observed(slice(1))  # raises errors of the alignment
         used = used_in(rows, reading)
         given = {key: rows[key] for key in used}
-        given["missing"] = np.any([empty[x] for x in used & empty.keys()], axis=0).reshape(-1, 1)
-        read = {i for key in used & self.places.keys() for i in self.quantities[key].columns}
+        given["missing"] = np.any([self.empty[x] for x in used & self.empty.keys()], axis=0)
+        given["missing"] = given["missing"].reshape(-1, 1)
+        read = {i for key in used & {*self.quantities} for i in self.quantities[key].columns}
         source = Source(
             utf8_path(self.path),
             [x for i, x in enumerate(self.names) if i in read],
             [x for i, x in enumerate(self.names) if i not in read and x != SKIPPED],
-            [*self._lines(rows, used, radians)],
-            "s" if self.quantities.get("t", _NO_TIME).unit else "units of the recording",
+            [text for key, text in lines.items() if key in used],
+            "s" if self.time.unit else "units of the recording",
         )
         return Recording(given, reading, begins, source).within()
-
-    def _empty(self) -> dict[str, Mask]:
-        """Return for every quantity whether a part of it is an empty cell, by row."""
-        found: dict[str, Mask] = {}
-        for key, places in self.places.items():
-            empty = self.numbers.empty[:, places]
-            if empty.all():
-                shown = ", ".join(self._named(key))
-                remedy = f"remove its columns, or skip them with _, as in {arg('columns', 't,_')}"
-                raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
-            found[key] = np.asarray(empty.any(axis=1))
-        return found
 
     def _named(self, key: str) -> list[str]:
         return [self.names[i] for i in self.quantities[key].columns]
 
-    def _radians(self, raw: Mapping[str, Array]) -> set[str]:
-        """Return the angles without a unit that are in radians."""
-        bare = {
-            key: x
-            for key, x in raw.items()
-            if QUANTITIES[key].unit == "angle" and self.quantities[key].unit is None
-        }
-        return {*bare} if self.reading.units.radians or are_radians(bare.values()) else set()
+    def _line(self, key: str, unit: str, why: str) -> str:
+        """Return what the columns of a quantity were read as."""
+        quantity, found, names = QUANTITIES[key], self.quantities[key], self._named(key)
+        shown = ", ".join(names if len(names) < _MOST_NAMES else [names[0], "...", names[-1]])
+        words = {"angle": unit, "m": "", "rad": "", "": ""}.get(
+            quantity.unit, "rad per unit of time"
+        )
+        words = found.written or {"deg": "degrees", "rad": "radians"}.get(words, words)
+        parts = [quantity.meaning.partition(";")[0], found.says, words and f"in {words}"]
+        return f"{shown}: {', '.join(filter(None, parts))}" + f" ({why})" * bool(why)
 
-    def _times(self, raw: Mapping[str, Array]) -> tuple[float, Array]:
-        """Return the time of the first row, and times since then, each rounded once.
+    def _times(self) -> tuple[float, Array, str]:
+        """Return the time of the first row, times since then, each rounded once, and a line.
 
         Raises DataError for a time that is not finite or turns back; it may repeat.
         """
-        dt = self.reading.dt
-        t = raw["t"][:, 0] if "t" in raw else np.arange(float(len(self.numbers.lines)))
-        for i in np.flatnonzero(~np.isfinite(t))[:1]:
-            raise DataError(f"{self._where(i)}: t must be a finite number, got {t[i]}")
-        if dt is not None:
-            if (parts := np.flatnonzero(t != np.rint(t))).size:
-                wrong = f"t must count frames if {arg('dt')} or {arg('fps')} is given, got"
-                raise DataError(f"{self._where(parts[0])}: {wrong} {t[parts[0]]:g}")
-            return float(t[0] * dt), ((t - t[0]) * dt).reshape(-1, 1)
-        found = self.quantities["t"]
-        begins = converted("t", found, t[:1], radians=True)
-        elapsed = converted("t", found, self._elapsed(t), radians=True)
+        begins, elapsed, how = self._counted() if self.reading.dt else self._timed()
         ways = np.sign(np.diff(elapsed))
         forth = ways[ways != 0][:1]
         for i in np.flatnonzero(np.r_[False, ways == -forth])[:1] if forth.size else ():
-            after, before = (float(begins[0] + x) for x in (elapsed[i], elapsed[i - 1]))
+            after, before = (float(begins + x) for x in (elapsed[i], elapsed[i - 1]))
             remedy = "put each recording into its own file"
             wrong = f"t must not turn back, got {after:.10g} after {before:.10g}: {remedy}"
             raise DataError(f"{self._where(i)}: {wrong}")
-        return float(begins[0]), elapsed.reshape(-1, 1)
+        shown = " and ".join(self._named("t")) + ", " if self.time.columns else ""
+        return begins, elapsed.reshape(-1, 1), f"{shown}time: {how}".replace(", time:", ": time,")
+
+    def _counted(self) -> tuple[float, Array, str]:
+        """Return the first time, times since then and words for times that count frames."""
+        dt = self.reading.dt or 1.0
+        t = self._column() if self.time.columns else np.arange(float(len(self.numbers.lines)))
+        for i in np.flatnonzero(t != np.rint(t))[:1]:
+            wrong = f"t must count frames if {arg('dt')} or {arg('fps')} is given, got {t[i]:g}"
+            raise DataError(f"{self._where(i)}: {wrong}")
+        return float(t[0] * dt), (t - t[0]) * dt, f"rows {dt:g} apart"
+
+    def _timed(self) -> tuple[float, Array, str]:
+        """Return the first time, times since then and words for times."""
+        if self.clock is not None:
+            exact = [self._moment(x) for x in self.numbers.lines]
+            return 0.0, np.array([float(x - exact[0]) for x in exact]), f"a clock ({_FROM_0})"
+        if len(self.time.columns) > 1:
+            self._column()
+            parts = self.raw["t"] - self.raw["t"][0]
+            return 0.0, parts @ [1.0, 1e-9], f"seconds and nanoseconds ({_FROM_0})"
+        t, found = self._column(), self.time
+        unit = unit_since_1970(t)
+        if unit and found.factor is None:
+            found = found._replace(factor=1 / Fraction(PER_SECOND[unit]), written=unit)
+        elif unit != found.written:
+            unit = ""
+        begins = converted("t", found, t[:1], radians=True)
+        elapsed = converted("t", found, self._elapsed(t), radians=True)
+        if unit:
+            return 0.0, elapsed, f"{unit} since 1970 ({_FROM_0})"
+        return float(begins[0]), elapsed, f"in {found.written or 'units of the recording'}"
+
+    def _column(self) -> Array:
+        """Return the numbers of the time.  Raises DataError for one that is not finite."""
+        t = self.raw["t"]
+        for i in np.flatnonzero(~np.isfinite(t).all(axis=1))[:1]:
+            raise DataError(f"{self._where(i)}: t must be a finite number, got {t[i].sum()}")
+        return t[:, 0]
+
+    def _moment(self, line: int) -> Decimal:
+        """Return the seconds in a cell of a clock.  Raises DataError."""
+        cell = (self.clock or {})[line]
+        if (found := seconds_of(cell)) is None:
+            wrong = f"the time must be like 13:05:00.25 or 2024-05-31T13:05:00Z, got {quoted(cell)}"
+            raise DataError(f"{self.name}, {self.table.place} {line}: {wrong}")
+        return found
 
     def _where(self, row: int) -> str:
         """Return the name of the file and the place of a row."""
@@ -184,11 +254,10 @@ class _File:
         steps = steps[steps > 0]
         if not steps.size or np.abs(t).max() * 2.0**-53 <= _FINE * np.median(steps):
             return np.asarray(t - t[0])
-        column = self.table.column(self.quantities["t"].columns[0])
-        cells = (self.table.plain(x) for _, x in column)
-        exact = (Decimal(x) for x in cells if x)
-        first = next(exact)
-        return np.fromiter((x - first for x in chain([first], exact)), np.float64)
+        lines, plain = {*map(int, self.numbers.lines)}, self.table.plain
+        cells = self.table.column(self.time.columns[0])
+        exact = [Decimal(plain(x).translate(EXPONENT)) for i, x in cells if i in lines]
+        return np.fromiter((x - exact[0] for x in exact), np.float64)
 
     def _implied(self) -> Reading:
         """Return the options, overridden by names of columns unless they are not the usual."""
@@ -200,36 +269,3 @@ class _File:
             if says.get(key) and getattr(given, option) == getattr(usual, option)
         }
         return given._replace(**implied)
-
-    def _lines(self, rows: Mapping[str, Array], used: set[str], radians: set[str]) -> Iterator[str]:
-        """Yield what the columns were read as, a line for each quantity."""
-        if "t" not in self.places:
-            yield f"time: rows {self.reading.dt:g} apart"
-        for key, found in self.quantities.items():
-            if key not in used:
-                continue
-            quantity, names = QUANTITIES[key], self._named(key)
-            shown = ", ".join(names if len(names) < _MOST_NAMES else [names[0], "...", names[-1]])
-            details = [found.unit or _UNITS.get(quantity.unit, "")]
-            if quantity.unit == "angle":
-                details = [found.unit or "radians" if key in radians else "degrees"]
-                is_guess = key in radians and not self.reading.units.radians
-                details += ["they jump by 6.28"] * is_guess
-            if key == "position":
-                distance = float(np.nanmedian(np.linalg.norm(rows[key], axis=1)))
-                details.append(f"{distance:.4g} from the origin")
-            more = ", ".join(filter(None, [found.says, *details]))
-            yield f"{shown}: {quantity.meaning.partition(';')[0]}" + f" ({more})" * bool(more)
-
-
-def _table_of(path: str, decimal: str, width: int | None) -> Table | BinaryTable:
-    """Return the table in a file.  Raises DataError."""
-    name, content = shown_path(path), read_bytes(path)
-    table: Table | BinaryTable | None = binary_table(content, name)
-    if table is None:
-        text = decoded(content, name)
-        del content  # one copy of a large file is enough
-        table = read_table(text, name, known_quantities, decimal, width)
-    if not table.width:
-        raise DataError(f"{name} must hold a recording, got no cells")
-    return table

@@ -13,6 +13,7 @@ from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError, arg
 from ..names import check_names
 from ..top.units import RADIANS
+from .doubts import centre_above
 from .observed import Observed, Quantities, framed, observe, quantities_of, rows_of
 from .options import Alignment, Options, Reading
 from .quantities import QUANTITIES
@@ -52,6 +53,7 @@ class Given(Options, total=False):
     rotvec: ArrayLike | None
     axis: ArrayLike | None
     position: ArrayLike | None
+    above: ArrayLike | None
     rates: ArrayLike | None
     angle_rates: ArrayLike | None
 
@@ -148,7 +150,22 @@ def recording_of(t: ArrayLike | None, arguments: Mapping[str, Any]) -> Recording
     for key, x in given.items():
         if isinstance(x, np.ma.MaskedArray):
             rows["missing"] += np.ma.getmaskarray(x).reshape(rows[key].shape).any(1, keepdims=True)
+    precess_about(rows)
     return Recording(rows, reading).within()
+
+
+def precess_about(rows: dict[str, Array]) -> Array | None:
+    """Put psi in the place of a marker seen from above, and return the point that it turns about.
+
+    Return None, and leave the marker out, if there is no marker or something better.
+    """
+    marks = rows.pop("above", None)
+    if marks is None or rows.keys() & {*QUANTITIES} - {"t", "rates", "angle_rates"}:
+        return None
+    centre = centre_above(rows["t"][:, 0], marks)
+    x, y = (marks - centre).T
+    rows["psi"] = np.arctan2(x, -y).reshape(-1, 1)
+    return centre
 
 
 def used_in(rows: Quantities, reading: Reading) -> set[str]:

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
-from ..file_bytes import read_text, shown_path
-from ..files.text_tables import Table, read_table
+from ..files.tables import table_in
+from ..files.text_tables import Table
 from ..top.ranges import ListedPoints
 from .quantities import in_known_unit, known_quantities, quantities_in
 
@@ -19,7 +19,7 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
 
     `decimal` is as in `read_tops`.  Raises DataError, also for a row without a time.
     """
-    table = read_table(read_text(path), shown_path(path), known_quantities, decimal)
+    table = table_in(path, known_quantities, decimal)
     names = ["t"] * (table.width < 2) if table.headings is None else table.headings
     found = quantities_in(names).get("t")
     if found is None:

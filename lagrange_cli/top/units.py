@@ -103,7 +103,12 @@ UNITS: dict[str, Unit] = {
     for name, size in (pair.split("=") for pair in pairs.split())
 }
 """The known units by name."""
-SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "°": "deg"}
+SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "°": "deg"}
+SPELLINGS |= dict.fromkeys(("msec", "millisec", "millisecond", "milliseconds"), "ms")
+SPELLINGS |= dict.fromkeys(("µs", "μs", "µsec", "μsec", "usec", "microsec"), "us")
+SPELLINGS |= dict.fromkeys(("microsecond", "microseconds"), "us")
+SPELLINGS |= dict.fromkeys(("nsec", "nanosec", "nanosecond", "nanoseconds"), "ns")
+SPELLINGS |= dict.fromkeys(("minute", "minutes"), "min")
 SPELLINGS |= dict.fromkeys(("degree", "degrees", "Grad"), "deg")
 SPELLINGS |= dict.fromkeys(("radian", "radians"), "rad")
 """Other spellings of units."""
