@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from ..arithmetic.text import value_text
-from ..output.document import Lines
+from ..output.document import Grid
 from ..output.report import Field, Report
 from ..top.scenes import scene_names, scene_remark
 from . import shared as opt
@@ -43,22 +43,23 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
         return
     rows = explanations(opt.motion_of(found), words, units)
     document = Report({}, _EXPLAINED, rows, []).document()
-    out.document(document._replace(page=lambda _: [Lines(_lines(row)) for row in rows]))
+    out.document(document._replace(page=lambda _: [_table(row) for row in rows]))
 
 
-def _lines(row: Explained) -> list[str]:
-    """Return the lines of one key or column; each equation of a formula has a line of its own."""
+def _table(row: Explained) -> Grid | str:
+    """Return the table of a key or column; each equation of a formula has a line of its own."""
     texts = {
         "formula": row.formula,
         "numbers": row.numbers,
         "value": "" if row.value is None else f"{value_text(row.value)} {row.unit}",
         "missing": row.missing,
     }
-    lines = [f"{row.name}: {', '.join(filter(None, (row.symbol, row.meaning, row.equation)))}"]
+    about = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))
+    cells: list[list[str]] = []
     for name, text in texts.items():
         parts = filter(None, re.split(r" where |, (?=\w+ = )", text))
-        lines += [f"  {'' if i else name:9}{part}".rstrip() for i, part in enumerate(parts)]
-    return lines
+        cells += [["" if i else name, part] for i, part in enumerate(parts)]
+    return Grid([row.name, about], cells) if cells else f"{row.name}: {about}"
 
 
 _LISTED = [

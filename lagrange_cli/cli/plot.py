@@ -10,11 +10,11 @@ from typing import Any
 from ..errors import LagtopError, arg
 from ..names import suggestion
 from ..output.destination import opened
+from ..output.formats import FILMS, PICTURES, listed
 from ..output.terminal import is_screen, with_progress
 from ..plot import CAPTION, KINDS, SHEET
 from ..plot.style import (
     DARK,
-    FORMATS,
     LEAST_DPI,
     LIGHT,
     MOST_DPI,
@@ -30,7 +30,6 @@ from ..top.values import Value, parse_range, parse_value
 from . import shared as opt
 
 PAGE_DPI, FILM_DPI = 150.0, 100.0
-FILMS = "gif", "mp4"
 
 
 @opt.command(
@@ -59,9 +58,9 @@ FILMS = "gif", "mp4"
 )
 @opt.option("--dark", is_flag=True, help="Dark background.")
 @opt.option("--dpi", type=opt.NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
-@opt.option("--animate", metavar="FILE", help="Write a film of the top: FILE.gif or FILE.mp4.")
+@opt.option("--animate", metavar="FILE", help=f"Write a film of the top: FILE{listed(FILMS, '.')}.")
 @opt.option("--duration", type=opt.NUMBER, help="Length of the film in seconds.  [default: 6]")
-@opt.option("-o", "--output", metavar="FILE", help="Output file: FILE.png, .svg or .pdf.")
+@opt.option("-o", "--output", metavar="FILE", help=f"Output file: FILE{listed(PICTURES, '.')}.")
 def plot_command(
     top: opt.TopOptions,
     words: list[str],
@@ -112,7 +111,7 @@ def plot_command(
         raise LagtopError("a picture cannot be shown in a terminal: give -o FILE.png")
     if opt.extension(output or "") in FILMS:
         raise LagtopError(f"a film needs --animate: write --animate {output} instead of -o")
-    fmt = "svg" if output in (None, "-") else check_picture(output, FORMATS)
+    fmt = "svg" if output in (None, "-") else check_picture(output, PICTURES)
     film = check_picture(animate, FILMS) if animate else ""
     eye = _camera(camera, Units(top.radians)) if camera else None
     require_matplotlib()  # also for standard output, which has no name to check

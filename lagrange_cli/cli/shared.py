@@ -14,8 +14,8 @@ import click
 from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..errors import LagtopError, SomeFailedError, arg, marked
 from ..names import split_names
-from ..output.destination import Output, opened
-from ..output.formats import FORMATS
+from ..output.destination import MOST_ROWS, MOST_UPRIGHT, Output, opened
+from ..output.formats import FORMATS, PICTURES, listed
 from ..output.terminal import is_screen
 from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
 from ..top.units import Units, is_unit
@@ -100,7 +100,7 @@ certify = option(
     "--certify", is_flag=True, help="Also print KEY_radius, a proven bound on the error."
 )
 keys = option("--keys", type=LIST, help="Compute and print only these keys (see lagtop explain).")
-plot = option("--plot", metavar="FILE", help="Also draw the report: FILE.png, .svg or .pdf.")
+plot = option("--plot", metavar="FILE", help=f"Also draw the report: FILE{listed(PICTURES, '.')}.")
 decimal = option(
     "--decimal",
     metavar="MARK",
@@ -342,19 +342,18 @@ def warn(found: Given, *, uses_stds: bool = False) -> None:
         complain(f"Warning: the uncertainty of {', '.join(found.stds)} is not used: {used}")
 
 
-def output(
-    default: str, *, rows: bool = False, extensions: Sequence[str] = (), on_terminal: str = ""
-) -> Callable[[F], F]:
+def output(default: str, *, rows: bool = False, extensions: Sequence[str] = ()) -> Callable[[F], F]:
     """Declare --output and --format, which become `out`.
 
     The extension of the file sets the default format.  Without an extension, or with one of the
-    `extensions`, it is the `default`, or `on_terminal` if standard output is a terminal.  Formats
-    that hold only rows are for commands that write `rows`.
+    `extensions`, it is the `default`.  On a terminal, `rows` are a table unless they are many.
     """
-    formats = {name: x.extension for name, x in FORMATS.items() if rows or not x.only_rows}
-    named = {ending: name for name, ending in formats.items() if ending}
-    usual = f"{default}, on a terminal {on_terminal}" if on_terminal else default
-    text = f"{', '.join(formats)}.  [default: extension of FILE, or {usual}]"
+    named = {x.extension: name for name, x in FORMATS.items() if x.extension}
+    usual = default
+    if rows:
+        few = f"up to {MOST_ROWS} rows, or {MOST_UPRIGHT} if it is too wide"
+        usual += f"; on a terminal, a table of {few}, else csv"
+    text = f"{', '.join(FORMATS)}.  [default: extension of FILE, or {usual}]"
 
     def decorate(function: F) -> F:
         @wraps(function)
@@ -362,7 +361,7 @@ def output(
             ending, plain = extension(output), ("txt", *extensions)
             chosen = fmt or named.get(ending)
             if chosen is None and ending in {"", *plain}:
-                chosen = on_terminal if on_terminal and is_screen(output) else default
+                chosen = "table" if rows and is_screen(output) else default
             elif chosen is None:
                 name = click.get_current_context().command.name
                 raise LagtopError(
@@ -371,7 +370,7 @@ def output(
                 )
             function(out=Output(output, chosen, fmt is not None), **others)
 
-        kind, help_ = click.Choice([*formats]), "Output file (replaced once all is written)."
+        kind, help_ = click.Choice([*FORMATS]), "Output file (replaced once all is written)."
         found: Any = option("--format", "fmt", metavar="FORMAT", type=kind, help=text)(run)
         found = option("-o", "--output", metavar="FILE", default="-", help=help_)(found)
         return cast(F, found)
@@ -412,9 +411,9 @@ def say_asides(out: Output, document: Document) -> None:
 def check_plot(path: str | None, output: str) -> None:
     """Raise LagtopError for a picture of an unknown type, or one over the report."""
     if path is not None:
-        from ..plot.style import FORMATS, check_picture
+        from ..plot.style import check_picture
 
-        check_picture(path, FORMATS, output)
+        check_picture(path, PICTURES, output)
 
 
 def fail_for(failures: Sequence[str], count: int, what: str) -> None:

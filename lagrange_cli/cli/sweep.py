@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..file_bytes import shown_path
-from ..output.document import rows_document
+from ..output.formats import FORMATS, format_of, listed
 from ..output.terminal import with_progress
 from ..top.scenes import is_scene_file
 from ..top.units import Units
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ..sweeps.plan import NumberedBlock
 
 MOST_JOBS = 1024
-FEW = 1000
-"""Largest number of tops whose records are drawn as a table on a terminal."""
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -73,7 +71,7 @@ def _parse_jobs(text: str) -> int:
 @opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")
 @opt.option("--dask", metavar="ADDRESS", help="Use the Dask cluster of this scheduler.")
 @opt.decimal
-@opt.output("csv", rows=True, on_terminal="table")
+@opt.output("csv", rows=True)
 def sweep_command(
     top: opt.TopOptions,
     words: Sequence[str],
@@ -111,7 +109,8 @@ def sweep_command(
     if parts is not None:
         out = out._replace(fmt="csv") if not out.is_named else out
         if not out.format.only_rows:
-            raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
+            most = listed(x for x in FORMATS if format_of(x).only_rows)
+            raise LagtopError(f"--format {out.fmt} is one document: with --parts use {most}")
     if len(words) > 1:
         raise LagtopError(f"a sweep takes one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
@@ -120,8 +119,6 @@ def sweep_command(
     how |= {"keys": keys, "radii": certify}
     sweep, every_block, size, given = plan(path, top.inputs, top.scene, **how)
     opt.warn(given)
-    if not (out.is_named or 0 < size <= FEW) and out.format.is_for_people:
-        out = out._replace(fmt="csv")
     sweep = sweep._replace(fmt=out.fmt)
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
     done, (first, every) = list[Part](), shard or (1, 1)
@@ -136,8 +133,8 @@ def sweep_command(
         if folder:
             folder.write(shown)
         else:
-            names = _headings(sweep.header, sweep.units, out)
-            out.blocks(names, (part.text for part in shown))
+            headings = _headings(sweep.header, sweep.units, out)
+            out.blocks(sweep.header, (part.text for part in shown), headings)
     if folder and folder.found:
         complain(f"Resumed: {folder.found} parts were already in {parts}")
     check(done, hidden)
@@ -170,7 +167,7 @@ def _headings(names: Sequence[str], units: Units, out: Output) -> Sequence[str]:
     "--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60, 20 for 1, 2, 3]"
 )
 @opt.keys
-@opt.output("csv", on_terminal="table")
+@opt.output("csv", rows=True)
 def find_command(
     top: opt.TopOptions, words: Sequence[str], scan: int | None, keys: list[str] | None, out: Output
 ) -> None:
@@ -207,4 +204,6 @@ def find_command(
             record["remark"] = units.remark(record["remark"])
         if "psidot0" in record:  # the number of a steady rate
             record["psidot0"] = float(motion.top.psidot0)
-    out.document(rows_document(records, chosen, _headings(chosen, units, out)))
+    columns = [[record.get(key) for record in records] for key in chosen]
+    block = out.format.block(columns, chosen)
+    out.blocks(chosen, [block], _headings(chosen, units, out))

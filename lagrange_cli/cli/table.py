@@ -84,9 +84,9 @@ def table_command(
         else:
             stds = column_stds(found, motion, names)
             header, parts = rows(motion, at, names, stds=stds, **how)
-        if out.format.is_for_people:
-            header = _with_units(header, names, how["units"])
-        out.rows(header, with_progress(parts, "rows", at.count or None, len))
+        people = out.format.is_for_people
+        headings = _with_units(header, names, how["units"]) if people else ()
+        out.rows(header, with_progress(parts, "rows", at.count or None, len), headings)
         warn_if_unfair(stds)
     except LagtopError as error:
         late = ": use --digits" if isinstance(error, OutOfRangeError) and error.key else ""

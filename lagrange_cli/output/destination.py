@@ -12,18 +12,21 @@ import stat
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from ..arithmetic.text import NumberText
 from ..errors import CannotWriteError
+from .document import Document, rows_grid, texts_of
 from .formats import format_of
 from .terminal import is_screen, printable, width_of
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .document import Document
     from .formats.base import Format
 
+MOST_ROWS, MOST_UPRIGHT = 1000, 50
+"""Most rows of a table on a terminal, and if its columns must become lines, by default."""
 Texts = Sequence[Sequence[str]]
 """A block of rows with numbers as text; an empty text is a missing number."""
 
@@ -51,7 +54,9 @@ class Output(NamedTuple):
         written: bytes = self._safe(self.format.document(document, width_of(self.path)))
         return written
 
-    def rows(self, names: Sequence[str], blocks: Iterable[Array | Texts]) -> None:
+    def rows(
+        self, names: Sequence[str], blocks: Iterable[Array | Texts], headings: Sequence[str] = ()
+    ) -> None:
         """Write rows in blocks: arrays, or lists of numbers as text."""
         columns = (
             [[*map(NumberText, x)] for x in zip(*rows, strict=True)]
@@ -60,13 +65,28 @@ class Output(NamedTuple):
             for rows in blocks
             if len(rows)
         )
-        self.blocks(names, (self.format.block(x, names) for x in columns))
+        self.blocks(names, (self.format.block(x, names) for x in columns), headings)
 
-    def blocks(self, names: Sequence[str], blocks: Iterable[Any]) -> None:
-        """Write blocks that the format has encoded."""
-        each = (self._safe(block) for block in blocks if len(block))
+    def blocks(
+        self, names: Sequence[str], blocks: Iterable[Any], headings: Sequence[str] = ()
+    ) -> None:
+        """Write blocks that the format has encoded; people see `headings` in place of the names.
+
+        If the user named no format, a table that is long or does not fit a terminal becomes CSV.
+        """
+        width, form = width_of(self.path), self.format
+        each: Iterator[Any] = (block for block in blocks if len(block))
+        if form.is_for_people:
+            if width and not self.is_named:
+                is_short, each = _looked_at(each, headings or names, width)
+                if not is_short:
+                    plain = self._replace(fmt="csv")
+                    plain.blocks(names, (plain.format.block(x, names) for x in each))
+                    return
+            names = headings or names
         with opened(self.path) as stream:
-            self.format.write(stream, [*map(self._safe, names)], each, width_of(self.path))
+            safe = (self._safe(block) for block in each)
+            form.write(stream, [*map(self._safe, names)], safe, width)
 
     def _safe(self, written: Any) -> Any:
         """Return what is written without control characters if the output is a terminal."""
@@ -75,6 +95,22 @@ class Output(NamedTuple):
         if isinstance(written, str):
             return printable(written)
         return printable(written.decode()).encode()
+
+
+def _looked_at(
+    blocks: Iterator[Any], headings: Sequence[str], width: int
+) -> tuple[bool, Iterator[Any]]:
+    """Return whether blocks of columns are few rows for a terminal, and all of the blocks."""
+    from .formats.table import fits  # start-up
+
+    seen, rows = list[Any](), list[Sequence[str]]()
+    for block in blocks:
+        seen.append(block)
+        rows += texts_of(block)
+        if len(rows) > MOST_ROWS:
+            break
+    most = MOST_ROWS if fits(rows_grid(headings, rows), width) else MOST_UPRIGHT
+    return len(rows) <= most, chain(seen, blocks)
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping, Sequence
 from functools import partial
-from itertools import groupby
+from itertools import chain, groupby
 from textwrap import fill
 from typing import Any, NamedTuple
 
@@ -56,6 +56,10 @@ class Document(NamedTuple):
     asides: Sequence[str] = ()
     """Lines for standard error if the format holds only the rows."""
 
+    def columns(self) -> list[list[Any]]:
+        """Return the rows by column."""
+        return [[row.get(name) for row in self.rows] for name in self.names]
+
 
 def record_document(
     record: Mapping[str, Any],
@@ -69,15 +73,6 @@ def record_document(
     return Document([*record], [whole], page, whole)
 
 
-def rows_document(
-    rows: Sequence[Mapping[str, Any]], names: Sequence[str], headings: Sequence[str] = ()
-) -> Document:
-    """Return some rows; people see other headings, if there are any."""
-    cells = [[shown_text(row.get(name)) for name in names] for row in rows]
-    only = [{name: row.get(name) for name in names} for row in rows]
-    return Document(names, only, lambda _: [rows_grid(headings or names, cells)])
-
-
 def lines_document(record: Mapping[str, Any], lines: Sequence[str]) -> Document:
     """Return a record of which people see only some lines."""
     return Document([*record], [record], lambda _: [Lines(lines)], record)
@@ -86,6 +81,14 @@ def lines_document(record: Mapping[str, Any], lines: Sequence[str]) -> Document:
 def rows_grid(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
     """Return rows of numbers and texts as a table."""
     return Grid(headings, rows, range(len(headings)), may_stand=True)
+
+
+def texts_of(columns: Sequence[Any]) -> list[tuple[str, ...]]:
+    """Return rows of texts: of arrays of one or several columns, and of lists of any values."""
+    lists = chain.from_iterable(
+        [x] if isinstance(x, Sequence) else x.reshape(len(x), -1).T.tolist() for x in columns
+    )
+    return [*zip(*([*map(shown_text, x)] for x in lists), strict=True)]
 
 
 def record_page(record: Mapping[str, Any], declared: Callable[[], Keys], width: int | None) -> Page:

@@ -75,7 +75,7 @@ class Report(NamedTuple):
             page.append(Lines(texts, hanging=11))
         if cells:
             page.append(Grid([field.heading for field in shown], cells, numbers))
-        page += ["\n".join(conclusions)] if conclusions else []
+        page += conclusions
         asides = [f"{name}: {text}" for name, text in conditions.items()]
         return Document([x.key for x in self.fields], rows, lambda _: page, whole, asides)
 

@@ -17,8 +17,14 @@ if TYPE_CHECKING:
     from ..inverse.outcome import Outcome
     from ..solver.solve import Motion
 
-KINDS = "sphere", "angles", "cubic", "phase", "map"
-"""The kinds of picture."""
+KINDS = {
+    "sphere": "the path of the figure axis on the unit sphere, coloured by time",
+    "angles": "tilt, precession, and the periodic part of the spin",
+    "cubic": "f(u), its roots, and the band of the motion",
+    "phase": "nutation rate against tilt, and the separatrix",
+    "map": "a key of the record over two inputs",
+}
+"""The kinds of picture, and what each shows."""
 SHEET = {"all": ("sphere", "angles", "cubic", "phase")}
 """The name and the kinds of the sheet."""
 CAPTION = "r0", "T_nutation", "mean_precession_rate"

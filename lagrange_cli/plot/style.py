@@ -16,13 +16,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import LagtopError, UnavailableError
+from ..output.formats import listed
 from ..output.terminal import one_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORMATS = "png", "svg", "pdf"
-"""File types of pictures."""
 LEAST_DPI, MOST_DPI, MOST_PIXELS = 20.0, 1000.0, 5e7
 
 
@@ -91,8 +90,7 @@ def check_picture(path: str, formats: tuple[str, ...], report: str = "-") -> str
     """
     suffix = Path(path).suffix.lower()[1:]
     if suffix not in formats:
-        *others, last = (f".{each}" for each in formats)
-        wanted = f"{', '.join(others)} or {last}"
+        wanted = listed(formats, ".")
         raise LagtopError(f"the name of a picture must end in {wanted}, got {path!r}")
     if os.path.realpath(path) == os.path.realpath(report):
         raise LagtopError(f"the picture must not be the file of the report, got {path!r}")

@@ -30,10 +30,10 @@ from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
 from lagrange_cli.output.document import (
+    Document,
     Grid,
     record_document,
     record_page,
-    rows_document,
     rows_grid,
 )
 from lagrange_cli.output.formats import format_of
@@ -105,6 +105,18 @@ def test_blocks_of_parquet_and_parts_read_back() -> None:
     assert format_of("ndjson").part(["a"], 0, b"{}\n") == b"{}\n"
 
 
+def test_every_format_holds_the_rows_of_a_document() -> None:
+    rows = [{"n": 1, "text": "x", "any": {"y": 2}, "none": None, "late": None}]
+    rows += [{"n": 2.5, "text": None, "any": "z", "none": None, "late": math.inf}]
+    document = Document([*rows[0]], rows, lambda _: [])
+    read = parquet.read_table(io.BytesIO(format_of("parquet").document(document, None)))
+    assert read.to_pylist() == [rows[0] | {"any": '{"y":2}'}, rows[1]]
+    assert [str(x) for x in read.schema.types] == ["double", "string", "string", *["double"] * 2]
+    assert json.loads(format_of("json").document(document, None))[0] == rows[0]
+    with pytest.raises(LagtopError, match="format parquet is not for a terminal"):
+        format_of("parquet").document(document, 80)
+
+
 def test_numbers_that_are_written_out_keep_their_digits() -> None:
     columns = [[NumberText("1.50"), NumberText("")], [NumberText(""), NumberText("2e-9")]]
     assert text_of("csv", ["a", "b"], columns) == "a,b\n1.50,\n,2e-9\n"
@@ -147,8 +159,6 @@ def test_a_record_in_json_and_csv(tmp_path: Path) -> None:
     record = {x: RECORD[x] for x in "abc"}
     Output(str(path), "csv").document(record_document(record, dict))
     assert path.read_text() == "a,b,c\n1e-7,,1.50\n"
-    Output(str(path), "csv").document(rows_document([RECORD], ["c", "a"], ["x", "y"]))
-    assert path.read_text() == "c,a\n1.50,1e-7\n"
 
 
 # tables and reports
@@ -346,11 +356,36 @@ def test_data_do_not_control_a_terminal(
     stdout = io.TextIOWrapper(io.BytesIO())
     monkeypatch.setattr("sys.stdout", stdout)
     monkeypatch.setattr("lagrange_cli.output.destination.is_screen", lambda _: is_screen)
-    document = rows_document([{"id": hostile, "r0": 1.0}], ["id", "r0"])
-    Output("-", fmt).document(document)
+    out = Output("-", fmt, is_named=True)
+    out.blocks(["id", "r0"], [out.format.block([[hostile], [1.0]], ["id", "r0"])])
     text = stdout.buffer.getvalue().decode()
     assert (hostile in text) is (fmt == "csv" and not is_screen)
     assert "evil" in text
+
+
+TABLE, UPRIGHT, CSV = "a [kg] text", "key 1", "a,text"
+
+
+@pytest.mark.parametrize("is_named", [False, True])
+@pytest.mark.parametrize(
+    ("rows", "width", "first"),
+    [
+        (1000, 80, (TABLE, TABLE)),
+        (1001, 80, (CSV, TABLE)),
+        (50, 11, (UPRIGHT, UPRIGHT)),
+        (51, 11, (CSV, UPRIGHT)),
+    ],
+)
+def test_a_long_or_wide_table_on_a_terminal_is_csv(
+    rows: int, width: int, first: list[str], is_named: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("lagrange_cli.output.destination.width_of", lambda _: width)
+    monkeypatch.setattr("sys.stdout", stdout := io.TextIOWrapper(io.BytesIO()))
+    blocks = iter([[np.arange(9.0), ["x,y"] * 9], [np.arange(9.0, rows), ["z"] * (rows - 9)]])
+    Output("-", "table", is_named).blocks(["a", "text"], blocks, ["a [kg]", "text"])
+    shown = re.sub("\x1b[^m]*m", "", stdout.buffer.getvalue().decode())
+    assert shown.split("\n")[0].split() == first[is_named].split()
+    assert re.findall(r"\d+\.0(?=\D)", shown) == [f"{i}.0" for i in range(rows)]
 
 
 def test_a_descriptor_is_written_to_and_its_file_is_kept(tmp_path: Path) -> None:
@@ -375,7 +410,7 @@ def test_texts_in_a_table_are_one_printable_line_each() -> None:
     assert len(lines) == 2 + len(texts)
     assert [line.split()[0] for line in lines[2:5]] == ["a\\x0cb", "c\\u2028d", "e\\nf\\x85"]
     assert "..." in lines[5]
-    with pytest.raises(LagtopError, match="format table shows at most 10000 rows, got more"):
+    with pytest.raises(LagtopError, match="format must be csv or json for more than 10000 rows"):
         text_of("table", ["a"], *[[np.zeros(4000)]] * 3)
 
 

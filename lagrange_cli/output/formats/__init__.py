@@ -1,12 +1,13 @@
-"""The formats of documents and of rows.
+"""The formats of documents, of rows and of pictures.
 
-A format is one file in this folder and one row of `FORMATS`: `--format`, the extensions, the help
-and the refusal of other names take it from here.  Its module has a `FORMAT` (see `base.Format`),
-and is imported when it is used.
+A format is one file in this folder and one row of `FORMATS`, from which `--format`, the extensions,
+the help, the pages and the refusal of other names take it.  Its module has a `FORMAT` (see
+`base.Format`), and is imported when it is used.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,23 +18,30 @@ if TYPE_CHECKING:
 class Row(NamedTuple):
     """What is known of a format before it is imported."""
 
-    extension: str = ""
+    extension: str
     """The extension of its files; a format without one is chosen by its name only."""
-    only_rows: bool = False
-    """Whether it holds rows of numbers but no other document."""
+    holds: str
 
 
 FORMATS = {
-    "table": Row(),
-    "csv": Row("csv"),
-    "json": Row("json"),
-    "ndjson": Row("ndjson"),
-    "parquet": Row("parquet", only_rows=True),
-    "markdown": Row("md"),
+    "table": Row("", "texts and tables for people, drawn"),
+    "csv": Row("csv", "the rows"),
+    "json": Row("json", "everything"),
+    "ndjson": Row("ndjson", "the rows, a JSON object per line"),
+    "parquet": Row("parquet", "the rows as doubles and texts; needs pyarrow"),
+    "markdown": Row("md", "texts and tables, for a report or an issue"),
 }
+PICTURES, FILMS = ("png", "svg", "pdf"), ("gif", "mp4")
+"""The extensions of pictures and films, which the plotting package writes."""
 
 
 def format_of(name: str) -> Format:
     """Return the format with a name."""
     found: Format = import_module(f".{name}", __package__).FORMAT
     return found
+
+
+def listed(names: Iterable[str], before: str = "") -> str:
+    """Return names as a list in a sentence, each with a text `before` it."""
+    *others, last = (f"{before}{name}" for name in names)
+    return f"{', '.join(others)} or {last}" if others else last

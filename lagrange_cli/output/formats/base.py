@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from io import BytesIO
 from typing import Any, BinaryIO
 
 from ...errors import LagtopError
-from ..document import Document, Page, rows_grid, shown_text
+from ..document import Document, Page, rows_grid, texts_of
 
 Columns = Sequence[Any]
 """Arrays of numbers, each of one or several columns, and lists of texts and JSON values."""
@@ -28,8 +29,10 @@ class Format:
     """What comes between two blocks, and after the last one."""
 
     def document(self, document: Document, width: int | None) -> bytes:
-        """Return a document, for the `width` of a terminal if there is one."""
-        raise LagtopError("format holds only rows of numbers: use csv or json", "format")
+        """Return a document, for the `width` of a terminal if there is one: its rows."""
+        block = self.block(document.columns(), document.names)
+        self.write(stream := BytesIO(), document.names, [block], width)
+        return stream.getvalue()
 
     def block(self, columns: Columns, names: Sequence[str]) -> Any:
         """Return some rows encoded; NaN, None and an empty number are missing values."""
@@ -68,25 +71,18 @@ class ForPeople(Format):
         """Return the page of a document."""
         return self.page(document.page(width), width).encode()
 
-    def block(self, columns: Columns, names: Sequence[str]) -> list[tuple[str, ...]]:
-        """Return rows of texts."""
-        cells: list[list[str]] = []
-        for column in columns:
-            if not isinstance(column, Sequence):
-                each = column.reshape(len(column), -1).T.tolist()
-                cells += [[*map(shown_text, numbers)] for numbers in each]
-            else:
-                cells.append([*map(shown_text, column)])
-        return [*zip(*cells, strict=True)]
+    def block(self, columns: Columns, names: Sequence[str]) -> Columns:
+        """Return the columns as they are."""
+        return columns
 
     def write(
         self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Any], width: int | None
     ) -> None:
         """Write all rows as one table.  Raises LagtopError for too many."""
-        rows: list[tuple[str, ...]] = []
+        rows: list[Sequence[str]] = []
         for block in blocks:
-            rows += block
+            rows += texts_of(block)
             if len(rows) > MOST_DRAWN_ROWS:
-                wanted = f"table shows at most {MOST_DRAWN_ROWS} rows"
-                raise LagtopError(f"format {wanted}, got more: use csv", "format")
+                most = f"for more than {MOST_DRAWN_ROWS} rows"
+                raise LagtopError(f"format must be csv or json {most}", "format")
         stream.write(self.page([rows_grid(names, rows)], width).encode())

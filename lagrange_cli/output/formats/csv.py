@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from types import NoneType
 from typing import TYPE_CHECKING, Any
 
-from ..document import Document
 from ..text import csv_text
 from .base import Columns, Format
 
@@ -18,11 +17,6 @@ class Csv(Format):
     """A line per row; a missing value is an empty cell."""
 
     only_rows = True
-
-    def document(self, document: Document, width: int | None) -> bytes:
-        """Return the header and the rows."""
-        columns = [[row.get(name) for row in document.rows] for name in document.names]
-        return self.header(document.names) + self.block(columns, document.names)
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return lines."""

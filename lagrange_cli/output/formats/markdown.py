@@ -9,8 +9,10 @@ from ..document import Grid, Lines, Page
 from ..terminal import printable
 from .base import ForPeople
 
-_SPECIAL = re.compile(r"[\\`*\[\]<>|~$&]|(?<![^\W_])_|_(?![^\W_])|^(?=[-+#=])")
-"""What has a meaning, wherever it stands or at the beginning of a text."""
+_SPECIAL = re.compile(r"[\\`*|~$]|<(?=\S)|&(?=[\w#])|\](?=[(\[:])|(?<![^\W_])_|_(?![^\W_])")
+"""What has a meaning wherever it stands."""
+_FIRST = re.compile(r"^(?=[-+#>])|^(\d+)(?=[.)](?:\s|$))")
+"""What makes the beginning of a paragraph a list, a heading or a quotation."""
 
 
 class Markdown(ForPeople):
@@ -23,7 +25,7 @@ class Markdown(ForPeople):
 
 def _part(part: str | Grid | Lines) -> str:
     if isinstance(part, str):
-        return re.sub(r"^(\d+)([.)])", r"\1\\\2", _escaped(part))  # no list
+        return _FIRST.sub(r"\1\\", _escaped(part))
     if isinstance(part, Lines):
         return "\n".join(["```", *map(printable, part.lines), "```"])
     size = len(part.headings)

@@ -6,10 +6,12 @@ from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from io import BytesIO
 from itertools import chain
+from types import NoneType
 from typing import Any, BinaryIO
 
 from ...arithmetic.text import NumberText
 from ...errors import LagtopError, UnavailableError, arg
+from ..document import Document
 from ..text import json_text
 from .base import Columns, Format
 
@@ -21,6 +23,16 @@ class Parquet(Format):
 
     only_rows = True
 
+    def document(self, document: Document, width: int | None) -> bytes:
+        """Return the rows, whose columns of numbers are doubles."""
+        import numpy as np
+
+        columns = document.columns()
+        numbers = [{*map(type, column)} <= {float, int, NoneType} for column in columns]
+        doubles = [np.array(x, float) if y else x for x, y in zip(columns, numbers, strict=True)]
+        self.write(file := BytesIO(), document.names, [self.block(doubles, document.names)], width)
+        return file.getvalue()
+
     def block(self, columns: Columns, names: Sequence[str]) -> Any:
         """Return a table: numbers with null for NaN, and texts."""
         import pyarrow as pa
@@ -28,7 +40,7 @@ class Parquet(Format):
         arrays = []
         for column in columns:
             if isinstance(column, Sequence):
-                if isinstance(column[0], NumberText):
+                if any(isinstance(x, NumberText) for x in column):
                     raise LagtopError(f"format parquet holds doubles: {_OTHERS}", "format")
                 texts = [x if x is None or type(x) is str else json_text(x) for x in column]
                 arrays.append(pa.array(texts, pa.string()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from io import StringIO
+from itertools import groupby
 from textwrap import fill
 from typing import Any
 
@@ -13,12 +14,15 @@ from .base import ForPeople
 
 
 class Table(ForPeople):
-    """Texts, and tables without vertical lines."""
+    """Paragraphs, and tables without vertical lines between empty lines."""
 
     def page(self, page: Page, width: int | None) -> str:
-        """Return texts, lines and tables with an empty line between them."""
-        parts = [_part(part, width) for part in page]
-        return "\n\n".join(filter(None, parts)) + "\n"
+        """Return texts, lines and tables."""
+        found: list[str] = []
+        for are_texts, parts in groupby(page, lambda part: isinstance(part, str)):
+            shown = [_part(part, width) for part in parts]
+            found += ["\n".join(shown)] if are_texts else shown
+        return "\n\n".join(found) + "\n"
 
 
 def _part(part: str | Grid | Lines, width: int | None) -> str:
@@ -45,27 +49,35 @@ def _fitting(grid: Grid, width: int | None) -> list[Grid]:
 
     Upright tables follow each other, each with as many rows as fit.
     """
-    from rich.cells import cell_len
-
-    def width_of(cells: Iterable[str]) -> int:
-        return max(map(cell_len, cells)) + 2
-
-    columns = [*zip(grid.headings, *grid.rows, strict=True)] if grid.may_stand else []
-    if width is None or not grid.rows or sum(map(width_of, columns)) - 2 <= width:
+    if not (width and grid.may_stand and grid.rows) or fits(grid, width):
         return [grid]
+    columns = [*zip(grid.headings, *grid.rows, strict=True)]
     shown = [i for i in range(len(columns)) if any(columns[i][1:])]
     names = ["key", *(grid.headings[i] for i in shown)]
     found: list[list[list[str]]] = []
     room = 0
     for number, row in enumerate(grid.rows, 1):
         cells = [str(number), *(row[i] for i in shown)]
-        room -= width_of(cells)
+        room -= _width(cells)
         if room < 0:
             found.append([names])
-            room = width - width_of(names) + 2 - width_of(cells)
+            room = width - _width(names) + 2 - _width(cells)
         found[-1].append(cells)
     tables = [[*zip(*lines, strict=True)] for lines in found]
     return [Grid(first, rest, range(1, len(first))) for first, *rest in tables]
+
+
+def fits(grid: Grid, width: int) -> bool:
+    """Return whether a table fits a terminal without wrapped cells."""
+    columns = zip(grid.headings, *grid.rows, strict=True)
+    return sum(map(_width, columns)) - 2 <= width
+
+
+def _width(cells: Iterable[str]) -> int:
+    """Return the width of a column, with the space to the next one."""
+    from rich.cells import cell_len
+
+    return max(map(cell_len, cells)) + 2
 
 
 def drawn(grid: Grid, width: int | None = None) -> str:
