@@ -219,12 +219,12 @@ BAD_TIMES = {
 _KEYS = "a, b, u1, u2, u3, k, k_prime, modular_angle_deg, nome, K, K_prime and"
 _RATES = "'T_precession', 'mean_precession_rate' or 'precession_rate_start'"
 OTHERS = {
-    "solve --get x": f"got 'x': regime, {_KEYS} 64 more, see lagtop explain",
+    "solve --get x": f"got 'x': regime, {_KEYS} {len(all_keys()) - 12} more, see lagtop explain",
     "solve --get a,k,a": "Error: --get must not repeat a name, got 'a' twice\n",
     "solve --get period": "(did you mean 'T_nutation', 'T_spin' or 'T_precession'?)",
     "solve --get precession": f"(did you mean {_RATES}?)",
     "solve --get theta_max": "(did you mean 'theta_max_deg'?)",
-    "sweep --keys x": "Error: --keys must be among 77 names, got 'x': regime, a",
+    "sweep --keys x": f"Error: --keys must be among {len(all_keys()) + 1} names, got 'x': regime, a",
     "solve --digits 9 --format parquet": "--format parquet holds doubles: with --digits use",
     "jacobi --k 0.8 --u i,K": "--u must not contain K if numbers are complex",
     "compare x.csv --plot x.bmp": "the name of a picture must end in .png, .svg or .pdf",

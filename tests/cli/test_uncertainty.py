@@ -11,6 +11,7 @@ import pytest
 from conftest import Lagtop, Solved, assert_one_line, dicts
 
 from lagrange_cli.output.report import uncertain_text
+from lagrange_cli.solver.keys import NUMBERS
 from lagrange_cli.top.values import parse_value
 
 uncertainties = pytest.importorskip("uncertainties")
@@ -129,7 +130,7 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
         ),
         (
             ["--r0", "50(1)", "--budget", "period"],
-            "--budget must be among 64 names, got 'period' (",
+            f"--budget must be among {len(NUMBERS)} names, got 'period' (",
         ),
     ],
 )
