@@ -72,7 +72,8 @@ quaternion_y | | imaginary part of Y = x + i y | | | sin(theta/2)*sin((psi - phi
 quaternion_z | | imaginary part of X = w + i z | | | cos(theta/2)*sin((psi + phi)/2)
    ~ signed_X*sin(angle_X)/sqrt(N)
 energy | E | energy; constant except for rounding | mass len²/time² | (4,2)
-   | (A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u ~ A*(thetadot**2 + across**2)/2 + C*r0**2/2 + torque*u
+   | (A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u
+   ~ A*thetadot*thetadot/2 + A*across*across/2 + C*r0*r0/2 + torque*u
 Lz | c2 | vertical angular momentum; constant except for rounding | mass len²/time | (4,3)
    | A*psidot*sin(theta)**2 + C*r0*u ~ A*across*sine + C*r0*u
 """

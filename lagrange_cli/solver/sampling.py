@@ -48,6 +48,8 @@ _STEEPEST = 340.0
 """Greatest argument of sinh: its square does not overflow in later products."""
 _TINY = 5e-324
 """The smallest argument that is not 0."""
+_LEAST, _MOST = 2.0**-900, 2.0**900
+"""Sizes of constants between which no product or part of a constant is a subnormal double."""
 np.empty(2**19)  # glibc keeps freed memory from now on: pages are not faulted again in each call
 Index = slice | NDArray[np.intp]
 ItemsAt = Callable[[Array, float], Iterator[tuple[Index, dict[str, Any]]]]
@@ -55,6 +57,11 @@ ItemsAt = Callable[[Array, float], Iterator[tuple[Index, dict[str, Any]]]]
 
 Among them are the parts of X and Y, up to a common positive factor.  No real part is negative.
 """
+
+
+def is_ordinary(*numbers: arb) -> bool:
+    """Return whether doubles can compute with some numbers: each is 0 or neither tiny nor huge."""
+    return all(x.contains(0) or _LEAST < abs(float(x.mid())) < _MOST for x in numbers)
 
 
 class Angles(NamedTuple):
@@ -171,6 +178,7 @@ def _argument(real: Array, imag: Array) -> Array:
 _FUNCTIONS: dict[str, Any] = {
     **{"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "square": np.square, "arctan": np.arctan},
     **{"polynomial": polynomial, "argument": _argument, "maximum": np.maximum},
+    "copysign": np.copysign,
     "ratio": lambda x, y, otherwise=0.0: np.where(y != 0.0, x / y, otherwise),
 }
 _FORMULAS = FORMULAS | {
@@ -196,8 +204,8 @@ _FORMULAS = FORMULAS | {
     "signed_Y": "Y*(1 - 2*(reduced_Y[1] % 2))",
     # the nutation rate times 2 N X Y
     "scaled_rate": "polynomial(rate_series, s_x)*S_x*C_x",
-    # on a pole, where the sign of the nutation rate changes, its size by (4,2)
-    "nutation_rate": "ratio(scaled_rate, 2*N*X*Y, sqrt(maximum(energy_constant - a*u, 0)))",
+    "nutation_rate": "ratio(scaled_rate, 2*N*X*Y, copysign(rate_on_pole, scaled_rate))",
+    "rate_on_pole": "sqrt(maximum(energy_constant - a*u, 0))",  # (4,2)
 }
 
 
@@ -277,7 +285,7 @@ def swing_parts(
 
 
 class Sampler:
-    """The angles of one motion over time."""
+    """The angles of one motion over time, unless `is_ordinary` is false: doubles cannot do it."""
 
     def __init__(self, of: Course, tilt: arb) -> None:
         """Take the constants of a motion and its tilt at t = 0.
@@ -285,7 +293,17 @@ class Sampler:
         Raises TooFewDigitsError if a constant is not known to the digits that are needed.
         """
         unit, (x, y), spin, precession = of.unit, of.start, of.spin, of.precession
-        self.tilt = near(tilt)
+        self.tilt = float(tilt.mid())
+        self.max_time = min(float((int(MAX_PERIODS) * unit).mid()), MAX_TIME)
+        fastest = max(abs(float(x.mid())) for x in (spin, precession))
+        self.max_wrapped = MOST_TURNS * 2 * math.pi / fastest if fastest else math.inf
+        sizes = [x.size for x in of.sides] if isinstance(of, Nutation) else [of.x, of.y]
+        rates = [spin, precession, precession + spin, precession - spin]
+        rates += [] if isinstance(of, Nutation) else [of.rate]
+        constants = [unit, *rates, *(x * unit for x in rates), *(x * x for x in sizes)]
+        self.is_ordinary = is_ordinary(*constants)
+        if not self.is_ordinary:
+            return
         self.spin, self.precession = Growth(spin, x - y, unit), Growth(precession, x + y, unit)
         of_X = Growth((precession + spin) / 2, x, unit, 0.5)
         of_Y = Growth((precession - spin) / 2, y, unit, 0.5)
@@ -297,9 +315,6 @@ class Sampler:
         else:
             constants = [near(x) for x in (of.x, of.y, of.rate, of.h0)]
             self.parts = partial(swing_parts, constants, self.tilt)
-        self.max_time = min(float((int(MAX_PERIODS) * unit).mid()), MAX_TIME)
-        fastest = max(abs(self.spin.rate[0]), abs(self.precession.rate[0]))
-        self.max_wrapped = MOST_TURNS * 2 * math.pi / fastest if fastest else math.inf
 
     def check(self, t: ArrayLike, name: str = "t", *, wrap: bool = False) -> float:
         """Return the greatest |t|.

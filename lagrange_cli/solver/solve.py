@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import LagtopError, OutOfRangeWarning
-from ..names import check_names
+from ..names import ANGLES, check_names
 from ..top.top import Top
 from ..top.units import Units
 from .attitude import Swing
@@ -138,7 +138,11 @@ class Motion(Solution):
         Spin and precession are unwrapped and 0 at t = 0; `wrap` reduces them to (-pi, pi].  Raises
         LagtopError for a time that is not finite or is beyond 2^50 nutation periods.
         """
-        return self.sampler().angles(t, wrap=wrap)
+        from .sampling import Angles  # start-up
+
+        if self.sampler().is_ordinary:
+            return self.sampler().angles(t, wrap=wrap)
+        return Angles(**self.table(t, ANGLES, wrap=wrap))
 
     def axis(self, t: ArrayLike) -> Array:
         """Return the unit vector along the figure axis in space, of shape (*t.shape, 3).

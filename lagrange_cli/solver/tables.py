@@ -30,7 +30,7 @@ from ..arithmetic.enclosures import (
 from ..arithmetic.numbers import Real
 from ..arithmetic.text import NumberText, double_text
 from ..arithmetic.types import Array
-from ..errors import LagtopError, arg
+from ..errors import LagtopError, OutOfRangeError, arg
 from ..top.ranges import EvenPoints, Points
 from ..top.units import DEGREES, Units
 from .attitude import Course, SingleSwing, start_of
@@ -46,9 +46,12 @@ from .columns import (
 )
 from .numbers import square
 from .record import Solution
+from .sampling import is_ordinary
 from .series import near
 
 DEFAULT_ROWS = 101
+_MORE_THAN_A_DOUBLE = 20
+"""Digits of proved rows that are rounded to doubles."""
 _ROWS_AT_ONCE = 64
 """Proved rows that are returned together."""
 _BALLS = {
@@ -80,12 +83,15 @@ def columns_at(
 ) -> Callable[[Array], Array]:
     """Return a function of times that returns columns, of shape (columns, times).
 
-    Columns at t = 0 are correctly rounded.  Raises LagtopError for an unknown column.
+    Columns at t = 0 are correctly rounded.  Constants near the ends of the doubles need proved rows
+    (about 2 ms each).  Raises LagtopError for an unknown column.
     """
     chosen, sampler = chosen_columns(columns), motion.sampler()
 
-    def doubles(digits: int) -> dict[str, float]:
+    def doubles(digits: int) -> dict[str, float] | None:
         found = column_constants(motion.balls(digits))
+        if not (sampler.is_ordinary and is_ordinary(*found.values())):
+            return None
         alpha = float(found.pop("energy_constant").mid())  # 0 may be known to no digit
         return {name: near(x) for name, x in found.items()} | {"energy_constant": alpha}
 
@@ -97,7 +103,11 @@ def columns_at(
     constants = decided(doubles, motion.facts.equal)
 
     def found_at(t: Array) -> Array:
-        found = sampler.evaluate(t, [*chosen], wrap=wrap, **constants)
+        if constants:
+            found = sampler.evaluate(t, [*chosen], wrap=wrap, **constants)
+        else:
+            sampler.check(t, wrap=wrap or not WITHIN_A_TURN.isdisjoint(chosen))
+            found = _proved(motion, t, [*chosen], wrap=wrap)
         for row, column in zip(found, chosen.values(), strict=True):
             if column.unit == "angle" and not units.radians:
                 np.degrees(row, out=row)
@@ -107,6 +117,22 @@ def columns_at(
         return found
 
     return found_at
+
+
+def _proved(motion: Solution, t: Array, names: Sequence[str], *, wrap: bool) -> Array:
+    """Return columns of proved rows, rounded to doubles, of shape (columns, times), in radians.
+
+    Numbers below all doubles are 0.  Raises OutOfRangeError for a number beyond the doubles.
+    """
+    table = ProvedTable(motion, names, _MORE_THAN_A_DOUBLE, units=Units(radians=True), wrap=wrap)
+    found = np.empty((len(names), t.size))
+    for i, time in enumerate(t.tolist()):
+        found[:, i] = [float(x.value) for x in table.row(Fraction(time))]
+    beyond = np.argwhere(np.isinf(found))
+    if beyond.size:
+        name, time = names[beyond[0, 0]], t[beyond[0, 1]]
+        raise OutOfRangeError(f"{name} at t = {time} must be within 1.8e308 in size")
+    return found
 
 
 def rows(

@@ -305,3 +305,47 @@ def test_whole_periods_are_taken_off_exactly(power: float, offset: float) -> Non
             true = Fraction(time) - int(n) * exact
             assert abs(Fraction(left) - true) <= abs(true) / 2**52 + abs(Fraction(time)) / 2**100
             assert abs(true / exact + Fraction(offset)) <= Fraction(1, 2) + Fraction(1, 2**19)
+
+
+# The ends of the doubles
+
+ORDINARY = UNIT | {"A": 2, "C": 1.5, "r0": 3, "theta0_deg": 40, "thetadot0": 0.5, "psidot0": -1}
+
+
+@pytest.mark.parametrize("exponent", [-1060, -900, -450, -1, 160])
+@pytest.mark.parametrize("g", [0.0, 1.0])
+def test_a_unit_of_time_changes_only_rates(exponent: int, g: float) -> None:
+    """Rates times 2^n, and the torque times 4^n: columns are the same at times over 2^n."""
+    factor, names = 2.0**exponent, ("theta", "phi", "psi", "p", "axis_y", "quaternion_w")
+    g = math.ldexp(g, 2 * exponent)  # 0 below all doubles
+    scaled = ORDINARY | {x: ORDINARY[x] * factor for x in ("r0", "thetadot0", "psidot0")} | {"g": g}
+    plain, motion = (
+        solve(Top(**ORDINARY | {"g": math.ldexp(g, -2 * exponent)})),
+        solve(Top(**scaled)),
+    )
+    times = np.array([0.3, -2.7, 1e4]) / max(1.0, 1e-285 / factor)
+    before, after = plain.table(times, names), motion.table(times / factor, names)
+    for name in names:
+        size = factor if name == "p" else 1.0
+        assert after[name] / size == pytest.approx(before[name], rel=1e-13, abs=1e-12), name
+
+
+BEYOND: list[dict[str, float]] = [
+    {"r0": 1e-309, "theta0_deg": 30, "psidot0": 0, "g": 0},
+    {"r0": 1e-308, "psidot0": 0, "theta0_deg": 90, "A": 1, "C": 1e-2},
+    {"r0": 2.2e-308, "psidot0": -2.2e-308, "theta0_deg": 90},
+    {"g": 0, "r0": 5e-324, "psidot0": 1e100, "theta0_deg": 1e-140},
+    {"g": 5e-324, "r0": 1e100, "thetadot0": -5e-324},
+]
+
+
+@pytest.mark.parametrize("inputs", BEYOND)
+def test_periods_beyond_the_doubles_have_rows(inputs: dict[str, float]) -> None:
+    """Each angle is that of the proved row, whose digits are not limited."""
+    motion = solve(Top(**inputs))
+    reach = min(motion.sampler().max_time, motion.sampler().max_wrapped, 1e200)
+    times = np.array([1.0, reach, -reach * 0.7]) * min(1.0, reach)
+    proved = ProvedTable(motion, ["theta", "phi", "psi"], 30, units=Units(radians=True))
+    for t, row in zip(times.tolist(), np.stack(motion.angles(times)).T.tolist(), strict=True):
+        for found, exact in zip(row, proved.row(Fraction(t)), strict=True):
+            assert found == pytest.approx(float(exact.value), rel=4 * EPS, abs=4 * EPS)
