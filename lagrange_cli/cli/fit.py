@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ from ..errors import LagtopError, SomeFailedError, marked
 from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.document import Document
-from ..output.terminal import one_line
+from ..output.terminal import is_screen, is_terminal, one_line
 from . import shared as opt
 from .app import worded
 
@@ -120,7 +121,8 @@ def _write(found: list[Outcome], source: str, units: str, out: Output) -> None:
     if len(found) > 1:
         decay, asides = decay_of(found), [decay_text(found)]
         whole = {"decay": decay and decay._asdict(), "windows": rows}
-    page = fit_report(found, source, units).document(worded).page
+    is_seen = is_screen(out.path) and is_terminal(sys.stderr)  # beside the last line of stderr
+    page = fit_report(found, source, units, omits_first=is_seen).document(worded).page
     document = Document(names, rows, page, whole or rows[0], asides)
     out.document(document)
     opt.say_asides(out, document)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from types import SimpleNamespace
 
-from ..errors import Message, marked
+from ..errors import Message, joined, marked
 from ..output.report import Field, Report
 from .decay import decay_text
 from .outcome import PERCENT, Number, Outcome
@@ -14,10 +14,12 @@ _COLUMNS = ("r0", "b", "theta0_deg", "theta0_rad", "T_nutation", "mean_precessio
 """Numbers in the rows of windows."""
 
 
-def fit_report(outcomes: Sequence[Outcome], source: str, system: str) -> Report:
+def fit_report(
+    outcomes: Sequence[Outcome], source: str, system: str, *, omits_first: bool = False
+) -> Report:
     """Return the report on the fit of a file, or on its windows: a row for each of them.
 
-    `system` is the one of the known inputs.
+    `system` is the one of the known inputs.  `omits_first` leaves out its first failure.
     """
     recording, known = outcomes[0].recording, outcomes[0].known
     read = recording.source.source
@@ -46,7 +48,10 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: str) -> Report:
             cells = {y: str(x.numbers[y]) if y in x.numbers else "" for y in keys}
             cells |= {"t": f"{x.recording.middle:.6g}", "verdict": x.verdict}
             rows.append(SimpleNamespace(**cells))
-        return Report(conditions, fields, rows, [decay_text(outcomes)])
+        reasons = [x.failure() for x in outcomes if x.failures()]
+        return Report(
+            conditions, fields, rows, [decay_text(outcomes), *_failed(reasons[omits_first:])]
+        )
     fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
     numbers = outcomes[0].numbers
     rows = [
@@ -54,7 +59,15 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: str) -> Report:
         for key, x in numbers.items()
         if not key.endswith(PERCENT)
     ]
-    return Report(conditions, fields, rows, [*_conclusions(outcomes[0])])
+    first, *others = outcomes[0].failures() or [""]
+    reasons = [joined([first, *outcomes[0].hints]), *others] if first else []
+    conclusions = [*_conclusions(outcomes[0]), *_failed(reasons[omits_first:])]
+    return Report(conditions, fields, rows, conclusions)
+
+
+def _failed(reasons: Sequence[str]) -> Iterator[str]:
+    """Yield a sentence for each reason of a failure."""
+    return (Message(f"Failed: {marked(text)}.") for text in reasons)
 
 
 def _conclusions(outcome: Outcome) -> Iterator[str]:
@@ -70,4 +83,3 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
         yield f"Correlation: {pairs}."
     yield from (Message(f"Note: {marked(text)}.") for text in outcome.remarks)
-    yield from (Message(f"Failed: {marked(text)}.") for text in outcome.failures()[1:])

@@ -224,7 +224,7 @@ OTHERS = {
     "solve --get period": "(did you mean 'T_nutation', 'T_spin' or 'T_precession'?)",
     "solve --get precession": f"(did you mean {_RATES}?)",
     "solve --get theta_max": "(did you mean 'theta_max_deg'?)",
-    "sweep --keys x": f"Error: --keys must be among {len(all_keys()) + 1} names, got 'x': regime, a",
+    "sweep --keys x": f"--keys must be among {len(all_keys()) + 1} names, got 'x': regime, a",
     "solve --digits 9 --format parquet": "--format parquet holds doubles: with --digits use",
     "jacobi --k 0.8 --u i,K": "--u must not contain K if numbers are complex",
     "compare x.csv --plot x.bmp": "the name of a picture must end in .png, .svg or .pdf",
@@ -269,7 +269,8 @@ def test_one_window_of_a_fit_is_a_record_in_json(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     outcome: Any = SimpleNamespace(record=lambda: {"a": 1.5}, notes=[])
-    monkeypatch.setattr("lagrange_cli.inverse.report.fit_report", lambda *_: Report({}, [], [], []))
+    empty = Report({}, [], [], [])
+    monkeypatch.setattr("lagrange_cli.inverse.report.fit_report", lambda *_, **__: empty)
     write_fits([outcome], "", "", Output(str(path := tmp_path / "fit"), "json"))
     assert path.read_text() == '{"a":1.5}\n'
 

@@ -72,3 +72,24 @@ def test_names_of_files_stay_as_they_are(
                 found.append([ended.exit_code, *re.split("[ ─]+", said)])  # widths of columns
                 Path(path).unlink()
             assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("window", [(), ("--window", "2")])
+def test_a_report_holds_every_reason_that_the_last_line_does_not(
+    window: tuple[str, ...], lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    header, *rows = lagtop("table", "--n", "60").stdout.splitlines()
+    rows = [f"{x.partition(',')[0]},40,0,0" if i % 3 == 0 else x for i, x in enumerate(rows)]
+    (tmp_path / "bad.csv").write_text("\n".join([header, *rows]))
+    whole = lagtop("fit", "bad.csv", *window)
+    reasons = [x for x in whole.stdout.splitlines() if x.startswith("Failed: ")]
+    assert (len(reasons) > 1, whole.exit_code) == (True, 1)
+    last = whole.stderr.splitlines()[-1]
+    assert last.startswith("Error: ")
+    assert last.endswith(reasons[0].removeprefix("Failed: ").removesuffix("."))
+    for name in ("is_screen", "is_terminal"):
+        monkeypatch.setattr(f"lagrange_cli.cli.fit.{name}", lambda _: True)
+    seen = lagtop("fit", "bad.csv", *window)
+    assert [x for x in seen.stdout.splitlines() if x.startswith("Failed: ")] == reasons[1:]
+    assert seen.stderr == whole.stderr
