@@ -12,6 +12,7 @@ from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.document import Document
 from ..output.terminal import is_screen, is_terminal, one_line
+from ..top.inputs import BODY, replaced_by
 from . import shared as opt
 from .app import worded
 
@@ -84,7 +85,10 @@ def fit_command(
     radians = top.radians
     recording = measured(read_recording(words[0], reading), sigma)
     given = top.given()
-    known, source = known_inputs(given.inputs, given.stds), one_line(shown_path(words[0]))
+    known, source = known_inputs(given), one_line(shown_path(words[0]))
+    body = given._replace(values={x: y for x, y in given.values.items() if replaced_by(x) in BODY})
+    if body.values and not body.missing:
+        opt.warn_of_body(body.top())
     if window is None:
         found = [fit_recording(recording, known, given.units(radians=radians))]
     else:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..output.report import Report
     from ..solver.solve import Motion
     from ..top.given import Given
+    from ..top.top import Top
 
 F = TypeVar("F", bound=Callable[..., Any])
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
@@ -321,9 +322,14 @@ def motion_of(found: Given, *, exact: bool = False, uses_stds: bool = True) -> M
             warn(found, uses_stds=uses_stds)
         raise
     warn(found, uses_stds=uses_stds)
-    if caveat := motion.top.caveat():
-        complain(f"Warning: {caveat}")
+    warn_of_body(motion.top)
     return motion
+
+
+def warn_of_body(top: Top) -> None:
+    """Warn of a body that cannot be built."""
+    if caveat := top.caveat():
+        complain(f"Warning: {caveat}")
 
 
 def warn(found: Given, *, uses_stds: bool = False) -> None:

@@ -137,6 +137,9 @@ def sweep_command(
             out.blocks(sweep.header, (part.text for part in shown), headings)
     if folder and folder.found:
         complain(f"Resumed: {folder.found} parts were already in {parts}")
+    if count := sum(part.not_bodies for part in done):
+        tops = f"{count} of {sum(part.size for part in done)} tops"
+        complain(f"Warning: no rigid body has C > 2A, but {tops} have; computed anyway")
     check(done, hidden)
     if path is not None and shard is None and not any(part.size for part in done):
         complain(f"Warning: {shown_path(path)} holds no tops")
@@ -196,6 +199,7 @@ def find_command(
     search, given = search_of(top.inputs, words, top.scene, units)
     motions, looked = find_tops(search, scan)
     opt.warn(given)
+    opt.warn_of_body(motions[0].top)
     complain(f"{len(motions)} found; {looked}")
     units = given.units(radians=top.radians)
     records = [record_in_range(motion, units=units, keys=chosen)[0] for motion in motions]

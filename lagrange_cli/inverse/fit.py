@@ -68,5 +68,4 @@ def fit(
         else value_of(name, x)
         for name, x in (known or {}).items()
     }
-    found = gather(given)
-    return fit_recording(seen, known_inputs(found.inputs, found.stds))
+    return fit_recording(seen, known_inputs(gather(given)))

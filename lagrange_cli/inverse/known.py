@@ -14,6 +14,7 @@ from ..errors import LagtopError, Message, arg
 from ..names import check_names
 from ..output.report import uncertain_text
 from ..top.forms import Quantities, equation_of, needed_by
+from ..top.given import Given
 from ..top.inputs import (
     BODY,
     DECLARED,
@@ -48,11 +49,12 @@ _POWERS |= {"mean_spin_rate": -1, "mean_precession_rate": -1}
 _POWERS |= {key: power_of_time(x.unit) for key, x in DECLARED.items()}
 
 
-def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
-    """Return known inputs from inputs of `Top`, and the standard deviations of some.
+def known_inputs(found: Given) -> Known:
+    """Return known inputs, some with standard deviations.
 
-    Raises LagtopError for an input that a fit cannot use.
+    Raises LagtopError for an input that a fit cannot use, and for C > 2A as `Given.top` does.
     """
+    given, stds = found.inputs, found.stds
     check_names("known", [*given] or ["m"], INPUTS)
     words = {name for name in given if given[name] in STEADY_WORDS}
     known = {x: checked_double(x, y) for x, y in given.items() if x not in words}
@@ -69,7 +71,9 @@ def known_inputs(given: Mapping[str, Any], stds: Mapping[str, float]) -> Known:
     if whole.has("A"):
         plain["A"] = whole["A"]
     moment = plain.get("A", known.get("C", 1.0))
-    Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **plain}).check_body()
+    top = Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **plain})
+    if found.is_body:
+        top.check_body()
     pairs = {name: (value, stds.get(name, 0.0)) for name, value in known.items()}
     for name in [x for x in known if replaced_by(x) == TILT]:
         unit = in_all_forms({name: 1.0})[TILT]

@@ -76,7 +76,7 @@ class Parts:
 
     def write(self, parts: Iterable[Part]) -> None:
         """Write each part into a file of its own, which appears whole or not at all."""
-        for number, text, _, failed, first in parts:
+        for number, text, _, failed, first, _ in parts:
             part, errors = self._files(number)
             if failed:  # before the part, because a part that exists is done
                 with opened(str(errors)) as stream:

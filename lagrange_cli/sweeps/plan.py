@@ -32,8 +32,6 @@ from ..top.values import Value
 from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records, with_radii
 from .tops import top_arrays
 
-IMPOSSIBLE = "C must be <= 2 A (no rigid body has more)"
-"""The error of a top with units that no body has."""
 NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
 
@@ -49,6 +47,8 @@ class Part(NamedTuple):
     failed: int
     """The number of tops that have an error."""
     first_error: str
+    not_bodies: int = 0
+    """The number of tops that are computed although no rigid body has C > 2A."""
 
 
 class Sweep(NamedTuple):
@@ -76,8 +76,9 @@ class Sweep(NamedTuple):
         columns = empty_columns(self.keys, given.size)
         tops = top_arrays(given.inputs, given.size)
         errors = dict(given.errors)
+        not_bodies = tops.not_bodies()
         if self.is_body:
-            errors |= dict.fromkeys(np.flatnonzero(tops.C > 2 * tops.A).tolist(), IMPOSSIBLE)
+            errors |= not_bodies
         columns = records(tops, columns, errors)
         found = columns["error"]
         failed = np.flatnonzero(found).tolist()
@@ -89,7 +90,9 @@ class Sweep(NamedTuple):
             some = [*run]
             computed += [np.stack(some, axis=1)] if are_numbers else [x.tolist() for x in some]
         text = format_of(self.fmt).block([*given.carried, *computed], self.header)
-        return Part(number, text, given.size, len(failed), found[failed[0]] if failed else "")
+        first = found[failed[0]] if failed else ""
+        computed_anyway = 0 if self.is_body else len(not_bodies)
+        return Part(number, text, given.size, len(failed), first, computed_anyway)
 
 
 def plan(

@@ -71,7 +71,7 @@ def sweep(
     if tops:
         raise LagtopError("sweep takes inputs by name: pass columns by name: sweep(**df)")
     chosen = with_radii(check_keys(keys, Units(radians)), radii=radii)
-    flat, results = read_inputs(inputs)
+    flat, results, are_bodies = read_inputs(inputs)
     size = math.prod(results.shape)
     columns = empty_columns(chosen, size)
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
@@ -79,7 +79,9 @@ def sweep(
         rows = slice(first, min(first + step, size))
         given = {name: x if isinstance(x, str) else x[rows] for name, x in flat.items()}
         part = {key: x[rows] for key, x in columns.items()}
-        part = records(top_arrays(given, rows.stop - first), part, {})
+        tops_of_part = top_arrays(given, rows.stop - first)
+        errors = tops_of_part.not_bodies() if are_bodies else {}
+        part = records(tops_of_part, part, errors)
         if part["error"].any():
             columns.setdefault("error", np.full(size, None))[rows] = part["error"]
     results |= {key: x.reshape(results.shape) for key, x in columns.items()}

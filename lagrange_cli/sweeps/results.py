@@ -103,11 +103,12 @@ def _library(name: str) -> Any:
         raise UnavailableError(f"{name} is not installed: pip install {name}") from None
 
 
-def read_inputs(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], Results]:
+def read_inputs(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], Results, bool]:
     """Return inputs of `Top` as flat arrays of one size, and results that have no columns yet.
 
-    Arrays broadcast without a copy, and a word for psidot0 stays one.  Raises LagtopError for an
-    unknown input, and for inputs that do not fit together.
+    The last value is whether the tops must be bodies.  Arrays broadcast without a copy, and a word
+    for psidot0 stays one.  Raises LagtopError for an unknown input, and for inputs that do not fit
+    together.
     """
     check_names("inputs", list(inputs) or ["m"], INPUTS)
     for name, x in inputs.items():
@@ -131,7 +132,7 @@ def read_inputs(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], Results]:
     flat = (x if x.ndim == 1 else x.flat for x in arrays)
     shape, varying = arrays[0].shape, {name: x for name, x in own.items() if x.size > 1}
     results = Results({}, varying, shape, _index_of(inputs, shape))
-    return dict(zip(given, flat, strict=True)) | words, results
+    return dict(zip(given, flat, strict=True)) | words, results, read.is_body
 
 
 def _index_of(inputs: Mapping[str, Any], shape: tuple[int, ...]) -> Any:

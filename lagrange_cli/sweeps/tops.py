@@ -145,6 +145,11 @@ class TopArrays:
         """Return one top.  Raises LagtopError if it is invalid."""
         return Top(**{name: x.item(row) for name, x in self.given.items()})
 
+    def not_bodies(self) -> dict[int, str]:
+        """Return an error for each top with C > 2A, by row."""
+        error = "C must be <= 2 A (no rigid body has more)"
+        return dict.fromkeys(np.flatnonzero(self.C > 2 * self.A).tolist(), error)
+
     def groups(self) -> dict[Regime | None, Mask]:
         """Return the tops of ordinary size that the formulas of sweeps compute.
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, Self
 
 from ..arithmetic.enclosures import pi_to, text_of
 from ..arithmetic.numbers import Real, unrounded
+from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from ..names import suggestion
 from .derived import Spin, Tilt, exact_inputs, steady_rate_of
@@ -201,12 +202,13 @@ class Top:
         A, offset = self.exact("A"), Fraction(self.m) * Fraction(self.s) ** 2
         limit, rounding = 2 * (A - offset), A * _EPS
         if limit + rounding <= 0:
-            bound = f"A > m s^2 = {float(offset)}, got {float(self.A)}"
+            name, bound, most = "A", "A > m s^2", offset
         elif self.C > limit + rounding:
-            bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
+            name, bound, most = "C", "C <= 2 (A - m s^2)", limit
         else:
             return None
-        return f"a rigid body with its centre of mass at s has {bound}; computing anyway"
+        least, own = (double_text(float(x)).removesuffix(".0") for x in (most, getattr(self, name)))
+        return f"a rigid body needs {bound} = {least}, but {name} is {own}; computed anyway"
 
     def as_text(self) -> str:
         """Return the inputs as a text, such as `m=1587.0 A=39032.0`, without rates that are 0."""

@@ -31,6 +31,8 @@ from lagrange_cli.inverse.problem import Problem
 from lagrange_cli.inverse.search import best_fit
 from lagrange_cli.recordings.doubts import pivot_of
 from lagrange_cli.recordings.recording import recording_of
+from lagrange_cli.top.given import gather
+from lagrange_cli.top.values import values_of
 
 sys.path.append(str(Path(__file__).parents[1] / "tools"))
 DEGREE = math.pi / 180
@@ -147,7 +149,7 @@ def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
     small = np.random.default_rng(24).normal(scale=1e-4, size=(20, 3))
     moved = (turns * Rotation.from_rotvec(small)).as_quat(scalar_first=True)
     recording = recording_from(t, quaternion=moved)
-    problem = Problem(recording, known_inputs({}, {}), np.ones(3))
+    problem = Problem(recording, known_inputs(gather({})), np.ones(3))
     start = TRUTH | {"theta0": 75 * DEGREE}
     x = np.array([[start.get(name, 0.0) for name in problem.names]])
     theta, across, along = problem.residuals(x)[0]
@@ -433,7 +435,9 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     assert outcome.verdict == "failed"
     assert "the spin decays: use window=10" in outcome.failure()
     windows = fit_windows(
-        recording_from(t, theta=seen["theta"], psi=seen["psi"]), 12, known_inputs(LAB, {})
+        recording_from(t, theta=seen["theta"], psi=seen["psi"]),
+        12,
+        known_inputs(gather(values_of(LAB))),
     )
     assert {x.verdict for x in windows} == {"good"}
     decay = decay_of(windows)

@@ -247,7 +247,7 @@ for (const [name, input] of Object.entries(DATA.inputs)) {
 function rangeOf(name, x) {
   const { A, C, m, g, s } = scene;
   if (name === "theta0_deg") return [0, 180];
-  if (name === "C") return [A / 100, 2 * A];
+  if (name === "C") return [A / 100, Math.max(2 * A, C)];
   if (!name.endsWith("0")) return ["s", "g"].includes(name) ? [0, 3 * x || 1] : [x / 100, 3 * x];
   const rate = Math.sqrt((2 * m * g * s) / A) || 1;
   const most = Math.max(1.5 * Math.abs(x), name === "r0" ? (2.5 * rate * A) / C : rate);
@@ -258,7 +258,7 @@ function rangeOf(name, x) {
 function complaint(given) {
   const { m, A, C, s, g, theta0_deg: tilt, psidot0 } = given;
   const outside = {
-    m: m <= 0, A: A <= 0, C: C <= 0 || C > 2 * A, s: s < 0, g: g < 0, theta0_deg: tilt < 0 || tilt > 180,
+    m: m <= 0, A: A <= 0, C: C <= 0 || (C > 2 * A && unitOf("time") !== "time"), s: s < 0, g: g < 0, theta0_deg: tilt < 0 || tilt > 180,
   };
   for (const [name, { symbol, bound }] of Object.entries(DATA.inputs)) {
     if (!Number.isFinite(given[name])) return [name, `${symbol} must be a number`];
@@ -286,13 +286,15 @@ function change(changes, anew = false) {
   for (const [name, { label, field, slider }] of Object.entries(fields)) {
     label.textContent = `${DATA.inputs[name].symbol}  ${titleOf(DATA.inputs[name])}`;
     if (anew || name === "C") [slider.min, slider.max] = rangeOf(name, scene[name]);
-    if (name === "A") slider.min = Math.max(slider.min, scene.C / 2);
+    if (name === "A" && scene.C <= 2 * scene.A) slider.min = Math.max(slider.min, scene.C / 2);
     [field.value, slider.value] = [Number(scene[name].toPrecision(7)), scene[name]];
   }
   if (anew) pace = motion.span / 2.5;
   at.words.textContent = sentence(motion, DATA.phrases, unitOf("time"));
-  at.sketch.hidden = !motion.doubt;
-  at.sketch.textContent = `sketch: ${motion.doubt} (use lagtop solve)`;
+  const notes = [motion.doubt && `sketch: ${motion.doubt} (use lagtop solve)`];
+  if (scene.C > 2 * scene.A) notes.push("no rigid body has C > 2A");
+  at.sketch.textContent = notes.filter(Boolean).join("; ");
+  at.sketch.hidden = !at.sketch.textContent;
   nameScenes();
   at.record.replaceChildren();
   for (const [name, x] of Object.entries(motion.record).filter(([, value]) => value !== null)) {
