@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import shutil
+import subprocess
+import sys
 from dataclasses import fields
 from fractions import Fraction
 from pathlib import Path
@@ -12,7 +16,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from conftest import Lagtop, assert_one_line
+from conftest import ROOT, Lagtop, assert_one_line
 from lagtop import Top, find, fit, sensitivities, solve, sweep
 
 from lagrange_cli.bench.reference import Reference
@@ -61,6 +65,32 @@ def test_a_form_gives_the_same_motion_everywhere(key: str, tmp_path: Path, lagto
 
 
 @pytest.mark.parametrize("key", MEASURED)
+def test_a_form_can_be_asked_for(key: str, lagtop: Lagtop) -> None:
+    inputs, name = in_form(TOP, key), replaced_by(key)
+    assert solve(Top(**inputs)).record(keys=[key])[key] == inputs[key]
+    assert sweep(keys=[key], **inputs)[key] == inputs[key]
+    words = [f"--{x.replace('_', '-').removesuffix('-deg')}={y}" for x, y in TOP.given.items()]
+    asked = lagtop("solve", *words, "--get", key, "--digits", "900").stdout.strip()
+    rest = [x for x in words if not x.startswith(f"--{name}=")]
+    flag = f"--{key.replace('_', '-')}={asked}"
+    again = lagtop("solve", *rest, flag, "--get", name, "--digits", "890").stdout
+    assert Fraction(again) == Fraction(str(TOP.given[name]))
+
+
+def test_sweeps_ask_for_every_form_as_solve_does() -> None:
+    random = np.random.default_rng(3)
+    tops: dict[str, Any] = {name: x * random.uniform(0.5, 2, 40) for name, x in BODY.items()}
+    tops |= {"C": tops["C"] * random.choice([1, 40], 40)}  # some with C > 2A
+    tops |= {"theta0_deg": random.uniform(0, 180, 40), "psidot0": random.normal(size=40) * 5}
+    found = sweep(keys=[*MEASURED, "k"], radii=True, phidot0=random.normal(size=40) * 50, **tops)
+    assert (tops["C"] > 2 * tops["A"]).any()
+    for i in range(40):
+        one = solve(Top(phidot0=found["phidot0"][i], **{x: y[i] for x, y in tops.items()}))
+        for key, exact in one.record(keys=[*MEASURED, "k"]).items():
+            assert abs(found[key][i] - exact) <= found[f"{key}_radius"][i] + np.spacing(abs(exact))
+
+
+@pytest.mark.parametrize("key", MEASURED)
 def test_a_form_is_a_known_input_of_a_fit(key: str) -> None:
     inputs, t = in_form(TOP, key), np.linspace(0, 2, 150)
     noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, 150))
@@ -71,6 +101,42 @@ def test_a_form_is_a_known_input_of_a_fit(key: str) -> None:
     assert right.verdict == "good"
     wrong = fit(t, theta=theta, phi=phi, psi=psi, known=known | {key: f"{1.3 * inputs[key]}(1)"})
     assert any(f"known {key} = " in x and "contradicts" in x for x in wrong.failures())
+
+
+@pytest.mark.parametrize("key", [x for x in MEASURED if replaced_by(x) == "r0"])
+def test_a_form_is_a_known_input_of_a_steady_fit(key: str) -> None:
+    top, t = TOP.replace(psidot0="steady"), np.linspace(0, 2, 150)
+    theta, _, psi = solve(top).angles(t)
+    value = solve(top).record(keys=[key])[key]
+    found = fit(t, theta=theta, psi=psi, known={"m": 0.5, "g": 9.81, "s": 0.08, key: value})
+    assert found.verdict == "good, no nutation"
+    assert found.numbers["r0"].value == pytest.approx(52.0, abs=3 * found.numbers["r0"].std)
+
+
+ROW = """spin_frequency | f_φ0 | spin frequency at the start
+    | turns of the spin per unit of time at the start | instead of phidot0 | 1/time |
+    | phidot0 | 2*pi*spin_frequency | phidot0/(2*pi)
+"""
+FIELD = "    spin_frequency: Real | None = None\n"
+
+
+def test_a_further_form_is_one_row_and_one_field(tmp_path: Path) -> None:
+    """The tests of all forms pass in a copy of the package with one more."""
+    package = shutil.copytree(ROOT / "lagrange_cli", tmp_path / "lagrange_cli")
+    (tmp_path / "sample_inputs").mkdir()
+    for name, place, more in (("inputs", "theta0 |", ROW), ("top", "    given: Mapping", FIELD)):
+        text = (file := package / "top" / f"{name}.py").read_text(encoding="utf-8")
+        file.write_text(text.replace(place, more + place, 1), encoding="utf-8")
+    line = ["pytest", "-q", "-p", "no:cacheprovider", f"--rootdir={ROOT / 'tests'}", __file__]
+    ran = subprocess.run(
+        [sys.executable, "-m", *line, "-k", "spin_frequency or every_form"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT / "tests")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "6 passed" in ran.stdout, ran.stdout
 
 
 def test_a_period_is_exact_to_the_digits(lagtop: Lagtop) -> None:
