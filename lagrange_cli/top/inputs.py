@@ -46,7 +46,8 @@ A | A | equatorial moment
 A_cm | A_cm | moment about the centre of mass
     | equatorial moment about the centre of mass: A = A_cm + m s^2 | 0 or more | mass len² |
     | A | A_cm + m*s*s | A - m*s*s
-C | C | polar moment | polar moment of inertia | positive, in a body at most 2A | mass len² | 17458
+C | C | polar moment | polar moment of inertia
+    | positive; above 2A only if m, A, C, s and g are given without units | mass len² | 17458
 s | s | pivot to centre of mass
     | distance from the pivot to the centre of mass | 0 or more | len | 4
 g | g | gravity | gravitational acceleration | 0 or more | len/time² | 981
@@ -56,7 +57,8 @@ phidot0 | φ'0 | spin rate at the start
     | spin rate at the start | instead of r0 = phidot0 + psidot0 cos(theta0) | rad/time |
     | r0 | phidot0 + psidot0*u0 | r0 - psidot0*u0
 spin_period | T_φ0 | spin period at the start
-    | time of one turn of the spin at the start | not 0, instead of phidot0 = 2 pi/spin_period
+    | time of one turn of the spin at the start, seen from the gimbal (not by a camera at rest)
+    | not 0, instead of phidot0 = 2 pi/spin_period
     | time |
     | phidot0 | 2*pi/spin_period | 2*pi/phidot0
 theta0 | ϑ0 | tilt at the start

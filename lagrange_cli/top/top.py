@@ -28,6 +28,7 @@ from .inputs import (
     replaced_by,
     warn_of,
 )
+from .units import Units
 
 _EPS, _DEGREE = Fraction(1, 1 << 52), math.pi / 180
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
@@ -54,10 +55,11 @@ class Top:
 
     Use any consistent units.  Inputs you omit default to the worked example of Chrapan (1952),
     section 8, in CGS.  A MixedBodyWarning names the defaults if you give only some of m, A, C, s
-    and g.  Each input is a real number: int, float, Fraction, Decimal or a NumPy scalar.  It is
-    taken exactly: a number that is not a double, such as Decimal("0.1"), is kept as a Fraction.
+    and g, and C > 2A, which no rigid body has, is then an error.  Each input is a real number: int,
+    float, Fraction, Decimal or a NumPy scalar.  It is taken exactly: a number that is not a double,
+    such as Decimal("0.1"), is kept as a Fraction.
 
-        m, A, C     mass, equatorial and polar moment about the pivot, > 0 (C <= 2A in a body)
+        m, A, C     mass, equatorial and polar moment about the pivot, > 0
         A_cm        in place of A: the equatorial moment about the centre of mass, A = A_cm + m s^2
         s, g        distance from the pivot to the centre of mass, and gravity, >= 0
         r0          total spin rate: the constant angular velocity about the figure axis (any sign)
@@ -118,7 +120,7 @@ class Top:
         }
         one_of_each(inputs)
         kept = overridden(EXAMPLE, inputs)
-        given = {name: kept[name] for name in sorted(kept, key=_place)}
+        given = {x: kept[x] for x in sorted(kept, key=lambda x: NINE.index(replaced_by(x)))}
         values = dict.fromkeys(INPUTS) | given | _derived(given) | {"given": given}
         for name, x in values.items():
             object.__setattr__(self, name, x)
@@ -174,11 +176,9 @@ class Top:
     def inputs(self, *, radians: bool = False) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         tilt, number = self.exact_tilt, float(self.exact_tilt.number)
-        if radians and tilt.radians is None:
-            number *= _DEGREE
-        elif not radians and tilt.degrees is None:
-            number /= _DEGREE
-        key = f"{TILT}_rad" if radians else f"{TILT}_deg"
+        if radians == (tilt.radians is None):  # given in the other unit
+            number = number * _DEGREE if radians else number / _DEGREE
+        key = Units(radians).key(f"{TILT}_deg")
         keys = (key if name == TILT else name for name in NINE)
         return {x: number if (y := getattr(self, x)) is None else y for x in keys}
 
@@ -214,11 +214,6 @@ class Top:
         """Return the inputs as a text, such as `m=1587.0 A=39032.0`, without rates that are 0."""
         kept = (x for x in self.given.items() if x[1] or x[0] not in {"thetadot0", "psidot0"})
         return " ".join(f"{name}={value}" for name, value in kept)
-
-
-def _place(name: str) -> int:
-    """Return the place of an input among the nine."""
-    return NINE.index(replaced_by(name))
 
 
 def _derived(given: Mapping[str, Any]) -> dict[str, Real]:

@@ -103,14 +103,16 @@ UNITS: dict[str, Unit] = {
     for name, size in (pair.split("=") for pair in pairs.split())
 }
 """The known units by name."""
-SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "°": "deg"}
-SPELLINGS |= dict.fromkeys(("msec", "millisec", "millisecond", "milliseconds"), "ms")
-SPELLINGS |= dict.fromkeys(("µs", "μs", "µsec", "μsec", "usec", "microsec"), "us")
-SPELLINGS |= dict.fromkeys(("microsecond", "microseconds"), "us")
-SPELLINGS |= dict.fromkeys(("nsec", "nanosec", "nanosecond", "nanoseconds"), "ns")
-SPELLINGS |= dict.fromkeys(("minute", "minutes"), "min")
-SPELLINGS |= dict.fromkeys(("degree", "degrees", "Grad"), "deg")
-SPELLINGS |= dict.fromkeys(("radian", "radians"), "rad")
+_SPELLINGS = {
+    "s": "sec second seconds",
+    "ms": "msec millisec millisecond milliseconds",
+    "us": "µs μs µsec μsec usec microsec microsecond microseconds",
+    "ns": "nsec nanosec nanosecond nanoseconds",
+    "min": "minute minutes",
+    "deg": "° degree degrees Grad",
+    "rad": "radian radians",
+}
+SPELLINGS = {word: unit for unit, words in _SPELLINGS.items() for word in words.split()}
 """Other spellings of units."""
 EXAMPLES = {"mass": "kg or g", "mass len²": "kg*m^2 or g*cm^2", "len": "m or cm", "time": "s or ms"}
 EXAMPLES |= {"len/time²": "m/s^2 or cm/s^2", "rad/time": "rad/s or rpm"}
