@@ -360,6 +360,12 @@ def text_of(value: Exact, digits: int) -> NumberText:
     return NumberText(f"{figures}{point}{e}{exponent}")
 
 
+def decimal_text(value: Fraction, digits: int) -> NumberText:
+    """Return a number as a decimal, exactly if it is one, else with `digits` significant digits."""
+    scaled = value * 10 ** value.denominator.bit_length()  # more places than a decimal has
+    return text_of(value, len(str(abs(int(scaled)))) if scaled.denominator == 1 else digits)
+
+
 def _decimal(value: Exact, context: Context) -> Decimal:
     """Return a number as a decimal, rounded in a context."""
     if isinstance(value, Fraction):

@@ -15,7 +15,7 @@ from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..errors import LagtopError, SomeFailedError, arg, marked
 from ..names import split_names
 from ..output.destination import MOST_ROWS, MOST_UPRIGHT, Output, opened
-from ..output.formats import FORMATS, PICTURES, listed
+from ..output.formats import FORMATS, PICTURES, WITH_COMMAS, listed
 from ..output.terminal import is_screen
 from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
 from ..top.units import Units, is_unit
@@ -98,17 +98,27 @@ TIME = values()
 option = click.option
 rad = option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
 certify = option(
-    "--certify", is_flag=True, help="Also print KEY_radius, a proven bound on the error."
+    "--certify",
+    is_flag=True,
+    help="Also print KEY_radius: a bound on the distance from the double KEY to its exact value.",
 )
 keys = option("--keys", type=LIST, help="Compute and print only these keys (see lagtop explain).")
 plot = option("--plot", metavar="FILE", help=f"Also draw the report: FILE{listed(PICTURES, '.')}.")
-decimal = option(
-    "--decimal",
-    metavar="MARK",
-    type=click.Choice(["point", "comma", ".", ","]),
-    callback=lambda _, __, mark: {None: "", "point": ".", "comma": ","}.get(mark, mark),
-    help="Decimal mark of the file: point or comma.  [default: detected]",
-)
+
+
+def decimal(*, reads: bool = True, writes: bool = False) -> Callable[[F], F]:
+    """Declare --decimal, the mark of a file that is read, of CSV that is written, or of both."""
+    files = ["of the file"] * reads + ["of CSV that is written (with semicolons)"] * writes
+    return option(
+        "--decimal",
+        metavar="MARK",
+        type=click.Choice(["point", "comma", ".", ","]),
+        callback=lambda _, __, mark: {None: "", "point": ".", "comma": ","}.get(mark, mark),
+        help=f"Decimal mark {' and '.join(files)}: point or comma."
+        + "  [default: detected]" * reads,
+    )
+
+
 _DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
 _READING = {
     "columns": option(
@@ -152,7 +162,7 @@ _READING = {
     "fps": option("--fps", type=Parsed("N", parse_positive), help="Frames per unit of time: 1/dt."),
     "t_min": option("--t-min", type=_DOUBLE, help="First time to read."),
     "t_max": option("--t-max", type=_DOUBLE, help="Last time to read."),
-    "decimal": decimal,
+    "decimal": decimal(),
 }
 """The options of a reading by argument."""
 
@@ -382,6 +392,19 @@ def output(default: str, *, rows: bool = False, extensions: Sequence[str] = ()) 
         return cast(F, found)
 
     return decorate
+
+
+def with_mark(out: Output, mark: str, *, reads: bool = False) -> Output:
+    """Return an output with a decimal mark: CSV with commas has semicolons between its cells.
+
+    Raises LagtopError if a comma changes nothing, neither here nor in a file that is read.
+    """
+    if mark != ",":
+        return out
+    name = "csv" if out.fmt == "table" and not out.is_named else out.fmt
+    if name not in WITH_COMMAS and not reads:
+        raise LagtopError(f"--decimal comma is for CSV, got --format {name}: leave it out")
+    return out._replace(fmt=WITH_COMMAS.get(name, out.fmt))
 
 
 def write_report(

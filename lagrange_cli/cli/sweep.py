@@ -70,7 +70,7 @@ def _parse_jobs(text: str) -> int:
 @opt.option("--parts", metavar="DIR", help="Write one file per part into this folder.")
 @opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")
 @opt.option("--dask", metavar="ADDRESS", help="Use the Dask cluster of this scheduler.")
-@opt.decimal
+@opt.decimal(writes=True)
 @opt.output("csv", rows=True)
 def sweep_command(
     top: opt.TopOptions,
@@ -115,6 +115,7 @@ def sweep_command(
         raise LagtopError(f"a sweep takes one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
     digest = digest_of(path) if path is not None and parts is not None else ""
+    out = opt.with_mark(out, decimal, reads=path is not None)
     how: dict[str, Any] = {"units": Units(top.radians), "decimal": decimal}
     how |= {"keys": keys, "radii": certify}
     sweep, every_block, size, given = plan(path, top.inputs, top.scene, **how)
@@ -170,9 +171,15 @@ def _headings(names: Sequence[str], units: Units, out: Output) -> Sequence[str]:
     "--scan", type=opt.count(), help="Values per unknown.  [default: 4000, 60, 20 for 1, 2, 3]"
 )
 @opt.keys
+@opt.decimal(reads=False, writes=True)
 @opt.output("csv", rows=True)
 def find_command(
-    top: opt.TopOptions, words: Sequence[str], scan: int | None, keys: list[str] | None, out: Output
+    top: opt.TopOptions,
+    words: Sequence[str],
+    scan: int | None,
+    keys: list[str] | None,
+    decimal: str,
+    out: Output,
 ) -> None:
     """Find the inputs for which results take given values.
 
@@ -190,7 +197,7 @@ def find_command(
     from ..solver.keys import all_keys, record_keys
     from ..solver.record import record_in_range
 
-    units = Units(top.radians)
+    units, out = Units(top.radians), opt.with_mark(out, decimal)
     chosen = record_keys(units)
     if keys is not None:
         known = all_keys(units)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @opt.option("--n", type=opt.count(), help="Number of times.  [default: 101]")
 @opt.option("--dt", type=opt.TIME, help="Time step, instead of --n.")
 @opt.option("--times", metavar="FILE", help="Read the times from a file, one per line.")
-@opt.decimal
+@opt.decimal(writes=True)
 @opt.option(
     "--columns", type=opt.LIST, help="Columns: see lagtop explain.  [default: t,theta,phi,psi]"
 )
@@ -62,6 +62,7 @@ def table_command(
     from ..solver.tables import ProvedTable, grid, rows
     from .uncertainty import column_stds, warn_if_unfair
 
+    out = opt.with_mark(out, decimal, reads=times is not None)
     opt.exclude(n=n, dt=dt)
     for name, value in {"t_max": t_max, "t_min": t_min, "n": n, "dt": dt}.items():
         opt.exclude(**{"times": times, name: value})
@@ -71,14 +72,15 @@ def table_command(
     found, proved = top.given(**given), digits is not None or certify
     if found.stds and proved:
         raise LagtopError("--digits and --certify take inputs without uncertainties")
-    motion = opt.motion_of(found, exact=digits is not None)
+    exact = digits is not None
+    motion = opt.motion_of(found, exact=exact)
     names = DEFAULT_COLUMNS if columns is None else columns
     how: Any = {"units": found.units(radians=top.radians), "wrap": wrap}
     parts: Iterable[Any]
     stds: ColumnSpread | None = None
     bounds = {name: x.number for name, x in given.items() if x is not None}
     try:
-        at = read_times(times, decimal) if times else grid(motion, n=n, **bounds)
+        at = read_times(times, decimal) if times else grid(motion, n=n, **bounds, exact=exact)
         if proved:
             header, parts = ProvedTable(motion, names, digits, **how).rows(at, radii=certify)
         else:

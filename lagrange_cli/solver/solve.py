@@ -98,11 +98,11 @@ class Motion(Solution):
         """Return inputs and results by key, in the order of the paper, in degrees or `radians`.
 
         Numbers are doubles or, with `digits`, texts with that number of significant digits; inputs
-        are then taken as decimals.  `radii` adds KEY_radius, a bound of the distance from the
-        number under KEY to its exact value.  A number beyond the range of doubles is None, and an
-        OutOfRangeWarning names it.  `keys` selects some keys; such a number then raises
-        OutOfRangeError.  Raises LagtopError for an unknown or repeated key or for no key, and if no
-        precision distinguishes a number from 0.
+        are then taken as decimals.  `radii` adds KEY_radius, a bound on the distance from the
+        double KEY, or with `digits` the decimal KEY, to its exact value.  A number beyond the range
+        of doubles is None, and an OutOfRangeWarning names it.  `keys` selects some keys; such a
+        number then raises OutOfRangeError.  Raises LagtopError for an unknown or repeated key or
+        for no key, and if no precision distinguishes a number from 0.
         """
         units = Units(radians)
         if keys is not None:

@@ -7,6 +7,7 @@ its balls agree.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache, partial
@@ -19,6 +20,7 @@ from ..arithmetic.enclosures import (
     Rounded,
     TooFewDigitsError,
     decided,
+    decimal_text,
     equal_digits,
     exact,
     kept,
@@ -187,14 +189,18 @@ def grid(
     *,
     n: int | None = None,
     dt: Fraction | None = None,
+    exact: bool = False,
 ) -> EvenPoints:
     """Return n times from t_min to t_max, or as many steps dt as fit, counted exactly.
 
     The default is 101 times over one nutation period from 0, or over a unit of time if the motion
-    has no period.  Raises LagtopError unless the interval, n and dt give a grid of 1 to 1e9 rows.
+    has no period.  If times are `exact`, the period is the decimal that `solve` prints.  Raises
+    LagtopError unless the interval, n and dt give a grid of 1 to 1e9 rows.
     """
     t_min = Fraction(0) if t_min is None else t_min
-    t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
+    if t_max is None:
+        period = motion.T_nutation or 1.0
+        t_max = t_min + Fraction(double_text(period) if exact else period)
     if not t_max >= t_min:
         least = f"{arg('t_min')} = {float(t_min)}"
         raise LagtopError(f"t_max must be >= {least}, got {float(t_max)}", "t_max")
@@ -282,19 +288,29 @@ class ProvedTable:
     def rows(
         self, times: Points, *, radii: bool = False
     ) -> tuple[list[str], Iterator[list[list[NumberText]]]]:
-        """Return the header and lists of rows; with `radii` a KEY_radius follows for each KEY.
+        """Return the header and lists of rows; with `radii` KEY_radius follows for each KEY but t.
 
-        Times are the doubles used by `lagtop table` or, if digits are requested, decimals.
+        Times are the doubles used by `lagtop table` or, if digits are requested, decimals.  They
+        are exact, and have all of their digits.
         """
+        bounded = [name for name in self.header if radii and name != "t"]
 
         def texts(time: Real) -> list[NumberText]:
-            row = self.row(Fraction(time if self.digits else float(time)))
-            values = [double_text(x.value) if self.digits is None else x.value for x in row]
-            return [*map(NumberText, values), *(x.radius for x in row if radii)]
+            t = NumberText(double_text(float(time)))
+            if self.digits is not None:
+                t = decimal_text(Fraction(time), max(self.digits, sys.float_info.dig))
+            row = dict(zip(self.header, self.row(Fraction(t)), strict=True))
+            values = [
+                double_text(x.value) if self.digits is None else x.value for x in row.values()
+            ]
+            shown = [
+                t if name == "t" else NumberText(x) for name, x in zip(row, values, strict=True)
+            ]
+            return [*shown, *(row[name].radius for name in bounded)]
 
         def lists() -> Iterator[list[list[NumberText]]]:
             waiting = times.decimals()
             while block := list(islice(waiting, _ROWS_AT_ONCE)):
                 yield [texts(time) for time in block]
 
-        return [*self.header, *(f"{name}_radius" for name in self.header if radii)], lists()
+        return [*self.header, *(f"{name}_radius" for name in bounded)], lists()

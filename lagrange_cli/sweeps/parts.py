@@ -60,7 +60,8 @@ class Parts:
 
     def _files(self, number: int) -> tuple[Path, Path]:
         """Return the file of a part, and the file that counts its errors."""
-        part = self.path / f"part-{number:06}.{FORMATS[self.sweep.fmt].extension}"
+        extension = FORMATS[self.sweep.fmt.removesuffix("_comma")].extension
+        part = self.path / f"part-{number:06}.{extension}"
         return part, self.path / f"errors-{number:06}.json"
 
     def missing(self, blocks: Iterable[NumberedBlock], done: list[Part]) -> Iterator[NumberedBlock]:

@@ -57,13 +57,13 @@ def sweep(
     """Return the records of many tops: arrays by key, in the shape to which the inputs broadcast.
 
     Inputs are those of `Top`, as numbers, arrays or pandas Series: pass a DataFrame of inputs as
-    `sweep(**df)`.  Only `keys` are computed; angles are in degrees or `radians`.  A bound
-    of the error of each is at most 1e-13 of its size (of 1 for a cosine); `radii` adds it as
-    KEY_radius.  If a regime has no value for a key, its number is NaN and its text None.  An
-    invalid top has an `error` and no values.  If a number is beyond the range of doubles, it is
-    NaN, and `error` says so.  If `keys` lacks `error`, the results have it only if a top has an
-    error.  Raises LagtopError for an unknown input or key, for uncertain inputs, or if shapes do
-    not broadcast.
+    `sweep(**df)`.  Only `keys` are computed; angles are in degrees or `radians`.  `radii` adds
+    KEY_radius, a bound on the distance from the double KEY to its exact value: at most 1e-13 of its
+    size (of 1 for a cosine), whether it is added or not.  If a regime has no value for a key, its
+    number is NaN and its text None.  An invalid top has an `error` and no values.  If a number is
+    beyond the range of doubles, it is NaN, and `error` says so.  If `keys` lacks `error`, the
+    results have it only if a top has an error.  Raises LagtopError for an unknown input or key, for
+    uncertain inputs, or if shapes do not broadcast.
 
     >>> sweep(r0=[[50.0], [60.0]], theta0_deg=[30.0, 90.0], keys=["T_nutation"]).to_xarray().sizes
     Frozen({'r0': 2, 'theta0_deg': 2})

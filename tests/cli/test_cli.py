@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import random
 import re
@@ -134,6 +135,47 @@ def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
     assert list(objects[0]) == ["t", "theta_deg", "phi_deg", "psi_deg"]
     shown = lagtop("table", "--t-max", "2", "--format", "table").stdout.splitlines()[2:]
     assert [list(map(float, line.split())) for line in shown] == plain
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "table --n 3",
+        "table --r0 50(1) --n 2",
+        "table --digits 25 --certify --n 3 --t-max 1",
+        "sweep --r0 5,50,300 --theta0 30,-1",
+        "find --r0 10:200 T_precession=2",
+    ],
+)
+def test_a_decimal_comma_changes_the_marks_only(line: str, lagtop: Lagtop) -> None:
+    first, *rows_ = csv.reader(lagtop(*line.split()).stdout.splitlines())
+    name, *others = csv.reader(
+        lagtop(*line.split(), "--decimal", "comma").stdout.splitlines(), delimiter=";"
+    )
+    assert name == first
+    words = [first.index(x) for x in ("regime", "path", "remark", "error") if x in first]
+    for row, other in zip(rows_, others, strict=True):
+        marked = [x if i in words else x.replace(".", ",") for i, x in enumerate(row)]
+        assert other == marked
+
+
+@pytest.mark.parametrize("line", ["table --format json", "find --r0 1:9 T_spin=2 --format table"])
+def test_a_decimal_comma_is_for_csv(line: str, lagtop: Lagtop) -> None:
+    found = lagtop(*line.split(), "--decimal", "comma")
+    assert (found.exit_code, found.stdout) == (2, "")
+    assert "--decimal comma is for CSV" in found.stderr
+
+
+def test_times_of_many_digits_are_printed_whole(lagtop: Lagtop) -> None:
+    """A time that is no decimal is rounded before the row is computed."""
+    t, third = "0.12345678901234567890123456789", "0.333333333333333"
+    assert (
+        lagtop("table", "--digits", 5, "--t-min", t, "--n", 1).stdout.split("\n")[1].split(",")[0]
+        == t
+    )
+    row = lagtop("table", "--digits", 9, "--t-max", 1, "--n", 4).stdout.splitlines()[2]
+    assert row == lagtop("table", "--digits", 9, "--t-min", third, "--n", 1).stdout.splitlines()[1]
+    assert row.startswith(f"{third},")
 
 
 @pytest.mark.parametrize(

@@ -251,7 +251,7 @@ def test_commands_write_radii(lagtop: Lagtop) -> None:
     row = json.loads(
         lagtop("table", "--certify", "--t-min", 1e9, "--n", 1, "--format", "json").stdout
     )
-    assert list(row[0])[3:6] == ["psi_deg", "t_radius", "theta_deg_radius"]
+    assert list(row[0])[3:6] == ["psi_deg", "theta_deg_radius", "phi_deg_radius"]
     assert 0 < row[0]["phi_deg_radius"] <= row[0]["phi_deg"] * 2.0**-52
 
 

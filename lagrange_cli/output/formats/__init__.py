@@ -31,6 +31,8 @@ FORMATS = {
     "parquet": Row("parquet", "the rows as doubles and texts; needs pyarrow"),
     "markdown": Row("md", "texts and tables, for a report or an issue"),
 }
+WITH_COMMAS = {"csv": "csv_comma"}
+"""The forms of formats with decimal commas, which --decimal chooses."""
 PICTURES, FILMS = ("png", "svg", "pdf"), ("gif", "mp4")
 """The extensions of pictures and films, which the plotting package writes."""
 

@@ -21,7 +21,7 @@ class Csv(Format):
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return lines."""
         if len(columns) == 1 and not isinstance(columns[0], Sequence):
-            return _array_lines(columns[0], b"" if len(names) > 1 else b'""')  # no line is empty
+            return array_lines(columns[0], b"" if len(names) > 1 else b'""')  # no line is empty
         lines = zip(*map(_cells, columns), strict=True)
         return b"".join((b",".join(line) or b'""') + b"\n" for line in lines)  # no line is empty
 
@@ -30,7 +30,7 @@ class Csv(Format):
         return f"{','.join(map(csv_text, names))}\n".encode()
 
 
-def _array_lines(column: Array, missing: bytes = b"") -> bytes:
+def array_lines(column: Array, missing: bytes = b"") -> bytes:
     """Return an array of numbers as CSV, a line per row and a `missing` cell for NaN."""
     import numpy as np
     import orjson
@@ -54,7 +54,7 @@ def _cells(column: Any) -> Sequence[bytes]:
             return [csv_text(x).encode() for x in column]
         cells = {x: csv_text(x).encode() for x in {*column}}  # a sweep repeats few texts
         return [cells[x] for x in column]
-    return _array_lines(column).split(b"\n")[:-1]
+    return array_lines(column).split(b"\n")[:-1]
 
 
 FORMAT = Csv()
