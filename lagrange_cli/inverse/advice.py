@@ -15,7 +15,7 @@ from ..recordings.frames import alignment_of, in_frames, own_frames, turn_of
 from ..recordings.misreadings import misreadings
 from ..recordings.options import Alignment
 from ..top.inputs import BODY, replaced_by
-from .checks import CHANCE, Mistake, MoreNoise
+from .checks import CHANCE, Mistake, MoreNoise, OtherReading
 from .decay import decay_of
 from .known import Known
 from .measured import Measured, frames_of, measured
@@ -56,10 +56,12 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     if outcome.origin or not is_wrong:  # a marker's pivot is named, or known inputs contradict
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
-        yield f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
+        few = f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
+        yield OtherReading(few)
     even = evenly_timed(recording)
     if even is not None and _is_good(even, known, also=STEADY):
-        yield f"t is rounded: write it with more digits (the rows are {even.frame:.6g} apart)"
+        even_rows = f"the rows are {even.frame:.6g} apart"
+        yield OtherReading(f"t is rounded: write it with more digits ({even_rows})")
     is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
     yield from _readings(recording, known, body, is_far=is_far)
     noise = _calmness(recording)
@@ -75,6 +77,8 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: leave out the rows before the release"
     yield from _decays(recording, body, outcome, noise)
+    if outcome.neighbour:
+        return
     start = [x for x in ("theta0", "psidot0") if x in known]
     short = ", and that the recording lasts for a period of the nutation"
     yield f"check {', '.join([*start, 'columns'])}, units and axes{short * (not outcome.inputs)}"
@@ -126,7 +130,7 @@ def _readings(recording: Measured, known: Known, body: Known, *, is_far: bool) -
         if other is None or not (is_angles or _calmness(other.thinned(_ROWS)) < calm):
             continue
         if _is_good(other, known if is_angles else body):
-            yield Message(f"{row.name}: {row.remedy}")
+            yield OtherReading(f"{row.name}: {row.remedy}")
     if not is_angles and recording.source.align.frame == Alignment().frame:
         yield from _frames(recording, body)
 
@@ -141,14 +145,14 @@ def _frames(recording: Measured, known: Known) -> Iterator[str]:
         if align == Alignment() or not _is_good(measured(other), known):
             continue
         if align is None:
-            yield f"space is turned by {turn_of(space)}, the body by {turn_of(body)}"
+            yield OtherReading(f"space is turned by {turn_of(space)}, the body by {turn_of(body)}")
             continue
         named = {"up": align.up, "axis": align.axis}
         words = [f"the {x} axis {_MEANINGS[key]}" for key, x in named.items() if x != "z"]
         opposite = ", or the marker is opposite to the centre of mass"
         is_opposite = align.up == "-z" and recording.kind == "axis"
         where = f"{' and '.join(words)}{opposite * is_opposite}"
-        yield Message(f"{where}: use {arg('align', align)}")
+        yield OtherReading(f"{where}: use {arg('align', align)}")
 
 
 def _calmness(recording: Measured) -> float:

@@ -42,6 +42,10 @@ class MoreNoise(Message):
     """A reason that more noise than was given may explain."""
 
 
+class OtherReading(Message):
+    """A remedy: the recording was misread, and a fit of the other reading is good."""
+
+
 @dataclass
 class Residuals:
     """The residuals of a channel at times t, in radians."""

@@ -16,10 +16,12 @@ from ..names import ANGLES
 from ..output.notebook import HasRecord
 from ..output.report import uncertain_text
 from ..recordings.doubts import pivot_of
+from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
-from .checks import CHANCE, LARGEST, MoreNoise, Residuals, chi2_bounds
+from .checks import CHANCE, LARGEST, MoreNoise, OtherReading, Residuals, chi2_bounds
 from .known import Known
 from .measured import Measured
+from .neighbours import Neighbours, neighbours_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -164,9 +166,41 @@ class Outcome(HasRecord):
         """Return the reasons why the fit has failed, if there are any.
 
         A marker with another origin comes first, then a motion that is impossible or not
-        determined, then one that does not match, and a known input that contradicts a right one.
+        determined, then another machine, a motion that does not match, and a known input that
+        contradicts a right one.
         """
-        return [*self.origin, *self.faults, *self.misfits] or self.contradictions
+        other = f"this is not a Lagrange top alone: {self.neighbour}"
+        is_misread = any(isinstance(x, OtherReading) for x in self.hints)
+        is_named = bool(self.neighbour) and not is_misread
+        found = [*self.origin, *self.faults, *[other] * is_named, *self.misfits]
+        return found or self.contradictions
+
+    @cached_property
+    def neighbours(self) -> Neighbours | None:
+        """What else the recording could be; None if this cannot be said."""
+        is_far = any(x.rms > LARGEST or x.outliers.any() for x in self.residuals.values())
+        if is_far or self.origin or self.inputs is None:
+            return None
+        has = self.inputs, 1 / self.frequency
+        return neighbours_of(self.recording, self.residuals, self.motion, *has)
+
+    @property
+    def neighbour(self) -> str:
+        """What else than a Lagrange top the recording shows, or empty."""
+        return self.neighbours.name if self.neighbours else ""
+
+    @property
+    def untested(self) -> str:
+        """What the recording cannot show, or empty."""
+        return self.neighbours.line if self.neighbours else ""
+
+    @property
+    def model_errors(self) -> dict[str, float]:
+        """The relative model errors of a, b, A and C, as far as they are numbers of the fit."""
+        if not self.neighbours:
+            return {}
+        found = self.neighbours.errors(has_moment="A" in all_replaced(self.known))
+        return {x: y for x, y in found.items() if x in self.numbers}
 
     @cached_property
     def origin(self) -> list[str]:
@@ -221,6 +255,8 @@ class Outcome(HasRecord):
         for name, rest in self.residuals.items():
             record[f"{name}_rms_{unit}"] = rest.rms * scale
             record[f"{name}_autocorrelation"] = rest.autocorrelation
+        record |= {"neighbour": self.neighbour or None, "untested": self.untested or None}
+        record |= {f"{x}_model_percent": 100 * y for x, y in self.model_errors.items()}
         remarks = [*self.remarks, *self.failures(), *self.hints]
         return record | {"verdict": self.verdict, "remark": "; ".join(remarks) or None}
 

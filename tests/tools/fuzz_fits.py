@@ -3,12 +3,16 @@
     python tests/tools/fuzz_fits.py --recordings 500 --seed 1
     python tests/tools/fuzz_fits.py --recordings 1 --seed 317 --show
     python tests/tools/fuzz_fits.py --recordings 500 --easy
+    python tests/tools/fuzz_fits.py --recordings 500 --machines
 
 Each recording is of one of the kinds in LOOKS: C/A from 0.02 to 2, 2 to 100 periods, 3 to 2,000
 rows per period, 0.001 to 5 turns of the spin per row, white, smoothed or correlated noise,
 encoders, pendulums, tops near a pole, steady tops, tops without a torque, any unit of time, and
 known inputs that are right or wrong.  `--easy` draws ordinary tops only, over 1.5 to 8 periods.
-Euler's equations are integrated by LSODA; nothing of the closed form is used.
+Euler's equations are integrated by LSODA; nothing of the closed form is used.  `--machines` draws
+what is nearly a Lagrange top: the machines and the faults of `machines.py`, of 1 to 30 per cent.
+There a wrong fit is held if its standard deviations and its model error, times the size in per
+cent, hold the error, and right first if the name of the failure is right.
 
 A fit is right if each of its numbers is within FAR of its own standard deviations of the truth.
 No fit can know whole turns of the spin per row, nor, if psi may count in either direction, which
@@ -39,6 +43,7 @@ sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the
 
 from engines import Array
 from lagtop import LagtopError, fit
+from machines import MACHINES, Machine, disturbed, filtered, rows_of
 
 CHANNELS = [("theta", "phi", "psi"), ("theta", "psi"), ("theta", "phi"), ("phi", "psi")]
 LOOKS = (
@@ -49,6 +54,8 @@ FAR = 5.0
 """Standard deviations beyond which a number is wrong: noise does it once in two million."""
 GOOD_SHARE = {False: 0.92, True: 0.94}
 """Share of the determined recordings, hard and easy, whose fit must be right and good."""
+HELD_SHARE, FIRST_SHARE = 0.9, 0.75
+"""Shares of wrong and good fits of machines that are held, and of failures with a right name."""
 MOST_ROWS = 20_000
 QUARTER = 0.25
 
@@ -101,6 +108,8 @@ class Drawn:
     """Seconds between two frames."""
     half_range: float
     flipped: bool
+    size: float = 0.0
+    """The size of the machine or fault."""
     means: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -210,6 +219,102 @@ def drawn(seed: int, *, easy: bool = False, look: str = "") -> Drawn:
         "mean_spin_rate": float(np.polyfit(t, spin, 1)[0]) + top.r0,
     }
     return case
+
+
+def other(seed: int, name: str = "") -> Drawn:
+    """Return the recording of a machine or with a fault of `MACHINES`."""
+    rng = np.random.default_rng(seed)
+    name = name or str(rng.choice([*MACHINES]))
+    machine = MACHINES[name]
+    size = float(10 ** rng.uniform(-2, math.log10(0.3)))
+    noise = math.radians(float(rng.choice([0.1, 0.3, 0.8])))
+    names = CHANNELS[int(rng.integers(len(CHANNELS)))]
+    while machine.needs not in {*names, ""}:
+        names = CHANNELS[int(rng.integers(len(CHANNELS)))]
+    kind = "angles" if name in {"zero", "jump"} else str(rng.choice(["angles", "axis", "attitude"]))
+    while True:
+        top = any_top(rng, "white", noise, easy=True)
+        period, half_range = period_of(top)
+        frame = period / float(rng.choice([12, 20, 35, 60]))
+        count = int(period * rng.uniform(2, 6) / frame)
+        t = np.asarray(np.arange(count) * frame)
+        if not (half_range > 3 * noise and 30 <= count <= 400 and abs(top.r0) * frame < 1.5):
+            continue
+        exact = _moved(top, machine, size, t)
+        if 0.15 < exact["theta"].min() and exact["theta"].max() < math.pi - 0.15:
+            break
+    seen = disturbed(name, size, t, {x: exact[x] for x in names}, rng)
+    rows = rows_of(name, count, rng)
+    arrays: dict[str, Array]
+    if kind == "angles":
+        arrays = {x: y + rng.normal(scale=noise, size=count) for x, y in seen.items()}
+    else:
+        arrays = _arrays(rng, kind, exact | seen, noise)
+    if name == "filter":
+        width, way = int(rng.choice([3, 5, 9])), str(rng.choice(["mean", "cubic", "lag"]))
+        size = width * frame / period / math.sqrt(12)
+        arrays = {x: np.apply_along_axis(filtered, 0, y, width, way) for x, y in arrays.items()}
+    arrays = {x: y[rows] for x, y in arrays.items()}
+    t = np.asarray(np.arange(rows.size) * frame)
+    if name == "clock":
+        t = t - size * t**2 / (2 * t[-1])
+    sizes = dict.fromkeys(("theta", "phi", "psi"), noise)
+    return Drawn(*(name, top, t, arrays, None, sizes, {}, 1.0, frame, half_range, False), size=size)
+
+
+def _moved(top: Top, machine: Machine, size: float, t: Array) -> dict[str, Array]:
+    """Return the angles of a machine, of a Lagrange top if that is none."""
+    if machine.motion is None:
+        return top.motion(t)
+    start = np.array([top.theta0, top.thetadot0, top.psidot0])
+    return machine.motion(top.a, top.b, top.r0, start, t, **{machine.size: size})
+
+
+def held(outcome: Any, case: Drawn) -> bool:
+    """Return whether a, b and r0 are within standard deviations and model errors of the size."""
+    for name in ("a", "b"):
+        value, std = outcome.numbers[name][:2]
+        model = outcome.model_errors.get(name, 0.0) * abs(value) * 100 * case.size
+        if abs(value - getattr(case.top, name)) > FAR * std + 2 * model:
+            return False
+    return True
+
+
+def named(outcome: Any, case: Drawn) -> str:
+    """Return `right first`, `right` among others, `wrong name` or `no name`."""
+    first, *others = (outcome.neighbour or outcome.failure()).split(" or ")
+    words = MACHINES[case.look].words.split("|")
+    if any(x in first for x in words):
+        return "right first"
+    if any(x in y for y in others for x in words):
+        return "right"
+    return "wrong name" if outcome.neighbour else "no name"
+
+
+def checked_machine(seed: int, look: str = "") -> Result:
+    """Return what `fit` makes of a machine or fault."""
+    case, begun = other(seed, look), time.process_time()
+    arrays: dict[str, Any] = dict(case.arrays)
+    off, shown, is_right = dict[str, float](), "", False
+    try:
+        outcome = fit(case.t, **arrays)
+        word = outcome.verdict
+    except LagtopError as error:
+        word, shown = "refused", str(error)
+    seconds = time.process_time() - begun
+    if word != "refused":
+        found = pulls(outcome, case, mirrored=False)
+        off = {x: y for x, y in found.items() if x in {"a", "b", "r0"}}
+        is_right = all(abs(x) < FAR for x in off.values())
+        shown = " ".join(f"{x} {y:.1f}" for x, y in off.items())
+        if word == "failed":
+            word = f"failed, {named(outcome, case)}"
+            shown += f" | {outcome.failure()[:200]}"
+        elif word == "good" and not is_right:
+            word = "good, held" if held(outcome, case) else "good, not held"
+            shown += f" | {outcome.model_errors}"
+    look = f"{case.look} {100 * case.size:.2g} % n={case.t.size} {case.names}"
+    return Result(seed, look, case.names, True, is_right, word, shown, off, seconds)
 
 
 def _noise(rng: np.random.Generator, look: str, count: int, size: float) -> Array:
@@ -405,11 +510,15 @@ def main() -> int:
         parser.add_argument(f"--{name}", type=int, default=default, help=f"[default: {default}]")
     parser.add_argument("--show", action="store_true", help="show every fit")
     parser.add_argument("--easy", action="store_true", help="draw ordinary tops only")
+    parser.add_argument("--machines", action="store_true", help="draw machines and faults")
+    parser.add_argument("--look", default="", help="draw one kind only")
     given = parser.parse_args()
     seeds = range(given.seed, given.seed + given.recordings)
     counts: Counter[tuple[str, str]] = Counter()
     results: list[Result] = []
-    work = partial(checked, easy=given.easy)
+    work = partial(checked, easy=given.easy, look=given.look)
+    if given.machines:
+        work = partial(checked_machine, look=given.look)
     with Pool(given.jobs) as pool:
         for one in pool.imap(work, seeds) if given.jobs > 1 else map(work, seeds):
             results.append(one)
@@ -422,6 +531,8 @@ def main() -> int:
                     flush=True,
                 )
     print("\n".join(_table(counts)))
+    if given.machines:
+        return _judged(results)
     ordinary = [x for x in results if not x.look.startswith("wrong ")]
     sure = [x for x in ordinary if x.determined and not x.look.startswith("steady ")]
     good = sum(x.is_right and x.word == "good" for x in sure)
@@ -436,6 +547,23 @@ def main() -> int:
     )
     print(*_coverage(ordinary), sep="\n")
     return int(bad > 0 or good < GOOD_SHARE[given.easy] * len(sure))
+
+
+def _judged(results: list[Result]) -> int:
+    """Print the shares of machines that are held and named, and return the exit code."""
+    words = Counter(x.word for x in results)
+    wrong = words["good, held"] + words["good, not held"]
+    share = words["good, held"] / max(wrong, 1)
+    failed = [x for x in results if x.word.startswith("failed")]
+    easy = [x for x in failed if not x.look.startswith("filter")]
+    first = sum(x.word == "failed, right first" for x in easy)
+    alike = first + sum(x.word == "failed, right" for x in easy)
+    print(
+        f"{wrong} wrong and good, {share:.0%} held; of {len(easy)} failures {first} right first, "
+        f"{alike} with others; {np.median([x.seconds for x in results]):.2f} s (median), "
+        f"{max(x.seconds for x in results):.1f} s (most)"
+    )
+    return int(share < HELD_SHARE or first < FIRST_SHARE * len(easy))
 
 
 def _coverage(results: list[Result]) -> Iterator[str]:

@@ -1,0 +1,100 @@
+"""Neighbours of a Lagrange top: their templates, their sizes, and what they change unseen."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lagtop import fit
+
+from lagrange_cli.arithmetic.types import Array
+from lagrange_cli.inverse.neighbours import machines
+from lagrange_cli.inverse.variations import Variations
+
+sys.path.append(str(Path(__file__).parents[1] / "tools"))
+
+from machines import gimballed, unlike
+
+START = np.array([1.1, 0.3, 0.9])
+A, B, R0 = 80.0, 12.0, 20.0
+
+
+def stacked(seen: dict[str, Array]) -> Array:
+    return np.stack([seen[x] for x in ("theta", "phi", "psi")])
+
+
+@pytest.mark.parametrize(
+    ("words", "size", "sign"),
+    [
+        ("stand", "stand", 1),
+        ("yoke", "yoke", 1),
+        ("spin decays", "drag", 1),
+        ("vertical bearing", "vertical", 1),
+        ("bearing of the tilt", "nodes", 1),
+        ("second torque", "magnet", 1),
+        ("beside the axis", "beside", 1),
+        ("moments", "moments", 1),
+    ],
+)
+def test_a_template_is_the_change_of_the_motion(words: str, size: str, sign: int) -> None:
+    """Of machines by an integrator; in one direction at least."""
+    t = np.linspace(0, 3, 600)
+    move = unlike if size in {"moments", "beside"} else gimballed
+    ends = [stacked(move(A, B, R0, START, t, **{size: x})) for x in (1e-4, -1e-4)]
+    expected = (ends[0] - ends[1]) / 2e-4
+    motion = Variations(np.array([A, B, *START]), R0 / B, t)
+    (changes,) = [x.changes for x in machines(motion) if words in x.text]
+    ways = np.stack([x.ravel() for x in changes], axis=1)
+    factors = np.linalg.lstsq(ways, expected.ravel(), rcond=None)[0]
+    rest = expected.ravel() - ways @ factors
+    assert np.abs(rest).max() < 0.02 * np.abs(expected).max()
+    assert np.linalg.norm(factors) == pytest.approx(1, abs=0.02)
+
+
+def noisy(**sizes: float) -> tuple[Array, Array]:
+    t = np.linspace(0, 3, 300)
+    noise = np.random.default_rng(3).normal(scale=3e-3, size=(3, t.size))
+    return t, stacked(gimballed(A, B, R0, START, t, **sizes)) + noise
+
+
+def test_a_decay_is_named_with_its_size() -> None:
+    t, (theta, _, psi) = noisy(drag=0.05)
+    outcome = fit(t, theta=theta, psi=psi)
+    assert outcome.verdict == "failed"
+    assert "the spin decays by" in outcome.failure()
+    assert outcome.neighbours is not None
+    shown = outcome.neighbours.shown[0]
+    assert abs(shown.size - 0.05) < 4 * shown.std
+
+
+def test_an_honest_top_is_good_and_has_model_errors() -> None:
+    t, (theta, phi, psi) = noisy()
+    outcome = fit(t, theta=theta, phi=phi, psi=psi)
+    assert (outcome.verdict, outcome.neighbour) == ("good", "")
+    record = outcome.record()
+    assert record["untested"].startswith("what the recording cannot show: ")
+    assert 0.1 < record["a_model_percent"] < 3
+    outcome = fit(t, theta=theta, psi=psi, known={"m": 1, "g": 10, "s": 4, "r0": R0})
+    assert outcome.model_errors["A"] == outcome.model_errors["a"]
+
+
+def test_a_model_error_holds_a_stand_that_is_not_seen() -> None:
+    """The error of a small nutation in a stand of 3 % of A is three times that of 1 %."""
+    t = np.linspace(0, 1.2, 120)
+    a, b, start = 120.0, 30.0, np.array([1.2, 0.0, 2.2])
+    seen = gimballed(a, b, 50, start, t, stand=0.03)
+    noise = np.random.default_rng(5).normal(scale=5e-4, size=(2, t.size))
+    outcome = fit(t, theta=seen["theta"] + noise[0], psi=seen["psi"] + noise[1])
+    assert outcome.verdict == "good"
+    found = outcome.numbers["a"]
+    off = abs(found.value / a - 1)
+    assert off > 5 * found.std / a
+    assert off < 3 * outcome.model_errors["a"] + 2 * found.std / a
+
+
+def test_a_jump_is_named() -> None:
+    t, (theta, phi, psi) = noisy()
+    outcome = fit(t, theta=theta, phi=phi, psi=np.where(t > 1.2, psi + 0.1, psi))
+    assert "psi jumps by 5." in outcome.failure()
