@@ -58,8 +58,9 @@ NUMBERS = ("a", "b", "theta0", "thetadot0", "psidot0", "r0")
 class Neighbour(NamedTuple):
     """A small change of a Lagrange top or of its recording."""
 
-    text: str
-    """Its name, with {} for its size in per cent."""
+    name: str
+    amount: str
+    """Its size in words, with {} for a number of per cent."""
     changes: list[Array]
     """Changes of theta, phi and psi for the size 1, one for each of its directions."""
     is_positive: bool = False
@@ -71,29 +72,30 @@ class Neighbour(NamedTuple):
 def machines(x: Variations) -> Iterator[Neighbour]:
     """Yield other machines than a Lagrange top.  Dry and viscous friction look alike."""
     (nods, _, turns), s, c, push = x.rates, x.sine, x.cosine, x.pushed
-    yield Neighbour("a stand that turns along, with {} % of A", [push(psi=-x.slope(turns))], True)
+    over = "by {} % over the recording"
+    yield Neighbour("a stand that turns along", "with {} % of A", [push(psi=-x.slope(turns))], True)
     yoke = push(theta=-x.slope(nods))
-    yield Neighbour("a yoke that tilts along, with {} % of A about the line of nodes", [yoke], True)
+    yield Neighbour("a yoke that tilts along", "with {} % of A", [yoke], True)
     ring = push(theta=-turns * turns * s * c, psi=-x.slope(turns * c * c))
-    yield Neighbour("a ring about the axis that does not spin, with {} % of A", [ring], True)
+    yield Neighbour("a ring that does not spin", "with {} % of A", [ring], True)
     drag = push(phi=-x.b + 0 * s, psi=-x.b * c) / x.length
-    yield Neighbour("the spin decays by {} % over the recording", [drag], True)
+    yield Neighbour("a decay of the spin", over, [drag], True)
     damped = push(psi=-turns) / x.length
-    yield Neighbour("the vertical bearing damps by {} % over the recording", [damped], True)
+    yield Neighbour("a vertical bearing that damps", over, [damped], True)
     damped = push(theta=-nods) / x.length
-    yield Neighbour("the bearing of the tilt damps by {} % over the recording", [damped], True)
-    yield Neighbour("a second torque, {} % of mgs sin(2 theta)", [push(theta=x.a * s * c)])
+    yield Neighbour("a bearing of the tilt that damps", over, [damped], True)
+    yield Neighbour("a second torque", "of {} % of mgs sin(2 theta)", [push(theta=x.a * s * c)])
     axis, _, down = x.frame
     force = x.slope(x.slope(axis, 2), 2) / (2 * math.pi) ** 2
     around = axis[0] * force[1] - axis[1] * force[0]
     soft = push(theta=np.sum(force * down, axis=0), psi=around)
-    yield Neighbour("a pivot that gives, with (m s^2/A)(m/k)(2 pi/T)^2 = {} %", [soft], True)
+    yield Neighbour("a pivot that gives", "with (m s^2/A)(m/k)(2 pi/T)^2 = {} %", [soft], True)
     if math.isnan(x.ratio):
         return
     sine, cosine, half = np.sin(x.angles[1]), np.cos(x.angles[1]), -x.a / 2
     beside = [push(theta=half * c * sine, phi=half * s * cosine)]
     beside += [push(theta=half * c * cosine, phi=-half * s * sine)]
-    yield Neighbour("a centre of mass beside the axis by {} % of s", beside)
+    yield Neighbour("a centre of mass beside the axis", "by {} % of s", beside)
     p, q = nods * cosine + turns * s * sine, -nods * sine + turns * s * cosine
     unlike = []
     for y, z in ((p, -q), (q, p)):  # the kinetic energy grows by (p^2 - q^2)/4 and p q/2
@@ -101,43 +103,43 @@ def machines(x: Variations) -> Iterator[Neighbour]:
         by_theta, by_phi = (y * sine + z * cosine) * turns * c / 2, (y * q - z * p) / 2
         forces = {"theta": by_theta - x.slope(by_nods), "phi": by_phi, "psi": -x.slope(by_turns)}
         unlike.append(push(**forces))
-    yield Neighbour("moments of inertia that differ by {} %", unlike)
+    yield Neighbour("equatorial moments that differ", "by {} %", unlike)
 
 
 def misread(x: Variations, kind: str, seen: Sequence[str]) -> Iterator[Neighbour]:
     """Yield faults of the clock, the camera and the angles of a kind of recording."""
     (_, phi, psi), s, c, only = x.angles, x.sine, x.cosine, x.only
     drift = x.rates * x.t**2 / (2 * x.length)
-    yield Neighbour("the rate of the clock changes by {} %", [drift])
+    yield Neighbour("a clock whose rate changes", "by {} %", [drift])
     place = 2 * x.t / x.length - 1
     wander = [x.rates * Legendre.basis(n)(place) * x.length / 4 for n in (3, 4, 5)]
-    yield Neighbour("the rate of the clock wanders by {} %", wander)
+    yield Neighbour("a clock whose rate wanders", "by {} %", wander)
     if "psi" in seen:
         mean = np.polyfit(x.t, psi, 1)[0]
         turned = [only(psi=mean * x.t)]
-        yield Neighbour("the camera turns with {} % of the precession", turned)
+        yield Neighbour("a camera that turns", "with {} % of the precession", turned)
     along, beside = np.cos(psi), np.sin(psi)
     if {"theta", "psi"} <= {*seen}:
         leaning = [only(theta=along, phi=beside / s, psi=-beside * c / s)]
         leaning += [only(theta=beside, phi=-along / s, psi=along * c / s)]
-        yield Neighbour("the vertical of the data leans by {} % of a radian", leaning)
+        yield Neighbour("a vertical of the data that leans", "by {} % of a radian", leaning)
     if {"theta", "phi", "psi"} <= {*seen}:
         along, beside = np.cos(phi), np.sin(phi)
         askew = [only(theta=along, phi=-c * beside / s, psi=beside / s)]
         askew += [only(theta=-beside, phi=-c * along / s, psi=along / s)]
-        yield Neighbour("the figure axis of the data is askew by {} % of a radian", askew)
+        yield Neighbour("a figure axis of the data that is askew", "by {} % of a radian", askew)
     smooth = x.slope(x.angles, 2) / 2
     if kind != "angles":
         axis, nodes, down = x.frame
         bent = x.slope(axis, 2) / 2
         turned_by = np.sum(bent * nodes, axis=0) / s
         smooth = only(theta=np.sum(bent * down, axis=0), psi=turned_by, phi=-c * turned_by)
-    text = "a filter, {} % of a period wide (one standard deviation)"
-    yield Neighbour(text, [smooth], True, True)
+    words = "a filter", "with a standard deviation of {} % of a period"
+    yield Neighbour(*words, [smooth], True, True)
     if kind == "angles" and "theta" in seen:
-        yield Neighbour("theta has a zero error of {} % of a radian", [only(theta=1.0)])
+        yield Neighbour("a wrong zero of theta", "by {} % of a radian", [only(theta=1.0)])
     if kind == "angles" and "psi" in seen:
-        yield Neighbour("psi has a scale {} % off", [only(psi=psi)])
+        yield Neighbour("a wrong scale of psi", "by {} %", [only(psi=psi)])
 
 
 class Finding(NamedTuple):
@@ -146,7 +148,6 @@ class Finding(NamedTuple):
     text: str
     """Its name with its size."""
     name: str
-    """Its name with the size SMALL."""
     is_possible: bool
     size: float
     std: float
@@ -252,8 +253,8 @@ class Neighbours:
     @property
     def line(self) -> str:
         """The neighbours that move the numbers most, if the recording does not test them."""
-        names = "; ".join(x.name for x in self.untested[:_LINES])
-        return f"what the recording cannot show: {names}" if names else ""
+        names = ", ".join(x.name for x in self.untested[:_LINES])
+        return f"1 % of {names} cannot be seen" if names else ""
 
     def _widening(self, rest: Array) -> Array:
         """Return the factors of standard deviations for what correlates from row to row."""
@@ -285,10 +286,11 @@ class Neighbours:
         is_possible = math.isfinite(std) and abs(size) < _LARGEST
         is_possible &= size > 0 or not one.is_positive
         small = SMALL**2 if one.is_square else SMALL
+        shown = uncertain_text(*(100 * x for x in pair)) if is_possible else ""
         unseen = min(small, abs(size) + _UNSEEN * std)
         return Finding(
-            one.text.format(uncertain_text(*(100 * x for x in pair))) if is_possible else "",
-            one.text.format(f"{100 * SMALL:g}"),
+            f"{one.name} {one.amount.format(shown)}",
+            one.name,
             is_possible,
             size,
             std,
@@ -319,13 +321,13 @@ class Neighbours:
             left = size - np.sum(np.square(taken), axis=0)
             gains = np.where(left > 0.02 * size.max() / one.t.size, work**2, 0.0) / (left + 1e-300)
             row = int(rows[order][last[np.argmax(gains[3:-3]) + 3]])
-            found = self._finding(Neighbour("", []), (column * (rows >= row))[:, np.newaxis])
+            found = self._finding(Neighbour("", "", []), (column * (rows >= row))[:, np.newaxis])
             x, std, at = found.size, found.std, f"at t = {one.t_start + float(one.t[row]):.6g}"
             if name:
                 shown = uncertain_text(math.degrees(x), math.degrees(std))
-                yield found._replace(text=f"{name} jumps by {shown} degrees {at}")
+                yield found._replace(text=f"a jump of {name} by {shown} degrees {at}")
             elif abs(x) > 0.5 and abs(x - round(x)) < max(3 * std, 0.1):
-                what = f"rows are {'doubled' if x < 0 else 'lost'}"
+                what = f"{'doubled' if x < 0 else 'lost'} rows"
                 yield found._replace(text=f"{uncertain_text(abs(x), std)} {what} {at}")
 
 

@@ -55,10 +55,12 @@ def fit_report(
     fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
     numbers = outcomes[0].numbers
     errors = {x: y * abs(numbers[x].value) for x, y in outcomes[0].model_errors.items()}
+    fields[2:2] = [Field("model", "model", is_text=True)] * bool(errors)
     rows = [
         SimpleNamespace(
             key=key,
-            value=f"{x}, model {errors[key]:.2g}" if key in errors else str(x),
+            value=str(x),
+            model=f"{errors[key]:.2g}" if key in errors else "",
             meaning=x.meaning,
         )
         for key, x in numbers.items()
@@ -88,5 +90,6 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
         yield f"Correlation: {pairs}."
     yield from (Message(f"Note: {marked(text)}.") for text in outcome.remarks)
+    if outcome.untested and not outcome.failures():
     if outcome.untested and not outcome.failures():
         yield f"Model errors: {outcome.untested}."

@@ -159,7 +159,8 @@ def centre_above(t: Array, marks: Array) -> Array:
     square = (away**2).sum(axis=1)
     counts = np.arange(1.0, len(rows) / 6, 0.25)
     best = counts[np.argmin([fitted(x)[0] for x in counts])] if counts.size else 1.0
-    near = minimize_scalar(lambda x: fitted(x)[0], (best - 0.25, best, best + 0.25)).x
+    bounds = (best - 0.25, best + 0.25)
+    near = minimize_scalar(lambda x: fitted(x)[0], bounds=bounds, method="bounded").x
     return np.asarray(middle + fitted(near)[1])
 
 

@@ -30,7 +30,7 @@ def stacked(seen: dict[str, Array]) -> Array:
     [
         ("stand", "stand", 1),
         ("yoke", "yoke", 1),
-        ("spin decays", "drag", 1),
+        ("decay", "drag", 1),
         ("vertical bearing", "vertical", 1),
         ("bearing of the tilt", "nodes", 1),
         ("second torque", "magnet", 1),
@@ -45,7 +45,7 @@ def test_a_template_is_the_change_of_the_motion(words: str, size: str, sign: int
     ends = [stacked(move(A, B, R0, START, t, **{size: x})) for x in (1e-4, -1e-4)]
     expected = (ends[0] - ends[1]) / 2e-4
     motion = Variations(np.array([A, B, *START]), R0 / B, t)
-    (changes,) = [x.changes for x in machines(motion) if words in x.text]
+    (changes,) = [x.changes for x in machines(motion) if words in x.name]
     ways = np.stack([x.ravel() for x in changes], axis=1)
     factors = np.linalg.lstsq(ways, expected.ravel(), rcond=None)[0]
     rest = expected.ravel() - ways @ factors
@@ -63,7 +63,7 @@ def test_a_decay_is_named_with_its_size() -> None:
     t, (theta, _, psi) = noisy(drag=0.05)
     outcome = fit(t, theta=theta, psi=psi)
     assert outcome.verdict == "failed"
-    assert "the spin decays by" in outcome.failure()
+    assert "a decay of the spin by" in outcome.failure()
     assert outcome.neighbours is not None
     shown = outcome.neighbours.shown[0]
     assert abs(shown.size - 0.05) < 4 * shown.std
@@ -74,7 +74,7 @@ def test_an_honest_top_is_good_and_has_model_errors() -> None:
     outcome = fit(t, theta=theta, phi=phi, psi=psi)
     assert (outcome.verdict, outcome.neighbour) == ("good", "")
     record = outcome.record()
-    assert record["untested"].startswith("what the recording cannot show: ")
+    assert record["untested"].startswith("1 % of ")
     assert 0.1 < record["a_model_percent"] < 3
     outcome = fit(t, theta=theta, psi=psi, known={"m": 1, "g": 10, "s": 4, "r0": R0})
     assert outcome.model_errors["A"] == outcome.model_errors["a"]
@@ -97,4 +97,4 @@ def test_a_model_error_holds_a_stand_that_is_not_seen() -> None:
 def test_a_jump_is_named() -> None:
     t, (theta, phi, psi) = noisy()
     outcome = fit(t, theta=theta, phi=phi, psi=np.where(t > 1.2, psi + 0.1, psi))
-    assert "psi jumps by 5." in outcome.failure()
+    assert "a jump of psi by 5." in outcome.failure()

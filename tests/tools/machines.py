@@ -83,22 +83,22 @@ class Machine(NamedTuple):
 MACHINES = {
     "stand": Machine(gimballed, "stand", "stand|scale"),
     "yoke": Machine(gimballed, "yoke", "yoke"),
-    "drag": Machine(gimballed, "drag", "decays"),
-    "dry": Machine(gimballed, "dry", "decays"),
+    "drag": Machine(gimballed, "drag", "decay"),
+    "dry": Machine(gimballed, "dry", "decay"),
     "bearing": Machine(gimballed, "vertical", "vertical bearing"),
     "magnet": Machine(gimballed, "magnet", "second torque"),
     "moments": Machine(unlike, "moments", "moments"),
     "beside": Machine(unlike, "beside", "beside"),
     "camera": Machine(None, "", "camera|scale", "psi"),
-    "zero": Machine(None, "", "zero error|elevation", "theta"),
+    "zero": Machine(None, "", "zero|elevation", "theta"),
     "scale": Machine(None, "", "scale|camera", "psi"),
     "clock": Machine(None, "", "clock"),
     "filter": Machine(None, "", "filter|smooth"),
-    "jump": Machine(None, "", "jumps"),
+    "jump": Machine(None, "", "jump"),
     "repeated": Machine(None, "", "repeat|equal|doubled"),
     "doubled": Machine(None, "", "repeat|equal|doubled"),
     "lost": Machine(None, "", "lost"),
-    "runs": Machine(None, "", "starts again|jumps|lost|times"),
+    "runs": Machine(None, "", "again|jump|lost|runs"),
 }
 
 
