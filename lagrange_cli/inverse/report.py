@@ -91,5 +91,4 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         yield f"Correlation: {pairs}."
     yield from (Message(f"Note: {marked(text)}.") for text in outcome.remarks)
     if outcome.untested and not outcome.failures():
-    if outcome.untested and not outcome.failures():
-        yield f"Model errors: {outcome.untested}."
+        yield f"Model errors: {outcome.untested}, nor smaller effects of others."
