@@ -96,22 +96,49 @@ def reference_columns(
         plus, minus = (now.psi + now.phi) / 2, (now.psi - now.phi) / 2
         across, weight = now.psidot * sin, of.m * of.g * of.s
         swing = (now.thetadot**2 + across**2) * of.A / 2
-        return now._asdict() | {
-            "u": u,
-            "p": across * mp.sin(now.phi) + now.thetadot * mp.cos(now.phi),
-            "q": across * mp.cos(now.phi) - now.thetadot * mp.sin(now.phi),
-            "r": of.r0,
-            "moment": weight * sin,
-            "axis_x": sin * mp.sin(now.psi),
-            "axis_y": -sin * mp.cos(now.psi),
-            "axis_z": u,
-            "quaternion_w": cos_half * mp.cos(plus),
-            "quaternion_x": sin_half * mp.cos(minus),
-            "quaternion_y": sin_half * mp.sin(minus),
-            "quaternion_z": cos_half * mp.sin(plus),
-            "energy": swing + of.C * of.r0**2 / 2 + weight * u,
-            "Lz": of.A * across * sin + of.C * of.r0 * u,
+        turn = _about(2, now.psi) * _about(0, now.theta) * _about(2, now.phi)
+        body = mp.matrix(
+            [
+                across * mp.sin(now.phi) + now.thetadot * mp.cos(now.phi),
+                across * mp.cos(now.phi) - now.thetadot * mp.sin(now.phi),
+                of.r0,
+            ]
+        )
+        rows = {
+            f"matrix_{x}{y}": turn[i, j] for i, x in enumerate("xyz") for j, y in enumerate("xyz")
         }
+        rows |= dict(
+            zip(("omega_space_x", "omega_space_y", "omega_space_z"), turn * body, strict=True)
+        )
+        return (
+            now._asdict()
+            | rows
+            | {
+                "u": u,
+                "p": body[0],
+                "q": body[1],
+                "r": of.r0,
+                "moment": weight * sin,
+                "axis_x": sin * mp.sin(now.psi),
+                "axis_y": -sin * mp.cos(now.psi),
+                "axis_z": u,
+                "quaternion_w": cos_half * mp.cos(plus),
+                "quaternion_x": sin_half * mp.cos(minus),
+                "quaternion_y": sin_half * mp.sin(minus),
+                "quaternion_z": cos_half * mp.sin(plus),
+                "energy": swing + of.C * of.r0**2 / 2 + weight * u,
+                "Lz": of.A * across * sin + of.C * of.r0 * u,
+            }
+        )
+
+
+def _about(axis: int, angle: Many) -> Many:
+    """Return the matrix of a turn about a coordinate axis."""
+    turn, (i, j) = mp.eye(3), [(axis + 1) % 3, (axis + 2) % 3]
+    turn[i, i] = turn[j, j] = mp.cos(angle)
+    turn[j, i] = mp.sin(angle)
+    turn[i, j] = -turn[j, i]
+    return turn
 
 
 def _half(angle: Many) -> tuple[Many, Many]:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-LIMIT = 1e-3
-"""The error in radians up to which a trajectory is fine by default."""
+LIMIT, LEAST_LIMIT = 1e-3, 1e-15
+"""The error in radians up to which a trajectory is fine by default, and the least one: doubles."""
 VERDICTS = {
     "fine": "the errors of attitude and rates stay below the limit, by default 1e-3",
     "drifts": "the first row is right, but an error grows beyond the limit, or the pivot slips",
@@ -155,8 +155,6 @@ def compare(
     >>> figure = found.plot()
     """
     check_type("top", top, Top, Motion)
-    if not max_error > 0:
-        raise LagtopError(f"max_error must be > 0, got {max_error}", "max_error")
     run = recording_of(t, trajectory)
     motion = top if isinstance(top, Motion) else solve(top)
     return compared(motion, [run], max_error)[0][0]
@@ -175,6 +173,8 @@ def compared(
     then the top is right.  Raises LagtopError for bad step sizes, DataError for times that are
     too late in a file.
     """
+    if not limit >= LEAST_LIMIT:
+        raise LagtopError(f"max_error must be at least {LEAST_LIMIT:g}, got {limit}", "max_error")
     if step_sizes and (len(step_sizes) != len(runs) or not all(x > 0 for x in step_sizes)):
         wanted = f"one number > 0 per trajectory ({len(runs)})"
         raise LagtopError(f"step_sizes must have {wanted}, got {step_sizes}", "step_sizes")

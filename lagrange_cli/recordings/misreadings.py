@@ -15,7 +15,7 @@ from ..names import ANGLES
 from .options import OPTION_OF
 from .recording import Recording
 
-_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0}
+_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0, "s": 1.0, "0.1 ms": 1e-4}
 _FRAME_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 250, 480, 500, 960)
 _OTHER = {"wxyz": "xyzw", "xyzw": "wxyz", "body": "space", "space": "body"}
 _RATES, _ANGLES = {"rates", "angle_rates"}, {*ANGLES, "euler"}
@@ -49,7 +49,9 @@ def misreadings(recording: Recording) -> list[Misreading]:
 
 
 def _of_clock(recording: Recording) -> Iterator[Misreading]:
-    factors = {f"t is in {x}": (y, "") for x, y in _UNITS.items()}
+    size, heading = recording.source.time_size, "write the unit into its heading: t [{}]"
+    found = {x: (y / size, heading.format(x)) for x, y in _UNITS.items() if y != size}
+    factors = {f"t is in {x}": y for x, y in found.items()}
     if recording.reading.dt is None and (recording.t == np.rint(recording.t)).all():
         frames = {x: f"t counts frames, {x} per second" for x in _FRAME_RATES}
         factors |= {name: (1 / x, arg("fps", x)) for x, name in frames.items()}

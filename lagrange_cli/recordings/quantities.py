@@ -72,9 +72,9 @@ axis | | figure axis in space | axis_x axis_y axis_z
 position | m | position of a marker on the axis; read if nothing above is given
     | x y z, com_x ..., tx ty tz
 above | m | marker seen from above, which gives psi; read if nothing above is given | x y
-rates | rad/time | angular velocity in radians per unit of time
+rates | rad/time | angular velocity; in radians per unit of time
     | p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz
-angle_rates | rad/time | rates of tilt, spin and precession in radians per unit of time
+angle_rates | rad/time | rates of tilt, spin and precession; in radians per unit of time
     | thetadot phidot psidot
 """
 """The name of each quantity, its unit, its meaning, and examples of columns."""

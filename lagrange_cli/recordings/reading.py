@@ -163,6 +163,7 @@ class _File:
             [x for i, x in enumerate(self.names) if i not in read and x != SKIPPED],
             [text for key, text in lines.items() if key in used],
             "s" if self.time.unit else "units of the recording",
+            float(self.time.factor or 1),
         )
         return Recording(given, reading, begins, source).within()
 
@@ -177,7 +178,9 @@ class _File:
             quantity.unit, "rad per unit of time"
         )
         words = found.written or {"deg": "degrees", "rad": "radians"}.get(words, words)
-        parts = [quantity.meaning.partition(";")[0], found.says, words and f"in {words}"]
+        option = getattr(self._implied(), OPTION_OF[key]) if key in OPTION_OF else found.says
+        option += " frame" * (key == "rates")
+        parts = [quantity.meaning.partition(";")[0], option, words and f"in {words}"]
         return f"{shown}: {', '.join(filter(None, parts))}" + f" ({why})" * bool(why)
 
     def _times(self) -> tuple[float, Array, str]:

@@ -31,6 +31,8 @@ class Source(NamedTuple):
     """What was read, a line for each quantity."""
     time_unit: str = "units of the recording"
     """The unit of time for labels."""
+    time_size: float = 1.0
+    """The size of the unit in the heading of the time, in seconds."""
 
     def record(self) -> dict[str, Any]:
         """Return what was read, by key of a document."""

@@ -32,6 +32,8 @@ from .numbers import Numbers
 GROUPS = {
     "axis": "figure axis in space: axis_x, axis_y, axis_z",
     "quaternion": "from body to space, scalar first: quaternion_w, quaternion_x, ...",
+    "matrix": "from body to space, row by row: matrix_xx, matrix_xy, ...",
+    "omega": "angular velocity in space: omega_space_x, ...",
 }
 """The meanings of names that stand for several columns."""
 
@@ -71,6 +73,24 @@ quaternion_y | | imaginary part of Y = x + i y | | | sin(theta/2)*sin((psi - phi
    ~ signed_Y*sin(angle_Y)/sqrt(N)
 quaternion_z | | imaginary part of X = w + i z | | | cos(theta/2)*sin((psi + phi)/2)
    ~ signed_X*sin(angle_X)/sqrt(N)
+matrix_xx | | | | | cos(psi)*cos(phi) - u*sin(psi)*sin(phi)
+   ~ quaternion_w**2 + quaternion_x**2 - quaternion_y**2 - quaternion_z**2
+matrix_xy | | | | | -cos(psi)*sin(phi) - u*sin(psi)*cos(phi)
+   ~ 2*(quaternion_x*quaternion_y - quaternion_w*quaternion_z)
+matrix_xz | | | | | sin(theta)*sin(psi) ~ axis_x
+matrix_yx | | | | | sin(psi)*cos(phi) + u*cos(psi)*sin(phi)
+   ~ 2*(quaternion_x*quaternion_y + quaternion_w*quaternion_z)
+matrix_yy | | | | | -sin(psi)*sin(phi) + u*cos(psi)*cos(phi)
+   ~ quaternion_w**2 - quaternion_x**2 + quaternion_y**2 - quaternion_z**2
+matrix_yz | | | | | -sin(theta)*cos(psi) ~ axis_y
+matrix_zx | | | | | sin(theta)*sin(phi) ~ sine*sin(spin_turn)
+matrix_zy | | | | | sin(theta)*cos(phi) ~ sine*cos(spin_turn)
+matrix_zz | | | | | u
+omega_space_x | | | rad/time | | thetadot*cos(psi) + phidot*sin(theta)*sin(psi)
+   ~ thetadot*cos(precession_turn) - across*u*sin(precession_turn) + r*axis_x
+omega_space_y | | | rad/time | | thetadot*sin(psi) - phidot*sin(theta)*cos(psi)
+   ~ thetadot*sin(precession_turn) + across*u*cos(precession_turn) + r*axis_y
+omega_space_z | | | rad/time | | psidot + phidot*u ~ across*sine + r*u
 energy | E | energy; constant except for rounding | mass len²/time² | (4,2)
    | (A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u
    ~ A*thetadot*thetadot/2 + A*across*across/2 + C*r0*r0/2 + torque*u
@@ -108,7 +128,7 @@ TIMELESS = frozenset({"t", "r"})
 """Columns that do not need the attitude."""
 WITHIN_A_TURN = frozenset(
     "p q axis_x axis_y quaternion_w quaternion_x quaternion_y quaternion_z".split()
-) | {*REDUCED.values()}
+) | {*REDUCED.values(), *COLUMNS["matrix"], *COLUMNS["omega"]}
 """Columns that need an angle within a turn."""
 
 

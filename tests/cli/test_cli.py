@@ -254,7 +254,7 @@ BAD_TIMES = {
     "--t-max 1e300": "--t-max must be finite and within 2^50 periods = 4.83e+14, got 1e+300",
     "--t-min -1e30": "--t-min must be finite and within 2^50 periods = 4.83e+14, got -1e+30",
     "--format table --n 20000": "--format must be csv or json for more than 10000 rows",
-    "--columns t,x": "Error: --columns must be among t, theta",
+    "--columns t,x": "Error: --columns must be among 39 names, got 'x' (did you mean 'axis_x'",
     "--digits 5 --format parquet": "--format parquet holds doubles: with --digits use",
     "--decimal x": "'x' is not one of 'point', 'comma'",
 }

@@ -315,7 +315,7 @@ def test_starts_on_the_vertical() -> None:
         ({"t": [0, math.inf], "theta": [0.1] * 2}, "t must be finite and within"),
         ({"t": math.nan, "theta": 0.1}, "t must be finite and within"),
         ({"t": [], "theta": np.ma.masked_array([])}, "t must have times"),
-        ({"theta": THETA, "max_error": math.nan}, "max_error must be > 0, got nan"),
+        ({"theta": THETA, "max_error": math.nan}, "max_error must be at least 1e-15, got nan"),
     ],
 )
 def test_bad_arguments(arguments: dict[str, Any], message: str) -> None:
