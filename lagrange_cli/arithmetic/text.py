@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import decimal
 import math
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -70,6 +71,29 @@ def double_text(value: float) -> str:
         return f"{mantissa}e-{exponent}"
     sign = "-" if mantissa.startswith("-") else ""
     return f"{sign}0.0000{mantissa.lstrip('-').replace('.', '')}"
+
+
+def uncertain_text(value: float | str, std: float) -> str:
+    """Return a number with its standard uncertainty, such as 0.4293(48) or 73.9(1.2).
+
+    The uncertainty is rounded by the rule of the Particle Data Group.  It has two digits if its
+    first three are at most 354, and one digit up to 949; beyond, it is rounded up to 1000.  Numbers
+    below 1e-4, or rounded before the point, have an exponent.  A number without uncertainty is
+    written in full.  A value with more digits than a double has is given as a text.
+    """
+    if not std:
+        return double_text(float(value))
+    with decimal.localcontext(prec=800, rounding=decimal.ROUND_HALF_EVEN):
+        exact = Decimal(repr(std))
+        leading = exact.adjusted()
+        last = leading - 1 if int(exact.scaleb(2 - leading)) <= 354 else leading
+        number, spread = (Decimal(str(x)).quantize(Decimal(1).scaleb(last)) for x in (value, std))
+        leading = max(x.adjusted() for x in (number, spread) if x)
+        shift = 0 if leading >= -4 and last <= 0 else leading
+        places = max(shift - last, 0)
+        number, spread = number.scaleb(-shift), spread.scaleb(-shift)
+        inside = f"{spread:.{places}f}" if spread >= 1 else f"{spread.scaleb(places):.0f}"
+        return f"{number:.{places}f}({inside})" + (f"e{shift:+03d}" if shift else "")
 
 
 def parse_number(text: str) -> Fraction:

@@ -8,11 +8,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..account.spread import ColumnSpread, Spread
-from ..arithmetic.text import NumberText
+from ..arithmetic.text import NumberText, uncertain_text
 from ..errors import AbsentError, LagtopError
 from ..names import check_names
 from ..output.destination import Output
-from ..output.report import Field, Report, uncertain_text, with_unit
+from ..output.report import Field, Report, with_unit
 from ..solver.keys import NUMBERS, TEXT_KEYS, shown_keys
 from ..solver.solve import Motion
 from ..top.given import Given

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic.text import uncertain_text
 from ..errors import LagtopError
-from ..output.report import uncertain_text
 from ..top.inputs import BODY, replaced_by
 from ..top.units import DEGREES, Units
 from .checks import CHANCE

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError, Message, arg
 from ..names import check_names
-from ..output.report import uncertain_text
 from ..top.forms import Quantities, equation_of, needed_by
 from ..top.given import Given
 from ..top.inputs import (

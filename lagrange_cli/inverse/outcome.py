@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.rotations import within_half_turn
+from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array
 from ..errors import AbsentError, joined
 from ..names import ANGLES
 from ..output.notebook import HasRecord
-from ..output.report import uncertain_text
 from ..recordings.doubts import pivot_of
 from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units

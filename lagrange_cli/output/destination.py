@@ -15,7 +15,6 @@ from contextlib import contextmanager, suppress
 from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
-from ..arithmetic.text import NumberText
 from ..errors import CannotWriteError
 from .document import Document, rows_grid, texts_of
 from .formats import format_of
@@ -27,8 +26,8 @@ if TYPE_CHECKING:
 
 MOST_ROWS, MOST_UPRIGHT = 1000, 50
 """Most rows of a table on a terminal, and if its columns must become lines, by default."""
-Texts = Sequence[Sequence[str]]
-"""A block of rows with numbers as text; an empty text is a missing number."""
+Texts = Sequence[Sequence[Any]]
+"""A block of rows of NumberText; an empty text is a missing number."""
 
 
 class Output(NamedTuple):
@@ -58,13 +57,7 @@ class Output(NamedTuple):
         self, names: Sequence[str], blocks: Iterable[Array | Texts], headings: Sequence[str] = ()
     ) -> None:
         """Write rows in blocks: arrays, or lists of numbers as text."""
-        columns = (
-            [[*map(NumberText, x)] for x in zip(*rows, strict=True)]
-            if isinstance(rows, list)
-            else [rows]
-            for rows in blocks
-            if len(rows)
-        )
+        columns = ([*zip(*x, strict=True)] if isinstance(x, list) else [x] for x in blocks)
         self.blocks(names, (self.format.block(x, names) for x in columns), headings)
 
     def blocks(

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic import rotations
+from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
-from ..output.report import uncertain_text
 from .observed import observe
 from .options import Reading
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from conftest import Lagtop, Solved, assert_one_line, dicts
 
-from lagrange_cli.output.report import uncertain_text
+from lagrange_cli.arithmetic.text import uncertain_text
 from lagrange_cli.solver.keys import NUMBERS
 from lagrange_cli.top.values import parse_value
 
