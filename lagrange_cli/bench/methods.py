@@ -109,18 +109,19 @@ def lagtop(motion: Motion, output: str) -> Sample:
     return lambda t, _: ([*fresh.table(t, ["quaternion"]).values()], None)
 
 
-def scipy_special(motion: Motion, _: Any) -> Sample:
-    """Return the closed form in plain doubles: SciPy's elliptic functions, and Carlson's for psi.
+def scipy_special(motion: Motion, __: Any) -> Sample:
+    """Return the closed form in plain doubles, by SciPy's elliptic functions, as `fit` uses it.
 
-    It is the function that `fit` uses.  Differences of roots follow from the cubic and not from
-    subtractions, so that it keeps its digits in hard scenes as far as doubles allow.
+    It subtracts no close numbers.  What it cannot do: next to the unstable upright position the
+    rounding of m = k^2, which `ellipj` takes, remains; and errors grow with time.
     """
-    (a, b), r0 = constants(motion.top), float(motion.top.r0)
-    inputs = motion.top.inputs(radians=True)
-    start = [float(inputs[x]) for x in ("theta0_rad", "thetadot0", "psidot0")]
+    top, (a, b), r0 = motion.top, constants(motion.top), float(motion.top.r0)
+    sine, _, half_sine, half_cosine = top.exact_tilt.doubles()
+    rates = float(top.thetadot0), float(top.psidot0) * sine
+    state = np.array([[a, b, half_sine, half_cosine, *rates]])
 
     def sample(t: Array, _: float) -> Sampled:
-        theta, phi, psi = angles(np.array([[a, b, *start]]), t)[:, 0]
+        theta, phi, psi = angles(state, t)[:, 0]
         return [theta, phi + (r0 - b) * t, psi], None
 
     return sample

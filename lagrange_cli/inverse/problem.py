@@ -15,7 +15,7 @@ from ..arithmetic.types import Array
 from ..top.inputs import all_replaced, replaced_by
 from .known import WEIGHT, Known, in_all_forms
 from .measured import Measured
-from .motions import STATE, angles
+from .motions import STATE, angles, states_of
 from .signals import NEAR_POLE, Signal, mean_rate
 
 _DEPENDENT = 1e-7
@@ -167,7 +167,7 @@ class Problem:
         value = self.values(x)
         states = np.stack([value[name] for name in STATE], axis=-1)
         states, tops = np.unique(states, axis=0, return_inverse=True)
-        theta, phi, psi = angles(states, t)[:, tops]
+        theta, phi, psi = angles(states_of(*states.T), t)[:, tops]
         rate = value["r0"] - self.turns - value["b"]
         phi = phi + np.outer(rate, t) + value["phi_zero"][:, np.newaxis]
         return np.stack([theta, phi, psi + value["psi_zero"][:, np.newaxis]])
@@ -271,7 +271,7 @@ class Problem:
         """
         known, seen, t = self.known, self.recording.angles, self.recording.t
         value: dict[str, Any] = {**known, **dict(zip(STATE, states.T, strict=True))}
-        theta, phi, psi = angles(states, t)
+        theta, phi, psi = angles(states_of(*states.T), t)
         if spin is not None:
             if (whole := in_all_forms(value)).has("r0"):
                 r0 = np.broadcast_to(whole["r0"], len(states))

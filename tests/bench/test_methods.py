@@ -87,16 +87,16 @@ def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("kind", "error"),
     [
-        *(("fast-spin", 1e-13), ("slow-spin", 1e-5), ("near-separatrix", 0.1)),
-        *(("near-vertical", 3.0), ("tiny-tilt-with-rates", 6e-13), ("near-steady", 3e-13)),
-        *(("near-hanging", 3e-10), ("extreme-sizes", 9e-13)),
+        *(("fast-spin", 1e-12), ("slow-spin", 1e-12), ("near-separatrix", 1e-6)),
+        *(("near-vertical", 1e-7), ("tiny-tilt-with-rates", 1e-12), ("near-steady", 1e-12)),
+        *(("near-hanging", 1e-12), ("extreme-sizes", 1e-12)),
     ],
 )
 def test_the_closed_form_in_plain_doubles_is_fair(kind: str, error: float) -> None:
-    """The errors after 100 periods, as found outside the package."""
+    """After 100 periods only the phase is off, but next to the unstable upright position."""
     tasks = [task_of(kind, x, 97.0, 9) for x in motions(kind, 1, 1952)]
     found = max(measure(x, "scipy.special", "double", runs=1).error_rad or 9.0 for x in tasks)
-    assert error / 4 <= found <= 3 * error
+    assert found <= error
 
 
 @pytest.mark.parametrize("name", ["RK45", "DOP853", "LSODA"])

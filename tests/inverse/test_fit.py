@@ -25,7 +25,7 @@ from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.decay import decay_of, fit_windows
 from lagrange_cli.inverse.known import known_inputs
 from lagrange_cli.inverse.measured import Measured, measured
-from lagrange_cli.inverse.motions import angles, nutating
+from lagrange_cli.inverse.motions import angles, nutating, states_of
 from lagrange_cli.inverse.outcome import Outcome
 from lagrange_cli.inverse.problem import Problem
 from lagrange_cli.inverse.search import best_fit
@@ -99,7 +99,7 @@ def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[
     a, b, beta, rate = (float(x[0]) for x in nutating(*one))
     start = (beta - b * math.cos(0.5)) / math.sin(0.5) ** 2
     t = np.array([0.2, 0.4, 4.0])
-    theta, _, psi = angles(np.array([[a, b, 0.5, 0.0, start]]), t)[:, 0]
+    theta, _, psi = angles(states_of(a, b, 0.5, 0.0, start)[np.newaxis], t)[:, 0]
     assert theta == pytest.approx([1.2, 0.5, 0.5], abs=1e-7)
     assert psi[2] / 4 == pytest.approx(rate, rel=1e-9)
 
