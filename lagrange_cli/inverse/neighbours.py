@@ -17,8 +17,8 @@ from numpy.polynomial import Legendre
 from scipy.interpolate import make_interp_spline
 from scipy.special import fdtrc, ndtri
 
+from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array
-from ..output.report import uncertain_text
 from .checks import Residuals
 from .measured import Measured
 from .variations import Variations
