@@ -167,9 +167,15 @@ class TopArrays:
             Regime.TORQUE_FREE: inclined & at_rest & ~torque,
             Regime.NO_SPIN: inclined & at_rest & torque & (self.r0 == 0),
             Regime.REGULAR: inclined & at_rest & torque & (self.r0 != 0),
-            Regime.STEADY: inclined & steady & torque & ~falls,
+            Regime.STEADY: inclined & steady & torque & ~falls & self._have_steady_rates(),
             None: inclined & ~steady & torque & (falls | (self.psidot0 != 0)),
         }
+
+    def _have_steady_rates(self) -> Mask:
+        """Return the tops with rates of steady precession; `solve` gives the others an error."""
+        least = 4 * self.A * self.m * self.g * self.s * np.cos(self.tilt.in_unit("theta0_rad"))
+        found: Mask = (self.C * self.r0) ** 2 > least
+        return found
 
     def _are_ordinary(self) -> Mask:
         """Return the valid tops whose sizes fit, and that are not next to the sleeping threshold.

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple, Self
 
 from ..arithmetic.enclosures import pi_to, text_of
 from ..arithmetic.numbers import Real, unrounded
-from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from ..names import suggestion
 from .derived import Spin, Tilt, exact_inputs, steady_rate_of
@@ -207,7 +206,7 @@ class Top:
             name, bound, most = "C", "C <= 2 (A - m s^2)", limit
         else:
             return None
-        least, own = (double_text(float(x)).removesuffix(".0") for x in (most, getattr(self, name)))
+        least, own = (f"{float(x):.15g}" for x in (most, getattr(self, name)))
         return f"a rigid body needs {bound} = {least}, but {name} is {own}; computed anyway"
 
     def as_text(self) -> str:

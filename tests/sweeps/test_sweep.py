@@ -31,6 +31,9 @@ def test_a_steady_top_per_row(lagtop: Lagtop) -> None:
     for row in (slow, fast):
         motion = solve(Top(r0=float(row["r0"]), psidot0="steady"))
         assert float(row["psidot0"]) == pytest.approx(motion.top.psidot0, rel=1e-15)
+    none = sweep(psidot0="steady", r0=np.linspace(1, 52, 99), keys=["b", "T_nutation", "error"])
+    assert np.isnan([none["b"], none["T_nutation"]]).all()
+    assert all(none["error"])
     mixed = dicts(lagtop("sweep", "-", *keys, input=f"{cells}70,2\n").stdout)
     assert [mixed[2], mixed[3]["psidot0"], mixed[3]["error"]] == [fast, "2.0", ""]
 
