@@ -401,7 +401,7 @@ def with_mark(out: Output, mark: str, *, reads: bool = False) -> Output:
     """
     if mark != ",":
         return out
-    name = "csv" if out.fmt == "table" and not out.is_named else out.fmt
+    name = "csv" if is_screen(out.path) and not out.is_named else out.fmt
     if name not in WITH_COMMAS and not reads:
         raise LagtopError(f"--decimal comma is for CSV, got --format {name}: leave it out")
     return out._replace(fmt=WITH_COMMAS.get(name, out.fmt))

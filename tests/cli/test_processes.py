@@ -56,6 +56,17 @@ ECHOING = [
 ]
 
 
+def test_a_crash_asks_for_a_report(tmp_path: Path) -> None:
+    broken = "import lagrange_cli.cli.solve as it; it.record_document = lambda *_: 1 / 0"
+    (ended,) = forked(["solve"], tmp_path, before=broken)
+    assert (ended.code, ended.stdout) == (70, b"")
+    text = (
+        b"Error: this is a bug, please report it with your command: ZeroDivisionError in solve.py"
+    )
+    assert ended.stderr.startswith(text)
+    assert ended.stderr.count(b"\n") == 1
+
+
 @pytest.mark.parametrize(
     ("package", "line"),
     [

@@ -46,8 +46,10 @@ SHOWN = (
     "solve",
     "solve --certify",
     "solve --derivation",
+    "explain T_nutation mean_precession_rate looping-top",
     "solve --r0 '50(1)' --budget T_nutation",
     "jacobi --k 0.8",
+    "eta --delta 0.5 --delta-star -0.5 --p 3 --q 1",
     "fit rec.csv",
     "fit rec.csv --window 2",
     "compare rec.csv",
@@ -74,6 +76,6 @@ def test_the_cells_are_those_of_a_drawn_table(
     drawn = lagtop(*words, "--format", "table").stdout
     cells = [" ".join(x) for table in tables for x in table]
     assert tables
-    if not line.startswith("bench"):
+    if not line.startswith("bench"):  # which measures times
         lines = [" ".join(x.split()) for x in drawn.splitlines()]
         assert {" ".join(x.split()) for x in cells} <= {*lines}
