@@ -29,7 +29,7 @@ _MODULES = {
     "compare": "comparison.compare",
     "draw": "plot",
     "draw_outcome": "plot",
-    "find": "inverse.find",
+    "find": "sweeps.find",
     "fit": "inverse.fit",
     "read_scene": "top.given",
     "sensitivities": "account.spread",

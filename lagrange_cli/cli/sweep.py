@@ -192,10 +192,10 @@ def find_command(
     With one unknown, find returns every solution that the scan brackets.  With several, it follows
     the best points of the scan and can miss solutions.  The exit code is 1 if no solution is found.
     """
-    from ..inverse.find import find_tops, search_of
     from ..names import check_names
     from ..solver.keys import all_keys, record_keys
     from ..solver.record import record_in_range
+    from ..sweeps.find import find_tops, search_of
 
     units, out = Units(top.radians), opt.with_mark(out, decimal)
     chosen = record_keys(units)

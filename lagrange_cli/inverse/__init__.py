@@ -1,1 +1,1 @@
-"""The inverse problem: inputs for target results, and the top behind a recording."""
+"""The inverse problem: the top behind a recording (`fit`)."""

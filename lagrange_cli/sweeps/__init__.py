@@ -1,1 +1,1 @@
-"""Many tops: grids and files of tops, computed in parts, on one machine or on a cluster."""
+"""Many tops: grids and files of tops, computed in parts, and searches over them (`find`)."""

@@ -25,9 +25,6 @@ from ..names import check_names, repeated
 from ..solver.facts import Regime
 from ..solver.keys import all_keys, shown_keys
 from ..solver.solve import Motion, solve
-from ..sweeps.plan import shared_inputs
-from ..sweeps.records import sweep
-from ..sweeps.results import Results
 from ..top.given import Given, gather
 from ..top.inputs import INPUTS, STEADY_WORDS, overridden, warn_of
 from ..top.top import Top
@@ -40,6 +37,9 @@ from ..top.values import (
     value_of,
     values_of,
 )
+from .plan import shared_inputs
+from .records import sweep
+from .results import Results
 
 _COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
