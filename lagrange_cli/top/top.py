@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Any, NamedTuple, Self
 
 from ..arithmetic.enclosures import pi_to, text_of
@@ -96,11 +97,7 @@ class Top:
     A_cm: Real | None = None
     phidot0: Real | None = None
     spin_period: Real | None = None
-    given: Mapping[str, Any] = field(init=False, hash=False)
-    """The inputs that were given, by key, and the defaults of those that were not.
-
-    Attributes hold the numbers that follow: A, r0 and psidot0 in any case, None for another form.
-    """
+    _given: dict[str, Any] = field(init=False, hash=False)
 
     def __new__(cls, *values: Any, **inputs: Any) -> Self:
         """Return a new top.  Raises TypeError for an unknown input with the name that was meant."""
@@ -120,12 +117,20 @@ class Top:
         one_of_each(inputs)
         kept = overridden(EXAMPLE, inputs)
         given = {x: kept[x] for x in sorted(kept, key=lambda x: NINE.index(replaced_by(x)))}
-        values = dict.fromkeys(INPUTS) | given | _derived(given) | {"given": given}
+        values = dict.fromkeys(INPUTS) | given | _derived(given) | {"_given": given}
         for name, x in values.items():
             object.__setattr__(self, name, x)
         if missing := from_example(inputs):
             self.check_body()
             warn_of(missing, stacklevel=4)
+
+    @property
+    def given(self) -> Mapping[str, Any]:
+        """The inputs that were given, by key, and the defaults of those that were not.
+
+        Attributes hold the numbers that follow: A, r0 and psidot0 in any case, None for other forms.
+        """
+        return MappingProxyType(self._given)
 
     def __repr__(self) -> str:
         return f"Top({', '.join(f'{name}={x!r}' for name, x in self.given.items())})"

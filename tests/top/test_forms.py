@@ -36,7 +36,7 @@ def in_form(top: Top, key: str) -> dict[str, Any]:
 
 
 def test_every_form_is_an_input_of_a_top_and_an_option(lagtop: Lagtop) -> None:
-    assert {x.name for x in fields(Top)} == {*INPUTS, "given"}
+    assert {x.name for x in fields(Top)} == {*INPUTS, "_given"}
     shown = lagtop("solve", "--help").stdout
     assert all(f"--{name.replace('_', '-')} " in shown for name in DECLARED)
 
@@ -124,7 +124,7 @@ def test_a_further_form_is_one_row_and_one_field(tmp_path: Path) -> None:
     """The tests of all forms pass in a copy of the package with one more."""
     package = shutil.copytree(ROOT / "lagrange_cli", tmp_path / "lagrange_cli")
     (tmp_path / "sample_inputs").mkdir()
-    for name, place, more in (("inputs", "theta0 |", ROW), ("top", "    given: Mapping", FIELD)):
+    for name, place, more in (("inputs", "theta0 |", ROW), ("top", "    _given: dict", FIELD)):
         text = (file := package / "top" / f"{name}.py").read_text(encoding="utf-8")
         file.write_text(text.replace(place, more + place, 1), encoding="utf-8")
     line = ["pytest", "-q", "-p", "no:cacheprovider", f"--rootdir={ROOT / 'tests'}", __file__]

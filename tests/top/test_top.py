@@ -88,6 +88,12 @@ def test_no_way_around_the_guards() -> None:
     assert top.replace(theta0_rad=1) == Top(theta0_rad=1)
 
 
+def test_what_was_given_cannot_be_changed() -> None:
+    given: Any = Top(phidot0=3, psidot0="steady").given
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        given["phidot0"] = 4
+
+
 def test_nothing_depends_on_the_decimal_context_of_the_host() -> None:
     inputs: dict[str, Any] = {"theta0_deg": Fraction(100, 3), "r0": Fraction(1, 7), "psidot0": 0.1}
     record = solve(Top(**inputs)).record()
