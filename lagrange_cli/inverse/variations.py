@@ -15,7 +15,7 @@ from scipy.integrate import cumulative_simpson
 from scipy.interpolate import make_interp_spline
 
 from ..arithmetic.types import Array
-from .motions import angles
+from .motions import angles, states_of
 
 _STEP = 1e-5
 """Step of differences, over the size of a parameter."""
@@ -31,7 +31,7 @@ class Variations:
     """
 
     def __init__(self, state: Array, ratio: float, t: Array) -> None:
-        first = angles(state[np.newaxis], t)[0, 0]
+        first = angles(states_of(*state[np.newaxis].T), t)[0, 0]
         at = int(np.argmax(np.sin(first)))  # the coordinates are singular at a pole
         self.t, self.since, self.length, self.ratio = t, t - t[at], float(t[-1]), ratio
         self.a, self.b, theta, _, turned = state
@@ -41,7 +41,7 @@ class Variations:
         self.epoch = np.array([self.a, self.b, theta, rate, turned])
         steps = _STEP * np.maximum(np.abs(self.epoch), _LEAST_SIZE)
         ends = [self.epoch, *(self.epoch + np.diag(steps)), *(self.epoch - np.diag(steps))]
-        found = angles(np.array(ends), self.since)
+        found = angles(states_of(*np.transpose(ends)), self.since)
         self.slopes = ((found[:, 1:6] - found[:, 6:]) / (2 * steps[:, np.newaxis])).swapaxes(0, 1)
         self.angles, self.r0 = found[:, 0], self.b * ratio
         self.angles[1] += np.nan_to_num(self.r0 - self.b) * self.since
