@@ -128,7 +128,7 @@ class Top:
     def given(self) -> Mapping[str, Any]:
         """The inputs that were given, by key, and the defaults of those that were not.
 
-        Attributes hold the numbers that follow: A, r0 and psidot0 in any case, None for other forms.
+        Attributes hold the numbers that follow: A, r0 and psidot0 always, None for another form.
         """
         return MappingProxyType(self._given)
 

@@ -89,7 +89,7 @@ def test_no_way_around_the_guards() -> None:
 
 
 def test_what_was_given_cannot_be_changed() -> None:
-    given: Any = Top(phidot0=3, psidot0="steady").given
+    given: Any = Top(phidot0=60, psidot0="steady").given
     with pytest.raises(TypeError, match="does not support item assignment"):
         given["phidot0"] = 4
 
