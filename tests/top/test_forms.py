@@ -56,7 +56,7 @@ def test_a_form_gives_the_same_motion_everywhere(key: str, tmp_path: Path, lagto
     assert json.loads(lagtop("solve", scene, "--format", "json").stdout)["k"] == exact["k"]
     tops.write_text(f"{','.join(inputs)}\n{','.join(map(str, inputs.values()))}\n")
     assert float(lagtop("sweep", tops, "--keys", "k").stdout.split()[1].strip(",")) == swept["k"][0]
-    rows = f"{json.dumps(inputs)}\n{json.dumps(dict(TOP.given))}"  # the second row has the input itself
+    rows = "\n".join(json.dumps(dict(x)) for x in (inputs, TOP.given))  # both forms
     mixed = lagtop("sweep", "-", "--keys", "k", input=rows).stdout.split()[1:]
     assert [float(x.strip(",")) for x in mixed] == pytest.approx([exact["k"]] * 2, rel=1e-11)
     ends = 0.9 * inputs[key], 1.05 * inputs[key]
