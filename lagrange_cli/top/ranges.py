@@ -154,7 +154,8 @@ def check_reach(name: str, points: Points, limit: float) -> None:
     """Raise LagtopError if a point is farther from 0 than the limit."""
     farthest = max(points.bounds(), key=abs)
     if abs(farthest) > limit:
-        wanted = f"within 2^50 periods = {limit:.3g} of 0"
-        raise LagtopError(
-            f"{name} must be {wanted}, got {farthest} (or use {arg('digits', 'N')})", name
-        )
+        wanted, remedy = f"within 2^50 periods = {limit:.3g} of 0", f"or use {arg('digits', 'N')}"
+        if not limit:
+            wanted = "0, because a period is below all doubles"
+            remedy = f"with {arg('digits', 'N')}, give it in units of K: {farthest:g}K"
+        raise LagtopError(f"{name} must be {wanted}, got {farthest} ({remedy})", name)

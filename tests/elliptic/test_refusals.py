@@ -37,6 +37,10 @@ JACOBI = [
     # multiples of K
     ("--k 0.3 --u K,1", "--u must all be in units of K, or none, got 'K,1'"),
     ("--k 0.3 --u 1:2K:3", "--u must have both ends in units of K, or neither"),
+    (
+        "--nome -0.999 --u 0.3",
+        "--u must be 0, because a period is below all doubles, got 0.3 (with",
+    ),
     ("--k 0.3 --u 1e16K", "u in units of K must be within 2^50 periods = 2.25e+15 of 0"),
     ("--k 1 --u K", "--u must not contain K for k >= 1, where K is infinite or complex"),
     ("--k 1 --u 1e19 --digits 20", "the limits of --digits N: take a smaller argument"),
