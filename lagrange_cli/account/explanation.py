@@ -20,6 +20,7 @@ from ..solver.keys import KEYS, LINES, all_keys, shown_keys
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
 from ..top.units import DEGREES, Units, bare_name
+from .worked import worked
 
 _NAME = r"[A-Za-z_]\w*"
 _WORDS = {
@@ -97,26 +98,33 @@ def explanations(motion: Motion, names: Sequence[str], units: Units = DEGREES) -
     record, beyond = record_in_range(motion, units=units, keys=wanted)
     if beyond:
         raise beyond[0]
-    if "psidot0" in record:
-        record["psidot0"] = float(motion.top.psidot0)  # the number of a word such as steady
-    unit = "" if units.radians else "°"
-    texts = _symbols() | {
-        bare_name(name): f"{value:.6g}{unit if name.endswith('_deg') else ''}"
-        for name, value in record.items()
-        if isinstance(value, float)
-    }
     found = []
     for row, used in zip(chosen, parts, strict=True):
         own = [row.name] if row.kind != "column" else []
         absent = [x for x in dict.fromkeys([*own, *used]) if record[x] is None and x != "remark"]
         found.append(
             row._replace(
-                numbers="" if absent or not used else _shown(row.text, texts, "·"),
+                numbers="" if absent or not used else _with_numbers(motion, row, used),
                 value=record[row.name] if own else None,
                 missing=_reasons(motion, absent),
             )
         )
     return found
+
+
+def _with_numbers(motion: Motion, row: Explained, used: Sequence[str]) -> str:
+    """Return a formula with the numbers of a motion; small differences are named at its end."""
+    names, symbols = {bare_name(name): name for name in used}, _symbols()
+    key = "" if row.kind == "column" else row.name
+    texts, formula, ends = worked(motion, key, row.text, names), row.text, list[str]()
+    for part in texts.keys() - names.keys():
+        name = f"gap_{len(ends)}"
+        formula, symbols[name] = formula.replace(part, f"~{name}"), _shown(part, symbols)
+        ends.append(f"{symbols[name][1:-1]} = {texts[part]}")
+    numbers = {x: f"{texts[x]}{'°' * y.endswith('_deg')}" for x, y in names.items()}
+    shown = _shown(formula, symbols | numbers, "·").replace("~", "")
+    before = ", " if " where " in shown else " where "
+    return before.join([shown, ", ".join(ends)]) if ends else shown
 
 
 def _named_by(symbol: str, rows: Sequence[Explained]) -> str:

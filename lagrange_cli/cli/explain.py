@@ -57,7 +57,7 @@ def _table(row: Explained) -> Grid | str:
     about = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))
     cells: list[list[str]] = []
     for name, text in texts.items():
-        parts = filter(None, re.split(r" where |, (?=\w+ = )", text))
+        parts = filter(None, re.split(r" where |, (?=[^,()]+ = )", text))
         cells += [["" if i else name, part] for i, part in enumerate(parts)]
     return Grid([row.name, about], cells) if cells else f"{row.name}: {about}"
 
