@@ -29,6 +29,10 @@ class Key(NamedTuple):
     """The condition of the number, such as `if r0 is not 0`; some regimes lack it too."""
     evaluated: str = ""
     """The form of the formula that the solver evaluates."""
+    relative_to: str = ""
+    """What its error is relative to: `1` for a cosine, else its size."""
+    lacking: str = ""
+    """The kinds of motion that lack the number, of `steady vertical separatrix`."""
 
 
 def split_names(text: str) -> list[str]:

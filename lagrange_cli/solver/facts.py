@@ -44,20 +44,6 @@ within 1.03 % of the elementary rate.
 """
 _U = fmpq_poly([0, 1])
 """The cosine of the tilt at the start, in polynomials."""
-_WITHOUT = {
-    "steady": "amplitude alpha u_quarter precession_rate_half",
-    "vertical": "u3 k k_prime mean_precession_rate precession_rate_start u2_criterion",
-    "separatrix": "amplitude alpha K u_quarter precession_rate_half "
-    "mean_spin_rate mean_precession_rate",
-}
-"""The numbers that a kind of motion lacks; it also lacks those whose formulas name one of them."""
-
-
-def undefined_names(**kinds: bool) -> frozenset[str]:
-    """Return the names of the numbers that a motion of these kinds lacks."""
-    return frozenset(
-        name for kind, is_it in kinds.items() if is_it for name in _WITHOUT[kind].split()
-    )
 
 
 class Facts(NamedTuple):
@@ -173,13 +159,6 @@ class Facts(NamedTuple):
         if self.steady:
             return Regime.STEADY
         return Regime.REGULAR if self.spin else Regime.NO_SPIN
-
-    @property
-    def undefined(self) -> frozenset[str]:
-        """The names of numbers that the regime does not have."""
-        return undefined_names(
-            steady=self.steady, vertical=self.vertical, separatrix=self.separatrix
-        )
 
     def sign(self, polynomial: fmpq_poly) -> int:
         """Return the sign of a polynomial in u; 0 if D digits leave it open."""

@@ -2,10 +2,14 @@
 
 A line of the table is
 
-    name | symbol | meaning | unit | equation | formula | condition
+    name | symbol | meaning | unit | equation | formula | condition | lacking
 
 and a group of keys begins with `#`.  An indented line continues the line before.  To add a key, add
 a line: `solve`, `explain`, sweeps and the READMEs take it from here.
+
+The unit `cos` means a cosine, whose error counts as an angle does: relative to 1.  A motion lacks a
+number if it lacks one that the evaluated formula names, if the condition is false, or if it is of a
+kind among the `lacking`: steady, vertical, separatrix.
 
 Formulas use names of keys and inputs, without the unit of an angle, and the functions of `numbers`.
 `left = right` is an equation that the key satisfies.  If a limit needs another form than the
@@ -36,29 +40,30 @@ _TEXT = """
 a | a | 2mgs/A | 1/time² | (4,4) | 2*m*g*s/A
 b | b | C r0/A | 1/time | (4,5) | C*r0/A
 # Roots
-u1 | u1 | greatest cos ϑ | | (4,9)
+u1 | u1 | greatest cos ϑ | cos | (4,9)
    | (energy_constant - a*u1)*(1 - u1**2) = (momentum_constant - b*u1)**2 ~ roots[1]
-u2 | u2 | least cos ϑ | | (4,9)
+u2 | u2 | least cos ϑ | cos | (4,9)
    | (energy_constant - a*u2)*(1 - u2**2) = (momentum_constant - b*u2)**2 ~ roots[0]
 u3 | u3 | third root | | (4,9)
    | (energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2 ~ u2 + wide/a
-   | if there is a torque
+   | if there is a torque | vertical
 # Moduli and integrals
-k | k | modulus | | (4,19) | sqrt((u1 - u2)/(u3 - u2)) ~ sqrt(m_k)
-k_prime | k' | complementary modulus | | (4,21) | sqrt((u3 - u1)/(u3 - u2)) ~ sqrt(m_k_prime)
+k | k | modulus | | (4,19) | sqrt((u1 - u2)/(u3 - u2)) ~ sqrt(m_k) | | vertical
+k_prime | k' | complementary modulus | | (4,21)
+   | sqrt((u3 - u1)/(u3 - u2)) ~ sqrt(m_k_prime) | | vertical
 modular_angle_deg | arcsin k | modular angle | angle | (4,19) | asin(k) ~ atan2(k, k_prime)
 nome | q | nome | | (2,4) | exp(-pi*K_prime/K) ~ nome_of(k, k_prime)
 K | K | complete integral, first kind | | (5,1)
-   | ellint_F(pi/2, k) ~ pi/(2*agm(1, k_prime))
+   | ellint_F(pi/2, k) ~ pi/(2*agm(1, k_prime)) | | separatrix
 K_prime | K' | complementary integral, first kind | | (2,4)
    | ellint_F(pi/2, k_prime) ~ pi/(2*agm(1, k)) | if k > 0
 E | E | complete integral, second kind | | (7,3) | ellint_E(pi/2, k) ~ complete_E(k_prime)
 amplitude_deg | am α | amplitude of α | angle | (7,2)
    | asin(sqrt((u3 - u2)/(u3 + 1))) ~ atan2(sqrt(wide), sqrt(a*below_u2))
-   | if the top is released from rest
+   | if the top is released from rest | steady separatrix
 alpha | α | parameter of Chrapan's Π | | (1,6)
    | ellint_F(amplitude, k_prime) ~ integral_F(sqrt(wide), sqrt(a*below_u2), k)
-   | if the top is released from rest
+   | if the top is released from rest | steady separatrix
 # Periods
 T_nutation | T | nutation period | time | (5,1) | 4*K/sqrt(a*(u3 - u2)) ~ 4*K/sqrt(wide)
    | if the top moves
@@ -67,29 +72,29 @@ T_spin | Tφ | mean spin period | time | §8 | 2*pi/abs(mean_spin_rate)
 T_precession | Tψ | mean precession period | time | §8 | 2*pi/abs(mean_precession_rate)
    | if the mean precession rate is not 0
 # Turning points
-u_quarter | u(T/4) | cos ϑ at T/4 | | (5,2)
-   | u3 - sqrt(u3 - u1)*sqrt(u3 - u2) ~ V | if the start is at u1
+u_quarter | u(T/4) | cos ϑ at T/4 | cos | (5,2)
+   | u3 - sqrt(u3 - u1)*sqrt(u3 - u2) ~ V | if the start is at u1 | steady separatrix
 theta_min_deg | ϑ min | least tilt | angle | (4,6)
    | acos(u1) ~ 2*atan2(sqrt(above_u1), sqrt(below_u1))
 theta_max_deg | ϑ max | greatest tilt | angle | (4,6)
    | acos(u2) ~ 2*atan2(sqrt(above_u2), sqrt(below_u2))
 # Mean rates
 mean_spin_rate | φ' mean | mean spin rate | rad/time | (6,3)
-   | r0 - b - (P - Q)/(2*K) where P, Q ~ means[0]
+   | r0 - b - (P - Q)/(2*K) where P, Q ~ means[0] | | separatrix
 mean_precession_rate | ψ' mean | mean precession rate | rad/time | (7,3)
-   | (P + Q)/(2*K) where P, Q ~ means[1]
+   | (P + Q)/(2*K) where P, Q ~ means[1] | | vertical separatrix
 # Rates
 spin_rate_start | φ'(0) | spin rate at the start | rad/time | (6,2) | r0 - psidot0*cos(theta0)
    | if the axis does not leave the vertical at the start
 spin_rate_half | φ'(T/2) | spin rate at T/2 | rad/time | (6,2) | r0 - U*precession_rate_half where U
    | if the axis is not vertical half a period after the start
 precession_rate_start | ψ'(0) | precession rate at the start | rad/time | (4,7) | psidot0
-   | if the axis does not leave the vertical at the start
+   | if the axis does not leave the vertical at the start | vertical
 precession_rate_half | ψ'(T/2) | precession rate at T/2 | rad/time | (4,7)
    | (momentum_constant - b*U)/(1 - U**2) where U
    ~ (momentum + b*(fall - rise*wide/far))
    /((above_u1 + fall*narrow/far)*(below_u2 + rise*wide/far))
-   | if the axis is not vertical half a period after the start
+   | if the axis is not vertical half a period after the start | steady separatrix
 # Constants of section 4
 energy_without_spin | c1 | energy without the spin part | mass len²/time² | (4,2)
    | A*(thetadot0**2 + psidot0**2*sin(theta0)**2)/2 + m*g*s*cos(theta0)
@@ -105,7 +110,7 @@ f_hanging | f(-1) | f(u) = u'² at u = -1 | 1/time² | (4,9)
 f_slope_u1 | f'(u1) | slope of f(u) at u1 | 1/time² | (4,9)
    | -a*(u1 - u2)*(u3 - u1) ~ -height*narrow
 u2_criterion | a u2 u3 | criterion for the sign of u2 | 1/time² | (4,12)
-   | a*u2*u3 ~ u2*(wide + a*u2)
+   | a*u2*u3 ~ u2*(wide + a*u2) | | vertical
 spin_share | 1 - C/2A | factor of r0 in the mean spin rate | | (6,1) | 1 - C/(2*A)
 # Angles after half a period and after a period
 phi_half_deg | φ(T/2) | spin after half a period | angle | §6
@@ -174,9 +179,9 @@ P | | mean of (β - b)/(1 - u), times K | | (3,8)
    | (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2) ~ pole_integral(-1)
 Q | | mean of (β + b)/(1 + u), times K | | (3,8)
    | (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2) ~ pole_integral(1)
-U | | cos ϑ half a period after the start | |
+U | | cos ϑ half a period after the start | cos |
    | u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0)) ~ u2 + rise*wide/far
-V | | cos ϑ between two quarters | | (5,2)
+V | | cos ϑ between two quarters | cos | (5,2)
    | u3 - sqrt(u3 - u1)*sqrt(u3 - u2) ~ u1 - height*k_prime/(1 + k_prime)
 sine_V | | sin ϑ between two quarters | | (5,2)
    | sqrt((above_u1 + height*k_prime/(1 + k_prime))*(below_u2 + height/(1 + k_prime)))
@@ -220,17 +225,25 @@ A test returns a bool for one motion, or an array of them (a mask) for many.
 """
 
 
+def _cells(line: str) -> list[str]:
+    """Return the eight cells of a line; the last two may be absent, and `|r0|` is a size."""
+    cells = re.split(r"(?<!\S)\|(?!\S)", line)
+    return cells + [""] * (8 - len(cells))
+
+
 def _read(table: str) -> Iterator[tuple[str, Key]]:
     group = common = ""
     for text in table.strip().replace("\n ", " ").splitlines():
         if text.startswith("# "):
             group, _, common = text[2:].partition(" | ")
             continue
-        name, symbol, meaning, unit, equation, formula, *only = map(str.strip, text.split("|", 6))
+        name, *words, formula, only, lacking = map(str.strip, _cells(text))
+        symbol, meaning, unit, equation = words
         printed, _, evaluated = map(str.strip, formula.partition("~"))
         evaluated = evaluated or printed.partition(" where ")[0]
-        condition = only[0] if only else common
-        yield name, Key(group, symbol, meaning, unit, equation, printed, condition, evaluated)
+        cosine = "1" if unit == "cos" else ""
+        texts = (printed, only or common, evaluated, cosine, lacking)
+        yield name, Key(group, symbol, meaning, unit.removeprefix("cos"), equation, *texts)
 
 
 def _with_definitions(key: Key) -> Key:
@@ -260,10 +273,15 @@ def degree_name(name: str) -> str:
 
 
 @cache
-def needed(name: str) -> frozenset[str]:
-    """Return the lines that the evaluated formula of a line names."""
-    names = set(re.findall(r"[A-Za-z_]\w*", LINES[name].evaluated))
-    return frozenset(names & LINES.keys() - {name})
+def needed(name: str) -> tuple[str, ...]:
+    """Return the lines that the evaluated formula of a line names, in order."""
+    names = dict.fromkeys(re.findall(r"[A-Za-z_]\w*", LINES[name].evaluated))
+    return tuple(x for x in names if x in LINES and x != name)
+
+
+def lacks(name: str, facts: Any) -> bool:
+    """Return whether a motion is of a kind that lacks a number."""
+    return any(getattr(facts, kind) for kind in LINES[name].lacking.split())
 
 
 def exists(name: str, facts: Any, of: Any) -> Any:
@@ -271,7 +289,7 @@ def exists(name: str, facts: Any, of: Any) -> Any:
 
     `of` tells which numbers exist.
     """
-    if name in facts.undefined:
+    if lacks(name, facts):
         return False
     found = True
     for other in needed(name):

@@ -14,7 +14,7 @@ from ..names import suggestion
 from ..top.top import Top
 from ..top.units import DEGREES, Units, bare_name
 from .facts import Facts, Regime
-from .keys import LINES, NUMBERS, all_keys, degree_name, exists, needed, record_keys
+from .keys import LINES, NUMBERS, all_keys, exists, lacks, needed, record_keys
 from .numbers import Numbers
 
 if TYPE_CHECKING:
@@ -99,15 +99,17 @@ class Solution:
         return self._zeros[name]
 
     def absence(self, name: str) -> str:
-        """Return why the motion lacks a number: `undefined in ...` or `defined only if ...`."""
-        only = NUMBERS[degree_name(name)].only if degree_name(name) in NUMBERS else ""
-        if not only or self._lost(bare_name(name)):
-            return f"undefined in the regime {self.regime.value!r}"
-        return f"defined only {only}"
+        """Return why the motion lacks a number: `undefined in ...` or `defined only if ...`.
 
-    def _lost(self, bare: str) -> bool:
-        """Return whether the regime lacks a number, or one that its formula names."""
-        return bare in self.facts.undefined or any(map(self._lost, needed(bare)))
+        If the motion lacks a number that the formula names, the reason is that of the first one.
+        """
+        bare = bare_name(name)
+        for other in needed(bare):
+            if not self.has(other):
+                return self.absence(other)
+        if lacks(bare, self.facts):
+            return f"undefined in the regime {self.regime.value!r}"
+        return f"defined only {LINES[bare].only}"
 
     @cached_property
     def path(self) -> str | None:

@@ -20,7 +20,7 @@ from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, atan2, best, choose, li
 from ..arithmetic.formulas import evaluated
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
-from ..solver.facts import Regime, undefined_names
+from ..solver.facts import Regime
 from ..solver.keys import LINES, exists
 from .tops import UNKNOWN, TopArrays, pi_of
 
@@ -87,37 +87,39 @@ FUNCTIONS: dict[str, Any] = {
 """The functions of formulas."""
 
 
-class GroupFacts:
+class GroupFacts(dict[str, Any]):
     """The facts of tops of one group, as those of `solver.facts`; some are masks.
 
     No number is certain if the axis of a top with initial rates passes over a pole.
     """
 
-    def __init__(self, of: ArrayNumbers) -> None:
-        self.of, regime = of, of.regime
+    separatrix = False
+
+    def __init__(self, regime: Regime | None) -> None:
+        super().__init__(FUNCTIONS)
+        self.regime = regime
         self.pole = {Regime.SLEEPING: 1, Regime.HANGING: -1}.get(regime, 0)  # type: ignore
         self.vertical = bool(self.pole)
         self.steady = regime not in {Regime.REGULAR, Regime.NO_SPIN, None}
         self.nutates, self.released = not self.steady, regime not in {Regime.STEADY, None}
         self.plane = regime is Regime.NO_SPIN
         self.off_poles = self.half_off_pole = not self.plane
-        self.undefined = undefined_names(vertical=self.vertical, steady=self.steady)
 
-    a = property(lambda self: self.of["a"].doubles)
-    spin = property(lambda self: self.of["r0"].doubles)
+    a = property(lambda self: self["a"].doubles)
+    spin = property(lambda self: self["r0"].doubles)
     moves = property(lambda self: self.nutates or (self.a != 0) | (self.spin != 0))
 
     @property
     def turning(self) -> Any:
         """1 for a start at u1, -1 at u2, 0 between."""
-        if self.of.regime is not None:
+        if self.regime is not None:
             return int(self.nutates)
-        at_u1 = self.of["rise"].doubles == 0
-        return np.where(self.of["thetadot0"].doubles == 0, np.where(at_u1, 1, -1), 0)
+        at_u1 = self["rise"].doubles == 0
+        return np.where(self["thetadot0"].doubles == 0, np.where(at_u1, 1, -1), 0)
 
     def has_steady_rate(self, _: str) -> Mask:
         """Return which tops may have a rate of steady precession, uncertain at 90 degrees."""
-        found: Mask = ~self.of["square_of_steady"].surely(-1)
+        found: Mask = ~self["square_of_steady"].surely(-1)
         return found
 
 
@@ -138,7 +140,7 @@ class Gaps(NamedTuple):
         return Gaps(*(x.rounded() for x in self))
 
 
-class ArrayNumbers(dict[str, Any]):
+class ArrayNumbers(GroupFacts):
     """The numbers of many motions by name, as bounded numbers; each is computed on first use.
 
     A name is that of a line of `keys`, of an input, or of a property of this class.  Angles are in
@@ -147,9 +149,8 @@ class ArrayNumbers(dict[str, Any]):
 
     def __init__(self, tops: TopArrays, regime: Regime | None, *, pairs: bool = False) -> None:
         """Take tops of one group, to be computed in doubles or in pairs of doubles."""
-        super().__init__(FUNCTIONS)
-        self.tops, self.regime, self.pairs = tops, regime, pairs
-        self.facts, self._has = GroupFacts(self), dict[str, Any]()
+        super().__init__(regime)
+        self.tops, self.pairs, self._has = tops, pairs, dict[str, Any]()
         for name in tops.inputs:
             if name != "psidot0" or regime is not Regime.STEADY:
                 self[name] = tops.number(name, pairs=pairs)
@@ -169,7 +170,7 @@ class ArrayNumbers(dict[str, Any]):
     def has(self, name: str) -> Any:
         """Return which motions have a number."""
         if name not in self._has:
-            self._has[name] = name not in LINES or exists(name, self.facts, self)
+            self._has[name] = name not in LINES or exists(name, self, self)
         return self._has[name]
 
     def is_zero(self, name: str) -> Any:
@@ -227,11 +228,11 @@ class ArrayNumbers(dict[str, Any]):
         """
         a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))
         sine, momentum = self["theta0"][0], self["momentum"]
-        if self.facts.steady:
+        if self.steady:
             around, zero = self["psidot0"] * sine, Bounded(0.0)
             far = around * around + self["square_of_steady"]
             return Gaps(zero, zero, far, above, above, below, below, far - a * above)
-        if self.facts.released:
+        if self.released:
             far = released_root(0.5 * b * b - a * u0, a * sine)
             fall, a_above_u3 = a * sine * sine / far, far - a * above
             a_above_u3 = best(a_above_u3, b * b * above / (above + fall))
@@ -267,7 +268,7 @@ class ArrayNumbers(dict[str, Any]):
         above, below = self["above_u2"], self["below_u2"]
         u1 = self["u0"] + self["rise"]
         u2 = choose(above.doubles < below.doubles, 1.0 - above, below - 1.0)
-        return (u1, u1) if self.facts.steady else (u2, u1)
+        return (u1, u1) if self.steady else (u2, u1)
 
     @property
     def height(self) -> Any:
@@ -287,12 +288,12 @@ class ArrayNumbers(dict[str, Any]):
     @property
     def m_k(self) -> Bounded:
         """k^2 (4,19)."""
-        return Bounded(0.0) if self.facts.steady else self["a"] * self["height"] / self["wide"]
+        return Bounded(0.0) if self.steady else self["a"] * self["height"] / self["wide"]
 
     @property
     def m_k_prime(self) -> Bounded:
         """k'^2 (4,21)."""
-        return Bounded(1.0) if self.facts.steady else self["narrow"] / self["wide"]
+        return Bounded(1.0) if self.steady else self["narrow"] / self["wide"]
 
     # means
 
@@ -308,10 +309,10 @@ class ArrayNumbers(dict[str, Any]):
 
         They are computed in doubles; in pairs, if the parts cancel.
         """
-        facts, r0 = self.facts, self["r0"]
-        if facts.steady:
-            return r0 - self["psidot0"] * self["u0"] * (not facts.vertical), self["psidot0"]
-        if facts.plane:  # a half turn at the bottom
+        r0 = self["r0"]
+        if self.steady:
+            return r0 - self["psidot0"] * self["u0"] * (not self.vertical), self["psidot0"]
+        if self.plane:  # a half turn at the bottom
             half_turn = self["pi"] / self["T_nutation"]
             return half_turn, half_turn
         gaps, given = self["gaps"], (self["k_prime"], *self["momenta"])

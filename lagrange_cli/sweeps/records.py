@@ -19,7 +19,7 @@ from ..errors import LagtopError
 from ..names import check_names
 from ..solver import keys as motion_record
 from ..solver.facts import FAST, Regime
-from ..solver.keys import LINES, NUMBERS
+from ..solver.keys import LINES
 from ..solver.record import FAST_WORDS, record_in_range, vertical_remark
 from ..solver.solve import solve
 from ..top.units import DEGREES, Units, bare_name
@@ -208,17 +208,12 @@ def number_of(of: ArrayNumbers, key: str) -> tuple[Any, Any, Any]:
     if key.endswith("_deg"):
         number = number * _DEGREE
     value, size, error = number.value, number.size, number.error
-    limit = GOOD if is_cosine(key) else GOOD * size
+    limit = GOOD * (1.0 if bare in LINES and LINES[bare].relative_to else size)
     trusted = (error <= limit) & ((size >= _LEAST) & (size <= _MOST) | (size == 0))
     if has is True or np.all(has):
         return value, error, trusted
     value, error = (np.where(has, x, np.nan) for x in (value, error))
     return value, error, trusted | ~has
-
-
-def is_cosine(key: str) -> bool:
-    """Return whether a key is a cosine, whose bound is absolute."""
-    return key in NUMBERS and "cos ϑ" in NUMBERS[key].meaning
 
 
 def text_of(of: ArrayNumbers, key: str) -> tuple[Any, Any]:
@@ -236,7 +231,7 @@ def text_of(of: ArrayNumbers, key: str) -> tuple[Any, Any]:
 
 def _remark(of: ArrayNumbers) -> tuple[Any, Any]:
     regime = of.regime
-    if of.facts.vertical:
+    if of.vertical:
         stable, unstable = (vertical_remark(regime or Regime.HANGING, x) for x in (True, False))
         return np.where(of["b"].doubles ** 2 >= 2 * of["a"].doubles, stable, unstable), True
     if regime is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import random
 import re
@@ -10,18 +11,26 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import Lagtop, dicts
 from hard_scenes import KINDS, in_doubles, nutating
 from lagtop import Motion, Top, solve, sweep
 from scenes import EVERY_KIND, UNIT
 
 from lagrange_cli.solver import keys as table
-from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS
+from lagrange_cli.solver.facts import Regime
+from lagrange_cli.solver.keys import INPUT_KEYS, NUMBERS, TEXT_KEYS
 from lagrange_cli.sweeps import records
 from lagrange_cli.sweeps.tops import top_arrays
+from lagrange_cli.top.units import bare_name
 
-INCOMPLETE = re.compile(r"(phi|psi)_half|(spin|precession)_rate_(upper|lower)")
-"""Keys that are incomplete integrals, which sweeps leave to `solve`."""
-KEYS = [key for key in NUMBERS if not INCOMPLETE.match(key)]
+
+def is_incomplete(name: str) -> bool:
+    """Return whether a number depends on an incomplete integral, which sweeps leave to `solve`."""
+    own = re.search(r"\b(half|quarter)\[", table.LINES[name].evaluated)
+    return bool(own) or any(map(is_incomplete, table.needed(name)))
+
+
+KEYS = [key for key in NUMBERS if not is_incomplete(bare_name(key))]
 Scene = dict[str, Any]
 
 
@@ -45,7 +54,7 @@ def assert_trusted(scenes: list[Scene], least: int, **word: str) -> None:
             assert exact is not None, (key, scene)
             error = abs(Fraction(str(exact.value)) - Fraction(value))
             assert error <= bound + 1e-24 * abs(value), (key, scene)
-            assert bound <= 1e-13 * (1 if records.is_cosine(key) else abs(value)), (key, scene)
+            assert bound <= 1e-13 * (1 if NUMBERS[key].relative_to else abs(value)), (key, scene)
         assert found["psidot0"][i] == pytest.approx(float(motion.top.psidot0), rel=1e-13)
 
 
@@ -173,18 +182,32 @@ def test_no_ordinary_top_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) ->
     assert total == pytest.approx(np.full(2, math.pi / 2), rel=1e-15)
 
 
-def test_a_line_is_all_that_a_key_needs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In every regime, for one top and for many."""
+def test_a_line_is_all_that_a_key_needs(monkeypatch: pytest.MonkeyPatch, lagtop: Lagtop) -> None:
+    """In every regime, for one top and for many, and in every command that takes a key."""
     name = "ratio"
     line = NUMBERS["k_squared"]._replace(formula="T_nutation/T_nutation_elementary", only="")
-    line = line._replace(evaluated=line.formula, symbol="ratio")
+    line = line._replace(evaluated=line.formula, symbol="ratio", meaning="a new number")
     monkeypatch.setitem(NUMBERS, name, line)
     monkeypatch.setitem(table.LINES, name, line)
     monkeypatch.setattr(table, "FURTHER_KEYS", [*table.FURTHER_KEYS, name])
-    for kind, scene in EVERY_KIND.items():
-        given = {x: y for x, y in scene.items() if y is not None}
-        motion, found = solve(Top(**given)), sweep(**given, keys=[name, "error"])
-        exact = motion.record(keys=[name])[name]
-        assert found["error"].item() is None
-        assert found[name].item() == pytest.approx(exact or math.nan, rel=1e-13, nan_ok=True), kind
-        assert (exact is None) == (motion.T_nutation is None or not motion.top.r0), kind
+    tops = [
+        Top(**{x: y for x, y in scene.items() if y is not None}) for scene in EVERY_KIND.values()
+    ]
+    motions = [solve(top) for top in tops]
+    assert {motion.regime for motion in motions} == {*Regime}
+    exact = [motion.record(keys=[name])[name] for motion in motions]
+    for motion, x in zip(motions, exact, strict=True):
+        assert (x is None) == (motion.T_nutation is None or not motion.top.r0), motion
+        why = {"sleeping": "undefined in the regime", "no spin": "defined only if r0 is not 0"}
+        assert x is not None or motion.absence(name).startswith(why.get(motion.regime, ""))
+    columns: Scene = {x: [motion.record(keys=[x])[x] for motion in motions] for x in INPUT_KEYS}
+    found = sweep(**columns, keys=[name, "error"])
+    assert not any(found["error"])
+    wanted = [math.nan if x is None else x for x in exact]
+    assert found[name] == pytest.approx(wanted, rel=1e-13, nan_ok=True)
+    ratio = solve(Top()).record(keys=[name])[name]
+    assert "a new number" in lagtop("explain", name).stdout
+    assert json.loads(lagtop("solve", "--get", name, "--format", "json").stdout) == {name: ratio}
+    assert dicts(lagtop("find", "--r0", "40:60", f"ratio={ratio}", "--keys", "r0").stdout)[0][
+        "r0"
+    ].startswith("50")
