@@ -203,7 +203,7 @@ def _axis(option: str, text: str | None, top: opt.TopOptions) -> tuple[str, Valu
 @opt.option(
     *("-o", "--output"),
     metavar="FILE",
-    help="Output file: FILE.html (replaced once all is written).",
+    help="Output file: FILE.html (replaced only when complete).",
 )
 def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
     """Write an interactive page for the browser.

@@ -131,8 +131,9 @@ _READING = {
         "--align",
         metavar="WORD,...",
         type=LIST,
-        help="Axes of the data: up=y, axis=y, left (left-handed), conjugate (from space to body).  "
-        "From the first row: start (zero of spin and precession), time (zero of t).",
+        help="Frames of the data: up=y (y points up), axis=y (y is the figure axis), left "
+        "(left-handed), conjugate (attitude from space to body).  To begin in the first row: start "
+        "(spin and precession), time.",
     ),
     "quaternion_order": option(
         "--quaternion-order",
@@ -386,7 +387,7 @@ def output(default: str, *, rows: bool = False, extensions: Sequence[str] = ()) 
                 )
             function(out=Output(output, chosen, fmt is not None), **others)
 
-        kind, help_ = click.Choice([*FORMATS]), "Output file (replaced once all is written)."
+        kind, help_ = click.Choice([*FORMATS]), "Output file (replaced only when complete)."
         found: Any = option("--format", "fmt", metavar="FORMAT", type=kind, help=text)(run)
         found = option("-o", "--output", metavar="FILE", default="-", help=help_)(found)
         return cast(F, found)

@@ -34,7 +34,7 @@ from .app import complain
 )
 @opt.digits(opt.MOST_RECORD_DIGITS)
 @opt.certify
-@opt.option("--budget", metavar="KEY", help="Print each input's share in the uncertainty of KEY.")
+@opt.option("--budget", metavar="KEY", help="Print each input's share of the uncertainty of KEY.")
 @opt.output("table")
 def solve_command(
     top: opt.TopOptions,
@@ -47,9 +47,9 @@ def solve_command(
 ) -> None:
     """Compute the periods, turning points and mean rates of one top.
 
-    The results are called the record, and their names keys; lagtop explain lists all keys.  Every
-    number is correctly rounded, or has N correct digits with --digits N.  A quantity that a regime
-    does not have is null in JSON and empty in CSV.
+    The results form the record, and their names are keys: lagtop explain lists all keys.  Every
+    number is correctly rounded, or has N correct digits with --digits N.  A quantity that is
+    undefined in a regime is null in JSON and empty in CSV.
 
     Inputs may have units ('480 rpm').  Give units for all inputs that you set, or for none; the
     tilt needs none.  An input may have an uncertainty ('1587(2)').

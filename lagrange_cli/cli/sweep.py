@@ -92,10 +92,10 @@ def sweep_command(
     A file of tops is CSV with a header, or JSON lines, with names such as r0.  Options and the
     scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
     unit: m [g].  If a top cannot be solved, the exit code is 1 and the column error gives the
-    reason.  If you pass --keys for a grid, name error among them.
+    reason.  With --keys on a grid, include error to see the reasons.
 
-    A top takes a few us.  The error of each number has a bound, at most 1e-13 of its size (of 1 for
-    a cosine); --certify prints it.
+    Solving a top takes a few microseconds.  The error of each number has a bound, at most 1e-13 of
+    its size (of 1 for a cosine); --certify prints it.
 
     A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
     repeat the command to resume a run that was killed.
