@@ -104,10 +104,10 @@ class Solution:
         If the motion lacks a number that the formula names, the reason is that of the first one.
         """
         bare = bare_name(name)
-        for other in needed(bare):
+        for other in needed(bare) if bare in LINES else ():
             if not self.has(other):
                 return self.absence(other)
-        if lacks(bare, self.facts):
+        if bare not in LINES or lacks(bare, self.facts):  # a text, such as the path
             return f"undefined in the regime {self.regime.value!r}"
         return f"defined only {LINES[bare].only}"
 
