@@ -10,7 +10,7 @@ import numpy as np
 from ..arithmetic import rotations
 from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array, Mask
-from ..errors import LagtopError
+from ..errors import DataError
 from .observed import observe
 from .options import Reading
 
@@ -22,8 +22,9 @@ _UNEVEN = 0.05
 """Greatest deviation of a marker from the nearest sphere (rms), over its radius."""
 _SURE, _LEAST_CHANGE = 5.0, 2e-3
 """Standard deviations of a shifted origin, and the least change of the distance over itself."""
-_DETERMINED = 0.2
-"""Greatest standard deviation of a coordinate of the pivot, over the distance of the marker."""
+_DETERMINED, _FAR = 0.2, 3.0
+"""Greatest standard deviation of a coordinate of the pivot that is determined, and of the farthest
+pivot that is possible, over the distance of the marker."""
 _FLAT = 0.5
 """Curvature of a marker's path, over that of the sphere about the origin, below which it is in a
 plane, as are angular rates with a constant rate of spin."""
@@ -117,10 +118,12 @@ def _sphere_about(points: Array) -> tuple[Array, Array]:
         distance = np.linalg.norm(away, axis=1)
         basis = np.column_stack([away / distance[:, np.newaxis], np.ones(len(away))])
         step = np.linalg.lstsq(basis, distance, rcond=1e-3)[0]
-        rest = distance - basis @ step
+        noise = np.linalg.norm(distance - basis @ step) / np.sqrt(len(points) - 4)
         _, sizes, axes = np.linalg.svd(basis, full_matrices=False)
-        spread = np.linalg.norm(axes.T / np.maximum(sizes, 1e-9), axis=1)[:3]
-        spread = spread * np.sqrt(rest @ rest / (len(points) - 4))
+        by_noise = len(points) * (noise / step[3]) ** 2 * (1 + 4 / np.sqrt(len(points)))
+        shown = np.maximum(sizes**2 - by_noise, 0.0) / sizes  # noise of directions shows nothing
+        errors = np.minimum(noise / (shown + 1e-30), _FAR * step[3])
+        spread = np.linalg.norm(axes.T * errors, axis=1)[:3]
         centre = centre + step[:3]
     return centre, spread
 
@@ -165,7 +168,7 @@ def centre_above(t: Array, marks: Array) -> Array:
 
 
 def check_position(position: Array) -> None:
-    """Raise LagtopError for numbers that are no positions of a point that turns about a pivot."""
+    """Raise DataError for numbers that are no positions of a point that turns about a pivot."""
     seen = position[np.isfinite(position).all(axis=1) & (position != 0).any(axis=1)]
     if len(seen) < _FEW:
         return
@@ -176,7 +179,7 @@ def check_position(position: Array) -> None:
         how = f"are {off:.1%} off the nearest sphere (rms)"
     if how:
         may = "rates, accelerations, or the marker of a top whose pivot moves"
-        raise LagtopError(f"x, y, z must be a position about a pivot, but {how}: are they {may}?")
+        raise DataError(f"x, y, z must be a position about a pivot, but {how}: are they {may}?")
 
 
 def _off_sphere(points: Array) -> float:

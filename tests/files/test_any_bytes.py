@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import subprocess
 import time
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from conftest import LAGTOP, ROOT
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pyarrow import parquet
+from scipy.io import savemat
 
 from lagrange_cli.errors import DataError, LagtopError
 from lagrange_cli.files.tops import read_tops
@@ -30,12 +32,19 @@ def written(write: Callable[[io.BytesIO], object]) -> bytes:
 
 
 COLUMNS = {"t": np.arange(8.0), "theta": np.linspace(30, 40, 8)}
+LISTS = {x: y.tolist() for x, y in COLUMNS.items()}
 GOOD = [
     *(x.read_bytes() for x in sorted((ROOT / "sample_inputs" / "files").iterdir())),
     (ROOT / "sample_inputs" / "hanging-top.toml").read_bytes(),
     written(lambda stream: parquet.write_table(pa.table(COLUMNS), stream)),
+    written(lambda stream: savemat(stream, COLUMNS)),
+    *(json.dumps(x).encode() for x in (LISTS, {"data": LISTS}, [*LISTS.values()])),
+    b"time\tquaternion\n10:59:59.5\t1,0,0,0\n11:00:00.25\t1,0,0,1\n",
+    b"stamp.sec,stamp.nanosec,x,y\n1700000000,5,1D0,NA\n1700000001,6,2D0,#N/A\n",
+    b"timestamp,theta\n2024-05-31T10:59:59.123456789Z,1\n2024-05-31T11:00:00Z,2\n",
 ]
 PIECES = [b"\n", b",", b";", b"\t", b'"', b"#", b"[", b"{", b"}", b"\0", b"\xff", b"1e999", b"nan"]
+PIECES += [b"1700000000000000000,1\n", b"10:59:59,1\n", b"-", b'{"t":[0,1],"theta":[1,2]}']
 PIECES += [b"t,theta\n", b"r0,theta0_deg\n", b"1,2\n", b"1,5;2\n", b"PK\x03\x04", b"\x1f\x8b"]
 
 
