@@ -95,7 +95,10 @@ def _parquet(content: bytes, name: str) -> Table:
         with _decoding(name, "Parquet"):
             same = [i for i, x in enumerate(schema.names) if x == schema.names[index]]
             read = file.read(columns=[schema.names[index]], use_threads=False)  # may abort at exit
-            return _of_arrow(read.column(same.index(index)))
+            found = _of_arrow(read.column(same.index(index)))
+            if len(found) != file.metadata.num_rows:
+                raise ValueError(f"{len(found)} rows in {schema.names[index]}")
+            return found
 
     kept = [i for i, x in enumerate(schema) if not types.is_nested(x.type)]
     times = {x.name: f" [{x.type.unit}]" for x in schema if str(x.type).startswith(_TIMES)}

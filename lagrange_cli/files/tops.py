@@ -147,7 +147,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     empty if the file decides.  Raises DataError.
     """
     table = table_in(path, _known_inputs, decimal)
-    name, headings = table.name, table.headings or []
+    name, headings = table.name, [" ".join(x.split()) for x in table.headings or ()]
     columns, units = list[str](), dict[str, Value]()
     for heading in headings:
         column, unit = _column_of(heading)

@@ -90,7 +90,7 @@ class _File:
             wanted = f"name its {width} columns, {NAMING}{pose * (width == _POSE_WIDTH)}"
             raise DataError(f"{self.name} has no header: {wanted}")
         if names is None:
-            return headings or ()
+            return [" ".join(x.split()) for x in headings or ()]  # messages are one line
         if len(names) != width:
             wanted = f"all {width} columns of {self.name} (_ skips one)"
             raise LagtopError(f"columns must name {wanted}, got {len(names)} names", "columns")

@@ -119,7 +119,7 @@ def test_a_comma_that_may_be_the_delimiter(lagtop: Lagtop) -> None:
     two = lagtop(*words, input="0,5\n1,0\n")
     wanted = "the time must be a number below the heading t or time, got 2 columns"
     assert_one_line(two, 65, f"standard input: {wanted}")
-    assert lagtop(*words, "--decimal", "comma", input="0,5\n1,0\n").stdout == "t\n0.5\n1.0\n"
+    assert lagtop(*words, "--decimal", "comma", input="0,5\n1,0\n").stdout == "t\n0,5\n1,0\n"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-be", "gzip"])

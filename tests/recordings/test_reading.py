@@ -73,7 +73,7 @@ def test_times_as_clocks_write_them(
             read(tmp_path, "\n".join([f"{heading};theta", *rows, "noon;4"]))
 
 
-LISTS = {"t": [0, 1], "q": [[1, 0, 0, 0], [0.8, 0.6, 0, 0]]}
+LISTS: dict[str, Any] = {"t": [0, 1], "q": [[1, 0, 0, 0], [0.8, 0.6, 0, 0]]}
 
 
 @pytest.mark.parametrize(
@@ -240,13 +240,14 @@ def test_both_functions_take_the_same_options() -> None:
             pytest.approx(0.4),
             101,
         )
-    for bad, said in (
+    wrong: list[tuple[dict[str, Any], str]] = [
         ({"dt": -1}, "dt must be > 0, got -1"),
         ({"dt": 1, "fps": 2}, "fps is 1/dt: give one of them"),
         ({"t_min": 9}, "no row has a time from 9 to inf: t goes from 0 to 2"),
         ({"t_min": 2, "t_max": 1}, "t_min must be < t_max, got 2 and 1"),
         ({}, "t must be given, or dt or fps"),
-    ):
+    ]
+    for bad, said in wrong:
         with pytest.raises(LagtopError, match=said):
             compare(MOTION, None if not bad else T, theta=ANGLES.theta, **bad)
 
