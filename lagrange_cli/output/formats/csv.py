@@ -17,44 +17,47 @@ class Csv(Format):
     """A line per row; a missing value is an empty cell."""
 
     only_rows = True
+    separator = b","
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return lines."""
         if len(columns) == 1 and not isinstance(columns[0], Sequence):
-            return array_lines(columns[0], b"" if len(names) > 1 else b'""')  # no line is empty
-        lines = zip(*map(_cells, columns), strict=True)
-        return b"".join((b",".join(line) or b'""') + b"\n" for line in lines)  # no line is empty
+            return self.lines(columns[0], b"" if len(names) > 1 else b'""')  # no line is empty
+        lines = zip(*map(self._cells, columns), strict=True)
+        return b"".join((self.separator.join(line) or b'""') + b"\n" for line in lines)
 
     def header(self, names: Sequence[str]) -> bytes:
         """Return a line of names."""
-        return f"{','.join(map(csv_text, names))}\n".encode()
+        return self.separator.join(map(self.cell, names)) + b"\n"
 
+    def cell(self, value: Any) -> bytes:
+        """Return the cell of a value."""
+        return csv_text(value).encode()
 
-def array_lines(column: Array, missing: bytes = b"") -> bytes:
-    """Return an array of numbers as CSV, a line per row and a `missing` cell for NaN."""
-    import numpy as np
-    import orjson
+    def lines(self, numbers: Array, missing: bytes = b"") -> bytes:
+        """Return an array of numbers, a line per row and a `missing` cell for NaN."""
+        import numpy as np
+        import orjson
 
-    rows = column.reshape(len(column), -1)
-    text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
-    if b"n" in text:
-        text = text.replace(b"null", missing)
-    # Commas at the ends of rows are replaced in place: a search for `],[` takes twice as long.
-    view = np.frombuffer(text, dtype=np.uint8)
-    commas = np.flatnonzero(view == ord(","))
-    view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
-    view[-1] = ord("\n")
-    return bytes(view[1:])
+        rows = numbers.reshape(len(numbers), -1)
+        text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
+        if b"n" in text:
+            text = text.replace(b"null", missing)
+        # Commas at the ends of rows are replaced in place: a search for `],[` takes twice as long.
+        view = np.frombuffer(text, dtype=np.uint8)
+        commas = np.flatnonzero(view == ord(","))
+        view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
+        view[-1] = ord("\n")
+        return bytes(view[1:])
 
-
-def _cells(column: Any) -> Sequence[bytes]:
-    """Return the cells of columns, a text per row."""
-    if isinstance(column, Sequence):
+    def _cells(self, column: Any) -> Sequence[bytes]:
+        """Return the cells of columns, a text per row."""
+        if not isinstance(column, Sequence):
+            return self.lines(column).split(b"\n")[:-1]
         if not {*map(type, column)} <= {str, NoneType}:
-            return [csv_text(x).encode() for x in column]
-        cells = {x: csv_text(x).encode() for x in {*column}}  # a sweep repeats few texts
+            return [*map(self.cell, column)]
+        cells = {x: self.cell(x) for x in {*column}}  # a sweep repeats few texts
         return [cells[x] for x in column]
-    return array_lines(column).split(b"\n")[:-1]
 
 
 FORMAT = Csv()

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...arithmetic.text import NumberText
-from ..text import csv_text
-from .base import Columns
-from .csv import Csv, array_lines
+from .csv import Csv
+
+if TYPE_CHECKING:
+    from ...arithmetic.types import Array
 
 _MARKS = bytes.maketrans(b",.", b";,")
 
@@ -16,28 +16,18 @@ _MARKS = bytes.maketrans(b",.", b";,")
 class CsvWithCommas(Csv):
     """A line per row; a text with a semicolon is quoted, and so are all texts with a comma."""
 
-    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return lines."""
-        lines = zip(*map(_cells, columns), strict=True)
-        return b"".join((b";".join(line) or b'""') + b"\n" for line in lines)
+    separator = b";"
 
-    def header(self, names: Sequence[str]) -> bytes:
-        """Return a line of names."""
-        return f"{';'.join(map(_text, names))}\n".encode()
+    def cell(self, value: Any) -> bytes:
+        """Return the cell of a value."""
+        text = super().cell(value)
+        if isinstance(value, float | NumberText):
+            return text.replace(b".", b",")
+        return b'"%b"' % text if b";" in text and not text.startswith(b'"') else text
 
-
-def _cells(column: Any) -> Sequence[bytes]:
-    """Return the cells of columns, a text per row."""
-    if isinstance(column, Sequence):
-        return [_text(x).encode() for x in column]
-    return array_lines(column).translate(_MARKS).split(b"\n")[:-1]
-
-
-def _text(value: Any) -> str:
-    text = csv_text(value)
-    if isinstance(value, float | NumberText):
-        return text.replace(".", ",")
-    return f'"{text}"' if ";" in text and not text.startswith('"') else text
+    def lines(self, numbers: Array, missing: bytes = b"") -> bytes:
+        """Return an array of numbers, a line per row and a `missing` cell for NaN."""
+        return super().lines(numbers, missing).translate(_MARKS)
 
 
 FORMAT = CsvWithCommas()
