@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 from ..arithmetic.text import NumberText, uncertain_text
@@ -16,7 +16,7 @@ from ..solver.solve import Motion
 from ..top.given import Given
 from ..top.inputs import DECLARED
 from ..top.units import Units
-from .spread import Spread
+from .spread import Spread, Uncertainty
 
 NO_SPREAD = "motions a standard deviation away lack it, or it is beyond the doubles"
 
@@ -43,12 +43,13 @@ class UncertainRecord(NamedTuple):
     """The numbers that do not change in proportion to the inputs."""
 
 
-def uncertain_record(found: Given, motion: Motion, record: Mapping[str, Any]) -> UncertainRecord:
-    """Return a record with the uncertainties of its numbers."""
-    spread = spread_of(found, motion)
+def uncertain_record(
+    motion: Motion, record: Mapping[str, Any], uncertainty: Callable[[str], Uncertainty | None]
+) -> UncertainRecord:
+    """Return a record with the uncertainties of its numbers, which a function returns by key."""
     numbers = [x for x, y in record.items() if x not in TEXT_KEYS and not isinstance(y, str)]
     present = [x for x in numbers if record[x] is not None]
-    known = {x: y for x in present if (y := spread.number(x)) and math.isfinite(y.std)}
+    known = {x: y for x in present if (y := uncertainty(x)) and math.isfinite(y.std)}
     stds = {x: y.std for x, y in known.items()}
     texts = {
         name: NumberText(uncertain_text(_to_the_last_digit(motion, name, record[name], std), std))

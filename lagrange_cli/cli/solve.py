@@ -35,6 +35,11 @@ from .app import complain
 @opt.digits(opt.MOST_RECORD_DIGITS)
 @opt.certify
 @opt.option("--budget", metavar="KEY", help="Print each input's share of the uncertainty of KEY.")
+@opt.option(
+    "--samples",
+    type=opt.count(10**6),
+    help="Take uncertainties from N random tops (normal inputs).",
+)
 @opt.output("table")
 def solve_command(
     top: opt.TopOptions,
@@ -43,6 +48,7 @@ def solve_command(
     digits: int | None,
     certify: bool,
     budget: str | None,
+    samples: int | None,
     out: Output,
 ) -> None:
     """Compute the periods, turning points and mean rates of one top.
@@ -59,7 +65,13 @@ def solve_command(
     units = found.units(radians=top.radians)
     if get is not None:
         get = _selected(get, units)
-    if found.stds or budget is not None or any(key.endswith("_std") for key in get or ()):
+    opt.exclude(budget=budget, samples=samples)
+    if (
+        found.stds
+        or budget is not None
+        or samples
+        or any(key.endswith("_std") for key in get or ())
+    ):
         from . import uncertainty
 
         uncertainty.check(found, digits=digits, derivation=derivation, certify=certify)
@@ -83,7 +95,7 @@ def solve_command(
             more["summary"] = summary(record, motion.facts, units.named)
     shown: dict[str, Any] = {}
     if found.stds:
-        record, shown = uncertainty.with_stds(found, motion, record)
+        record, shown = uncertainty.with_stds(found, motion, record, samples)
     if get is not None:
         _write_selected(motion, record, shown, get, out)
         return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from ..account.spread import ColumnSpread
+from ..account.spread import ColumnSpread, Uncertainty
 from ..account.uncertain import NO_SPREAD, budget, spread_of, uncertain_record
 from ..errors import LagtopError
 from ..output.destination import Output
@@ -14,6 +14,9 @@ from ..top.given import Given
 from ..top.units import Units
 from .app import complain
 from .shared import write_report
+
+_ROUNDING = 1e-13
+"""Largest error of a number of a sweep over its size."""
 
 
 def check(found: Given, **options: object) -> None:
@@ -26,25 +29,60 @@ def check(found: Given, **options: object) -> None:
 
 
 def with_stds(
-    found: Given, motion: Motion, record: Mapping[str, Any]
+    found: Given, motion: Motion, record: Mapping[str, Any], samples: int | None = None
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return a record with the keys KEY_std, and the values as `value(uncertainty)` for people.
 
-    A warning names the numbers that have none, and those with a doubtful one.
+    They are the spread of motions beside the motion or, with `samples`, of random tops.  A warning
+    names the numbers that have none, and those with a doubtful one.
     """
-    record, texts, lost, unfair = uncertain_record(found, motion, record)
+    drawn = _of_random_tops(found, motion, [*record], samples) if samples else None
+    uncertainty = drawn.get if drawn is not None else spread_of(found, motion).number
+    record, texts, lost, unfair = uncertain_record(motion, record, uncertainty)
     if lost:
-        complain(f"Warning: no uncertainty of {', '.join(lost)}: {NO_SPREAD}")
-    warn_of_unfair(unfair)
+        why = "all random tops lack it" if samples else NO_SPREAD
+        complain(f"Warning: no uncertainty of {', '.join(lost)}: {why}")
+    warn_of_unfair(unfair, "use --samples 10000")
     return record, texts
 
 
-def warn_of_unfair(names: Collection[str], ending: str = "") -> None:
+def _of_random_tops(
+    found: Given, motion: Motion, keys: Sequence[str], samples: int
+) -> dict[str, Uncertainty]:
+    """Return the standard deviations of the numbers of random tops with normal inputs.
+
+    A warning says how many tops lack a number.
+    """
+    import numpy as np  # start-up
+
+    from ..sweeps.records import TEXTS, sweep
+
+    rng, numbers = np.random.default_rng(0), [key for key in keys if key not in TEXTS]
+    given: dict[str, Any] = {
+        x: y if isinstance(y, str) else float(y) for x, y in motion.top.given.items()
+    }
+    given |= {x: given[x] + std * rng.standard_normal(samples) for x, std in found.stds.items()}
+    radians = any(key.endswith("_rad") for key in keys)
+    results = sweep(keys=[*numbers, "error"], radians=radians, **given)
+    possible = np.array([error is None for error in results["error"]])
+    there = {x: y[possible & np.isfinite(y)] for x, y in results.items() if x in numbers}
+    tops = int(possible.sum())
+    few = [f"{tops - y.size} lack {x}" for x, y in there.items() if 0 < y.size < tops]
+    if lost := [f"{samples - tops} are impossible"] * (tops < samples) + few:
+        complain(f"Warning: of {samples} random tops {', '.join(lost)}")
+    found_stds = {x: (float(y.std()), float(np.abs(y).max())) for x, y in there.items() if y.size}
+    return {
+        x: Uncertainty(std if std > _ROUNDING * size else 0.0, {}, fair=True)
+        for x, (std, size) in found_stds.items()
+    }
+
+
+def warn_of_unfair(names: Collection[str], remedy: str, ending: str = "") -> None:
     """Warn of results that do not change in proportion to the inputs."""
     if names:
         complain(
             f"Warning: uncertainties of {', '.join(names)} are rough{ending}: motions two standard "
-            "deviations away are not spread twice as far as those at one; use random tops"
+            f"deviations away are not spread twice as far as those at one; {remedy}"
         )
 
 
@@ -61,11 +99,12 @@ def column_stds(found: Given, motion: Motion, names: Sequence[str]) -> ColumnSpr
 def warn_if_unfair(stds: ColumnSpread | None) -> None:
     """Warn of columns that do not change in proportion to the inputs, after the last row."""
     if stds and stds.unfair:
-        warn_of_unfair(stds.unfair, f" from t = {min(stds.unfair.values(), key=abs):g}")
+        since = f" from t = {min(stds.unfair.values(), key=abs):g}"
+        warn_of_unfair(stds.unfair, "draw random tops in Python", since)
 
 
 def write_budget(found: Given, motion: Motion, key: str, units: Units, out: Output) -> None:
     """Write the budget of a key.  Raises AbsentError."""
     report, is_fair = budget(found, motion, key, units)
-    warn_of_unfair([] if is_fair else [key])
+    warn_of_unfair([] if is_fair else [key], "use --samples 10000 in place of --budget")
     write_report(out, lambda: report)

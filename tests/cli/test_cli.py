@@ -341,7 +341,7 @@ def test_options_stand_in_the_order_body_start_output(lagtop: Lagtop) -> None:
     shown = lagtop("solve", "--help").stdout.partition("Options:")[2]
     options = re.findall(r"^  (?:-\w, )?(--\S+)", shown, re.MULTILINE)
     inputs = "--m --A --A-cm --C --s --g --r0 --phidot0 --spin-period --theta0 --thetadot0"
-    own = "--get --derivation --digits --certify --budget --output --format --help"
+    own = "--get --derivation --digits --certify --budget --samples --output --format --help"
     assert options == f"{inputs} --psidot0 --rad {own}".split()
     assert " ".join(shown.split()).count("rad per unit of time") == 4
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import random
+import re
 from pathlib import Path
 
 import pytest
@@ -220,6 +221,18 @@ def test_a_number_that_is_not_in_proportion_is_reported(
     assert (f"uncertainties of {keys.split(',', maxsplit=1)[0]}" in result.stderr) == misled, (
         result.stderr
     )
+
+
+def test_random_tops_have_about_the_same_uncertainties(lagtop: Lagtop) -> None:
+    line = ["solve", "--m", "1587(2)", "--psidot0=-3(0.1)", "--r0", "50(1)", "--format", "json"]
+    near, drawn = (json.loads(lagtop(*line, *x).stdout) for x in ([], ["--samples", 10000]))
+    assert drawn.keys() == near.keys()
+    stds = [key for key in near if key.endswith("_std") and near[key] is not None]
+    assert len(stds) > 30
+    for key in stds:
+        assert drawn[key] == pytest.approx(near[key], rel=0.03, abs=1e-13), key
+    beyond = lagtop("solve", "--theta0", "0.1(1)", "--samples", 100, "--get", "k_std")
+    assert re.search("of 100 random tops 1[0-9] are impossible", beyond.stderr)
 
 
 def test_tables_report_rough_uncertainties_and_those_of_waves(lagtop: Lagtop) -> None:
