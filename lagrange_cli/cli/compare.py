@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
 from ..file_bytes import shown_path
 from ..output.terminal import one_line
@@ -14,10 +15,18 @@ from .app import complain
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..comparison.compare import Convergence
+    from ..comparison.convergence import Convergence
     from ..output.destination import Output
     from ..output.report import Report
     from ..recordings.options import Reading
+
+
+def _parse_steps(text: str) -> list[float]:
+    """Return comma-separated numbers or ratios such as 1/60."""
+    parts = [x.partition("/") for x in text.split(",")]
+    if any(slash and parse_number(y) == 0 for _, slash, y in parts):
+        raise LagtopError(f"must not divide by 0, got {quoted(text)}")
+    return [float(parse_number(x) / (parse_number(y) if y else 1)) for x, _, y in parts]
 
 
 @opt.command(
@@ -30,8 +39,8 @@ if TYPE_CHECKING:
 @opt.recording
 @opt.option(
     "--step-sizes",
-    type=opt.Parsed("X,...", opt.parse_numbers),
-    help="Step sizes, for the order of convergence.",
+    type=opt.Parsed("X,...", _parse_steps),
+    help="Step sizes such as 0.01 or 1/60, for the order of convergence.",
 )
 @opt.option(
     "--max-error",
@@ -75,7 +84,9 @@ def compare_command(
         results, found = compared(motion, trajectories, max_error, step_sizes)
         if top.scene is None and not top.inputs:
             complain("Warning: no scene and no inputs: compared with the worked example")
-        return comparison_report(motion, results, found, max_error)
+        return comparison_report(
+            motion, results, found, max_error, scene=top.scene, overrides=top.inputs
+        )
 
     def draw(report: Report) -> Figure:
         from ..plot.reports import draw_errors

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -12,53 +12,111 @@ from ..arithmetic import rotations
 from ..arithmetic.types import Array
 from ..errors import arg
 from ..recordings.frames import alignment_of, frames_of, in_frames, turn_of
+from ..recordings.misreadings import Misreading
 from ..recordings.options import Alignment
 from ..recordings.recording import Recording
 from .differences import ExactMotion, errors, sizes, start_of
-from .mistakes import Cause, mistakes
+from .engines import engine_errors
+from .mistakes import Cause, clocks, estimated_tops, is_near, other_tops, reversed_tops, written
+from .numbers import Estimate
 
 EXPLAINS = 0.1
 """Largest share of the error that may remain if a cause explains it."""
 _PART = 0.3
-"""Largest error that may remain if a cause explains a part."""
-_AS_GOOD, _ROUNDING = 2.0, 1e-9
-"""Factor between the remaining errors of two causes, and least error, that make no difference."""
+"""Largest error that may remain if a cause explains most of it."""
+_AS_GOOD, _COMPETES, _ROUNDING = 2.0, 3.0, 1e-9
+"""Factors between the remaining errors of causes that explain as much, and a least error."""
+_SURE = 1e-3
+"""Relative residual of an axis below which it moves like that of a top."""
+_CLOSE = 0.02
+"""Relative difference of a and b between a trajectory and the top that explains most of it."""
 _FEW, _SOME, _LEAST = 12, 300, 3
 """Rows on which causes are tried first and then, and the least number of rows."""
-_MOST_SHIFTS = 500
+_MOST_SHIFTS, _MOST_NAMES = 500, 3
 _NONE = Cause("")
+_RATES, _UNITS = {"rates", "angle_rates"}, {"clock", "rates"}
 
 
-def likely_causes(exact: ExactMotion, run: Recording, limit: float) -> list[Cause]:
-    """Return the cause of an error, and another one that leaves as little, if there is one.
+def likely_causes(
+    exact: ExactMotion, run: Recording, limit: float, seen: Estimate | None
+) -> list[Cause]:
+    """Return the cause of an error, and others that leave as little, if there are any.
 
     A cause explains an error if it removes nine tenths.  Of those that bring the error below the
     limit, return the simplest that leaves about as little as the best.  If there is none, try two
-    causes at once, each of which must remove nine tenths.  Otherwise return the best cause, which
-    explains a part and spoils nothing.
+    causes at once, each of which must remove nine tenths, and causes of the attitude and of the
+    rates one by one.  Otherwise return the causes that remove nine tenths.
     """
-    search = _Search(exact, run, limit)
+    search = _Search(exact, run, limit, seen)
     if np.isfinite(search.errors(_NONE, _SOME)[0]).sum() < _LEAST:
         return []
-    found = next(filter(None, (search.best(*x) for x in search.groups())), [])
+    found = search.whole() or search.by_channel()
     if len(found) == 1 and found[0].align and found[0].align.frame != run.align.frame:
         mirrored = search.aligned(search.mistakes, in_other=False)
         found = search.best([*found, *mirrored], limit)
-    parts = (x for x in next(search.groups())[0] if not search.spoils(x))
-    return found or search.best(parts, _PART)
+    return found or search.engines() or search.partial()
+
+
+def remedy_of(cause: Cause, exact: ExactMotion, run: Recording, limit: float) -> str:
+    """Return the arguments that take a cause into account, each tried as it is printed."""
+    other = cause.misreading
+    also = other.remedy if other and not (cause.align and other.kind == "frame") else ""
+    enough, exact = max(limit, _AS_GOOD * cause.error), cause.exact or exact
+
+    def works(align: Alignment) -> bool:
+        few = cause._replace(align=align).undone(run).few(_SOME)
+        return bool(np.fmax.reduce(errors(exact, few), axis=None) <= enough)
+
+    words = [arg("align", x) for x in cause.words if works(x)]
+    return " or ".join(" and ".join(filter(None, (x, also))) for x in words or [""])
 
 
 class _Search:
-    def __init__(self, exact: ExactMotion, run: Recording, limit: float) -> None:
+    def __init__(
+        self, exact: ExactMotion, run: Recording, limit: float, seen: Estimate | None
+    ) -> None:
         self.run, self.given, self.limit = run, exact, limit
-        self.mistakes = mistakes(exact.motion.top, run)
-        self.some = cache(lambda undo: (undo(run) if undo else run).few(_SOME))
-        """Returns some rows of the trajectory as it was meant."""
+        self.seen = seen if seen and seen.axis.residual < _PART else None
+        self.top = exact.motion.top
+        self.written = written(run)
+        self.tops = other_tops(self.top, left=run.align.left, seen=self.seen)
+        self.kept: dict[int, tuple[Misreading | None, Recording]] = {}
+        units = [x for x in self.written if x.misreading and x.misreading.kind in _UNITS]
+        others = [x for x in self.written if x not in units]
+        self.early = [*units, *clocks(), *(x for x in self.tops if x.name.startswith("r0 has"))]
+        self.late = [*(x for x in self.tops if x not in self.early), *others]
         self.enough = min(EXPLAINS * self.error(_NONE, _SOME), _PART)
+        is_named = self.seen and any(self.is_close(x) for x in self.tops)
+        trusted = self.seen if self.seen and self.seen.is_trusted and not is_named else None
+        self.estimated = [*estimated_tops(self.top, trusted)] if trusted else []
+
+    def is_close(self, cause: Cause) -> bool:
+        """Return whether the axis of another top moves like the one that is seen."""
+        return cause.exact is not None and is_near(cause.exact.motion.top, 1.0, self.seen, _CLOSE)
+
+    @property
+    def mistakes(self) -> list[Cause]:
+        """All causes but alignments, the simplest first."""
+        return [*self.early, *self.late]
+
+    def some(self, misreading: Misreading | None) -> Recording:
+        """Return some rows of the trajectory as it was meant."""
+        if (key := id(misreading)) not in self.kept:
+            run = self.run
+            if misreading is None:
+                run = run.few(_SOME)
+            elif misreading.kind == "rows":
+                run = misreading.undo(run).few(_SOME)
+            else:
+                run = misreading.undo(run.few(_SOME))
+            self.kept[key] = misreading, run
+        return self.kept[key][1]
 
     def errors(self, cause: Cause, most: int = 0) -> Array:
         """Return the errors with a cause corrected, on at most `most` rows or on all."""
-        run = self.some(cause.undo).few(most) if most else cause.undone(self.run)
+        if not most:
+            return errors(cause.exact or self.given, cause.undone(self.run))
+        run = self.some(cause.misreading).few(most)
         return errors(cause.exact or self.given, run.read_as(align=cause.align or run.align))
 
     def error(self, cause: Cause, most: int = 0) -> float:
@@ -82,24 +140,87 @@ class _Search:
         whole = [x._replace(error=self.error(x)) for x in [*good[:1], *others[:1]]]
         return [x for x in whole if x.error <= enough]
 
+    def whole(self) -> list[Cause]:
+        """Return the causes that bring the error below the limit."""
+        return next(filter(None, (self.best(*x) for x in self.groups())), [])
+
     def groups(self) -> Iterator[tuple[list[Cause], float]]:
         """Yield groups of causes, and the greatest error that each group may leave.
 
         A group is tried if the one before explains nothing.
         """
-        tops = [x for x in self.mistakes if x.exact]
-        early = 1 + self.mistakes.index(tops[0])
         same, other = (self.aligned([_NONE], in_other) for in_other in (False, True))
-        yield [*same, *self.mistakes[:early], *other, *self.mistakes[early:]], self.limit
-        if (self.errors(_NONE, _SOME)[0] > self.limit).any():  # not only the rates are wrong
-            span, two = float(np.ptp(self.run.t)), min(EXPLAINS * self.enough, self.limit)
-            near = max(self.given.motion.T_nutation or 0.0, 10 * span / self.run.t.size)
-            yield self.shifts(near), self.limit
-            yield self.shifts(span), self.limit
-            yield self.turned(), two
-            yield self.aligned(self.mistakes, in_other=False), two
-            yield self.aligned(self.mistakes, in_other=True), two
-            yield [x.with_other(y) for x in self.mistakes if not x.exact for y in tops], two
+        yield [*same, *self.early, *other, *self.late], self.limit
+        if not (self.errors(_NONE, _SOME)[0] > self.limit).any():
+            return  # only the rates are wrong
+        yield self.estimated, self.limit
+        span, two = float(np.ptp(self.run.t)), min(EXPLAINS * self.enough, self.limit)
+        near = max(self.given.motion.T_nutation or 0.0, 10 * span / self.run.t.size)
+        yield self.shifts(near), self.limit
+        yield self.shifts(span), self.limit
+        yield self.turned(), two
+        aligned = (self.aligned(self.mistakes, in_other) for in_other in (False, True))
+        yield [y for x in aligned for y in x] + reversed_tops(self.tops), two
+        yield [*self.pairs()], two
+
+    def pairs(self) -> Iterator[Cause]:
+        """Yield a unit or an option that was misread with another one, or with another top."""
+        units = [x for x in self.early if not x.exact]
+        others = [x for x in self.written if x not in units]
+        yield from (x.with_other(y) for x in units for y in others)
+        for x in [*units, *others]:
+            of_time = x.misreading and x.misreading.kind == "clock"
+            tops = self.tops
+            if of_time and self.seen:
+                clock = abs(float(np.ptp(self.run.t) / np.ptp(self.some(x.misreading).t)))
+                left = self.run.align.left
+                tops = other_tops(self.top, left=left, clock=1 / clock, seen=self.seen)
+            yield from (x.with_other(y) for y in tops)
+
+    def by_channel(self) -> list[Cause]:
+        """Return a cause of the attitude, and one of the rates with that corrected."""
+        given = {x: y for x, y in self.run.given.items() if x not in _RATES}
+        if len(given) == len(self.run.given) or not given.keys() - {"t", "missing"}:
+            return []
+        bare = _Search(self.given, self.run._replace(given=given), self.limit, self.seen)
+        if bare.error(_NONE, _SOME) <= self.limit:
+            return []
+        of_rates = [x for x in self.written if x.misreading and x.misreading.kind != "clock"]
+        for cause in bare.whole():
+            both = [cause.with_other(x) for x in of_rates]
+            if found := [x for x in both if self.error(x, _SOME) <= self.limit]:
+                return [x._replace(error=self.error(x)) for x in found[:1]]
+        return []
+
+    def engines(self) -> list[Cause]:
+        """Return the engine that moves no top and explains the first rows."""
+        seen = self.run.few(4 * _SOME).observed()
+        t, turns = seen.t, seen.quaternion
+        is_whole = turns is not None and np.isfinite(turns).all() and (np.diff(t) > 0).all()
+        if turns is None or not is_whole or t.size < _FEW:
+            return []
+        most = self.limit if self.seen and self.seen.axis.residual < _SURE else math.inf
+        found = [
+            Cause(name, error=error)
+            for name, error, right in engine_errors(self.top, t, turns)
+            if error <= min(EXPLAINS * right, most) and right > self.limit
+        ]
+        return sorted(found, key=lambda x: x.error)[:1]
+
+    def partial(self) -> list[Cause]:
+        """Return the causes that remove nine tenths of the error, but do not contradict a and b."""
+        tops = [*self.tops, *self.estimated]
+        if self.seen and self.seen.is_trusted:
+            tops = [x for x in tops if self.is_close(x)]
+        others = [x for x in self.mistakes if not x.exact]
+        causes = [*self.aligned([_NONE], in_other=False), *others, *tops]
+        found = [x for x in causes if self.error(x, _FEW) <= self.enough and not self.spoils(x)]
+        found = [x._replace(error=self.error(x, _SOME)) for x in found]
+        least = min((x.error for x in found), default=0.0)
+        kept = [x for x in found if x.error <= min(self.enough, _COMPETES * least)]
+        kept = [x._replace(error=self.error(x)) for x in kept]
+        kept = [x for x in kept if x.error <= self.enough]
+        return kept if len(kept) <= _MOST_NAMES else []
 
     def aligned(self, causes: Iterable[Cause], in_other: bool) -> list[Cause]:
         """Return each cause with other zeros of the angles or of the clock, perhaps in other axes.
@@ -108,7 +229,7 @@ class _Search:
         """
         found, given = [], self.run.align
         for cause in causes:
-            run, exact = self.some(cause.undo), cause.exact or self.given
+            run, exact = self.some(cause.misreading), cause.exact or self.given
             for time in sorted({given.time, given.time or bool(self.run.t[0])}):
                 align: Alignment | None = run.align._replace(time=time)
                 if in_other:
@@ -126,7 +247,8 @@ class _Search:
         if space is None or body is None:
             return []
         turns = f"space is turned by {turn_of(space)}, and that of the body by {turn_of(body)}"
-        return [Cause(f"the frame of {turns}", partial(in_frames, space=space, body=body))]
+        name, undo = f"the frame of {turns}", partial(in_frames, space=space, body=body)
+        return [Cause(name, Misreading(name, undo))]
 
     def shifts(self, reach: float) -> list[Cause]:
         """Return the shift of the clock, at most about `reach`, that explains most."""
@@ -146,7 +268,8 @@ class _Search:
             shifts = best + step * np.arange(-count, count + 1.0)
             best = float(shifts[np.argmin(np.nan_to_num(error(shifts), nan=np.inf))])
             count = 10
-        return [Cause(f"the clock is shifted by {best:.5g}", partial(Recording.timed, shift=best))]
+        name, undo = f"the clock is shifted by {best:.5g}", partial(Recording.timed, shift=best)
+        return [Cause(name, Misreading(name, undo, kind="clock"))]
 
 
 def _seen_in(exact: ExactMotion, run: Recording) -> Alignment | None:
@@ -176,5 +299,4 @@ def _named(align: Alignment, exact: ExactMotion, run: Recording) -> Cause:
         names = [f"{align.up} is up and the figure axis is the body's {align.axis} axis"]
     if align.time and not given.time:
         names.append(f"the clock starts at {run.t[0]:.10g}")
-    remedy = " or ".join(arg("align", x) for x in words)
-    return Cause("; ".join(filter(None, names)), align=align, remedy=remedy)
+    return Cause("; ".join(filter(None, names)), align=align, words=tuple(words))

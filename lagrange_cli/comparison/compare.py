@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import repeat
-from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -17,8 +17,11 @@ from ..output.notebook import HasRecord
 from ..recordings.recording import Given, Recording, recording_of
 from ..solver.solve import Motion, solve
 from ..top.top import Top
-from .causes import likely_causes
+from .causes import likely_causes, remedy_of
+from .convergence import Convergence, convergence, named_at_step_0
 from .differences import CONSERVED, ExactMotion, blocks
+from .mistakes import Cause
+from .numbers import Estimate, estimate, sentences
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,12 +37,6 @@ VERDICTS = {
     "lost": "a row is not finite",
 }
 """The verdicts with their meanings; if several apply, the last one."""
-LOST_PHASE, ROUNDING = 0.3, 1e-8
-"""Errors beyond which no order can be measured, and below which an error need not fall."""
-LEAST_ORDER = 0.5
-"""Least order of a method that converges."""
-_RISES, _SPREAD = 1.2, 1.0
-"""Ratio of errors above which a finer step is worse; greatest spread of one method's orders."""
 _SURE = 2.0
 """Largest change of a difference from row to row, in radians, for whole turns to be counted."""
 
@@ -90,6 +87,11 @@ class Comparison(HasRecord):
     Lz_drift: float | None = _key("greatest change of the vertical angular momentum, likewise")
     lost_at: float | None = _key("time of the first row that is not finite")
     order: float | None = _key("order of convergence of all trajectories")
+    order_error: float | None = _key("error from which the order follows: before a phase is lost")
+    a_ratio: float | None = _key("a of the motion of the axis, over that of the top")
+    b_ratio: float | None = _key("b of the motion of the axis, over that of the top")
+    r0_ratio: float | None = _key("the rate of spin, over that of the top")
+    numbers: str | None = _key("what the motion shows of its top, if no cause explains it")
     cause: str | None = _key("the cause of the error")
     explained: str | None = _key("`most likely` if `cause_error` is below the limit, else `partly`")
     cause_error: float | None = _key("greatest error with this cause corrected")
@@ -181,23 +183,50 @@ def compared(
     exact, steps = ExactMotion(motion), step_sizes or repeat(None)
     results = [_measured(exact, *x) for x in zip(runs, steps, strict=False)]
     found = convergence(results, limit) if step_sizes else None
-    for i, (x, run) in enumerate(zip(results, runs, strict=True)):
-        is_wrong = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
-        is_other = found is not None and not found.converges
-        causes = likely_causes(exact, run, limit) if is_wrong and (is_other or not found) else []
-        is_other = is_other or any(y.exact and y.error <= limit for y in causes)
+    pairs = [*zip(results, runs, strict=True)]
+    estimates = [estimate(motion.top, run) if _is_wrong(x, limit) else None for x, run in pairs]
+    if found and step_sizes:
+        found = named_at_step_0(motion.top, found, step_sizes, estimates)
+    is_other = found is not None and not found.converges
+    for i, (x, run) in enumerate(pairs):
+        is_wrong, seen = _is_wrong(x, limit), estimates[i]
+        known, causes = dict[str, Any](), list[Cause]()
+        if is_wrong and (is_other or not found):
+            causes = likely_causes(exact, run, limit, seen)
+            known = _explained(exact, run, limit, seen, causes)
+        is_another = is_other or any(y.exact and y.error <= limit for y in causes)
         slips, is_off = (x.pivot_slip or 0.0) > limit, x.error_start > limit
-        apply = True, is_wrong or slips, is_wrong and is_other, is_off, x.lost_at is not None
-        results[i] = replace(
-            x,
-            verdict=[word for word, it in zip(VERDICTS, apply, strict=True) if it][-1],
-            order=found and found.order,
-            cause="; or ".join(y.name for y in causes) or None,
-            explained=("most likely" if causes[0].error <= limit else "partly") if causes else None,
-            cause_error=max((y.error for y in causes), default=None),
-            remedy=joined((y.remedy for y in causes if y.remedy), " or ") or None,
-        )
+        apply = True, is_wrong or slips, is_wrong and is_another, is_off, x.lost_at is not None
+        verdict = [word for word, it in zip(VERDICTS, apply, strict=True) if it][-1]
+        if found:
+            known |= {"order": found.order, "order_error": found.errors[i]}
+        results[i] = replace(x, verdict=verdict, **known)
     return results, found
+
+
+def _is_wrong(x: Comparison, limit: float) -> bool:
+    return max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
+
+
+def _explained(
+    exact: ExactMotion, run: Recording, limit: float, seen: Estimate | None, causes: list[Cause]
+) -> dict[str, Any]:
+    """Return the keys of causes, and numbers if no cause brings the error below the limit."""
+    known: dict[str, Any] = {}
+    if seen and seen.is_trusted:
+        known = {"a_ratio": seen.a, "b_ratio": seen.b, "r0_ratio": seen.r0}
+    is_whole = bool(causes) and causes[0].error <= limit
+    if causes:
+        remedies = [remedy_of(y, exact, run, limit) for y in causes]
+        known |= {
+            "cause": "; or ".join(y.name for y in causes),
+            "explained": "most likely" if is_whole else "partly",
+            "cause_error": max(y.error for y in causes),
+            "remedy": joined(filter(None, remedies), " or ") or None,
+        }
+    if seen and not is_whole:
+        known["numbers"] = "; ".join(sentences(exact.motion.top, seen)) or None
+    return known
 
 
 def _measured(exact: ExactMotion, run: Recording, step: float | None) -> Comparison:
@@ -256,58 +285,3 @@ def _slope(t: Array, angle: Array) -> float | None:
         return None
     slope = float(np.polyfit((times - times[0]) / span, angle, 1)[0] / span)
     return slope if np.isfinite(slope) else None
-
-
-class Convergence(NamedTuple):
-    """The dependence of the error on the step."""
-
-    errors: Sequence[float]
-    """Greatest error of each trajectory, up to the time at which the first one loses the phase."""
-    sentence: str
-    order: float | None = None
-    """Fitted exponent; None if there are fewer than two errors to fit, or no single order."""
-    converges: bool = True
-    """Whether the error falls with the step, or no error needs to fall."""
-
-
-def convergence(results: Sequence[Comparison], limit: float) -> Convergence | None:
-    """Return how the errors of trajectories fall with their steps, or None for fewer than two.
-
-    The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
-    rad, other than at its start, but over two rows at least.  Rounding errors are left out, because
-    they grow with finer steps.  If the orders between neighbours differ by more than 1, there is no
-    single order.
-    """
-    if len({x.step for x in results}) < 2:
-        return None
-    curves = [
-        (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf))) for x in results
-    ]
-    lost = [int(np.searchsorted(error, LOST_PHASE)) for _, error in curves]
-    until = min((t[i - 1] for i, (t, _) in zip(lost, curves, strict=True) if i), default=np.inf)
-    until = max(until, *(t[:2].max() for t, _ in curves))
-    errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
-    step, error = np.array(sorted((x.step, y) for x, y in zip(results, errors, strict=True))).T
-    rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)
-    if rises.any():
-        i = int(np.argmax(rises))
-        (fine, coarse), (after, before) = step[i : i + 2], error[i : i + 2]
-        how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g} to {fine:g}"
-        why = "the order of the step sizes is wrong, the method varies, or the top is another one"
-        return Convergence(errors, f"The error rises {how}: {why}.", converges=False)
-    if error[0] >= ROUNDING and error[1] < error[0] * (step[1] / step[0]) ** LEAST_ORDER:
-        is_fine = max(errors) <= limit
-        why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
-        said = f"The error does not fall with the step: {why}."
-        return Convergence(errors, said, converges=min(errors) <= limit)
-    usable = (error >= ROUNDING) & (error < LOST_PHASE)
-    if len({*step[usable]}) < 2:
-        usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
-    x, y = np.log(step[usable]), np.log(error[usable])
-    order = float(np.polyfit(x, y, 1)[0]) if len({*x}) > 1 else None
-    if order is None or np.ptp(np.diff(y) / np.diff(x)) > _SPREAD or order < LEAST_ORDER:
-        why = "the errors are too small or too large, or the method varies"
-        said = f"The error falls with the step, but shows no single order of convergence: {why}."
-        return Convergence(errors, said)
-    said = f"The error falls with the step; the order of convergence is {order:.2f}."
-    return Convergence(errors, said, order)

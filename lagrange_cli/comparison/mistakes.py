@@ -1,9 +1,9 @@
-"""Causes of errors: misreadings of a recording, and mistakes in the inputs of a top."""
+"""Causes of errors, and the table of mistakes: each row is another top."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from fractions import Fraction
 from functools import partial
@@ -11,84 +11,188 @@ from typing import Any, NamedTuple
 
 from ..arithmetic import rotations
 from ..errors import LagtopError
-from ..recordings.misreadings import Undo, misreadings
+from ..recordings.misreadings import Misreading, misreadings
 from ..recordings.options import Alignment
 from ..recordings.recording import Recording
 from ..solver.solve import solve
 from ..top.top import Top
 from .differences import ExactMotion
+from .numbers import Estimate, a_and_b
 
 _GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
+_STEPS = {"twice": 2.0, "half": 0.5}
+Changes = dict[str, Any]
+"""The inputs of another top, and turns of its motion (`space`, `body`, `spin`)."""
 
 
 class Cause(NamedTuple):
-    """A cause of errors: an alignment, a way of writing, other inputs, or two of them."""
+    """A cause of errors: a misreading, an alignment, another top, or several of them."""
 
     name: str
-    undo: Undo | None = None
-    """Corrects the recording."""
+    misreading: Misreading | None = None
     exact: ExactMotion | None = None
-    """The motion of the other inputs."""
+    """The motion of another top."""
     align: Alignment | None = None
-    remedy: str = ""
-    """The arguments of `compare` that take the cause into account, marked."""
+    words: tuple[Alignment, ...] = ()
+    """The alignments that may be typed."""
     error: float = math.inf
     """The greatest error without the cause."""
-    of_frame: bool = False
-    """Whether the remedy is an alignment."""
+
+    @property
+    def undo(self) -> Callable[[Recording], Recording] | None:
+        """What corrects the recording, other than an alignment."""
+        return self.misreading and self.misreading.undo
 
     def undone(self, run: Recording) -> Recording:
         """Return the recording as it was meant."""
-        return self.undo(run) if self.undo else run
+        run = self.undo(run) if self.undo else run
+        return run.read_as(align=self.align) if self.align else run
 
     def with_other(self, other: Cause) -> Cause:
-        """Return an alignment or a way of writing, and a cause of another kind, at once."""
+        """Return a misreading or an alignment, and a cause of another kind, at once."""
         name = "; ".join(filter(None, (self.name, other.name)))
-        is_part = self.align is not None and other.of_frame
-        both = self.remedy, "" if is_part else other.remedy
-        remedy = " and ".join(filter(None, both))
-        return Cause(name, self.undo or other.undo, other.exact, self.align, remedy)
+        first, second = self.misreading, other.misreading
+        if first and second:
+            remedy = " and ".join(filter(None, (first.remedy, second.remedy)))
+            undo = partial(_both, first.undo, second.undo)
+            first = first._replace(undo=undo, remedy=remedy)
+        return Cause(
+            name,
+            first or second,
+            self.exact or other.exact,
+            self.align or other.align,
+            self.words or other.words,
+        )
 
 
-def mistakes(top: Top, run: Recording) -> list[Cause]:
-    """Return all mistakes, the simplest first."""
-    written = [
-        (x.kind, Cause(x.name, x.undo, remedy=x.remedy, of_frame=x.kind == "frame"))
-        for x in misreadings(run)
-    ]
-    units = [x for kind, x in written if kind in {"clock", "rates"}]
-    others = [x for kind, x in written if kind not in {"clock", "rates"}]
-    return [*units, *other_tops(top, run), *others]
+def _both(first: Any, second: Any, run: Recording) -> Recording:
+    found: Recording = second(first(run))
+    return found
 
 
-def other_tops(top: Top, run: Recording) -> Iterator[Cause]:
-    """Yield mistakes in the inputs, each with the motion that follows from it."""
-    A, C, r0 = Fraction(top.A), Fraction(top.C), float(top.r0)
+def written(run: Recording) -> list[Cause]:
+    """Return the misreadings of a recording, the simplest first."""
+    return [Cause(x.name, x) for x in misreadings(run)]
+
+
+def clocks() -> Iterator[Cause]:
+    """Yield steps of an engine that are longer or shorter than its times say."""
+    for word, factor in _STEPS.items():
+        name = f"a step of the engine is {word} as long as the times say"
+        undo = partial(Recording.timed, factor=factor)
+        yield Cause(name, Misreading(name, undo, kind="clock"))
+
+
+def other_tops(top: Top, *, left: bool, clock: float = 1.0, seen: Estimate | None) -> list[Cause]:
+    """Return the rows of the table whose a and b are near those of a trajectory.
+
+    The rows are all of them if there is no estimate.  `clock` is the factor between the units of
+    time; `left` says that the frame of the trajectory is left-handed.
+    """
+    found, numbers = [], top.inputs()
+    plain = Top(**numbers)  # A and r0 do not depend on other inputs
+    for name, changed in _inputs(top, left).items():
+        turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
+        with suppress(LagtopError):  # there is no such top
+            other = plain.replace(**changed)
+            if is_near(other, clock, seen) and (turns or other.inputs() != numbers):
+                found.append(Cause(name, exact=ExactMotion(solve(other), **turns)))
+    A, C = Fraction(top.A), Fraction(top.C)
+    faster = {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")}
+    with suppress(LagtopError):
+        twice = plain.replace(A=A / 2, C=(A + C) / 4, **faster)
+        if is_near(twice, clock, seen):
+            name = "the factor 1/2 is missing in the rate of the quaternion"
+            undo = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
+            rates = Misreading(name, undo, kind="rates")
+            found.append(Cause(name, rates, ExactMotion(solve(twice))))
+    return found
+
+
+def reversed_tops(tops: list[Cause]) -> list[Cause]:
+    """Return other tops whose spin has the wrong sign, too."""
+    found = []
+    for x in tops:
+        if x.exact and not x.name.startswith("r0 "):
+            space, body, spin = x.exact.turns
+            top = x.exact.motion.top
+            other = ExactMotion(solve(top.replace(r0=-top.r0)), space, body, -spin)
+            found.append(Cause(f"{x.name}; r0 has the wrong sign", x.misreading, other))
+    return found
+
+
+def is_near(top: Top, clock: float, seen: Estimate | None, share: float = 0.1) -> bool:
+    """Return whether the axis of a top might move like that of a trajectory."""
+    if seen is None:
+        return True
+    (a, b), axis = a_and_b(top), seen.axis
+    a, b = a * clock**2, b * clock
+    share += 3 * axis.residual
+    is_near_a = abs(a - axis.a) <= share * max(a, axis.a) + axis.a_spread
+    off = abs(abs(b) - abs(axis.b))
+    return is_near_a and off <= share * max(abs(b), abs(axis.b)) + axis.b_spread
+
+
+def estimated_tops(top: Top, seen: Estimate) -> Iterator[Cause]:
+    """Yield tops with one input changed as the estimate says."""
+    inputs = top.inputs()
+    for name, key, ratio in (
+        ("m, g or s", "g", seen.a),
+        ("C", "C", seen.b),
+        ("A", "A", seen.b and 1 / seen.b),
+        ("r0", "r0", seen.b),
+    ):
+        if not ratio or not 0 < ratio < math.inf:
+            continue
+        percent = 100 * abs(ratio - 1)
+        said = f"{percent:.{1 if percent > 1 else 3}f} % {'more' if ratio > 1 else 'less'}"
+        said = said if 0.5 < ratio < 2 else f"wrong by a factor of {ratio:.4g}"
+        with suppress(LagtopError):
+            other = Top(**inputs | {key: inputs[key] * ratio})
+            yield Cause(f"{name} is {said}", exact=ExactMotion(solve(other)))
+
+
+def _inputs(top: Top, left: bool) -> dict[str, Changes]:
+    """Return the table: what is wrong, and the inputs as an engine has them."""
+    A, C, r0, psidot = Fraction(top.A), Fraction(top.C), float(top.r0), float(top.psidot0)
     steiner = Fraction(top.m) * Fraction(top.s) ** 2
     tilt, rate = float(top.inputs(radians=True)["theta0_rad"]), float(top.thetadot0)
-    left = " (in a left-handed frame a positive turn is clockwise)" * run.align.left
+    mirror = " (in a left-handed frame a positive turn is clockwise)" * left
     folded, ratio = math.remainder(math.degrees(tilt), math.tau), A / C
     half = rotations.about_z(math.pi)
-    both: dict[str, Any] = {"space": half, "body": half}
-    over: dict[str, Any] = {"space": rotations.product(rotations.HALF_TURN_X, half), "body": half}
-    over |= {"theta0_rad": math.pi - tilt, "psidot0": -top.psidot0, "thetadot0": -rate}
-    inputs: dict[str, dict[str, Any]] = {
-        f"r0 has the wrong sign{left}": {"r0": -top.r0},
-        "the gyroscopic term is left out of Euler's equations (as if C = A)": {"C": top.A},
+    both: Changes = {"space": half, "body": half}
+    over: Changes = {"space": rotations.product(rotations.HALF_TURN_X, half), "body": half}
+    over |= {"theta0_rad": math.pi - tilt, "psidot0": -psidot, "thetadot0": -rate}
+    euler = "the gyroscopic term is left out"
+    return {
+        f"r0 has the wrong sign{mirror}": {"r0": -top.r0},
+        f"{euler} of Euler's equations (as if C = A)": {"C": top.A},
+        f"{euler} about the centre of mass, as engines do (as if C = A - m s^2)": {
+            "C": A - steiner
+        },
         "the gyroscopic term has the wrong sign (as if C = 2A - C)": {"C": 2 * A - C},
         "the gyroscopic term is halved (as if C = (A + C)/2)": {"C": (A + C) / 2},
+        "gravity acts twice": {"g": 2 * top.g},
+        "gravity is halved": {"g": top.g / 2},
+        "g is that of the Moon": {"g": Fraction(162) if top.g > 100 else Fraction(162, 100)},
         "A about the pivot was taken as A about the centre of mass (A + m s^2)": {"A": A + steiner},
         "A about the centre of mass was taken as A about the pivot (A - m s^2)": {"A": A - steiner},
         "r0 in radians was taken as degrees": {"r0": math.radians(r0)},
         "r0 in degrees was taken as radians": {"r0": math.degrees(r0)},
         "r0 in radians was taken as rpm": {"r0": r0 * math.pi / 30},
         "r0 in rpm was taken as radians": {"r0": r0 * 30 / math.pi},
-        "r0 was taken as the gimbal's rate phi'": {"r0": r0 + float(top.psidot0) * math.cos(tilt)},
+        "r0 was taken as the gimbal's rate phi'": {"r0": r0 + psidot * math.cos(tilt)},
+        "the spin r0 is about the vertical": {
+            "r0": r0 * math.cos(tilt),
+            "psidot0": psidot + r0,
+        },
         "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
         "psidot0 is left out (as if it were 0)": {"psidot0": 0},
         "thetadot0 is left out (as if it were 0)": {"thetadot0": 0},
         "thetadot0 has the wrong sign": {"thetadot0": -rate},
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
+        "theta0 is doubled": {"theta0_rad": 2 * tilt},
+        "theta0 is halved": {"theta0_rad": tilt / 2},
         **{
             f"g is {g} (or m or s is wrong by the same factor)": {"g": Fraction(g)}
             for g in _GRAVITY
@@ -103,6 +207,9 @@ def other_tops(top: Top, run: Recording) -> Iterator[Cause]:
             "theta0_rad": math.pi / 2 - tilt,
             "thetadot0": -rate,
         },
+        "theta0 and its rate are measured from the horizontal": {
+            "theta0_rad": math.pi / 2 - tilt,
+        },
         "g points upwards": over,
         # A top with the same a and b, which need be no body: its spin differs by a constant rate.
         "A and C are exchanged": {
@@ -112,12 +219,3 @@ def other_tops(top: Top, run: Recording) -> Iterator[Cause]:
             "spin": float(Fraction(top.r0) * (1 - ratio)),
         },
     }
-    for name, changed in inputs.items():
-        turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
-        with suppress(LagtopError):  # there is no such top
-            yield Cause(name, exact=ExactMotion(solve(top.replace(**changed)), **turns))
-    faster = {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")}
-    with suppress(LagtopError):
-        twice = ExactMotion(solve(top.replace(A=A / 2, C=(A + C) / 4, **faster)))
-        undo = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
-        yield Cause("the factor 1/2 is missing in the rate of the quaternion", undo, twice)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from ..file_bytes import shown_path
 from ..output.report import Field, Report, fields_of, short
 from ..output.terminal import one_line
 from ..solver.solve import Motion
-from .compare import COMPARISON_KEYS, LIMIT, Comparison, Convergence
+from .compare import COMPARISON_KEYS, LIMIT, Comparison
+from .convergence import Convergence
 
 _WRONG_NORM, _FEW = 1e-6, 0.03
 """The least distance of a norm from 1 that is said, and the largest share of rows that are few."""
@@ -23,19 +24,27 @@ _COLUMNS = (
     Field("rows", "rows"),
     Field("error_max", "max error", short),
     Field("error_final", "at the end", short),
+    Field("order_error", "for the order", short),
     Field("energy_drift", "energy", short),
 )
 """The columns of the table."""
 
 
 def comparison_report(
-    motion: Motion, results: Sequence[Comparison], found: Convergence | None, limit: float = LIMIT
+    motion: Motion,
+    results: Sequence[Comparison],
+    found: Convergence | None,
+    limit: float = LIMIT,
+    *,
+    scene: str | None = None,
+    overrides: Collection[str] = (),
 ) -> Report:
-    """Return the report on trajectories."""
+    """Return the report on trajectories of a top, which a scene and `overrides` of it may name."""
     shown = [x for x in _COLUMNS if any(getattr(row, x.key) is not None for row in results)]
-    inputs = (x.partition("=") for x in motion.top.as_text().split())
+    inputs = (x.split("=", 1) for x in motion.top.as_text().split())
+    given = [x for x in inputs if not scene or x[0].startswith((*overrides,))]
     conditions = {
-        "scene": joined((arg(name, value) for name, _, value in inputs), " "),
+        "scene": joined([*([scene] if scene else ()), *(arg(x, y) for x, y in given)], " "),
         "regime": motion.regime,
         "errors": f"in radians, relative for rates; greatest over all rows; fine up to {limit:g}",
     }
@@ -56,18 +65,41 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
         yield f"The norm of its quaternion or matrix differs from 1 by up to {x.norm_error:.1e}."
     if (slip := x.pivot_slip or 0.0) > limit:
         yield f"The pivot slips: its distance from the centre of mass changes by up to {slip:.1%}."
+    yield from _causes(x, limit, is_right=bool(found and found.converges))
+
+
+def _causes(x: Comparison, limit: float, *, is_right: bool) -> Iterator[str]:
+    """Yield the cause of an error, or else what agrees and what the motion shows."""
+    is_wrong = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
     if x.cause is not None:
-        words = "Partly explained" if x.explained == "partly" else "Most likely cause"
+        words = "Most likely cause" if x.explained == "most likely" else "Probable cause"
         remedy = f" ({marked(x.remedy)})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
         yield Message(f"{words}: {x.cause}{remedy}. {error}.")
     elif rows := _few_rows(x, limit):
         yield rows
-    elif max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit and not (
-        found and found.converges
-    ):
-        hint = ", and compare runs with other step sizes" * (x.verdict == "drifts")
-        yield f"None of the known causes explains the error: check the inputs{hint}."
+    elif is_wrong and not is_right:
+        yield from _channels(x, limit)
+        if x.numbers is None:
+            hint = ", and compare runs with other step sizes" * (x.verdict == "drifts")
+            yield f"None of the known causes explains the error: check the inputs{hint}."
+    if x.numbers is not None and is_wrong and not is_right:
+        yield f"{x.numbers[0].upper()}{x.numbers[1:]}."
+
+
+def _channels(x: Comparison, limit: float) -> Iterator[str]:
+    """Yield which quantities agree if only some are wrong."""
+    names = {"theta": "theta", "phi": "phi", "psi": "psi", "rates": "the rates"}
+    known = {name: getattr(x, f"{key}_error_max") for key, name in names.items()}
+    right = {name: y for name, y in known.items() if y is not None and y <= limit}
+    wrong = [name for name, y in known.items() if y is not None and y > limit]
+    if not right or not wrong:
+        return
+    agree = f"{joined(right, ' and ')} agree{'s' * (len(right) == 1)} to {max(right.values()):.1e}"
+    drifts = [getattr(x, f"{name}_drift", None) for name in wrong]
+    rate = f", by {drifts[0]:.3g} rad per unit of time" if len(wrong) == 1 and drifts[0] else ""
+    verb = "drifts" if rate else ("is" if len(wrong) == 1 else "are") + " wrong"
+    yield f"{agree[0].upper()}{agree[1:]}; only {joined(wrong, ' and ')} {verb}{rate}."
 
 
 def _few_rows(x: Comparison, limit: float) -> str:

@@ -13,12 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 from engines import Array, Body, dop853, wxyz
-from lagtop import Top, compare, solve
+from lagtop import Top, compare
 from scipy.spatial.transform import Rotation
-
-from lagrange_cli.comparison.differences import ExactMotion
-from lagrange_cli.comparison.mistakes import Cause
-from lagrange_cli.recordings.options import Alignment
 
 _BODIES = {
     "slim": (0.35, 8.5e-4, 4e-4, 0.03, 90, 40, 1, 3),
@@ -185,16 +181,6 @@ def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
     assert found.verdict != "fine"
     assert mistake in UNKNOWN if found.cause is None else mistake in found.cause
     assert (found.cause_error or 0) < 1e-5
-
-
-def test_two_causes_are_one() -> None:
-    written = Cause("written", lambda run: run, remedy="x=1")
-    top = Cause("top", exact=ExactMotion(solve(TOPS["toy"])))
-    framed = Cause("framed", align=Alignment(left=True), remedy="y=2")
-    both = Cause("written; top", written.undo, top.exact, remedy="x=1")
-    assert written.with_other(top) == both
-    assert framed.with_other(top)[:4] == ("framed; top", None, top.exact, framed.align)
-    assert framed.with_other(written)[1:5] == (written.undo, None, framed.align, "y=2 and x=1")
 
 
 def test_a_conjugate_in_the_other_order_is_named() -> None:

@@ -45,7 +45,7 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     assert [list(row) for row in rows] == [[*COMPARISON_KEYS]] * 2
     assert lagtop("compare", "-", *OPTIONS, input=right.read_bytes()).exit_code == 0
     strict = lagtop("compare", right, *OPTIONS, "--max-error", "1e-9")
-    hint = "error: check the inputs, and compare runs with other step sizes.\n"
+    hint = "The motion is that of the given top, to "
     assert (strict.exit_code, hint in strict.stdout) == (1, True)
     assert "file verdict rows max error at the end energy ─" in " ".join(strict.stdout.split())
     assert "rad off, its rates by 2.1e-07 (relative)." in strict.stdout

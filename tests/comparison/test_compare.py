@@ -11,7 +11,8 @@ from engines import Array, Body, dop853, euler, rk4, wxyz
 from lagtop import Comparison, LagtopError, Top, compare, solve
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.comparison.compare import Convergence, compared, convergence
+from lagrange_cli.comparison.compare import compared
+from lagrange_cli.comparison.convergence import Convergence, convergence
 from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.recording import Recording
 from lagrange_cli.top.units import RADIANS

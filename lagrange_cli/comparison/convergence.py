@@ -1,0 +1,158 @@
+"""How the error of a method depends on its step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..top.top import Top
+from .numbers import Estimate, sentences
+
+LOST_PHASE, ROUNDING = 0.3, 1e-8
+"""Errors beyond which no order can be measured, and below which an error need not fall."""
+LEAST_ORDER = 0.5
+"""Least order of a method that converges."""
+_RISES, _SPREAD, _PLATEAU = 1.2, 1.0, 0.5
+"""Ratio of errors above which a finer step is worse; greatest spread of one method's orders; share
+of the least error that remains at step 0 if the error has a plateau."""
+_OTHER, _PHASES = 5e-3, 1.0
+"""Relative difference of another top's parameters; largest errors from which e0 follows."""
+_ORDERS = np.arange(0.5, 8.01, 0.05)
+
+
+class HasErrors(Protocol):
+    """A comparison with its errors over time."""
+
+    @property
+    def step(self) -> float | None:
+        """The step of the method."""
+
+    @property
+    def t(self) -> Array:
+        """The times."""
+
+    @property
+    def error(self) -> Array:
+        """The errors at these times."""
+
+
+class Convergence(NamedTuple):
+    """The dependence of the error on the step."""
+
+    errors: Sequence[float]
+    """Greatest error of each trajectory, up to the time at which the first one loses the phase."""
+    sentence: str
+    order: float | None = None
+    """Fitted exponent; None if there are fewer than two errors to fit, or no single order."""
+    converges: bool = True
+    """Whether the error falls with the step, or no error needs to fall."""
+
+
+def convergence(results: Sequence[HasErrors], limit: float) -> Convergence | None:
+    """Return how the errors of trajectories fall with their steps, or None for fewer than two.
+
+    The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
+    rad, other than at its start, but over two rows at least.  Rounding errors are left out, because
+    they grow with finer steps.  If the orders between neighbours differ by more than 1, there is no
+    single order.
+    """
+    if len({x.step for x in results}) < 2:
+        return None
+    curves = [
+        (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf))) for x in results
+    ]
+    lost = [int(np.searchsorted(error, LOST_PHASE)) for _, error in curves]
+    until = min((t[i - 1] for i, (t, _) in zip(lost, curves, strict=True) if i), default=np.inf)
+    until = max(until, *(t[:2].max() for t, _ in curves))
+    errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
+    step, error = np.array(sorted((x.step, y) for x, y in zip(results, errors, strict=True))).T
+    rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)
+    if rises.any():
+        i = int(np.argmax(rises))
+        (fine, coarse), (after, before) = step[i : i + 2], error[i : i + 2]
+        how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g} to {fine:g}"
+        why = "the order of the step sizes is wrong, the method varies, or the top is another one"
+        return Convergence(errors, f"The error rises {how}: {why}.", converges=False)
+    if error[0] >= ROUNDING and error[1] < error[0] * (step[1] / step[0]) ** LEAST_ORDER:
+        is_fine = max(errors) <= limit
+        why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
+        said = f"The error does not fall with the step: {why}."
+        return Convergence(errors, said, converges=min(errors) <= limit)
+    last = sorted((x.step or 0.0, y[-1]) for x, (_, y) in zip(results, curves, strict=True))
+    ends = np.array(last)[:, 1]
+    plateau, tends = _plateau(step, ends if ends.max() < _PHASES else error)
+    if plateau > max(limit, _PLATEAU * error[0]):
+        said = f"The error falls to {plateau:.1e} as the step falls to 0 (order {tends:.2f})"
+        said += ": this is the motion of another top, or the engine has another equation."
+        return Convergence(errors, said, tends, converges=False)
+    usable = (error >= ROUNDING) & (error < LOST_PHASE)
+    if len({*step[usable]}) < 2:
+        usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())
+    x, y = np.log(step[usable]), np.log(error[usable])
+    order = float(np.polyfit(x, y, 1)[0]) if len({*x}) > 1 else None
+    if order is None or np.ptp(np.diff(y) / np.diff(x)) > _SPREAD or order < LEAST_ORDER:
+        why = "the errors are too small or too large, or the method varies"
+        said = f"The error falls with the step, but shows no single order of convergence: {why}."
+        return Convergence(errors, said)
+    said = f"The error falls with the step; the order of convergence is {order:.2f}."
+    return Convergence(errors, said, order)
+
+
+def _plateau(step: Array, error: Array) -> tuple[float, float]:
+    """Return e0 and p of the errors e0 + c h^p that fit best, 0 for fewer than three."""
+    if len({*step}) < 3 or not error.min() > 0:
+        return 0.0, 1.0
+    best = np.inf, 0.0, 1.0
+    for order in _ORDERS:
+        matrix = np.stack([1 / error, (step / step[-1]) ** order / error], axis=1)
+        found, *_ = np.linalg.lstsq(matrix, np.ones(len(step)), rcond=None)
+        rest = float(np.linalg.norm(matrix @ found - 1))
+        if found.min() >= 0 and rest < best[0]:
+            best = rest, float(found[0]), float(order)
+    return best[1:]
+
+
+def named_at_step_0(
+    top: Top, found: Convergence, steps: Sequence[float], estimates: Sequence[Estimate | None]
+) -> Convergence:
+    """Return a convergence with the motion at step 0, if that is another one than the top's."""
+    seen, known = at_step_0(steps, estimates, found.order or 1.0), [x for x in estimates if x]
+    if seen is None or not is_another(seen, min(known, key=lambda x: x.step)):
+        return found
+    said = f"{found.sentence} At step 0, {'; '.join(sentences(top, seen))}."
+    return found._replace(sentence=said, converges=False)
+
+
+def at_step_0(
+    steps: Sequence[float], estimates: Sequence[Estimate | None], order: float
+) -> Estimate | None:
+    """Return the estimate to which those of the two finest steps tend, None if there are not two.
+
+    The estimates of a method tend to it with the order of its errors.
+    """
+    known = [(h, x) for h, x in zip(steps, estimates, strict=True) if x and x.is_trusted]
+    if len({h for h, _ in known}) < 2:
+        return None
+    (fine, last), (coarse, before) = sorted(known, key=lambda x: x[0])[:2]
+    share = 1 / ((coarse / fine) ** order - 1) if coarse > fine else 0.0
+
+    def limit(x: float | None, y: float | None) -> float | None:
+        return None if x is None or y is None else x + share * (x - y)
+
+    decay = last.decay + share * (last.decay - before.decay)
+    a, b, r0 = limit(last.a, before.a), limit(last.b, before.b), limit(last.r0, before.r0)
+    return last._replace(a=a, b=b, r0=r0, decay=decay)
+
+
+def is_another(found: Estimate, last: Estimate) -> bool:
+    """Return whether the motion at step 0 differs from that of the given top.
+
+    `last` is the estimate of the finest step: the difference must be larger than that from it.
+    """
+    pairs = [(found.a, last.a), (found.b, last.b), (found.r0, last.r0)]
+    off = [abs(x - 1) > max(_OTHER, 2 * abs(x - y)) for x, y in pairs if x and y]
+    least = max(_OTHER / found.span, 2 * abs(found.decay - last.decay))
+    return any(off) or abs(found.decay) > least
