@@ -43,7 +43,7 @@ def _parse_jobs(text: str) -> int:
     if text == "auto":
         may_use = getattr(os, "sched_getaffinity", None)
         return len(may_use(0)) if may_use else os.cpu_count() or 1
-    if not (text.isdecimal() and text.isascii() and 1 <= int(text[:9]) <= MOST_JOBS):
+    if not (re.fullmatch("[0-9]{1,4}", text) and 1 <= int(text) <= MOST_JOBS):
         raise LagtopError(f"must be auto or in [1, {MOST_JOBS}], got {quoted(text)}")
     return int(text)
 

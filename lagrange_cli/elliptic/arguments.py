@@ -15,7 +15,7 @@ from ..errors import LagtopError
 from ..top.ranges import ListedPoints, LogPoints, Points
 from ..top.values import LOG, parse_range
 
-_UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_UNSIGNED = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _COMPLEX = re.compile(rf"(?:([+-]?{_UNSIGNED})(?=[+-]))?([+-]?)({_UNSIGNED})?i")
 _MULTIPLE = re.compile(rf"([+-]?)({_UNSIGNED})?\s*K(?:/({_UNSIGNED}))?")
 _LEAST_EXPONENT = -10_000
@@ -109,7 +109,7 @@ def parse_small(text: str) -> ExactComplex:
     with suppress(InvalidOperation):  # of an exponent beyond those of decimals
         number = Decimal(text)
         if not number or number.adjusted() >= _LEAST_EXPONENT:
-            return ExactComplex(Fraction(number))
+            return ExactComplex(Fraction(number) if number else Fraction(0))
     raise LagtopError(f"must be 0 or at least 1e{_LEAST_EXPONENT} in size, got {quoted(text)}")
 
 

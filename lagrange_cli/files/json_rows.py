@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from itertools import chain
 from typing import Any
 
 import orjson
@@ -15,7 +16,7 @@ from ..names import repeated
 MOST_CELLS = 1 << 17
 """Most cells of a row: names and cells take more memory than the text of a file."""
 _MOST_DEPTH = 20
-"""Most levels of JSON objects in a row."""
+"""Most levels of JSON in a row; the rows themselves may be two levels down."""
 
 
 def json_value(text: str, line: int | None = None) -> Any:
@@ -37,9 +38,16 @@ def _once(pairs: list[tuple[str, Any]]) -> None:
 
 
 def _keys_in(value: Any) -> int:
-    if isinstance(value, dict):
-        return len(value) + sum(_keys_in(x) for x in value.values() if isinstance(x, dict | list))
-    return sum(map(_keys_in, value)) if isinstance(value, list) else 0
+    """Return the number of keys in a value.  Raises LagtopError for too many levels."""
+    count, level = 0, [value]
+    for _ in range(_MOST_DEPTH + 2):
+        objects = [x for x in level if isinstance(x, dict)]
+        lists = [x for x in level if isinstance(x, list)]
+        if not (objects or lists):
+            return count
+        count += sum(map(len, objects))
+        level = [*chain(*(x.values() for x in objects), *lists)]
+    raise LagtopError(f"JSON must have at most {_MOST_DEPTH} levels, it has more")
 
 
 def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2) -> list[Any]:

@@ -39,7 +39,7 @@ _LONGEST_LINE = 1 << 22
 """Most characters of each of the first rows, which are searched for headings."""
 _AT_ONCE = 1 << 20
 _SWAPPED = str.maketrans(",.", ".,")
-_DIGITS = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eEdD][+-]?\d+)?"  # D as Fortran writes it
+_DIGITS = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?"  # D as Fortran writes it
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
@@ -433,8 +433,10 @@ def split_row(text: str, delimiter: str) -> list[str]:
     try:
         return [x.strip() for x in next(csv.reader([text.strip(" ")], **form))]
     except csv.Error as error:
-        wrong = f"a quoted cell must end with its quote, and on its line: {error}"
-        raise LagtopError(wrong) from None
+        wrong, most = f"end with its quote, and on its line: {error}", csv.field_size_limit()
+        if max(map(len, text.split('"'))) > most:
+            wrong = f"have at most {most} characters"
+        raise LagtopError(f"a quoted cell must {wrong}") from None
 
 
 def _json_table(

@@ -157,7 +157,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
             try:
                 factor, unit = conversion(column, unit)
             except LagtopError as error:
-                raise DataError(f"{name}, heading {heading}: {error}") from None
+                raise DataError(f"{name}, heading {shortened(heading)}: {error}") from None
             column = tilt_key(column, Value(factor, unit))
             units[column] = Value(factor, unit)
         columns.append(column)

@@ -74,7 +74,7 @@ class SceneFile:
             line = self._text.split("\n")[int(at[1]) - 1] if at else ""
             hint = " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
             if bare := re.match(r"\s*(\w+)\s*=\s*([-+\d.(][^#\"']*[^\W\d_][^#\"']*)", line):
-                hint = f' (write {bare[1]} = "{bare[2].strip()}")'
+                hint = f' (write {bare[1]} = "{shortened(bare[2].strip())}")'
             raise SceneError(f"{self.name}: not a TOML file: {error}{hint}{remedy}") from None
         self.inputs: dict[str, Value] = {}
         for key, value in table.items():
@@ -101,14 +101,18 @@ def _value(key: str, value: object) -> Value:
         meant, known = suggestion(key, SCENE_KEYS), ", ".join(SCENE_KEYS)
         raise LagtopError(f"unknown key {quoted(key)}{meant} (known: {known})")
     is_text = isinstance(value, str) and not isinstance(value, NumberText)
+    try:
+        text = str(value)
+    except ValueError:  # an integer of thousands of digits, in hexadecimal digits
+        raise LagtopError(f"{key} must be at most 1.8e308 in size") from None
     if isinstance(value, bool) or not isinstance(value, int | str):
-        raise LagtopError(f"{key} must be a finite number, got {shortened(str(value))}")
+        raise LagtopError(f"{key} must be a finite number, got {shortened(text)}")
     if not is_text and key == TILT:
         wanted = f"have a unit, such as '30 deg', or be called {key}_deg or {key}_rad"
         raise LagtopError(f"{key} must {wanted}")
     if not is_text:
-        return parse_value(key, str(value).replace("_", ""))
-    found = parse_value(key, str(value), uncertain=True, steady=key == "psidot0")
+        return parse_value(key, text.replace("_", ""))
+    found = parse_value(key, text, uncertain=True, steady=key == "psidot0")
     if not found.unit and found.number not in STEADY_WORDS and found.std is None:
         wanted = "must have a unit between quotes"
         raise LagtopError(f"{key} {wanted}, got {quoted(value)}: leave out the quotes")

@@ -18,6 +18,8 @@ from ..errors import LagtopError
 from ..names import suggestion
 from .inputs import DECLARED, TILT
 
+_MOST_CHARACTERS = 80
+"""Most characters of a product of units."""
 _PI_DIGITS = 1100
 """Digits of pi in inputs: more than any result has."""
 
@@ -140,6 +142,8 @@ def pi_of_inputs() -> Fraction:
 def unit_of_text(text: str) -> Unit:
     """Return the product of units in a text: `kg*m^2`, `kg m²` or `1/s`.  Raises LagtopError."""
     text = text.strip().translate(_RAISED)
+    if len(text) > _MOST_CHARACTERS:
+        raise LagtopError(f"a unit has at most {_MOST_CHARACTERS} characters")
     ticks = _TICKS.match(text)
     found, place = Unit(Fraction(ticks[0] if ticks else 1)), ticks.end() if ticks else 0
     while place < len(text):

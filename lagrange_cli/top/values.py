@@ -27,14 +27,14 @@ LOG = "log:"
 """Prefix of a range with equal ratios."""
 _UNIT = re.compile(r"(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*", re.DOTALL)
 """Any text from its first letter, which begins no exponent; `1/` may precede."""
-_DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+_DECIMAL = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)"
 _EXPONENT = r"(?:[eE][+-]?\d+)"
 _SPREAD = (
     rf"(?P<number>{_DECIMAL}{_EXPONENT}?)\s*(?:\+/?-|±)"
     rf"\s*(?P<std>{_DECIMAL}{_EXPONENT}?)\s*(?P<percent>%?)"
 )
 _UNCERTAIN = (
-    rf"(?P<number>{_DECIMAL})\((?P<last>\d+\.?\d*)\)(?P<exponent>{_EXPONENT}?)",
+    rf"(?P<number>{_DECIMAL})\((?P<last>\d+(?:\.\d*)?)\)(?P<exponent>{_EXPONENT}?)",
     _SPREAD,
     rf"\(\s*{_SPREAD}\s*\)(?P<exponent>{_EXPONENT}?)",
 )
@@ -242,6 +242,8 @@ def parse_values(text: str, read: Read = parse_number) -> Points:
 def _check_range(text: str, example: str) -> None:
     """Raise LagtopError for a range without colons, or with a unit in front of its last number."""
     lacks_colons = re.fullmatch(rf"\s*{_DECIMAL}\s*(?:-|\.\.+|…)\s*{_DECIMAL}\s*", text)
-    if lacks_colons or re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
+    before_last = text[: max(map(text.rfind, "0123456789")) + 1].replace(",", ":")
+    before_last = before_last.rpartition(":")[0]
+    if lacks_colons or re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)", before_last):
         wanted = f"must be a number or a range with its unit once, at the end, as in '{example}'"
         raise LagtopError(f"{wanted}, got {quoted(text)}")
