@@ -19,6 +19,7 @@ LARGEST_FILE = 1 << 28
 _AT_ONCE = 1 << 20
 _BINARY = (b"PAR1", b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0", b"\x93NUM")
 """The first bytes of Parquet, archives and new workbooks, empty archives, old workbooks, npy."""
+_BINARY += (b"\x89HDF", b"ARROW1", b"#ROSBAG", b"\x89MCAP")
 _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -83,7 +84,7 @@ def decoded(content: bytes, name: str) -> str:
     Raises DataError for other bytes, with their line.
     """
     if content.startswith(_BINARY):
-        wrong = "it is not text but a workbook, an archive, Parquet or NumPy data: save it as CSV"
+        wrong = "it is not text but a workbook, an archive or binary data: save it as CSV"
         raise DataError(f"{name}: {wrong}")
     try:
         text = content.decode("utf-16" if content[:2] in _UTF16 else "utf-8-sig")

@@ -45,6 +45,7 @@ _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
 EXPONENT = str.maketrans("dD", "ee")
+_FORTRAN = re.compile(r"(?<=[\d.])D(?=[+-]?\d)")
 _MISSING = {None, "", "NA", "N/A", "#N/A", "NULL", "null", "None", "-"}
 """Cells that are empty, as programs write them."""
 CountKnown = Callable[[Sequence[str]], int]
@@ -171,7 +172,9 @@ class Table:
         missing = re.compile(f"(?<![^{edge}])(?:{words}){empty}(?![^{edge}])")
 
         def filled(line: str) -> str:
-            """Return a line with -nan in its empty cells."""
+            """Return a line with -nan in its empty cells, and with e in exponents with D."""
+            if "D" in line:
+                line = _FORTRAN.sub("e", line)
             count = line.count(blank) + 1 if blank else len(line.split())
             if "-nan" in line or count != self.width:
                 raise ValueError

@@ -143,10 +143,11 @@ def twice() -> bytes:
         ),
         (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
         (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
-        (b"\x93NUMPY\x01\x00\xff\xff", "NumPy data: save it as CSV"),
+        (b"\x93NUMPY\x01\x00\xff\xff", "binary data: save it as CSV"),
+        (b"\x89HDF\r\n", "binary data: save it as CSV"),
         (
             b"PK\x03\x04",
-            "it is not text but a workbook, an archive, Parquet or NumPy data: save it as CSV",
+            "it is not text but a workbook, an archive or binary data: save it as CSV",
         ),
         (b"PAR1", "bad Parquet file"),
         (twice(), "must name each quantity once, got 'theta' and 'theta'"),
