@@ -192,8 +192,10 @@ def find_command(
     With one unknown, find returns every solution that the scan brackets.  With several, it follows
     the best points of the scan and can miss solutions.  The exit code is 1 if no solution is found.
     """
+    import numpy as np
+
     from ..names import check_names
-    from ..solver.keys import all_keys, record_keys
+    from ..solver.keys import TEXT_KEYS, all_keys, record_keys
     from ..solver.record import record_in_range
     from ..sweeps.find import find_tops, search_of
 
@@ -215,6 +217,6 @@ def find_command(
             record["remark"] = units.remark(record["remark"])
         if "psidot0" in record:  # the number of a steady rate
             record["psidot0"] = float(motion.top.psidot0)
-    columns = [[record.get(key) for record in records] for key in chosen]
-    block = out.format.block(columns, chosen)
-    out.blocks(chosen, [block], _headings(chosen, units, out))
+    columns = {key: [record.get(key) for record in records] for key in chosen}
+    block = [x if key in TEXT_KEYS else np.array(x, float) for key, x in columns.items()]
+    out.blocks(chosen, [out.format.block(block, chosen)], _headings(chosen, units, out))

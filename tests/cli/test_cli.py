@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import random
 import re
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, Lagtop, Solved, assert_one_line, dicts
 from lagtop import Top, solve
+from pyarrow import parquet
 from scenes import SAMPLES
 
 from lagrange_cli import errors
@@ -195,6 +197,18 @@ def test_grids_of_times(line: str, times: list[float], lagtop: Lagtop) -> None:
     assert [row[0] for row in rows(text)] == times
 
 
+@pytest.mark.parametrize(
+    "line", ["solve", "find --r0 10:200 T_precession=2", "scenes", "jacobi --k 2"]
+)
+def test_parquet_holds_the_rows_of_any_document(line: str, lagtop: Lagtop) -> None:
+    written = lagtop(*line.split(), "--format", "parquet").stdout_bytes
+    found = parquet.read_table(io.BytesIO(written)).to_pylist()
+    lines = lagtop(*line.split(), "--format", "ndjson").stdout.splitlines()
+    assert [
+        {x: json.loads(y)[x] for x in row} for row, y in zip(found, lines, strict=True)
+    ] == found
+
+
 def test_default_is_one_period(lagtop: Lagtop) -> None:
     times = [row[0] for row in rows(lagtop("table").stdout)]
     assert len(times) == 101
@@ -255,7 +269,7 @@ BAD_TIMES = {
     "--t-min -1e30": "--t-min must be finite and within 2^50 periods = 4.83e+14, got -1e+30",
     "--format table --n 20000": "--format must be csv or json for more than 10000 rows",
     "--columns t,x": "Error: --columns must be among 39 names, got 'x' (did you mean 'axis_x'",
-    "--digits 5 --format parquet": "--format parquet holds doubles: with --digits use",
+    "--digits 5 --format parquet": "--format parquet holds doubles: leave out --digits and",
     "--decimal x": "'x' is not one of 'point', 'comma'",
 }
 _KEYS = "a, b, u1, u2, u3, k, k_prime, modular_angle_deg, nome, K, K_prime and"
@@ -267,7 +281,7 @@ OTHERS = {
     "solve --get precession": f"(did you mean {_RATES}?)",
     "solve --get theta_max": "(did you mean 'theta_max_deg'?)",
     "sweep --keys x": f"--keys must be among {len(all_keys()) + 1} names, got 'x': regime, a",
-    "solve --digits 9 --format parquet": "--format parquet holds doubles: with --digits use",
+    "solve --digits 9 --format parquet": "--format parquet holds doubles: leave out --digits and",
     "jacobi --k 0.8 --u i,K": "--u must not contain K if numbers are complex",
     "compare x.csv --plot x.bmp": "the name of a picture must end in .png, .svg or .pdf",
 }

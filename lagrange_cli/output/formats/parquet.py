@@ -15,7 +15,7 @@ from ..document import Document
 from ..text import json_text
 from .base import Columns, Format
 
-_OTHERS = f"with {arg('digits')} use csv or json"
+_OTHERS = f"leave out {arg('digits')} and {arg('certify')}, or use csv or json"
 
 
 class Parquet(Format):
