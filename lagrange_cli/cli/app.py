@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 from contextlib import suppress
@@ -32,6 +33,7 @@ _MODULES = {
 }
 """Commands that share the module of another command."""
 _COMPLETION = "_LAGTOP_COMPLETE"
+_LAST_SECOND = 253_402_300_799
 
 
 def complain(line: str) -> None:
@@ -109,7 +111,7 @@ class LagtopGroup(click.Group):
         if sys.stderr is None:  # closed by the caller: the next file would get its number
             sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         try:
-            _check_epoch()
+            _check_environment()
             if sys.stdout is None and {"-h", "--help", "--version"} & {*(sys.argv[1:] or ["-h"])}:
                 raise CannotWriteError("cannot write standard output: it is closed")
             sys.exit(run(*args, **extra | {"standalone_mode": False}) or 0)
@@ -139,11 +141,15 @@ class LagtopGroup(click.Group):
         sys.exit(code)
 
 
-def _check_epoch() -> None:
-    """Raise UnavailableError for a SOURCE_DATE_EPOCH at which NumPy or matplotlib would fail."""
+def _check_environment() -> None:
+    """Raise an error for variables at which NumPy, matplotlib or click would fail."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "0")
-    if not (epoch.isascii() and epoch.isdecimal() and len(epoch) <= 11):
-        raise UnavailableError(f"SOURCE_DATE_EPOCH must be a number of seconds, got {epoch!r}")
+    if not (re.fullmatch("[0-9]{1,12}", epoch) and int(epoch) <= _LAST_SECOND):
+        wanted = f"a number of seconds up to {_LAST_SECOND} (the end of the year 9999)"
+        raise UnavailableError(f"SOURCE_DATE_EPOCH must be {wanted}, got {epoch!r}")
+    asked = os.environ.get(_COMPLETION)
+    if asked and not re.fullmatch("(bash|zsh|fish)_(source|complete)", asked):
+        raise LagtopError(f"{_COMPLETION} must be such as bash_source, got {asked!r}: unset it")
 
 
 def options_of(command: click.Command) -> dict[str, str]:

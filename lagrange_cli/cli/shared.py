@@ -385,6 +385,7 @@ def output(default: str, *, rows: bool = False, extensions: Sequence[str] = ()) 
                     f"{name} cannot write {ending}: use {', '.join([*named, *plain])} as extension "
                     f"of {quoted(output)}, or add --format"
                 )
+            _check_output(output, others)
             function(out=Output(output, chosen, fmt is not None), **others)
 
         kind, help_ = click.Choice([*FORMATS]), "Output file (replaced only when complete)."
@@ -393,6 +394,14 @@ def output(default: str, *, rows: bool = False, extensions: Sequence[str] = ()) 
         return cast(F, found)
 
     return decorate
+
+
+def _check_output(path: str, given: Mapping[str, Any]) -> None:
+    """Raise LagtopError for an output that is a file among the values of parameters."""
+    found = [x for y in given.values() for x in (y if isinstance(y, list | tuple) else [y])]
+    for x in found if os.path.isfile(path) else ():  # a scene is in the tuple of the top
+        if isinstance(x, str) and os.path.exists(x) and os.path.samefile(x, path):
+            raise LagtopError(f"-o must not be a file that is read, got {quoted(path)}")
 
 
 def with_mark(out: Output, mark: str, *, reads: bool = False) -> Output:

@@ -331,6 +331,15 @@ def test_one_window_of_a_fit_is_a_record_in_json(
     assert path.read_text() == '{"a":1.5}\n'
 
 
+@pytest.mark.parametrize("line", ["sweep", "fit", "compare", "table --times", "explain K"])
+def test_an_input_is_not_replaced(line: str, tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "tops.csv"
+    path.write_text(content := "r0\n40\n")
+    result = lagtop(*line.split(), path, "-o", tmp_path / "." / "tops.csv")
+    assert_one_line(result, 2, "-o must not be a file that is read, got ")
+    assert path.read_text() == content
+
+
 def test_words_that_name_a_scene() -> None:
     assert all(map(is_scene, ["-", "top.toml", "folder/scene", "./scene", "x.txt", "a.b/c"]))
     assert not any(map(is_scene, ["sphere", "T_nutation=0.5", "r0<1.5", "K>./2", "", "map"]))

@@ -276,9 +276,12 @@ def test_a_signal_whose_exception_is_lost(name: str, wanted: set[int], lose: str
     ("settings", "line", "code", "said"),
     [
         ("MPLBACKEND=nonsense", "plot -o {}/a.png", 69, "'nonsense' is not a valid value"),
-        ("SOURCE_DATE_EPOCH=abc", "plot -o {}/a.pdf", 69, "must be a number of seconds, got 'abc'"),
-        ("SOURCE_DATE_EPOCH=", "bench --n 3", 69, "must be a number of seconds, got ''"),
+        ("SOURCE_DATE_EPOCH=abc", "plot -o {}/a.pdf", 69, "of the year 9999), got 'abc'"),
+        ("SOURCE_DATE_EPOCH=", "bench --n 3", 69, "of the year 9999), got ''"),
+        ("SOURCE_DATE_EPOCH=253402300800", "solve", 69, "up to 253402300799"),
         ("_LAGTOP_COMPLETE=bash_complete", "", 2, "_LAGTOP_COMPLETE needs"),
+        ("_LAGTOP_COMPLETE=x", "", 2, "_LAGTOP_COMPLETE must be such as bash_source, got 'x'"),
+        ("BROWSER=/nonexistent", "view --open", 69, "--open found no browser"),
     ],
 )
 def test_bad_surroundings_end_in_one_line(

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ...account.summary import PHRASES
-from ...errors import LagtopError, check_type
+from ...errors import LagtopError, UnavailableError, check_type
 from ...output.notebook import WebPage
 from ...solver.keys import NUMBERS
 from ...solver.solve import Motion, solve
@@ -88,10 +88,10 @@ def page_scene(motion: Motion) -> dict[str, float]:
 def open_page(page: WebPage, path: str | None) -> None:
     """Open a page in the user's browser, from the file at `path` or from a new temporary file.
 
-    Raises LagtopError if no browser is found.
+    Raises UnavailableError if no browser is found.
     """
     if path is None:
         path = str(Path(tempfile.mkdtemp(prefix="lagtop-")) / "top.html")
         page.save(path)
     if not webbrowser.open(Path(path).resolve().as_uri()):
-        raise LagtopError(f"open found no browser; the page is {path}", "open")
+        raise UnavailableError(f"open found no browser; the page is {path}", "open")
