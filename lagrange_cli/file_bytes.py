@@ -17,9 +17,12 @@ from .errors import DataError
 LARGEST_FILE = 1 << 28
 """Most bytes of an input file after decompression.  Reading takes up to 21 times the memory."""
 _AT_ONCE = 1 << 20
-_BINARY = (b"PAR1", b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0", b"\x93NUM")
-"""The first bytes of Parquet, archives and new workbooks, empty archives, old workbooks, npy."""
-_BINARY += (b"\x89HDF", b"ARROW1", b"#ROSBAG", b"\x89MCAP")
+_BINARY = (
+    *(b"PAR1", b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0", b"\x93NUM"),
+    *(b"\x89HDF", b"ARROW1", b"#ROSBAG", b"\x89MCAP"),
+)
+"""The first bytes of Parquet, archives and new workbooks, empty archives, old workbooks, npy, HDF5,
+Feather and bags of ROS."""
 _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 
 
