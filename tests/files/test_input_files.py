@@ -162,3 +162,13 @@ def test_its_tops_are_read(name: str, lagtop: Lagtop) -> None:
     assert swept.exit_code == 0, swept.stderr
     found = [(row["r0"], row["theta0_deg"]) for row in json.loads(swept.stdout)]
     assert found == [pytest.approx(x, rel=1e-15) for x in wanted]
+
+
+@pytest.mark.parametrize("command", ["sweep -", "fit -", "compare -", "table --times -"])
+@pytest.mark.parametrize("levels", [30, 600, 1000, 5000])
+def test_json_of_many_levels_is_refused(command: str, levels: int, lagtop: Lagtop) -> None:
+    for begin, end in (("[", "]"), ('{"t":', "}")):
+        text = f"{begin * levels}1{end * levels}"
+        for content in (text, f'{{"r0": {text}}}\n'):
+            result = lagtop(*command.split(), input=content)
+            assert (result.exit_code, result.stderr.count("\n")) == (65, 1), result.stderr

@@ -6,18 +6,23 @@ import math
 import random
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pint
 import pytest
 import xarray
+from conftest import Lagtop, assert_one_line
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lagtop import LagtopError
 from uncertainties import ufloat
 
+from lagrange_cli.arithmetic.text import parse_number
+from lagrange_cli.elliptic.arguments import parse_complex, parse_small
 from lagrange_cli.top.ranges import POINTS_AT_ONCE, EvenPoints
+from lagrange_cli.top.units import unit_of_text
 from lagrange_cli.top.values import (
     Value,
     parse_number_or_span,
@@ -181,3 +186,42 @@ def test_a_span_goes_from_the_smaller_to_the_larger_end() -> None:
     assert str(parse_number_or_span("log:1:2.5")) == "1 to 2.5"
     with pytest.raises(LagtopError, match="whose first end is the smaller one, got '2:2'"):
         parse_number_or_span("2:2")
+
+
+ZERO = "0e999999999"
+"""A text that no reader may turn into 0 times 10^999999999."""
+
+
+def test_a_zero_is_0_whatever_its_exponent(tmp_path: Path, lagtop: Lagtop) -> None:
+    assert [parse_number(x) for x in (ZERO, f"-{ZERO}", "0.00E-99999999999")] == [0, 0, 0]
+    assert parse_value("r0", f"5+/-{ZERO}", uncertain=True).std == 0
+    assert parse_value("r0", f"{ZERO}:1:3 rpm", parse_values).number.bounds()[0] == 0
+    assert {*parse_small(ZERO), *parse_complex(f"{ZERO}i")} == {0}
+    assert lagtop("solve", "--psidot0", ZERO, "--get", "psidot0").stdout == "0.0\n"
+    files = {
+        "a.toml": f"r0 = {ZERO}\n",
+        "a.csv": f"r0,psidot0\n40,{ZERO}\n",
+        "t.csv": f"t\n{ZERO}\n",
+    }
+    for name, text in (files | {"a.ndjson": f'{{"psidot0": "{ZERO}"}}\n'}).items():
+        (tmp_path / name).write_text(text)
+    assert lagtop("solve", tmp_path / "a.toml", "--get", "r0").stdout == "0.0\n"
+    for name in ("a.csv", "a.ndjson"):
+        swept = lagtop("sweep", tmp_path / name, "--keys", "psidot0,error").stdout
+        assert swept.split()[1] == "0.0,"
+    assert lagtop("table", "--times", tmp_path / "t.csv").stdout.split()[1].startswith("0.0,")
+    for words in (["table", "--t-max", "1", "--n"], ["solve", "--digits"]):
+        assert_one_line(lagtop(*words, ZERO), 2, f"{words[-1]} must be in [1,")
+
+
+@pytest.mark.parametrize("number", ["1" * 100_000, f"(1+/-{'2' * 100_000}", "0x" + "f" * 9000])
+def test_a_long_text_is_refused_at_once(number: str, tmp_path: Path, lagtop: Lagtop) -> None:
+    for parse in (None, parse_values, parse_number_or_span):
+        with pytest.raises(LagtopError):
+            parse_value("r0", number, parse, uncertain=True)
+    with pytest.raises(LagtopError):
+        parse_complex(f"{number}i")
+    with pytest.raises(LagtopError):
+        unit_of_text("*".join(["h^9"] * 1000))
+    (scene := tmp_path / "a.toml").write_text(f"r0 = {number}\n")
+    assert lagtop("solve", scene).exit_code == 65
