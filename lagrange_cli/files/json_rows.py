@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from itertools import chain
 from typing import Any
 
 import orjson
@@ -37,17 +36,14 @@ def _once(pairs: list[tuple[str, Any]]) -> None:
         raise LagtopError(f"an object must name each key once, got {quoted(twice)} twice")
 
 
-def _keys_in(value: Any) -> int:
+def _keys_in(value: Any, depth: int = -2) -> int:
     """Return the number of keys in a value.  Raises LagtopError for too many levels."""
-    count, level = 0, [value]
-    for _ in range(_MOST_DEPTH + 2):
-        objects = [x for x in level if isinstance(x, dict)]
-        lists = [x for x in level if isinstance(x, list)]
-        if not (objects or lists):
-            return count
-        count += sum(map(len, objects))
-        level = [*chain(*(x.values() for x in objects), *lists)]
-    raise LagtopError(f"JSON must have at most {_MOST_DEPTH} levels, it has more")
+    if depth > _MOST_DEPTH:
+        raise LagtopError(f"JSON must have at most {_MOST_DEPTH} levels, it has more")
+    is_object = isinstance(value, dict)
+    inner = value.values() if is_object else value if isinstance(value, list) else ()
+    count = len(value) if is_object else 0
+    return count + sum([_keys_in(x, depth + 1) for x in inner if type(x) in {dict, list}])
 
 
 def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2) -> list[Any]:
