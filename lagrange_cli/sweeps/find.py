@@ -1,22 +1,22 @@
 """`find`: inputs for which numbers of the record take target values.
 
-A scan by `sweep` supplies the starting points.  One unknown is found by Brent's method between
-neighbouring values of the scan, several unknowns by least squares from its best points.  The border
-of a class, such as a path with loops, is found by bisection.  All refine with `solve`.
+A scan by `sweep` supplies the starting points.  One unknown is found by the method of
+Chandrupatla between neighbouring values of the scan, several unknowns by least squares from its
+best points.  The border of a class, such as a path with loops, is found by bisection.  All refine
+with `solve`.
 """
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Integral
 from operator import eq, ge, gt, le, lt
 from types import NoneType
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.ndimage import maximum_filter, minimum_filter
-from scipy.optimize import brentq, least_squares
 
 from ..arithmetic.text import double_text, quoted, shortened
 from ..arithmetic.types import Array
@@ -50,8 +50,13 @@ _SWEPT = 2.0**-48
 """Bound of the relative error of a number of a sweep."""
 _EXTREMA, _FINER = 12, 100
 """Number of extrema nearest to the target around which the scan is refined, and how much."""
+_TINY = 1e-300
+"""Size up to which a border is 0."""
 _LEAP = 1e-6
 """Residual at a root, over the residuals at the ends of its bracket, that only a leap exceeds."""
+_COINCIDE, _ALONG, _DOUBLE = 1e-3, 1e-2, 1e4
+"""Differences, over the range, of one double root found twice, and at which a curve is looked for;
+the condition number of the slopes at a double root that is not met exactly."""
 _STARTS, _CLOSE, _APART, _SINGULAR = 16, 1e-10, 1e-7, 1e7
 """Starts for several unknowns; the largest residual of a solution, over the spread of the scanned
 numbers; the difference, over the range, below which two solutions count as one; the condition
@@ -191,22 +196,41 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
     ]
     values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
     nearest: list[Any] = []
+    double: list[list[float]] = []
     if search.goals[0].key in _WORDS:
         points = _borders(search, values)
     else:
         off = search.swept(values)
-        points = (_roots if len(axes) == 1 else _minima)(search, values, off)
+        if len(axes) == 1:
+            points = _roots(search, values, off)
+        else:
+            found = _minima(search, values, off)
+            points, double = [x for x, _ in found], [x for x, is_double in found if is_double]
         nearest = [values[np.argmin(_distances(search, off)[1])]]
     ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
     looked = f"scanned {ranges} at {each} values: solutions closer together may be missed"
     if len(axes) > 1:
         looked = f"scanned {ranges} at {each} values each: only the best points were followed"
+    if double:
+        looked += f"; two solutions coincide at {', and at '.join(_at(search, x) for x in double)}"
     motions = [solve(search.top(point)) for point in points]
     kept = [x for x in motions if not _misses(search, x, search.bounds)]
     if not kept:
         near = _nearest(search, points or nearest, search.bounds if points else search.goals)
-        raise AbsentError(f"no top found: {near}; {looked}")
+        raise AbsentError(f"no top found: {near}; {looked}{_with_fast_rate(search, count)}")
     return kept, looked
+
+
+def _with_fast_rate(search: Search, count: int | None) -> str:
+    """Return a remedy if the fast steady precession has what the slow one has not."""
+    if search.fixed.get("psidot0") != "steady":
+        return ""
+    fast = search._replace(fixed={**search.fixed, "psidot0": "steady-fast"})
+    try:
+        find_tops(fast, count)
+    except LagtopError:
+        return ""
+    return f"; {arg('psidot0', 'steady-fast')} has such a top"
 
 
 def _misses(search: Search, motion: Motion, conditions: Sequence[Condition]) -> dict[str, float]:
@@ -231,8 +255,12 @@ def _nearest(search: Search, points: Sequence[Any], conditions: Sequence[Conditi
     if not points:
         return f"no border of {wanted}"
     missed, at = min(zip(misses, points, strict=True), key=lambda x: sum(x[0].values()))
-    where = ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, at, strict=True))
-    return f"nearest to {wanted} is {' '.join(missed)} at {where}"
+    return f"nearest to {wanted} is {' '.join(missed)} at {_at(search, at)}"
+
+
+def _at(search: Search, point: Sequence[float]) -> str:
+    """Return the values of the unknowns in words."""
+    return ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, point, strict=True))
 
 
 def _distances(search: Search, off: Array) -> tuple[Array, Array]:
@@ -264,7 +292,8 @@ def _borders(search: Search, values: Array) -> list[list[float]]:
             low, high = (middle, high) if found == ends[0] else (low, middle)
             if found == wanted.value not in ends:
                 break
-        borders.add(low if ends[0] == wanted.value else high)
+        border = low if ends[0] == wanted.value else high
+        borders.add(border if abs(border) > _TINY else 0.0)
     return [[x] for x in sorted(borders)]
 
 
@@ -289,10 +318,8 @@ def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
     roots = set()
     for i in np.flatnonzero((y[:-1] * y[1:] <= 0) | near[:-1] | near[1:]).tolist():
         low, high = x[i : i + 2].tolist()
-        precision = {"xtol": 2e-16 * max(abs(low), abs(high)), "maxiter": 200, "disp": False}
-        try:
-            root = float(brentq(residual, low, high, **precision))
-        except ValueError:  # no change of sign, or no number between the ends
+        root = _root(residual, low, high)
+        if root is None:
             continue
         ends = np.fmax(*np.abs(y[i : i + 2]))
         if abs(residual(root)) <= _LEAP * ends + 4 * np.spacing(abs(target)):
@@ -300,35 +327,106 @@ def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
     return [[x] for x in sorted(roots)]
 
 
-def _minima(search: Search, values: Array, off: Array) -> list[list[float]]:
+def _root(f: Callable[[float], float], low: float, high: float) -> float | None:
+    """Return a root by the method of Chandrupatla (1997): bisection or inverse interpolation.
+
+    Return None if there is no change of sign, or no number between the ends.
+    """
+    a, b, f_a, f_b = high, low, f(high), f(low)
+    c, f_c, share = a, f_a, 0.5
+    if not f_a * f_b <= 0:
+        return None
+    while f_a and f_b:
+        x = a + share * (b - a)
+        if x in {a, b} or math.isnan(f_x := f(x)):
+            break
+        if (f_x > 0) == (f_a > 0):
+            c, f_c = a, f_a
+        else:
+            c, f_c, b, f_b = b, f_b, a, f_a
+        a, f_a = x, f_x
+        ratio, rise = (a - b) / (c - b), (f_a - f_b) / (f_c - f_b)
+        share = 0.5
+        if rise**2 < ratio and (1 - rise) ** 2 < 1 - ratio:
+            third = f_a / (f_b - f_a) * f_c / (f_b - f_c)
+            share = third + (c - a) / (b - a) * f_a / (f_c - f_a) * f_b / (f_c - f_b)
+        least = min(0.5, 2 * np.spacing(abs(a)) / (abs(b - a) or 1.0))
+        share = min(max(share, least), 1 - least)
+    return a if abs(f_a) <= abs(f_b) else b
+
+
+def _around(cube: Array, extreme: Any, beyond: float) -> Array:
+    """Return the extreme of each number and its neighbours, with a number beyond the border."""
+    padded = np.pad(cube, 1, constant_values=beyond)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (3,) * cube.ndim)
+    return np.asarray(extreme(windows, axis=tuple(range(cube.ndim, 2 * cube.ndim))))
+
+
+def _minima(search: Search, values: Array, off: Array) -> list[tuple[list[float], bool]]:
     """Return where all numbers have their targets, by least squares from minima of the scan.
+
+    Each comes with whether two solutions coincide.
 
     Raises LagtopError if solutions are not single points.
     """
+    from scipy.optimize import least_squares  # start-up
+
     low, high = values.min(axis=0), values.max(axis=0)
     scale, distance = _distances(search, off)
     cube = distance.reshape((round(len(distance) ** (1 / len(low))),) * len(low))
     for y, target in zip(off.T.reshape(-1, *cube.shape), search.targets.values(), strict=True):
-        flat = maximum_filter(y, 3) - minimum_filter(y, 3) <= _SWEPT * np.abs(y)
+        rise = _around(y, np.max, -np.inf) - _around(y, np.min, np.inf)
         is_off = np.abs(y) > _SWEPT * abs(target)
-        cube = np.where(maximum_filter(flat, 3) & is_off, np.inf, cube)  # leads nowhere
-    least = cube == minimum_filter(cube, 3, mode="constant", cval=np.inf)
+        flat = _around(rise <= _SWEPT * np.abs(y), np.max, False)
+        cube = np.where(flat & is_off, np.inf, cube)  # leads nowhere
+    least = cube == _around(cube, np.min, np.inf)
     starts = np.flatnonzero(least.ravel() & np.isfinite(cube.ravel()))
 
     def residual(x: Array) -> Array:
         return np.nan_to_num(search.residuals(low + x * (high - low)) / scale, nan=1e6)
 
-    found: list[Array] = []
+    def solved(start: Array) -> Any:
+        exact: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
+        return least_squares(residual, start, "3-point", (0, 1), **exact, max_nfev=40)
+
+    found: dict[tuple[float, ...], bool] = {}
     for start in starts[np.argsort(distance[starts], kind="stable")][:_STARTS].tolist():
         inside = np.clip((values[start] - low) / (high - low), 1e-9, 1 - 1e-9)
-        exact: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
-        ended = least_squares(residual, inside, "3-point", (0, 1), **exact, max_nfev=40)
-        is_new = all(np.max(np.abs(ended.x - x)) > _APART for x in found)
-        if is_new and np.max(np.abs(ended.fun)) <= _CLOSE:
-            found.append(ended.x)
-            if np.linalg.cond(ended.jac) >= _SINGULAR:
+        ended = solved(inside)
+        slack, x = np.linalg.cond(ended.jac), ended.x
+        if np.max(np.abs(ended.fun)) > _CLOSE or _is_among(x, found, slack):
+            continue
+        if slack >= _DOUBLE:
+            if slack >= _SINGULAR and _is_curve(solved, ended):
                 raise _undetermined(search)
-    return sorted(np.clip(low + x * (high - low), low, high).tolist() for x in found)
+            twice = x - 2 * np.linalg.lstsq(ended.jac, ended.fun, rcond=None)[0]  # Newton's step
+            if np.max(np.abs(residual(np.clip(twice, 0, 1)))) <= _CLOSE:
+                x = np.clip(twice, 0, 1)
+        found[tuple(x)] = slack >= _DOUBLE
+    tops = (
+        (np.clip(low + np.array(x) * (high - low), low, high).tolist(), y) for x, y in found.items()
+    )
+    return sorted(tops)
+
+
+def _is_among(x: Array, found: Iterable[Sequence[float]], slack: float) -> bool:
+    """Return whether a solution was found before; a double root is inaccurate."""
+    apart = _COINCIDE if slack >= _DOUBLE else _APART
+    return any(np.max(np.abs(x - np.array(y))) <= apart for y in found)
+
+
+def _is_curve(solved: Callable[[Array], Any], ended: Any) -> bool:
+    """Return whether solutions lie along the direction in which a solution is not determined.
+
+    If not, two solutions coincide at it.
+    """
+    along = np.linalg.svd(ended.jac)[2][-1]
+    for step in (_ALONG, -_ALONG):
+        other = solved(np.clip(ended.x + step * along, 1e-9, 1 - 1e-9))
+        moved = np.max(np.abs(other.x - ended.x))
+        if np.max(np.abs(other.fun)) <= _CLOSE and moved > _ALONG / 4:
+            return True
+    return False
 
 
 def _undetermined(search: Search, values: Array | None = None) -> LagtopError:

@@ -317,3 +317,24 @@ def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:
     scene.write_text("theta0_deg = 30\nr0 = 7\n")
     same = lagtop("find", scene, *options[1:])
     assert same.stdout == result.stdout
+
+
+def test_a_double_root_of_two_unknowns_is_printed(lagtop: Lagtop) -> None:
+    conditions = "mean_precession_rate=6.08576336536358", "T_nutation=0.2598223966598593"
+    how = "--r0=10:120", "--psidot0=-6:6", "--theta0", "57.65125255876922", "--keys", "r0,psidot0"
+    result = lagtop("find", *how, *conditions)
+    (r0, psidot0), *others = [map(float, x.split(",")) for x in result.stdout.splitlines()[1:]]
+    assert (r0, psidot0) == pytest.approx((59.9463, 0), abs=1e-4)
+    assert not others
+    assert "two solutions coincide at r0 = 59.9463" in result.stderr
+
+
+def test_the_fast_steady_precession_is_pointed_to(lagtop: Lagtop) -> None:
+    words = "--r0=50:120", "--psidot0", "steady", "--theta0", "60", "mean_precession_rate=40"
+    result = lagtop("find", *words)
+    assert "--psidot0 steady-fast has such a top" in result.stderr
+
+
+def test_a_border_at_0_is_0(lagtop: Lagtop) -> None:
+    found = lagtop("find", "--psidot0=-8:8", "path=looping", "--keys", "psidot0").stdout
+    assert "0.0" in found.splitlines()
