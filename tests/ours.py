@@ -12,7 +12,6 @@ from mpmath.ctx_mp import MPContext
 
 from lagrange_cli.arithmetic.enclosures import at_precision
 from lagrange_cli.elliptic.arguments import ExactComplex
-from lagrange_cli.elliptic.function_table import point
 from lagrange_cli.elliptic.functions import Functions
 from lagrange_cli.elliptic.legendre import Legendre, constants_of
 from lagrange_cli.elliptic.modulus import GivenModulus
@@ -69,16 +68,16 @@ class Ours:
     def _functions(self, k: Any) -> Functions:
         return Functions(self.modulus(k).reduced())
 
-    def _point(self, z: Any) -> Any:
-        return point(self.exact(z))
+    def _point(self, z: Any, k: Any) -> Any:
+        return self._functions(k).point(self.exact(z))
 
     def jacobi(self, u: Any, k: Any) -> Any:
         """Return am, sn, cn, dn."""
-        return self.evaluated(lambda: tuple(self._functions(k).jacobi(self._point(u))))
+        return self.evaluated(lambda: self._functions(k).jacobi(self._point(u, k)))
 
     def zeta(self, ij: str, v: Any, k: Any) -> Any:
         """Return Z_ij(v)."""
-        return self.evaluated(lambda: self._functions(k).zetas(self._point(v))[ij])
+        return self.evaluated(lambda: self._functions(k).zetas(self._point(v, k))[ij])
 
     def omega(self, ij: str, eta: Any, v: Any, k: Any) -> Any:
         """Return Omega_ij(eta, v)."""
@@ -89,10 +88,10 @@ class Ours:
         return self._third(ij, eta, v, k, 1)
 
     def _third(self, ij: str, eta: Any, v: Any, k: Any, which: int) -> Any:
-        first, second = self._point(eta), self._point(v)
 
         def values() -> Any:
             functions = self._functions(k)
+            first, second = (functions.point(self.exact(x)) for x in (eta, v))
             return functions.third(first, second, functions.zetas(second))
 
         return self.evaluated(lambda: values()[ij][which])

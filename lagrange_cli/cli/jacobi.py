@@ -11,9 +11,10 @@ from ..elliptic.arguments import (
     parse_arguments,
     parse_complex,
     parse_small,
+    parse_sum,
 )
 from ..elliptic.function_table import FAMILIES, FunctionRequest, function_rows
-from ..elliptic.modulus import GivenModulus
+from ..elliptic.modulus import GivenModulus, Kind
 from ..elliptic.tables import Rows
 from ..errors import LagtopError
 from ..names import Key, check_names
@@ -46,8 +47,8 @@ def constant_keys(group: str, table: str) -> dict[str, Key]:
 
 def _parse_parameter(text: str) -> tuple[ExactComplex, bool]:
     """Return a complex number, and whether it is imaginary."""
-    value = parse_complex(text)
-    return value, not value.real and text.strip().endswith("i")
+    value = parse_sum(text)
+    return value, not any(value[::2]) and not {*"iIj"}.isdisjoint(text)
 
 
 ARGUMENTS = opt.Parsed("X", parse_arguments)
@@ -69,33 +70,28 @@ def write_functions(rows: Rows, count: int, out: Output) -> None:
     "jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i",
     "jacobi --m 2 --phi 10,20 --n 0.3",
 )
-@opt.option("--k", type=MODULUS, help="Modulus: 0 or more, or imaginary (0.8i).")
+@opt.option("--k", type=MODULUS, help="Modulus, real or complex (0.8, 2, 0.8i, 1+2i).")
 @opt.option("--k-prime", type=MODULUS, help="Complementary modulus k', for k close to 1.")
-@opt.option("--m", type=MODULUS, help="Parameter m = k^2, any real number.")
-@opt.option("--nome", type=MODULUS, help="Nome q = exp(-pi K'/K), between -1 and 1.")
+@opt.option("--m", type=MODULUS, help="Parameter m = k^2, any real or complex number.")
+@opt.option("--nome", type=MODULUS, help="Nome q = exp(-pi K'/K), below 1 in size.")
+@opt.option("--modular-angle", type=MODULUS, help="Modular angle arcsin k, 0 to 90 degrees.")
 @opt.option(
     "--u",
     type=ARGUMENTS,
-    help="Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
-    "K such as K/2,-2.5K.",
+    help="Arguments of functions: a list such as 0.5,0.3+0.7i or a range [log:]start:stop:count.  "
+    "Numbers may contain K and K', as in K/2, \"K+iK'\" or 0:4K:9.",
 )
 @opt.option(
     "--functions",
     type=opt.LIST,
-    help="Functions of u: am (with sn, cn, dn), sn, cn, dn and their quotients such as cd, theta, "
-    "zeta (logarithmic derivatives of theta), omega, pi (of u and --param, after Chrapan).  "
-    "[default: am]",
+    help="Functions of the table (see above).  [default: am for --u; F,E for --phi]",
 )
 @opt.option(
     "--param",
     type=opt.Parsed("V", _parse_parameter),
-    help="Parameter of omega and pi, such as 0.2+0.7i.",
+    help="Parameter v of omega and pi, such as 0.2+0.7i.",
 )
-@opt.option(
-    "--phi",
-    type=ARGUMENTS,
-    help="Amplitudes, such as 30,90,-210 or 30+20i: print Legendre's F(phi, k) and E(phi, k).",
-)
+@opt.option("--phi", type=ARGUMENTS, help="Amplitudes of F, E and zeta: 30,90,-210 or 30+20i.")
 @opt.option("--n", type=opt.NUMBER, help="Print Legendre's Pi(n; phi | k) or Pi(n | k).")
 @opt.rad
 @opt.digits(opt.MOST_TABLE_DIGITS)
@@ -113,39 +109,75 @@ def jacobi_command(
 ) -> None:
     """Compute elliptic integrals, elliptic and theta functions.
 
-    Give the modulus by exactly one of --k, --k-prime, --m and --nome.  Without --u and --phi, its
-    constants are printed.
+    Give the modulus by exactly one of --k, --k-prime, --m, --nome and --modular-angle.  k and -k
+    have the same values.  Without --u and --phi, the constants of the modulus are printed.
+
+    \b
+    A&S: sn(u | m) takes --m, and sn(u \\ alpha) --modular-angle alpha.
+    DLMF: sn(u, k) takes --k.
+    Mathematica, SciPy, mpmath: JacobiSN[u, m], ellipj(u, m) take --m.
+
+    \b
+    --functions of --u:
+      am            am, sn, cn and dn (default)
+      sn, cd, ...   Jacobi's twelve functions
+      arcsn, ...    their inverses, F of an amplitude; --u is the value
+      epsilon       Jacobi's epsilon E(am u, k)
+      zeta          Z_ij = d log Theta_ij/du; zeta01 is Jacobi's zeta
+      theta         Theta_ij(u):
+                      Theta01 = theta4, Theta00 = theta3,
+                      Theta11 = theta1, Theta10 = theta2 at z = pi u/2K
+      theta1, ...   theta1(z, q) to theta4(z, q), --u is z in radians
+      theta_s, ...  Neville's theta_s, theta_c, theta_d, theta_n
+      omega, pi     Chrapan's functions of u and --param
+    \b
+    --functions of --phi:
+      F, E, zeta    F(phi, k), E(phi, k), and Jacobi's zeta(phi, k)
+      Pi            Pi(n; phi | k), with --n
 
     Every value is correctly rounded, or has N correct digits with --digits N.  u and --param may be
-    up to 2^50 periods.  An empty cell is a pole, am beyond its branch points, or an integral on a
-    branch cut.
+    up to 2^50 periods.  An empty cell is a pole, am beyond its branch points, an integral on a
+    branch cut, or an inverse function without a real value.
 
     The modulus and --n are read as exact decimals, u, --phi and --param as doubles unless --digits
     is given.  Complex results have columns that end in _re and _im.
     """
     opt.exclude(phi=phi, u=u)
-    opt.exclude(phi=phi, functions=functions)
+    opt.exclude(phi=phi, param=param)
     opt.exclude(n=n, u=u)
     chosen = [(name, value) for name, value in moduli.items() if value is not None]
     if len(chosen) != 1:
-        raise LagtopError("give exactly one of --k, --k-prime, --m, --nome")
-    given = GivenModulus(*chosen[0])
-    named = check_names("functions", functions or ["am"], FAMILIES)
-    asked = tuple(name for name in FAMILIES if name in named)
-    parameter, imaginary = _parameter(param, asked)
+        raise LagtopError("give exactly one of --k, --k-prime, --m, --nome, --modular-angle")
+    units = Units(rad)
+    given = GivenModulus(*chosen[0], units)
     if phi is not None:
-        rows = legendre.amplitude_rows(phi, given, n, units=Units(rad), digits=digits)
+        default = ["F", "E", "Pi"][: 2 if n is None else 3]
+        names = check_names("functions", functions or default, legendre.INTEGRALS)
+        if (n is None) is ("Pi" in names):
+            raise LagtopError("--n and --functions Pi belong together: give both, or neither")
+        rows = legendre.amplitude_rows(phi, given, n, names, units=units, digits=digits)
         write_functions(rows, phi.real.count, out)
     elif u is not None:
+        asked = _families(functions, given)
+        parameter, imaginary = _parameter(param, asked)
         v = parameter.nearest() if digits is None else parameter
-        request = FunctionRequest(u, given, asked, v, imaginary, Units(rad))
+        request = FunctionRequest(u, given, asked, v, imaginary, units)
         write_functions(function_rows(request, digits), u.real.count, out)
     elif functions is not None:
-        raise LagtopError("--functions needs --u")
+        raise LagtopError("--functions needs --u or --phi")
     else:
         keys = constant_keys("Moduli", legendre.CONSTANTS)
-        record = legendre.constants_record(given, digits, n=n, units=Units(rad))
+        record = legendre.constants_record(given, digits, n=n, units=units)
         out.document(record_document(record, lambda: keys))
+
+
+def _families(functions: list[str] | None, given: GivenModulus) -> tuple[str, ...]:
+    """Return the requested functions of u in the order of the table."""
+    if "Z" in (functions or []):
+        raise LagtopError("--functions must not contain Z: Jacobi's Z(u) is zeta01 of zeta")
+    default = ["sn", "cn", "dn"] if given.kind is Kind.COMPLEX else ["am"]
+    named = check_names("functions", functions or default, FAMILIES)
+    return tuple(name for name in FAMILIES if name in named)
 
 
 def _parameter(
@@ -164,7 +196,7 @@ def _parameter(
 def _parse_distance(text: str) -> ExactComplex:
     """Return 0.7 or, imaginary, 0.7i."""
     value = parse_complex(text)
-    if min(value) < 0 or all(value):
+    if min(value) < 0 or (value.real and value.imag):
         raise LagtopError(f"must be >= 0, or imaginary (0.7i), got {value}")
     return value
 

@@ -1,4 +1,4 @@
-"""Arguments of the functions, exactly: complex numbers, multiples of K, lists and ranges."""
+"""Arguments of the functions, exactly: complex numbers, multiples of K and K', lists and ranges."""
 
 from __future__ import annotations
 
@@ -7,57 +7,73 @@ from collections.abc import Iterator
 from contextlib import suppress
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
+from itertools import repeat
 from typing import NamedTuple
 
 from ..arithmetic.enclosures import equal_digits, exact, settled
 from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..errors import LagtopError
-from ..top.ranges import ListedPoints, LogPoints, Points
+from ..top.ranges import EvenPoints, ListedPoints, LogPoints, Points
 from ..top.values import LOG, parse_range
 
 _UNSIGNED = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
-_COMPLEX = re.compile(rf"(?:([+-]?{_UNSIGNED})(?=[+-]))?([+-]?)({_UNSIGNED})?i")
-_MULTIPLE = re.compile(rf"([+-]?)({_UNSIGNED})?\s*K(?:/({_UNSIGNED}))?")
+_TERM = re.compile(
+    rf"([+-]?)({_UNSIGNED})?(?:\*(?=[iIjK]))?([iIj])?(?:\*?(K'?))?(?:/({_UNSIGNED}))?"
+)
+_BEFORE_SIGNS = re.compile(r"(?<=[^eE])(?=[+-])")
 _LEAST_EXPONENT = -10_000
 """The exponent of the smallest modulus that is accepted."""
 
 
 class ExactComplex(NamedTuple):
-    """A complex number with two exact parts."""
+    """A complex number with two exact parts, plus complex multiples of K and K'."""
 
     real: Fraction
     imag: Fraction = Fraction(0)
+    K: Fraction = Fraction(0)
+    iK: Fraction = Fraction(0)
+    K_prime: Fraction = Fraction(0)
+    iK_prime: Fraction = Fraction(0)
 
     def __str__(self) -> str:
-        """Return the number in a form that can be typed."""
+        """Return the number, without multiples of K and K', in a form that can be typed."""
         real, imag = f"{float(self.real)}", f"{float(self.imag):+}i"
         if not self.imag:
             return real
         return imag.removeprefix("+") if not self.real else real + imag
 
     def nearest(self) -> ExactComplex:
-        """Return the number whose parts are the nearest doubles."""
-        return ExactComplex(Fraction(float(self.real)), Fraction(float(self.imag)))
+        """Return the number whose two parts are the nearest doubles."""
+        real, imag = (Fraction(float(x)) for x in self[:2])
+        return self._replace(real=real, imag=imag)
 
 
 class Arguments(NamedTuple):
-    """A list or a range of arguments."""
+    """A list or a range of arguments; parts that are 0 everywhere are None."""
 
     real: Points
     imag: Points | None = None
-    """The imaginary parts; None if all arguments are real."""
-    in_quarters: bool = False
-    """Whether the arguments are multiples of K."""
+    K: Points | None = None
+    iK: Points | None = None
+    K_prime: Points | None = None
+    iK_prime: Points | None = None
+
+    @property
+    def has_quarters(self) -> bool:
+        """Whether K or K' occurs."""
+        return any(points is not None for points in self[2:])
 
     def numbers(self, digits: int | None) -> Iterator[ExactComplex]:
         """Yield the arguments: the nearest doubles, or exactly; see `places`.
 
-        Multiples of K are always exact.
+        Multiples of K and K' are always exact.
         """
-        real = places(self.real, (digits or 17) if self.in_quarters else digits)
-        if self.imag is None:
-            return map(ExactComplex, real)
-        return map(ExactComplex, real, places(self.imag, digits))
+        wanted = (digits, digits, *[digits or 17] * 4)
+        parts = (
+            repeat(Fraction(0)) if x is None else places(x, n)
+            for x, n in zip(self, wanted, strict=True)
+        )
+        return map(ExactComplex, *parts)
 
 
 def places(points: Points, digits: int | None) -> Iterator[Fraction]:
@@ -83,19 +99,34 @@ def places(points: Points, digits: int | None) -> Iterator[Fraction]:
     return map(place, range(points.count))
 
 
-def parse_complex(text: str) -> ExactComplex:
-    """Return the exact value of `0.3`, `0.7i`, `i` or `0.3-0.7i`.
+def parse_sum(text: str, *, has_quarters: bool = True) -> ExactComplex:
+    """Return the exact value of `0.3`, `0.7i`, `1-2j`, `K/2+0.3i` or `K+iK'`.
 
     Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
     """
-    text = text.strip()
-    if set("ijIJ").isdisjoint(text):
-        return ExactComplex(parse_number(text))
-    found = _COMPLEX.fullmatch(text)
-    if found is None:
-        raise LagtopError(f"must be a finite number, complex as 0.3+0.7i, got {quoted(text)}")
-    real, sign, imag = found.groups()
-    return ExactComplex(parse_number(real or "0"), parse_number(f"{sign}{imag or 1}"))
+    found = " ".join(text.split())
+    for sign in "+-":
+        found = found.replace(f" {sign}", sign).replace(f"{sign} ", sign)
+    if set("iIjK").isdisjoint(found):
+        return ExactComplex(parse_number(found))
+    parts = [Fraction(0)] * 6
+    for term in _BEFORE_SIGNS.split(found):
+        matched = _TERM.fullmatch(term)
+        sign, number, i, K, divisor = matched.groups() if matched else [None] * 5
+        below, unit = parse_number(divisor or "1"), i or K
+        is_read = unit or (number and not divisor)
+        if not (is_read and below) or (K and not has_quarters):
+            multiples = ", or with K and K' as K/2-0.3i or K+iK'" if has_quarters else ""
+            wanted = f"must be a finite number, complex as 0.3+0.7i{multiples}"
+            raise LagtopError(f"{wanted}, got {quoted(text)}")
+        place = 2 * ["", "K", "K'"].index(K or "") + bool(i)
+        parts[place] += parse_number(f"{sign}{number or 1}") / below
+    return ExactComplex(*parts)
+
+
+def parse_complex(text: str) -> ExactComplex:
+    """Return the exact value of a complex number, as `parse_sum` does, but without K and K'."""
+    return parse_sum(text, has_quarters=False)
 
 
 def parse_small(text: str) -> ExactComplex:
@@ -114,36 +145,22 @@ def parse_small(text: str) -> ExactComplex:
 
 
 def parse_arguments(text: str) -> Arguments:
-    """Return the arguments of a list such as `0.3,1+2i` or `K/2,-2.5K`, or of a range.
+    """Return the arguments of a list such as `0.3,1+2i,K/2`, or of a range on a line.
 
-    A range is `[log:]start:stop:count`.  Raises LagtopError for anything else, and for a mixture of
-    multiples of K with other numbers; 0 fits both.
+    A range is `[log:]start:stop:count`.  Raises LagtopError for anything else, and for a range with
+    equal ratios that is not on an axis.
     """
-    if ":" in text:
-        ends = [_multiple(end) for end in text.removeprefix(LOG).split(":")[:2]]
-        points = parse_range(text, lambda end: _multiple(end)[0])
-        mixed = "must have both ends in units of K, or neither"
-    elif not set("ijIJ").isdisjoint(text):
-        if "K" in text:
-            raise LagtopError(f"must not contain K if numbers are complex, got {quoted(text)}")
-        real, imag = zip(*map(parse_complex, text.split(",")), strict=True)
-        return Arguments(ListedPoints([*real]), ListedPoints([*imag]))
-    else:
-        ends = [_multiple(part) for part in text.split(",")]
-        points = ListedPoints([factor for factor, _ in ends])
-        mixed = "must all be in units of K, or none"
-    kinds = {is_multiple for factor, is_multiple in ends if factor}
-    if len(kinds) > 1:
-        raise LagtopError(f"{mixed}, got {quoted(text)}")
-    return Arguments(points, in_quarters=True in kinds)
+    if ":" not in text:
+        real, *others = zip(*map(parse_sum, text.split(",")), strict=True)
+        return Arguments(ListedPoints(real), *(ListedPoints(x) if any(x) else None for x in others))
+    first, last = (parse_sum(end) for end in [*text.removeprefix(LOG).split(":"), ""][:2])
+    used = [i for i in range(6) if first[i] or last[i]] or [0]
+    if text.startswith(LOG) and len(used) > 1:
+        raise LagtopError(f"must be multiples of 1, i, K, iK, K' or iK', got {quoted(text)}")
 
+    def part(i: int) -> Points:
+        return parse_range(text, lambda end: parse_sum(end)[i])
 
-def _multiple(text: str) -> tuple[Fraction, bool]:
-    """Return a number and False, or the factor of a multiple of K such as `3K/4` and True."""
-    if "K" not in text:
-        return parse_number(text), False
-    found = _MULTIPLE.fullmatch(text.strip())
-    if found is None or parse_number(found[3] or "1") <= 0:
-        wanted = "must be a real multiple of K such as K, -2.5K, K/2 or 3K/4"
-        raise LagtopError(f"{wanted}, got {quoted(text)}")
-    return parse_number(f"{found[1]}{found[2] or 1}") / parse_number(found[3] or "1"), True
+    parts = {i: part(i) for i in used}
+    zeros = EvenPoints(Fraction(0), Fraction(0), parts[used[0]].count)
+    return Arguments(parts.get(0, zeros), *map(parts.get, range(1, 6)))

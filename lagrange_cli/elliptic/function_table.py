@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import acb, fmpq
+from flint import acb, arb
 
 from ..arithmetic.enclosures import at_precision
 from ..errors import LagtopError
@@ -14,13 +14,23 @@ from ..top.ranges import MAX_PERIODS, MAX_TIME, ListedPoints, check_reach
 from ..top.units import DEGREES, Units
 from .arguments import Arguments, ExactComplex
 from .functions import THIRD, Functions, Point
+from .legendre import Legendre
 from .modulus import GivenModulus, Kind, angle, real_parts, split
 from .tables import Cells, Rows, table_rows
 
 QUOTIENTS = ("sn", "cn", "dn", "ns", "nc", "nd", "sc", "cs", "sd", "ds", "cd", "dc")
 """Jacobi's functions in Glaisher's notation: pq = pn/qn, nn = 1."""
-FAMILIES = ("am", *QUOTIENTS, "theta", "zeta", "omega", "pi")
+INVERSES = tuple(f"arc{pq}" for pq in QUOTIENTS)
+NEVILLE = ("theta_s", "theta_c", "theta_d", "theta_n")
+THETAS = {"theta1": "11", "theta2": "10", "theta3": "00", "theta4": "01"}
+"""The theta functions of z in radians, and the index of Theta(2Kz/pi)."""
+_THIRD_KIND = ("omega", "pi")
+FAMILIES = (
+    *("am", *QUOTIENTS, "epsilon", "theta", "zeta", *THETAS, *NEVILLE),
+    *(*INVERSES, *_THIRD_KIND),
+)
 """The functions of u; `am` stands for am, sn, cn and dn."""
+_NEEDS_REAL_SQUARE = {"am", *INVERSES, *_THIRD_KIND}
 _FIRST_DIGITS = 32
 
 Values = dict[str, acb | None]
@@ -40,95 +50,145 @@ class FunctionRequest(NamedTuple):
     units: Units = DEGREES
 
     @property
+    def has_real_u(self) -> bool:
+        """Whether all arguments are real; K' is complex for an imaginary k, and K for k > 1."""
+        kind, u = self.modulus.kind, self.u
+        has_complex_unit = {
+            Kind.UNIT: False,
+            Kind.IMAGINARY: u.K_prime is not None,
+            Kind.LARGE: u.K is not None,
+            Kind.COMPLEX: u.has_quarters,
+        }[kind]
+        return not has_complex_unit and (u.imag, u.iK, u.iK_prime) == (None, None, None)
+
+    @property
     def is_real(self) -> bool:
         """Whether each number has one column; the names of imaginary numbers end in `_imag`."""
-        is_mixed = self.parameter.real and self.parameter.imag
-        return self.modulus.kind is Kind.UNIT and self.u.imag is None and not is_mixed
+        is_mixed = any(self.parameter[::2]) and any(self.parameter[1::2])
+        return self.modulus.kind is Kind.UNIT and self.has_real_u and not is_mixed
 
     def check(self, *, doubles: bool) -> None:
         """Raise LagtopError for invalid inputs; see `function_rows`."""
         self.modulus.check()
-        functions = Functions(self.modulus.reduced())
-        if self.u.in_quarters and (functions.is_1 or functions.kind is Kind.LARGE):
+        functions, asked, u = Functions(self.modulus.reduced()), set(self.families), self.u
+        if "epsilon" in asked:
+            self.modulus.check_principal()
+        if self.modulus.kind is Kind.COMPLEX and (wrong := sorted(asked & _NEEDS_REAL_SQUARE)):
             raise LagtopError(
-                "u must not contain K for k >= 1, where K is infinite or complex", "u"
+                f"functions must not contain {wrong[0]} if k^2 is complex", "functions"
             )
-        if functions.is_1 and {"theta", "zeta", "omega", "pi"} & set(self.families):
+        if asked & {*INVERSES} and not (self.has_real_u and not u.has_quarters):
+            raise LagtopError("u must be real, without K, for inverse functions", "u")
+        if asked & {*THETAS} and u.has_quarters:
+            raise LagtopError(
+                "u must not contain K for theta1 to theta4: theta is of u = 2Kz/pi", "u"
+            )
+        for name, x in (("u", u), ("param", self.parameter)):
+            has_K, has_K_prime = x[2] or x[3], x[4] or x[5]
+            if (functions.is_1 and has_K) or (functions.is_0 and has_K_prime):
+                infinite = "K for k = 1" if functions.is_1 else "K' for k = 0"
+                raise LagtopError(f"{name} must not contain {infinite}, where it is infinite", name)
+        if functions.is_1 and {"theta", "zeta", "epsilon", *THETAS, *_THIRD_KIND} & asked:
             raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
-        if not doubles:
-            return
-        rates = [float(rate.mid()) for rate in (functions.scale, functions.across)]
+        if doubles:
+            self._check_reach(functions)
+
+    def _check_reach(self, functions: Functions) -> None:
+        """Raise LagtopError for arguments and parameters beyond 2^50 periods."""
+        rates = [float(abs(rate).mid()) for rate in (functions.scale, functions.across)]
+        if functions.kind is Kind.COMPLEX:
+            rates = [max(rates)] * 2
         along, across = (min(MAX_PERIODS / rate, MAX_TIME) if rate else MAX_TIME for rate in rates)
-        v, (name, most) = self.parameter, ("u", along)
-        if self.u.in_quarters:
-            name, most = "u in units of K", 2 * MAX_PERIODS
-        for what, points, limit in (
-            (name, self.u.real, most),
-            ("the imaginary part of u", self.u.imag or ListedPoints([Fraction(0)]), across),
-            ("param", ListedPoints([v.real]), along),
-            ("the imaginary part of param", ListedPoints([v.imag]), across),
-        ):
-            check_reach(what, points, limit)
+        v = [ListedPoints([part]) for part in self.parameter]
+        for name, parts in (("u", self.u), ("param", v)):
+            limits = ((name, along), (f"the imaginary part of {name}", across))
+            quarters = [(f"{name} in units of K", 2 * MAX_PERIODS)] * 4
+            for points, (what, limit) in zip(parts, (*limits, *quarters), strict=True):
+                if points is not None:
+                    check_reach(what, points, limit)
 
 
 def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
     """Return a table of the functions of a request.
 
     Complex numbers have a column for each part; Jacobi's functions of real u are real.  Raises
-    LagtopError for a modulus out of range, for multiples of a K that is not real, for functions
-    that do not exist for k = 1 and, in doubles, for arguments and parameters beyond 2^50 periods.
+    LagtopError for a modulus out of range, for multiples of an infinite K, for functions that do
+    not exist for the modulus and, in doubles, for arguments and parameters beyond 2^50 periods.
     """
-    modulus, v = request.modulus, point(request.parameter)
+    modulus = request.modulus
     at_precision(_FIRST_DIGITS, lambda: request.check(doubles=digits is None))
-    has_parameter = bool({"omega", "pi"} & set(request.families))
+    has_parameter = bool({*_THIRD_KIND} & set(request.families))
 
-    def constants() -> tuple[Functions, Values]:
+    def constants() -> tuple[Functions, Legendre, Values]:
         functions = Functions(modulus.reduced())
-        return functions, functions.zetas(v) if has_parameter else {}
+        zetas = functions.zetas(functions.point(request.parameter)) if has_parameter else {}
+        return functions, Legendre(modulus.reduced(), modulus.m), zetas
 
-    def columns(x: ExactComplex, constants: tuple[Functions, Values]) -> Cells:
-        u, (functions, zetas) = point(x), constants
-        if request.u.in_quarters:
-            u = Point(u.real / (2 * functions.scale))
-        jacobi, found = _jacobi(request, functions, u), _thetas(request, functions, u)
+    def columns(x: ExactComplex, constants: tuple[Functions, Legendre, Values]) -> Cells:
+        functions, legendre, zetas = constants
+        u = functions.point(x)
+        value = functions.value(u) if request.u.has_quarters else None
+        real, imag = x[:2] if value is None else (value.real, value.imag)
+        jacobi = _jacobi(request, functions, legendre, x)
+        found = _thetas(request, functions, u)
         if has_parameter:
-            found |= _third(request, functions.third(u, v, zetas))
-        argument = u.real if request.u.in_quarters else x.real
+            found |= _third(request, functions.third(u, functions.point(request.parameter), zetas))
         if request.is_real:
-            return {"u": argument} | real_parts(jacobi | found)
-        if request.u.imag is not None:
-            return {"u_re": x.real, "u_im": x.imag} | split(jacobi | found)
-        return {"u": argument} | real_parts(jacobi) | split(found)
+            return {"u": real} | real_parts(jacobi | found)
+        if not request.has_real_u:
+            return {"u_re": real, "u_im": imag} | split(jacobi | found)
+        is_complex = functions.kind is Kind.COMPLEX
+        return {"u": real} | (split if is_complex else real_parts)(jacobi) | split(found)
 
     inputs = [*request.parameter, *modulus.value]
     return table_rows(request.u.numbers(digits), columns, constants, inputs, digits)
 
 
-def _jacobi(request: FunctionRequest, functions: Functions, u: Point) -> Values:
-    """Return am in the unit of the request, and the quotients of sn, cn, dn and 1."""
-    has_am, found = "am" in request.families, Values()
-    wanted = {*request.families, *(("sn", "cn", "dn") if has_am else ())}
-    if wanted.isdisjoint(QUOTIENTS):
-        return found
-    am, *values = functions.jacobi(u)
-    of = dict(zip("scdn", (*values, acb(1)), strict=True))
+def _jacobi(
+    request: FunctionRequest, functions: Functions, legendre: Legendre, x: ExactComplex
+) -> Values:
+    """Return the functions that are real for real u and k^2; am in the unit of the request."""
+    families, u, found = request.families, functions.point(x), Values()
+    has_am, is_real = "am" in families, functions.kind is not Kind.COMPLEX
+    wanted = [pq for pq in QUOTIENTS if pq in families or (has_am and pq in QUOTIENTS[:3])]
+    of = functions.neville(u) if wanted else {}
     if has_am:
+        am = functions.amplitude(u, of["s"] / of["n"], of["c"] / of["n"])
         found |= angle("am", _on_axes(am, u, odd=True), request.units)
-    for name in QUOTIENTS:
-        if name in wanted:
-            p, q = (of[letter] for letter in name)
-            quotient = None if name[1] == "s" and u.is_0 else p / q
-            found[name] = _on_axes(quotient, u, odd="s" in name)
-    return found
+    for pq in wanted:
+        quotient = None if pq[1] == "s" and u.is_0 else of[pq[0]] / of[pq[1]]
+        found[pq] = _on_axes(quotient, u, odd="s" in pq, is_real=is_real)
+    if "epsilon" in families:  # E(am u, k) = Z_01(u) + u E/K
+        zeta = functions.zetas(u)["01"] or acb(0)
+        total = zeta + functions.value(u) * legendre.mean
+        found["epsilon"] = _on_axes(total, u, odd=True, is_real=is_real)
+    inverses = (name for name in INVERSES if name in families)
+    return found | {name: legendre.inverse(name[3:], x.real) for name in inverses}
 
 
 def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Values:
-    families, kind, found = request.families, functions.kind, Values()
-    for ij, z in functions.thetas(u).items() if "theta" in families else ():
-        is_real = kind is Kind.UNIT or (kind is Kind.IMAGINARY and ij[0] == "0")
-        found[f"theta{ij}"] = _on_axes(z, u, odd=ij == "11") if is_real else z
+    """Return the theta functions of u and of z, Zeta, and Neville's functions."""
+    families, value, found = request.families, functions.value(u), Values()
+    is_imaginary, is_real = (functions.kind is kind for kind in (Kind.IMAGINARY, Kind.UNIT))
+    thetas: list[tuple[str, str, acb]] = []
+    if "theta" in families:
+        at_u = functions.thetas(value * functions.rate)
+        thetas += [(f"theta{ij}", ij, z) for ij, z in at_u.items()]
+    if not {*THETAS}.isdisjoint(families):
+        at_z = functions.thetas(value / arb.pi())
+        thetas += [(name, ij, at_z[ij]) for name, ij in THETAS.items() if name in families]
+    for name, ij, z in thetas:
+        is_real_here = is_real or (is_imaginary and ij[0] == "0")
+        found[name] = _on_axes(z, u, odd=ij == "11", is_real=is_real_here)
+    is_real |= is_imaginary
     for ij, slope in functions.zetas(u).items() if "zeta" in families else ():
-        found[f"zeta{ij}"] = slope if kind is Kind.LARGE else _on_axes(slope, u, odd=True)
+        found[f"zeta{ij}"] = _on_axes(slope, u, odd=True, is_real=is_real)
+    if not {*NEVILLE}.isdisjoint(families):
+        of, factor = functions.neville(u), (functions.bend * value**2).exp()
+        for name in NEVILLE:
+            if name in families:
+                z = of[name[-1]] * factor
+                found[name] = _on_axes(z, u, odd=name == "theta_s", is_real=is_real)
     return found
 
 
@@ -142,15 +202,12 @@ def _third(request: FunctionRequest, values: Mapping[str, tuple[acb | None, acb 
     return found
 
 
-def point(x: ExactComplex) -> Point:
-    """Return an exact number as the functions take it."""
-    return Point(*(fmpq(part.numerator, part.denominator) for part in x))
-
-
-def _on_axes(z: acb | None, u: Point, *, odd: bool) -> acb | None:
-    """Return an even or odd function of u that is real for real u, without parts that are 0."""
-    if z is not None and u.imag == 0:
+def _on_axes(z: acb | None, u: Point, *, odd: bool, is_real: bool = True) -> acb | None:
+    """Return an even or odd function of u, without parts that are 0 if it is real for real u."""
+    if z is None or not is_real:
+        return z
+    if u.is_real:
         z = acb(z.real)
-    if z is not None and u.real == 0:
+    if not any(u[::2]):
         z = acb(0, z.imag) if odd else acb(z.real)
     return z

@@ -14,82 +14,139 @@ from typing import Any, NamedTuple
 from flint import acb, arb, fmpq
 
 from ..arithmetic.enclosures import TooFewDigitsError, nearest, sign
+from .arguments import ExactComplex
 from .modulus import Kind, Modulus
 
 THIRD = ("01", "00", "11")
 """The indices of Omega and Pi."""
 _NUMBERS = {"01": 3, "00": 2, "11": 0, "10": 1}
 """The theta functions theta4, theta3, theta1 and theta2 of pi z: their places in Arb's tuple."""
-_REDUCED = {Kind.UNIT: {}, Kind.IMAGINARY: {"01": "00", "00": "01"}, Kind.LARGE: {"00": "10"}}
+_REDUCED = {Kind.IMAGINARY: {"01": "00", "00": "01"}, Kind.LARGE: {"00": "10"}}
 """The function of the reduced modulus that replaces each function, if the index differs."""
+_LETTERS = {Kind.IMAGINARY: "scnd", Kind.LARGE: "sdcn"}
+"""The letters of Neville's functions of the reduced modulus that replace s, c, d and n."""
 
 
 class Point(NamedTuple):
-    """A complex number with exact parts, `fmpq`, or a ball for a multiple of K."""
+    """A complex number plus multiples of K and K' of the reduced modulus, over its stretch.
+
+    Parts are `fmpq`.  The first may be a ball.
+    """
 
     real: Any
     imag: Any = fmpq(0)
+    K: Any = fmpq(0)
+    iK: Any = fmpq(0)
+    K_prime: Any = fmpq(0)
+    iK_prime: Any = fmpq(0)
 
     @property
     def is_0(self) -> bool:
         """Whether the number is exactly 0."""
-        return bool(self.real == 0 and self.imag == 0)
+        return not any(self)
+
+    @property
+    def is_real(self) -> bool:
+        """Whether the number is real for a modulus with a real square."""
+        return not any(self[1::2])
+
+    def plus(self, other: Point, factor: int) -> Point:
+        """Return this number plus a multiple of another one."""
+        return Point(*(x + factor * y for x, y in zip(self, other, strict=True)))
 
 
 class Functions:
     """The functions of one modulus."""
 
     def __init__(self, modulus: Modulus) -> None:
-        k, k_prime, self.kind, self.stretch = modulus
-        self.is_0, self.is_1 = k.is_zero(), k_prime.is_zero()
+        k, k_prime, self.kind, self.stretch, rates = modulus
+        self.is_0, self.is_1 = k == 0, k_prime == 0
         half_turn = self.stretch / arb.pi()
-        self.scale = half_turn * (arb(0) if self.is_1 else arb(1).agm(k_prime))
+        self.scale: Any = half_turn * (arb(0) if self.is_1 else k_prime.agm(1))
         """Periods 2K of the reduced modulus in a unit of the argument."""
-        self.across = half_turn * (arb(0) if self.is_0 else arb(1).agm(k))
+        self.across: Any = half_turn * (arb(0) if self.is_0 else k.agm(1))
         """Periods 2K' in a unit of the argument."""
-        self.rate, self.tau = acb(self.scale), None
-        """1/2K and iK'/K of the modulus itself."""
+        if rates:
+            self.scale, self.across = rates
+        self.rate, self.tau, self.bend = acb(self.scale), None, acb(0)
+        """1/2K and iK'/K of the modulus itself.
+
+        Its theta functions of u have the factor exp(bend u^2) compared with the reduced modulus.
+        """
+        self.T = self.scale / self.across
         if self.is_0 or self.is_1:
             return
-        self.T = self.scale / self.across
-        self.reduced_tau = reduced = acb(0, self.T)
+        self.tau = self.reduced_tau = reduced = acb(0, 1) * self.T
         self.at_0 = acb.modular_theta(acb(0), reduced)
-        self.tau = reduced
         if self.kind is Kind.IMAGINARY:
             self.tau = reduced + 1
         elif self.kind is Kind.LARGE:
             self.tau, self.rate = reduced / (1 - reduced), self.rate / (1 - reduced)
+            self.bend = acb(0, -1) * arb.pi() * self.scale**2 / (1 - reduced)
+
+    def point(self, x: ExactComplex) -> Point:
+        """Return an exact number, with multiples of the modulus' own K and K', as a point.
+
+        K' is K' - iK of the reduced modulus if k is imaginary, and K is K - iK' if k > 1.
+        """
+        real, imag, K, iK, K_prime, iK_prime = (fmpq(y.numerator, y.denominator) for y in x)
+        if self.kind is Kind.IMAGINARY:
+            K, iK = K + iK_prime, iK - K_prime
+        elif self.kind is Kind.LARGE:
+            K_prime, iK_prime = K_prime + iK, iK_prime - K
+        return Point(real, imag, K, iK, K_prime, iK_prime)
+
+    def value(self, at: Point) -> acb:
+        """Return a point as a complex number."""
+        u = acb(*at[:2])
+        for (real, imag), rate in ((at[2:4], self.scale), (at[4:], self.across)):
+            if real or imag:  # otherwise the quarter period may be infinite
+                u += acb(real, imag) / (2 * rate)
+        return u
+
+    def _periods(self, at: Point) -> Any:
+        """Return the real part in units of 2K, exactly if it is a multiple of K."""
+        return at.real * self.scale + at.K / 2 + (at.K_prime and at.K_prime * self.T / 2)
+
+    def _height(self, at: Point) -> Any:
+        """Return the imaginary part in units of 2K', exactly if it is a multiple of K'."""
+        return at.imag * self.across + at.iK_prime / 2 + (at.iK and at.iK / (2 * self.T))
+
+    def neville(self, u: Point) -> dict[str, acb]:
+        """Return Neville's functions theta_s to theta_n, without exp(bend u^2), by letter.
+
+        Every quotient pq of Glaisher is theta_p/theta_q.
+        """
+        x = self.value(u)
+        if self.is_1:
+            return {"s": x.sinh(), "c": acb(1), "d": acb(1), "n": x.cosh()}
+        if self.is_0:
+            return {"s": x.sin(), "c": x.cos(), "d": acb(1), "n": acb(1)}
+        theta1, theta2, theta3, theta4 = acb.modular_theta(x * self.scale, self.reduced_tau)
+        _, at2, at3, at4 = self.at_0
+        sine = at3 * theta1 / (at2 * at4 * self.stretch)
+        found = {"s": sine, "c": theta2 / at2, "d": theta3 / at3, "n": theta4 / at4}
+        letters = _LETTERS.get(self.kind, "scdn")
+        return {p: found[q] for p, q in zip("scdn", letters, strict=True)}
 
     def jacobi(self, u: Point) -> tuple[acb | None, acb, acb, acb]:
-        """Return am, sn, cn and dn of u.
+        """Return am, sn, cn and dn of u."""
+        s, c, d, n = self.neville(u).values()
+        sn, cn = s / n, c / n
+        return self.amplitude(u, sn, cn), sn, cn, d / n
 
-        am is continuous around the real axis.  It is None beyond its branch points, the poles of sn
-        next to the axis.  For k > 1 its real part stays within a quarter of a turn.
+    def amplitude(self, u: Point, sn: acb, cn: acb) -> acb | None:
+        """Return am(u), the angle with that sine and cosine, continuous around the real axis.
+
+        It is None from its branch points on, the poles of sn next to the axis.  For k > 1 its real
+        part stays within a quarter of a turn.
         """
-        sn, cn, dn = self._quotients(acb(*u))
-        is_beyond = u.imag != 0 and sign(abs(u.imag) * self.across * 2 - 1) > 0
-        return None if is_beyond else self._amplitude(u, sn, cn), sn, cn, dn
-
-    def _quotients(self, u: acb) -> tuple[acb, acb, acb]:
-        """Return sn, cn and dn."""
-        if self.is_1:
-            return u.tanh(), u.sech(), u.sech()
         if self.is_0:
-            return *u.sin_cos(), acb(1)
-        theta1, theta2, theta3, theta4 = acb.modular_theta(u * self.scale, self.reduced_tau)
-        _, at2, at3, at4 = self.at_0
-        sn, cn, dn = at3 * theta1 / (at2 * theta4), at4 * theta2, at4 * theta3
-        cn, dn = cn / (at2 * theta4), dn / (at3 * theta4)
-        if self.kind is Kind.IMAGINARY:
-            return sn / (dn * self.stretch), cn / dn, 1 / dn
-        return (sn / self.stretch, dn, cn) if self.kind is Kind.LARGE else (sn, cn, dn)
-
-    def _amplitude(self, u: Point, sn: acb, cn: acb) -> acb:
-        """Return the angle with a sine and a cosine, next to that of the real part of u."""
-        if self.is_0:
-            return acb(*u)
-        periods = u.real * self.scale * (self.kind is not Kind.LARGE)
-        if u.imag == 0:
+            return self.value(u)
+        if not u.is_real and sign(abs(arb(2 * self._height(u))) - 1) >= 0:
+            return None
+        periods = 0 if self.kind is Kind.LARGE else arb(self._periods(u))
+        if u.is_real:
             turns = nearest(arb(periods))
             half = -1 if turns % 2 else 1
             return acb(turns * arb.pi() + arb.atan2(half * sn.real, half * cn.real))
@@ -98,16 +155,17 @@ class Functions:
             return angle
         return angle + 2 * arb.pi() * nearest((periods - angle.real / arb.pi()) / 2)
 
-    def thetas(self, v: Point) -> dict[str, acb]:
-        """Return Theta_ij(v)."""
+    def thetas(self, turns: acb) -> dict[str, acb]:
+        """Return Theta_ij(2K turns): theta4, theta3, theta1 and theta2 of pi times the argument."""
         if self.tau is None:
             return {ij: acb(int(ij[0] == "0")) for ij in _NUMBERS}
-        values = acb.modular_theta(acb(*v) * self.rate, self.tau)
-        return {ij: values[_NUMBERS[ij]] for ij in _NUMBERS}
+        values = acb.modular_theta(turns, self.tau)
+        return {ij: values[n] for ij, n in _NUMBERS.items()}
 
     def zetas(self, v: Point) -> dict[str, acb | None]:
         """Return Z_ij(v), the derivative of log Theta_ij(v); Z_11 has a pole at 0."""
-        x, values = acb(*v), self.thetas(v)
+        x = self.value(v)
+        values = self.thetas(x * self.rate)
         if self.tau is None:
             found = {"01": acb(0), "00": acb(0), "11": x.cot(), "10": -x.tan()}
         else:
@@ -123,16 +181,12 @@ class Functions:
         Pi_ij = u Z_ij(v) + Omega_ij; `zetas` are the Z_ij(v).  The logarithms are those of
         `_logarithms`.  None stands for a pole.
         """
-        less = Point(u.real - v.real, u.imag - v.imag)
-        more = Point(u.real + v.real, u.imag + v.imag)
-        added = acb(0)
-        if self.kind is Kind.LARGE:  # by the transformation of tau
-            added = acb(0, 2) * arb.pi() * self.scale**2 / (1 - self.reduced_tau)
-            added *= acb(*u) * acb(*v)
-        ends = self._logarithms(less), self._logarithms(more)
+        less, more = u.plus(v, -1), u.plus(v, 1)
+        ends, argument = (self._logarithms(less), self._logarithms(more)), self.value(u)
+        added = -2 * self.bend * argument * self.value(v)
         found: dict[str, tuple[acb | None, acb | None]] = {}
         for ij in THIRD:
-            inner, zeta = _REDUCED[self.kind].get(ij, ij), zetas[ij]
+            inner, zeta = _REDUCED.get(self.kind, {}).get(ij, ij), zetas[ij]
             if inner == "11" and (less.is_0 or more.is_0):
                 found[ij] = None, None
             elif v.is_0:
@@ -140,7 +194,7 @@ class Functions:
             else:
                 first, second = (end[inner] for end in ends)
                 omega = (first - second) / 2 + added
-                found[ij] = omega, None if zeta is None else omega + acb(*u) * zeta
+                found[ij] = omega, None if zeta is None else omega + argument * zeta
         return found
 
     def _logarithms(self, at: Point) -> dict[str, acb]:
@@ -157,19 +211,30 @@ class Functions:
         it is in the whole strip, because the argument is a harmonic function.
         """
         if self.is_0:
-            return {"01": acb(0), "00": acb(0), "11": _log_sine(at)}
-        x, height, is_real = at.real * self.scale, at.imag * self.across, at.imag == 0
-        within, found = x - nearest(arb(x)), {}
+            log_sine = _log_sine(self.value(at), at.is_real)
+            return {"01": acb(0), "00": acb(0), "11": log_sine}
+        x, height, found = self._periods(at), self._height(at), {}
+        within = x - nearest(arb(x))
         for i, half in enumerate((fmpq(0), fmpq(1, 2))):
-            n = half + (0 if is_real else _floor(height + fmpq(1, 2) - half))
-            place = acb(within, (height - n) * self.T)
-            for a, theta in enumerate(acb.modular_theta(place, self.reduced_tau)[2:]):
-                value = theta.log() + arb.pi() * n * acb((2 * height - n) * self.T, a - 2 * x)
-                found[f"{i}{a}"] = acb(value.real) if i and is_real else value
+            above = _floor(height + fmpq(1, 2) - half)
+            below = -_floor(half - fmpq(1, 2) - height) - 1
+            numbers = [half + n for n in ({above} if at.is_real else {above, below})]
+            sides = [self._in_strip(x, within, height, n) for n in numbers]
+            for a in (0, 1):
+                mean = sum((side[a] for side in sides), acb(0)) / len(sides)
+                found[f"{i}{a}"] = acb(mean.real) if at.is_real else mean
         return found
 
+    def _in_strip(self, x: Any, within: Any, height: Any, n: fmpq) -> list[acb]:
+        """Return the logarithms with the number n, at a point and at one within half a period."""
+        thetas = acb.modular_theta(acb(within, (height - n) * self.T), self.reduced_tau)[2:]
+        return [
+            theta.log() + arb.pi() * n * acb((2 * height - n) * self.T, a - 2 * x)
+            for a, theta in enumerate(thetas)
+        ]
 
-def _floor(x: arb) -> int:
+
+def _floor(x: Any) -> int:
     """Return the integer part of a number; raise TooFewDigitsError if it is not decided."""
     whole = arb(x).floor().unique_fmpz()
     if whole is None:
@@ -177,12 +242,12 @@ def _floor(x: arb) -> int:
     return int(whole)
 
 
-def _log_sine(at: Point) -> acb:
+def _log_sine(z: acb, is_real: bool) -> acb:
     """Return log sin z up to a constant, continuous above and below the real axis."""
-    z = acb(*at)
-    if at.imag < 0:
+    is_below = not is_real and sign(z.imag) < 0
+    if is_below:
         z = z.conjugate()
     value = (1 - (acb(0, 2) * z).exp()).log() + acb(0, 1) * (arb.pi() / 2 - z)
-    if at.imag == 0:
+    if is_real:
         return acb(value.real)
-    return value.conjugate() if at.imag < 0 else value
+    return value.conjugate() if is_below else value

@@ -12,13 +12,13 @@ principal value if its path crosses a pole.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from flint import acb, arb
 
-from ..arithmetic.enclosures import exact, nearest, sign
+from ..arithmetic.enclosures import at_precision, exact, nearest, sign
 from ..errors import LagtopError
 from ..top.ranges import MAX_PERIODS, check_reach
 from ..top.units import DEGREES, Units
@@ -42,6 +42,8 @@ E_prime | E' | second kind, k' | |
 Pi | Π(n) | third kind, k | |
 """
 """Key, symbol, meaning, unit and equation of each constant; a line without `|` begins a group."""
+INTEGRALS = ("F", "E", "Pi", "zeta")
+"""The functions of an amplitude; zeta is Jacobi's."""
 _SQUARED_SINES: dict[Fraction, Fraction | arb] = {
     Fraction(x): Fraction(y, 4) for x, y in ((0, 0), (30, 1), (45, 2), (60, 3), (90, 4))
 }
@@ -66,13 +68,21 @@ class Legendre:
     def __init__(
         self, modulus: Modulus, m: Fraction | None = None, n: Fraction | None = None
     ) -> None:
-        """Take a modulus in balls, and the exact parameter m = k^2 if it is known."""
-        self.n, self.is_1 = n, modulus.k_prime.is_zero()
-        self.m, self.complement = ((x.ball**2).real for x in (modulus, modulus.complement))
-        self.above_1 = (m or self.m) if modulus.kind is Kind.LARGE else None
+        """Take a modulus in balls, and the parameter m = k^2 if it is real and known exactly."""
+        self.n, self.is_1 = n, modulus.k_prime == 0
+        squares = [x.ball**2 for x in (modulus, modulus.complement)]
+        is_complex = modulus.kind is Kind.COMPLEX
+        self.m: Any
+        self.complement: Any
+        self.m, self.complement = squares if is_complex else (x.real for x in squares)
+        self.known_m: Any = self.m if m is None else m
+        self.above_1 = self.known_m if modulus.kind is Kind.LARGE else None
         """The parameter m if it is above 1."""
         self.complete = self._within(arb(1), arb(0), arb(0), Fraction(1))
         """The integrals to pi/2."""
+        K, E, _ = self.complete
+        self.mean = acb(0) if K is None or E is None else E / K
+        """E/K, also in the limit k = 1."""
 
     def at(self, phi: ExactComplex, units: Units = DEGREES) -> Integrals:
         """Return the integrals of an amplitude, by f(phi + pi) = f(phi) + 2 f(pi/2)."""
@@ -95,6 +105,42 @@ class Legendre:
         if not half_turns:
             return _each(lambda x: side * x, found)
         return _each(lambda x, whole: side * x + 2 * half_turns * whole, found, self.complete)
+
+    def zeta(self, found: Integrals) -> acb | None:
+        """Return Jacobi's zeta function E(phi, k) - F(phi, k) E/K of an amplitude."""
+        if found.F is None or found.E is None:
+            return None
+        return found.E - found.F * self.mean
+
+    def inverse(self, pq: str, x: Fraction) -> acb | None:
+        """Return the real u with pq(u) = x, a value of Glaisher's function, or None if none exists.
+
+        It is F of an amplitude phi (DLMF 22.15).  With p^2 = p0 + p1 sin^2 phi, and q^2 alike,
+        sin^2 phi = (x^2 q0 - p0)/(p1 - x^2 q1).  u is in [-K, K] if pq is odd there, else in
+        [0, 2K]; for k > 1, with the real part of K.
+        """
+        m = self.known_m
+        square = x**2 if isinstance(m, Fraction) else exact(x**2)
+        parts = {"s": (0, 1), "c": (1, -1), "d": (1, -m), "n": (1, 0)}
+        (p0, p1), (q0, q1) = (parts[letter] for letter in pq)
+        above, below = square * q0 - p0, p1 - square * q1
+        turning = "c" if self.above_1 is None else "d"  # it changes its sign after a quarter
+        if not _sign(below) or (x < 0 and {"s", turning}.isdisjoint(pq)):
+            return None
+        t = above / below
+        if _sign(t) < 0 or _sign(1 - t) < 0 or _sign(1 - m * t) < 0:
+            return None
+        u = self._first_quarter(t)
+        if x >= 0:
+            return u
+        if pq[0] == "s" or (pq[1] == "s" and pq[0] != turning):
+            return -u
+        return 2 * self._first_quarter(square * 0 + 1 if self.above_1 is None else 1 / m) - u
+
+    def _first_quarter(self, square: Fraction | arb) -> acb:
+        """Return F of an amplitude in the first quarter, from its squared sine."""
+        t, d = (x if isinstance(x, arb) else exact(x) for x in (square, 1 - self.known_m * square))
+        return acb(t.sqrt()) * acb.elliptic_rf(acb(1 - t), acb(d), acb(1))
 
     def _within(self, sine: arb, cosine: arb, height: arb, square: Fraction | arb) -> Integrals:
         """Return the integrals of x + iy, 0 <= x <= pi/2.
@@ -148,44 +194,52 @@ def _each(function: Callable[..., acb], *integrals: Integrals) -> Integrals:
     return Integrals(*(None if any(x is None for x in part) else function(*part) for part in parts))
 
 
+def _sign(x: Fraction | arb) -> int:
+    """Return the sign of a number."""
+    return sign(x) if isinstance(x, arb) else (x > 0) - (x < 0)
+
+
 def _side(q: Fraction | arb, square: Fraction | arb) -> int:
     """Return the sign of 1 - q sin^2 phi."""
-    if isinstance(q, Fraction) and isinstance(square, Fraction):
-        return (q * square < 1) - (q * square > 1)
-    q, square = (x if isinstance(x, arb) else exact(x) for x in (q, square))
-    return sign(1 - q * square)
+    if not (isinstance(q, Fraction) and isinstance(square, Fraction)):
+        q, square = (x if isinstance(x, arb) else exact(x) for x in (q, square))
+    return _sign(1 - q * square)
 
 
 def amplitude_rows(
     phi: Arguments,
     given: GivenModulus,
     n: Fraction | None = None,
+    names: Collection[str] = INTEGRALS[:3],
     *,
     units: Units = DEGREES,
     digits: int | None = None,
 ) -> Rows:
-    """Return a table of F, E and, with n, Pi over amplitudes.
+    """Return a table of F, E, zeta and, with n, Pi over amplitudes, if they are among `names`.
 
     Complex numbers have a column for each part.  F is infinite from a quarter turn on if k = 1.
-    Raises LagtopError for a modulus out of range, for n with complex amplitudes and, in doubles,
-    for amplitudes beyond 2^50 half turns.
+    Raises LagtopError for a modulus out of range, for complex amplitudes with n or with a complex
+    k^2 and, in doubles, for amplitudes beyond 2^50 half turns.
     """
     given.check()
-    if phi.in_quarters:
+    at_precision(32, given.check_principal)
+    _check_third(given, n)
+    if phi.has_quarters:
         raise LagtopError("phi must be an angle, without K", "phi")
-    if phi.imag is not None and n is not None:
-        raise LagtopError("phi must be real if n is given", "phi")
+    if phi.imag is not None and (n is not None or given.kind is Kind.COMPLEX):
+        raise LagtopError("phi must be real if n is given, or if k^2 is complex", "phi")
     for points in filter(None, (phi.real, phi.imag)) if digits is None else ():
         check_reach("phi", points, MAX_PERIODS * math.pi * units.radian)
-    heading = f"phi_{units.angle}"
+    shown = {*names} - ({"Pi"} if n is None else set())
+    heading, is_complex = f"phi_{units.angle}", given.kind in {Kind.LARGE, Kind.COMPLEX}
 
     def columns(x: ExactComplex, legendre: Legendre) -> Cells:
-        found = legendre.at(x, units)._asdict()
-        if n is None:
-            del found["Pi"]
+        values = legendre.at(x, units)
+        every = (*values, legendre.zeta(values))
+        found = {name: y for name, y in zip(INTEGRALS, every, strict=True) if name in shown}
         if phi.imag is not None:
             return {f"{heading}_re": x.real, f"{heading}_im": x.imag} | split(found)
-        return {heading: x.real} | (split(found) if given.kind is Kind.LARGE else real_parts(found))
+        return {heading: x.real} | (split if is_complex else real_parts)(found)
 
     inputs = [*given.value, n or Fraction(0)]
     at = phi.numbers(digits)
@@ -201,6 +255,8 @@ def constants_record(
     `_im`.  Infinite constants are None.  Raises LagtopError for a modulus out of range.
     """
     given.check()
+    at_precision(32, given.check_principal)
+    _check_third(given, n)
 
     def compute(_: int) -> Cells:
         found = constants_of(given.reduced(), units)
@@ -208,10 +264,19 @@ def constants_record(
             found["Pi"] = Legendre(given.reduced(), given.m, n).complete.Pi
         row = real_parts(found) if given.kind is Kind.UNIT else split(found)
         if given.name == "m":
-            return {"m": given.value.real} | row
-        return row | ({given.name: given.value.real} if given.name in row else {})
+            real, imag = given.value[:2]
+            return ({"m_re": real, "m_im": imag} if imag else {"m": real}) | row
+        key = f"modular_angle_{units.angle}" if given.name == "modular_angle" else given.name
+        exact_value = given.value.real if key == "nome" else abs(given.value.real)
+        return row | ({key: exact_value} if key in row else {})
 
     return numbers(compute, [*given.value, n or Fraction(0)], digits)
+
+
+def _check_third(given: GivenModulus, n: Fraction | None) -> None:
+    """Raise LagtopError for Pi of a modulus with a complex square."""
+    if n is not None and given.kind is Kind.COMPLEX:
+        raise LagtopError("n needs a real k^2: Pi is not computed for a complex one", "n")
 
 
 def constants_of(modulus: Modulus, units: Units = DEGREES) -> dict[str, acb | None]:

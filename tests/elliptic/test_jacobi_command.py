@@ -204,29 +204,41 @@ def test_a_nome_next_to_1(lagtop: Lagtop) -> None:
 
 
 READ = {
-    **{"0.3": ("0.3", "0"), "i": ("0", "1"), "-i": ("0", "-1"), "-0.5+i": ("-0.5", "1")},
-    **{"-1e+3i": ("0", "-1000"), "1e-3-2e-4i": ("0.001", "-0.0002")},
-    **{"K": ("1", "0"), "+K/2": ("1/2", "0"), " 2K ": ("2", "0"), "-2.5K": ("-5/2", "0")},
-    **{"3K/4": ("3/4", "0"), "1e3K/7": ("1000/7", "0")},
+    **{"0.3": "0.3", "i": "0 1", "-i": "0 -1", "-0.5+i": "-0.5 1", "1 - 2j": "1 -2", "2*I": "0 2"},
+    **{"-1e+3i": "0 -1000", "1e-3-2e-4i": "0.001 -0.0002"},
+    **{"K": "0 0 1", "+K/2": "0 0 1/2", " 2K ": "0 0 2", "-2.5*K": "0 0 -5/2"},
+    **{"3K/4": "0 0 3/4", "1e3K/7": "0 0 1000/7", "K/2+0.3i": "0 0.3 1/2", "iK/2": "0 0 0 1/2"},
+    **{
+        "iK'": "0 0 0 0 0 1",
+        "63.03K+0.64iK'": "0 0 63.03 0 0 0.64",
+        "K'-iK'/3+2": "2 0 0 0 1 -1/3",
+    },
 }
 
 
 @pytest.mark.parametrize("text", READ)
 def test_arguments_are_read(text: str) -> None:
-    arguments, parts = parse_arguments(text), map(Fraction, READ[text])
+    arguments, parts = parse_arguments(text), map(Fraction, READ[text].split())
     assert list(arguments.numbers(20)) == [ExactComplex(*parts)]
-    assert arguments.in_quarters is ("K" in text)
+    assert arguments.has_quarters is ("K" in text)
 
 
-NOT_COMPLEX = ["0.3+-0.7i", "xi", "0.3+0.7j", "1i2i", "0.3+0.7ii", "1e400i"]
-NOT_MULTIPLES = ["2K/0", "K/-2", "K/", "2KK", "K2", "aK", "1/2K", "2*K"]
+def test_ranges_of_multiples() -> None:
+    """A range runs along a line; K is exact also in doubles."""
+    found = list(parse_arguments("K/3:1+iK':3").numbers(None))
+    assert [x.K for x in found] == [Fraction(1, 3), Fraction(1, 6), 0]
+    assert [(x.real, x.iK_prime) for x in found] == [(x, x) for x in (0, Fraction(1, 2), 1)]
+
+
+NOT_COMPLEX = ["0.3+-0.7i", "xi", "1i2i", "0.3+0.7ii", "1e400i", "i+", "2*+i", "1/2+i"]
+NOT_MULTIPLES = ["2K/0", "K/-2", "K/", "2KK", "K2", "aK", "1/2K", "2**K", "K''", "log:K:i:3"]
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         *((text, "must be") for text in NOT_COMPLEX),
-        *((text, "must be a real multiple of K such as") for text in NOT_MULTIPLES),
+        *((text, "must be (.* K/2-0.3i or K.iK'|multiples)") for text in NOT_MULTIPLES),
         *((text, "must be a finite decimal") for text in ("k", "")),
     ],
 )
