@@ -201,9 +201,10 @@ def _sign(x: Fraction | arb) -> int:
 
 def _side(q: Fraction | arb, square: Fraction | arb) -> int:
     """Return the sign of 1 - q sin^2 phi."""
-    if not (isinstance(q, Fraction) and isinstance(square, Fraction)):
-        q, square = (x if isinstance(x, arb) else exact(x) for x in (q, square))
-    return _sign(1 - q * square)
+    if isinstance(q, Fraction) and isinstance(square, Fraction):
+        return _sign(1 - q * square)
+    q, square = (x if isinstance(x, arb) else exact(x) for x in (q, square))
+    return sign(1 - q * square)
 
 
 def amplitude_rows(
