@@ -105,8 +105,8 @@ def parse_sum(text: str, *, has_quarters: bool = True) -> ExactComplex:
     Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
     """
     found = " ".join(text.split())
-    for sign in "+-":
-        found = found.replace(f" {sign}", sign).replace(f"{sign} ", sign)
+    for mark in "+-":
+        found = found.replace(f" {mark}", mark).replace(f"{mark} ", mark)
     if set("iIjK").isdisjoint(found):
         return ExactComplex(parse_number(found))
     parts = [Fraction(0)] * 6
