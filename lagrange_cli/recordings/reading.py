@@ -144,7 +144,8 @@ class _File:
             rows[key] = converted(key, found, x, radians=unit == "rad")
             lines[key] = self._line(key, unit, why if key in bare else "")
         if "position" in rows:
-            distance = float(np.nanmedian(np.linalg.norm(rows["position"], axis=1)))
+            seen = rows["position"][np.isfinite(rows["position"]).all(axis=1)]
+            distance = float(np.median(np.linalg.norm(seen, axis=1))) if len(seen) else 0.0
             lines["position"] += f", {distance:.4g} from the origin"
         rows["t"] = elapsed
         if (centre := precess_about(rows)) is not None:
@@ -162,7 +163,7 @@ class _File:
             [x for i, x in enumerate(self.names) if i in read],
             [x for i, x in enumerate(self.names) if i not in read and x != SKIPPED],
             [text for key, text in lines.items() if key in used],
-            "s" if self.time.unit else "units of the recording",
+            "s" if self.time.unit or _FROM_0 in lines["t"] else "units of the recording",
             float(self.time.factor or 1),
         )
         return Recording(given, reading, begins, source).within()
@@ -196,8 +197,9 @@ class _File:
             remedy = "put each recording into its own file"
             wrong = f"t must not turn back, got {after:.10g} after {before:.10g}: {remedy}"
             raise DataError(f"{self._where(i)}: {wrong}")
-        shown = " and ".join(self._named("t")) + ", " if self.time.columns else ""
-        return begins, elapsed.reshape(-1, 1), f"{shown}time: {how}".replace(", time:", ": time,")
+        names = self._named("t") if self.time.columns else []
+        shown = f"column{'s' * (len(names) > 1)} {' and '.join(names)}, " if names else ""
+        return begins, elapsed.reshape(-1, 1), f"time: {shown}{how}"
 
     def _counted(self) -> tuple[float, Array, str]:
         """Return the first time, times since then and words for times that count frames."""

@@ -150,8 +150,11 @@ def test_what_was_read_is_said_alike(tmp_path: Path, lagtop: Lagtop) -> None:
     assert [compared[x] for x in keys] == [fitted[x] for x in keys]
     assert fitted["unused"] == "T"  # beside another time it is a temperature
     marker = "x (cm), y (cm), z (cm): position of a marker on the axis, in cm, 0.12 from the origin"
-    assert fitted["read"] == f"t [s]: time, in s; {marker}"
-    assert f"\nread       t [s]: time, in s\n           {marker}\n" in lagtop("fit", path).stdout
+    assert fitted["read"] == f"time: column t [s], in s; {marker}"
+    assert (
+        f"\nread       time: column t [s], in s\n           {marker}\n"
+        in lagtop("fit", path).stdout
+    )
     assert f"Read {marker}.\n" in lagtop("compare", path, *OPTIONS).stdout
 
 
