@@ -294,6 +294,8 @@ def test_bad_values_are_named_and_leave_the_motion(browser: Browser) -> None:
     browser.ask("set('field-C', '-1')")
     assert browser.ask("return at('error').textContent").startswith("C must be positive")
     assert browser.ask("return document.body.className") == "bad"
+    browser.ask("set('field-C', '80000')")  # the page has units
+    assert browser.ask("return at('error').textContent").startswith("C must be positive; above 2A")
     browser.ask("set('field-C', '17458'); set('field-psidot0', '-3'); set('field-theta0_deg', '0')")
     assert browser.ask("return at('error').textContent").startswith("ψ'0 must be 0")
     browser.ask("set('field-psidot0', '0')")  # both zeros count
@@ -318,6 +320,18 @@ def test_bad_values_are_named_and_leave_the_motion(browser: Browser) -> None:
     boxes = "['play', 'restart', 'full', 'time', 'speed'].map((x) => at(x).offsetTop)"
     assert browser.ask(f"const y = {boxes}; return Math.max(...y) - Math.min(...y)") < 20
     assert "(kg m²)" in browser.ask("return at('inputs').textContent")
+
+
+@pytest.mark.slow
+def test_numbers_without_units_need_no_rigid_body(browser: Browser, tmp_path: Path) -> None:
+    view(solve(Top())).save(tmp_path / "top.html")
+    browser.driver.get((tmp_path / "top.html").as_uri())
+    browser.ask("set('field-C', '80000')")
+    assert browser.ask("return at('sketch').textContent") == "no rigid body has C > 2A"
+    exact = solve(Top(m=1587, A=39032, C=80000, s=4, g=981))
+    assert f"{exact.T_nutation:.7g}" in browser.ask("return at('record').textContent")
+    browser.ask("set('field-C', '17458')")
+    assert browser.ask("return at('sketch').hidden")
 
 
 @pytest.mark.slow

@@ -258,7 +258,7 @@ function rangeOf(name, x) {
 function complaint(given) {
   const { m, A, C, s, g, theta0_deg: tilt, psidot0 } = given;
   const outside = {
-    m: m <= 0, A: A <= 0, C: C <= 0 || (C > 2 * A && unitOf("time") !== "time"), s: s < 0, g: g < 0, theta0_deg: tilt < 0 || tilt > 180,
+    m: m <= 0, A: A <= 0, C: C <= 0 || (C > 2 * A && DATA.units.time !== "time"), s: s < 0, g: g < 0, theta0_deg: tilt < 0 || tilt > 180,
   };
   for (const [name, { symbol, bound }] of Object.entries(DATA.inputs)) {
     if (!Number.isFinite(given[name])) return [name, `${symbol} must be a number`];
