@@ -26,8 +26,15 @@ THETAS = {"theta1": "11", "theta2": "10", "theta3": "00", "theta4": "01"}
 """The theta functions of z in radians, and the index of Theta(2Kz/pi)."""
 _THIRD_KIND = ("omega", "pi")
 FAMILIES = (
-    *("am", *QUOTIENTS, "epsilon", "theta", "zeta", *THETAS, *NEVILLE),
-    *(*INVERSES, *_THIRD_KIND),
+    "am",
+    *QUOTIENTS,
+    "epsilon",
+    *INVERSES,
+    "theta",
+    "zeta",
+    *THETAS,
+    *NEVILLE,
+    *_THIRD_KIND,
 )
 """The functions of u; `am` stands for am, sn, cn and dn."""
 _NEEDS_REAL_SQUARE = {"am", *INVERSES, *_THIRD_KIND}
@@ -52,14 +59,9 @@ class FunctionRequest(NamedTuple):
     @property
     def has_real_u(self) -> bool:
         """Whether all arguments are real; K' is complex for an imaginary k, and K for k > 1."""
-        kind, u = self.modulus.kind, self.u
-        has_complex_unit = {
-            Kind.UNIT: False,
-            Kind.IMAGINARY: u.K_prime is not None,
-            Kind.LARGE: u.K is not None,
-            Kind.COMPLEX: u.has_quarters,
-        }[kind]
-        return not has_complex_unit and (u.imag, u.iK, u.iK_prime) == (None, None, None)
+        u, kind = self.u, self.modulus.kind
+        complex_units = {Kind.IMAGINARY: u[4:], Kind.LARGE: u[2:4], Kind.COMPLEX: u[2:]}
+        return all(x is None for x in (*u[1::2], *complex_units.get(kind, ())))
 
     @property
     def is_real(self) -> bool:
@@ -73,16 +75,14 @@ class FunctionRequest(NamedTuple):
         functions, asked, u = Functions(self.modulus.reduced()), set(self.families), self.u
         if "epsilon" in asked:
             self.modulus.check_principal()
-        if self.modulus.kind is Kind.COMPLEX and (wrong := sorted(asked & _NEEDS_REAL_SQUARE)):
-            raise LagtopError(
-                f"functions must not contain {wrong[0]} if k^2 is complex", "functions"
-            )
-        if asked & {*INVERSES} and not (self.has_real_u and not u.has_quarters):
+        if functions.kind is Kind.COMPLEX and (wrong := sorted(asked & _NEEDS_REAL_SQUARE)):
+            wanted = f"must not contain {wrong[0]} if k^2 is complex"
+            raise LagtopError(f"functions {wanted}", "functions")
+        if asked & {*INVERSES} and (u.has_quarters or not self.has_real_u):
             raise LagtopError("u must be real, without K, for inverse functions", "u")
         if asked & {*THETAS} and u.has_quarters:
-            raise LagtopError(
-                "u must not contain K for theta1 to theta4: theta is of u = 2Kz/pi", "u"
-            )
+            wanted = "must not contain K for theta1 to theta4: theta is of u = 2Kz/pi"
+            raise LagtopError(f"u {wanted}", "u")
         for name, x in (("u", u), ("param", self.parameter)):
             has_K, has_K_prime = x[2] or x[3], x[4] or x[5]
             if (functions.is_1 and has_K) or (functions.is_0 and has_K_prime):

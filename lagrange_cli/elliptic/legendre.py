@@ -223,7 +223,6 @@ def amplitude_rows(
     k^2 and, in doubles, for amplitudes beyond 2^50 half turns.
     """
     given.check()
-    at_precision(32, given.check_principal)
     _check_third(given, n)
     if phi.has_quarters:
         raise LagtopError("phi must be an angle, without K", "phi")

@@ -96,7 +96,7 @@ class GivenModulus(NamedTuple):
             return
         tau = self._tau()
         if min(sign(abs(2 * tau + x) - 1) for x in (-1, 1)) < 0:
-            wanted = "must be exp(i pi tau) with |2 tau - 1| and |2 tau + 1| >= 1 for K, E and F"
+            wanted = "must be exp(i pi tau) with |2 tau - 1| and |2 tau + 1| >= 1 for K and E"
             raise LagtopError(f"nome {wanted}, got {self.value}", "nome")
 
     @property

@@ -243,16 +243,15 @@ def test_integrals_and_constants(kind: str, count: int, lagtop: Lagtop) -> None:
     rng = random.Random(f"F {kind} {count}")
     for _ in range(count):
         option, text, reference = modulus(rng, kind)
-        if kind == "complex nome" and abs(ar.ellipk(reference.m) / reference.K - 1) > 1e-20:
-            shown = lagtop("jacobi", f"{option}={text}")
-            assert "|2 tau" in shown.stderr
-            continue
         m, phi = reference.m, decimal(rng, 400)
         radians = ar.mpf(phi) * ar.pi / 180
         F, E = ar.ellipf(radians, m), ar.ellipe(radians, m)
         exact = {"F": F, "E": E, "zeta": E - F * ar.ellipe(m) / ar.ellipk(m)}
         args = (f"{option}={text}", f"--phi={phi}", "--functions", "F,E,zeta")
         assert check(rows(lagtop, *args), exact, (text, phi)) >= 3
+        if abs(ar.ellipk(m) / reference.K - 1) > 1e-20:  # the nome has another K
+            assert "|2 tau" in lagtop("jacobi", f"{option}={text}").stderr
+            continue
         constants = {"K": reference.K, "K_prime": reference.K_prime, "nome": reference.q}
         constants |= {"E": ar.ellipe(m), "E_prime": ar.ellipe(1 - m)}
         assert check(rows(lagtop, f"{option}={text}"), constants, text) >= 5
