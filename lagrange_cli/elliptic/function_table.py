@@ -117,14 +117,16 @@ def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
     """
     modulus = request.modulus
     at_precision(_FIRST_DIGITS, lambda: request.check(doubles=digits is None))
-    has_parameter = bool({*_THIRD_KIND} & set(request.families))
+    has_parameter = not {*_THIRD_KIND}.isdisjoint(request.families)
+    has_integrals = not {"epsilon", *INVERSES}.isdisjoint(request.families)
 
-    def constants() -> tuple[Functions, Legendre, Values]:
+    def constants() -> tuple[Functions, Legendre | None, Values]:
         functions = Functions(modulus.reduced())
         zetas = functions.zetas(functions.point(request.parameter)) if has_parameter else {}
-        return functions, Legendre(modulus.reduced(), modulus.m), zetas
+        integrals = Legendre(modulus.reduced(), modulus.m) if has_integrals else None  # slow
+        return functions, integrals, zetas
 
-    def columns(x: ExactComplex, constants: tuple[Functions, Legendre, Values]) -> Cells:
+    def columns(x: ExactComplex, constants: tuple[Functions, Legendre | None, Values]) -> Cells:
         functions, legendre, zetas = constants
         u = functions.point(x)
         value = functions.value(u) if request.u.has_quarters else None
@@ -145,7 +147,7 @@ def function_rows(request: FunctionRequest, digits: int | None = None) -> Rows:
 
 
 def _jacobi(
-    request: FunctionRequest, functions: Functions, legendre: Legendre, x: ExactComplex
+    request: FunctionRequest, functions: Functions, legendre: Legendre | None, x: ExactComplex
 ) -> Values:
     """Return the functions that are real for real u and k^2; am in the unit of the request."""
     families, u, found = request.families, functions.point(x), Values()
@@ -158,6 +160,8 @@ def _jacobi(
     for pq in wanted:
         quotient = None if pq[1] == "s" and u.is_0 else of[pq[0]] / of[pq[1]]
         found[pq] = _on_axes(quotient, u, odd="s" in pq, is_real=is_real)
+    if legendre is None:
+        return found
     if "epsilon" in families:  # E(am u, k) = Z_01(u) + u E/K
         zeta = functions.zetas(u)["01"] or acb(0)
         total = zeta + functions.value(u) * legendre.mean
