@@ -37,7 +37,7 @@ from .app import complain
 @opt.option("--budget", metavar="KEY", help="Print each input's share of the uncertainty of KEY.")
 @opt.option(
     "--samples",
-    type=opt.count(10**6),
+    type=opt.count(10**5),
     help="Take uncertainties from N random tops (normal inputs).",
 )
 @opt.output("table")
