@@ -193,7 +193,7 @@ class Motion(Solution):
     ) -> dict[str, Array]:
         """Return columns of `lagtop table` by name, each a float64 array in the shape of t.
 
-        Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
+        Angles are in radians; `axis`, `quaternion`, `matrix` and `omega` stand for several, which
         may also be named singly.  Raises LagtopError for an unknown column or a time out of range.
         """
         from ..arithmetic.arrays import doubles_of  # start-up
