@@ -121,7 +121,9 @@ def best_fit(
     for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
         if recording.angles.keys() == {alone} and needed not in known:
             when = ", 0 if the top is released from rest" * (alone == "theta")
-            raise DataError(f"{alone} alone does not determine a top: give {arg(needed)}{when}")
+            used = ", ".join(recording.source.source.used)
+            shown = f"{alone} alone{f' (from {used})' * bool(used)}"
+            raise DataError(f"{shown} does not determine a top: give {arg(needed)}{when}")
     signals = signals_in(recording)
     frequency, visible = oscillation_in(signals)
     lasts = frequency * recording.t[-1] >= 1
