@@ -652,15 +652,15 @@ def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None
     [
         ("t,theta,psi", "{t},40,10", "the precession rate is not determined"),
         ("t,p,q,r", "{t},1,2,3", "must have columns for angles, an axis or an attitude"),
-        ("t,x,y", "{t},1,2", "psi alone (from t, x, y) does not determine a top: give --theta0"),
+        ("t,x,y", "{t},1,2", r"psi alone \(from t, x, y\) does not determine a top: give --theta0"),
         ("t,theta,psi", "0,{t},40,5,1,2", "a comma cannot both separate cells and be the decimal"),
         ("t,phi", "{t},3", "must have theta or psi too: phi alone does not determine a top"),
         (
             "t,theta",
             "{t},40",
-            "theta alone (from t, theta) does not determine a top: give --psidot0, 0 if",
+            r"theta alone \(from t, theta\) does not determine a top: give --psidot0, 0 if",
         ),
-        ("t,psi", "{t},40", "psi alone (from t, psi) does not determine a top: give --theta0"),
+        ("t,psi", "{t},40", r"psi alone \(from t, psi\) does not determine a top: give --theta0"),
         ("t,theta,psi", "0,40,{t}", "t must span"),
         ("t,theta,psi", "{t},240,{t}", "theta must be between 0 and 180 deg"),
         ("t,theta", "", "must have at least one row"),
