@@ -49,13 +49,18 @@ def agm(one: float, k: Bounded) -> Bounded:
 
 
 def nome_of(k: Bounded, k_prime: Bounded) -> Bounded:
-    """Return the nome exp(-pi K'/K); its derivatives by log k and log k' are at most 2."""
+    """Return the nome exp(-pi K'/K); its derivatives by log k and log k' are at most 2.
+
+    The exponential loses log(1/q) digits.  Small nomes are a series instead (DLMF 19.5.5).
+    """
     k, k_prime = k.rounded(), k_prime.rounded()
-    exponent = np.pi * ellipkm1(k.value * k.value) / ellipkm1(k_prime.value * k_prime.value)
-    value = np.where(k.value == 0, 0.0, np.exp(-exponent))
-    return _by_relative_errors(
-        value, k, k_prime, least=16 + 16 * np.where(value > 0, exponent, 0.0)
-    )
+    x, y = k.value, k_prime.value
+    exponent = np.pi * ellipkm1(x * x) / ellipkm1(y * y)
+    part = x * x / (2 * (1 + y) * (1 + np.sqrt(y)) ** 2)  # (1 - sqrt(k'))/(1 + sqrt(k'))/2
+    fourth = part**4
+    series = part * (1 + fourth * (2 + fourth * (15 + fourth * 150)))
+    value = np.where(x < y, series, np.exp(-exponent))
+    return _by_relative_errors(value, k, k_prime, least=16 + 16 * np.where(x < y, 0.0, exponent))
 
 
 def integral_F(sine: Bounded, cosine: Bounded, k: Bounded) -> Bounded:
