@@ -183,28 +183,27 @@ def test_sums_with_quarter_periods(kind: str, count: int, lagtop: Lagtop) -> Non
 @pytest.mark.parametrize("k", ["0.8", "0.8i", "1.25"])
 def test_omega_and_pi_at_sums(k: str, lagtop: Lagtop) -> None:
     """At multiples of K and K' they are those at the same numbers."""
-    reference, names = Reference("k", k[:-1] + "i" if k[-1] == "i" else k), "omega,pi"
-    at = {"u": 0.3 * reference.K, "v": 0.2 * reference.K + ar.mpc(0, 1.1) * reference.K_prime}
-    u, v = (
-        f"{ar.nstr(ar.re(x), 40)}{'+' * (ar.im(x) >= 0)}{ar.nstr(ar.im(x), 40)}i"
-        for x in at.values()
-    )
-    for form, plain in (("0.3K", u),):
-        first = rows(lagtop, f"--k={k}", f"--u={form}", "--functions", names, "--param=0.2K+1.1iK'")
-        second = rows(lagtop, f"--k={k}", f"--u={plain}", "--functions", names, f"--param={v}")
-        for name in second:
-            x, y = (float(cells[name][0]) for cells in (first, second))
-            assert x == pytest.approx(y, rel=1e-14, abs=1e-30), name
+    reference, unit = Reference("k", k), ar.mpc(0, 1)
+    at = (0.3 * reference.K, 0.2 * reference.K + 1.1 * unit * reference.K_prime)
+    u, v = (f"{ar.nstr(ar.re(x), 40)}+{ar.nstr(ar.im(x), 40)}i".replace("+-", "-") for x in at)
+    found = [
+        rows(lagtop, f"--k={k}", f"--u={u}", "--functions=omega,pi", f"--param={v}")
+        for u, v in (("0.3K", "0.2K+1.1iK'"), (u, v))
+    ]
+    for name in found[1]:
+        x, y = (float(cells[name][0]) for cells in found)
+        assert x == pytest.approx(y, rel=1e-14, abs=1e-30), name
 
 
 def test_omega_on_a_line_of_zeros(lagtop: Lagtop) -> None:
     """If u - v is on the line Im z = K', omega01 is the mean of the two sides."""
     found = []
     for height in ("0.999999999iK'", "iK'", "1.000000001iK'"):
-        args = ("--k=0.8", f"--u=0.3K+{height}", "--functions=omega", "--param=0.1")
+        args = ("--k=0.8", f"--u=-0.3K+0.2i+{height}", "--functions=omega", "--param=0.1+0.2i")
         cells = rows(lagtop, *args)
         found.append(complex(*(float(cells[f"omega01_{part}"][0]) for part in ("re", "im"))))
     assert found[1] == pytest.approx((found[0] + found[2]) / 2, abs=1e-7)
+    assert abs(found[0] - found[2]) > 1
 
 
 @MANY
@@ -298,14 +297,11 @@ def test_tables_of_dlmf(k: str, lagtop: Lagtop) -> None:
     for i, texts in enumerate(DLMF_22_5.values()):
         for pq, text in zip(("sn", "cn", "dn"), texts, strict=True):
             shown = [cells[f"{pq}_{part}"][i] for part in ("re", "im")]
-            if text in {"", "0"}:
-                assert [x or "" for x in shown] in (["", ""], ["", "0.0"], ["0.0", ""]) or text, pq
-            else:
-                check(
-                    {f"{pq}_re": [shown[0]], f"{pq}_im": [shown[1]]},
-                    {pq: eval(text, None, known)},
-                    (k, i),
-                )
+            if text:  # "0" only if it is printed as 0
+                true = eval(text, None, known)
+                check({f"{pq}_re": shown[:1], f"{pq}_im": shown[1:]}, {pq: true}, (k, i))
+            assert (shown == ["0.0", "0.0"]) is (text == "0"), (pq, i)
+            assert ("" in shown) is (not text), (pq, i)
 
 
 ABRAMOWITZ = """

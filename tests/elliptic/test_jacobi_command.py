@@ -177,19 +177,6 @@ def test_the_constants_of_whole_moduli(lagtop: Lagtop) -> None:
     assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
 
 
-@pytest.mark.parametrize("k", ["0.8", "0.8i", "1.5"])
-def test_quotients(k: str, lagtop: Lagtop) -> None:
-    """Glaisher's quotients by name are those of mpmath; they have poles at zeros of pq's q."""
-    names = "ns,nc,nd,sc,cs,sd,ds,cd,dc"
-    found = cells(lagtop, f"--k {k} --u 0,0.7,0.2-3i --functions {names}")
-    m = -(mpmath.mpf("0.8") ** 2) if k == "0.8i" else mpmath.mpf(k) ** 2
-    for name in names.split(","):
-        assert bool(found[f"{name}_re"][0]) is not name.endswith("s")
-        for i, u in ((1, 0.7), (2, 0.2 - 3j)):
-            value = complex(*(float(found[f"{name}_{part}"][i]) for part in ("re", "im")))
-            assert value == pytest.approx(complex(mpmath.ellipfun(name, u, m=m)), rel=1e-13)
-
-
 def test_a_nome_next_to_1(lagtop: Lagtop) -> None:
     """K is pi/2 theta3^2: -pi^2/(2 log q) but for a term as small as k'^2."""
     nome = f"0.{'9' * 16}"
