@@ -283,7 +283,6 @@ OTHERS = {
     "solve --get theta_max": "(did you mean 'theta_max_deg'?)",
     "sweep --keys x": f"--keys must be among {len(all_keys()) + 1} names, got 'x': regime, a",
     "solve --digits 9 --format parquet": "--format parquet holds doubles: leave out --digits and",
-    "jacobi --k 0.8 --u i,K": "--u must not contain K if numbers are complex",
     "compare x.csv --plot x.bmp": "the name of a picture must end in .png, .svg or .pdf",
 }
 
