@@ -53,6 +53,7 @@ def _parse_jobs(text: str) -> int:
     "sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv",
     "sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate",
     "sweep tops.csv --keys r0,T_nutation -o solved.ndjson",
+    "sweep --r0 10:200:1000 --where 'T_nutation < 0.4'",
 )
 @opt.top(
     "[SCENE] [TOPS.csv|.ndjson|-]",
@@ -61,6 +62,12 @@ def _parse_jobs(text: str) -> int:
 )
 @opt.keys
 @opt.certify
+@opt.option(
+    "--where",
+    metavar="CONDITION",
+    multiple=True,
+    help="Keep tops with KEY<NUMBER, KEY=WORD ...; may be repeated.",
+)
 @opt.option(
     "--jobs",
     metavar="N|auto",
@@ -77,6 +84,7 @@ def sweep_command(
     words: Sequence[str],
     keys: list[str] | None,
     certify: bool,
+    where: Sequence[str],
     jobs: int | None,
     parts: str | None,
     shard: tuple[int, int] | None,
@@ -93,6 +101,9 @@ def sweep_command(
     scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
     unit: m [g].  If a top cannot be solved, the exit code is 1 and the column error gives the
     reason.  With --keys on a grid, include error to see the reasons.
+
+    --where keeps the rows of tops that satisfy a condition: a key, one of < <= > >= =, and a number
+    with its unit, or a word.  A top without the number does not satisfy it.
 
     Solving a top takes a few microseconds.  The error of each number has a bound, at most 1e-13 of
     its size (of 1 for a cosine); --certify prints it.
@@ -114,14 +125,16 @@ def sweep_command(
     if len(words) > 1:
         raise LagtopError(f"a sweep takes one file of tops, got {' '.join(words)}")
     path = words[0] if words else None
-    digest = digest_of(path) if path is not None and parts is not None else ""
+    digest = digest_of(path, decimal) if path is not None and parts is not None else ""
     out = opt.with_mark(out, decimal, reads=path is not None)
     how: dict[str, Any] = {"units": Units(top.radians), "decimal": decimal}
-    how |= {"keys": keys, "radii": certify}
+    how |= {"keys": keys, "radii": certify, "where": where}
     sweep, every_block, size, given = plan(path, top.inputs, top.scene, **how)
     opt.warn(given)
     sweep = sweep._replace(fmt=out.fmt)
     hidden = "" if "error" in sweep.header else "; add error to --keys to see every reason"
+    if where:
+        hidden = "; leave out --where to see every reason"
     done, (first, every) = list[Part](), shard or (1, 1)
     blocks: Iterable[NumberedBlock] = islice(every_block, first - 1, None, every)
     folder = None if parts is None else Parts(parts, sweep, digest)
@@ -144,6 +157,8 @@ def sweep_command(
     check(done, hidden)
     if path is not None and shard is None and not any(part.size for part in done):
         complain(f"Warning: {shown_path(path)} holds no tops")
+    elif where and shard is None and not any(part.rows for part in done):
+        complain(f"Warning: no top satisfies {' and '.join(map(str, sweep.where))}")
 
 
 def _headings(names: Sequence[str], units: Units, out: Output) -> Sequence[str]:

@@ -85,13 +85,13 @@ class TopsFile(NamedTuple):
     """The number 1 in the unit of its heading, for each column of an input."""
     table: Table
 
-    def shared(self, inputs: Mapping[str, Any], scene: str | None) -> Given:
-        """Return the inputs given in addition to the file.
+    def shared(self, inputs: Mapping[str, Any], scene: str | None, *, units: bool = False) -> Given:
+        """Return the inputs given in addition to the file; with `units`, all must have units.
 
         Raises DataError for a heading that lacks a unit, and the errors of `gather`.
         """
         try:
-            return gather(inputs, scene, varying=self.columns, others=self.units)
+            return gather(inputs, scene, units=units, varying=self.columns, others=self.units)
         except LagtopError as error:
             if error.key in self.units and error.key not in inputs:
                 raise DataError(f"{self.table.name}, heading {error.key}: {error}") from None

@@ -86,7 +86,7 @@ def rows_grid(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
 def texts_of(columns: Sequence[Any]) -> list[tuple[str, ...]]:
     """Return rows of texts: of arrays of one or several columns, and of lists of any values."""
     lists = chain.from_iterable(
-        [x] if isinstance(x, Sequence) else x.reshape(len(x), -1).T.tolist() for x in columns
+        [x] if isinstance(x, Sequence) else x.reshape((*x.shape, 1)[:2]).T.tolist() for x in columns
     )
     return [*zip(*([*map(shown_text, x)] for x in lists), strict=True)]
 

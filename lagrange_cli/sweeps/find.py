@@ -9,21 +9,18 @@ with `solve`.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Integral
-from operator import eq, ge, gt, le, lt
 from types import NoneType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import double_text, quoted, shortened
+from ..arithmetic.text import double_text
 from ..arithmetic.types import Array
 from ..errors import AbsentError, LagtopError, arg, check_type
 from ..names import check_names, repeated
 from ..solver.facts import Regime
-from ..solver.keys import all_keys, shown_keys
 from ..solver.solve import Motion, solve
 from ..top.given import Given, gather
 from ..top.inputs import INPUTS, STEADY_WORDS, overridden, warn_of
@@ -37,15 +34,13 @@ from ..top.values import (
     value_of,
     values_of,
 )
+from .conditions import WORDS, Condition, read_condition
 from .plan import shared_inputs
 from .records import sweep
 from .results import Results
 
 _COUNTS = {1: 4000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
-_WORDS = {"regime": [x.value for x in Regime], "path": ["cusped", "looping", "wavy"]}
-"""Keys that hold a word, and the words."""
-_RELATIONS: Any = {"=": eq, "<": lt, "<=": le, ">": gt, ">=": ge}
 _SWEPT = 2.0**-48
 """Bound of the relative error of a number of a sweep."""
 _EXTREMA, _FINER = 12, 100
@@ -61,20 +56,6 @@ _STARTS, _CLOSE, _APART, _SINGULAR = 16, 1e-10, 1e-7, 1e7
 """Starts for several unknowns; the largest residual of a solution, over the spread of the scanned
 numbers; the difference, over the range, below which two solutions count as one; the condition
 number of the slopes from which a solution is not isolated."""
-
-
-class Condition(NamedTuple):
-    """A condition on the record of a top: a word, a target value or a bound."""
-
-    key: str
-    relation: str
-    value: Any
-    has_unit: bool = False
-    """Whether the value has a unit other than that of an angle, so that inputs need units too."""
-
-    def __str__(self) -> str:
-        value = self.value if self.key in _WORDS else double_text(self.value)
-        return f"{self.key} {self.relation} {value.removesuffix('.0')}"
 
 
 class Search(NamedTuple):
@@ -133,7 +114,7 @@ def search_of(
     An unknown input is a `Span`, or a `Value` of one.  Raises LagtopError for bad options, and for
     conditions that cannot have isolated solutions.
     """
-    found = [_read_condition(text, units) for text in conditions]
+    found = [read_condition(text, units) for text in conditions]
     given = gather(values_of(inputs), scene, units=any(x.has_unit for x in found))
     if key := repeated(x.key for x in found if x.relation == "="):
         raise LagtopError(f"a condition must name each key once, got {key} twice")
@@ -146,9 +127,9 @@ def search_of(
     if not is_steady and steady & {(x.key, x.value) for x in found if x.relation == "="}:
         remedy = f"use {arg('psidot0', 'steady')}"
         raise LagtopError(f"a steady precession is not found by a scan: {remedy}")
-    goals = [x for x in found if x.relation == "=" and x.key not in _WORDS]
+    goals = [x for x in found if x.relation == "=" and x.key not in WORDS]
     if not goals and len(spans) == 1:
-        goals = [x for x in found if x.key in _WORDS][:1]
+        goals = [x for x in found if x.key in WORDS][:1]
     if len(goals) != len(spans):
         raise LagtopError(
             f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(goals)} for "
@@ -158,27 +139,6 @@ def search_of(
     fixed = shared_inputs(given._replace(values=known), varying=spans)
     bounds = [x for x in found if x not in goals]
     return Search(fixed, spans, goals, bounds, units, given.is_body), given
-
-
-def _read_condition(text: str, units: Units) -> Condition:
-    """Parse `KEY=VALUE` or `KEY<VALUE`; the key of an angle may omit its unit."""
-    match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
-    if not match:
-        raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
-    name, relation, word = match.groups()
-    key, known = units.key(f"{name}_deg"), all_keys(units)
-    if key not in known:
-        (key,) = check_names("a condition", [name], known)
-    if key in _WORDS:
-        word = Regime.STEADY.value if (key, word) == ("regime", "steady") else word
-        if relation != "=" or word not in _WORDS[key]:
-            wanted, got = ", ".join(_WORDS[key]), f"{relation}{word}".removeprefix("=")
-            raise LagtopError(f"{key}= must be one of {wanted}, got {shortened(got)}")
-        return Condition(key, relation, word)
-    unit = shown_keys(units, requested=True)[key].unit
-    value = parse_value(key, word, wanted=unit)
-    has_unit = bool(value.unit) and unit not in {"deg", "rad"}
-    return Condition(key, relation, float(value.number), has_unit)
 
 
 def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], str]:
@@ -197,7 +157,7 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
     values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
     nearest: list[Any] = []
     double: list[list[float]] = []
-    if search.goals[0].key in _WORDS:
+    if search.goals[0].key in WORDS:
         points = _borders(search, values)
     else:
         off = search.swept(values)
@@ -238,7 +198,7 @@ def _misses(search: Search, motion: Motion, conditions: Sequence[Condition]) -> 
     missed = {}
     for x in conditions:
         found = motion.record(radians=search.units.radians, keys=[x.key])[x.key]
-        if found is None or not _RELATIONS[x.relation](found, x.value):
+        if not x.holds(found):
             off = abs(found - x.value) if isinstance(found, float) else 0.0
             shown = f"{double_text(found)}, {off:.2g} off," if off else found
             missed[f"{x.key} = {shown}"] = off

@@ -331,7 +331,7 @@ class ArrayNumbers(GroupFacts):
             for x, exact in zip((spin, precession), finer, strict=True):
                 y = exact.rounded()
                 x.value[rows], x.error[rows] = y.value, y.error
-        return spin, precession
+        return Bounded(spin.value, spin.error), Bounded(precession.value, precession.error)
 
     @property
     def half(self) -> tuple[Bounded, Bounded]:

@@ -1,8 +1,9 @@
 """A folder with one file for each part of a sweep; repeated runs compute only the missing parts.
 
-The folder holds parts such as `part-000000.csv`, and `sweep.json`, which describes the sweep.  If
-tops of a part have errors, `errors-000000.json` counts them.  Any number of runs of one sweep may
-fill a folder at once.
+The folder holds parts such as `part-000000.csv`, and `_sweep.json`, which describes the sweep.
+`_part-000000.json` has the size of a part and counts its tops, rows and errors; it is written after
+the part, which is then done.  Readers of folders skip names that begin with `_`.  Any number of
+runs of one sweep may fill a folder at once.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from secrets import token_hex
+from typing import Any
 
 from .. import __version__
+from ..arithmetic.text import shortened
 from ..errors import CannotWriteError, LagtopError
 from ..file_bytes import read_bytes
 from ..output.destination import opened
@@ -23,12 +26,16 @@ from ..output.formats import FORMATS, format_of
 from .plan import NumberedBlock, Part, Sweep
 
 
-def digest_of(path: str) -> str:
-    """Return the SHA-256 digest of a file of tops.  Raises LagtopError for a pipe."""
+def digest_of(path: str, decimal: str = "") -> str:
+    """Return the SHA-256 digest of a file of tops, and the decimal mark with which it is read.
+
+    Raises LagtopError for a pipe.
+    """
     if path == "-" or (os.path.exists(path) and not os.path.isfile(path)):
         wanted = "a file of tops that can be read again"
         raise LagtopError(f"parts needs {wanted}, got {path}", "parts")
-    return f"sha256:{sha256(read_bytes(path)).hexdigest()}"
+    mark = f" with the decimal mark {decimal}" if decimal else ""
+    return f"sha256:{sha256(read_bytes(path)).hexdigest()}{mark}"
 
 
 class Parts:
@@ -44,48 +51,49 @@ class Parts:
             raise LagtopError("parts must name a folder, got ''", "parts")
         self.path, self.sweep, self.found = Path(path), sweep, 0
         description = {"lagtop": __version__, **sweep._asdict(), "file": digest}
-        file, text = self.path / "sweep.json", f"{json.dumps(description, indent=1)}\n".encode()
+        file, text = self.path / "_sweep.json", f"{json.dumps(description, indent=1)}\n".encode()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             if not (file.exists() or any(self.path.glob("part-*"))):
                 _create(file, text)
-            is_same = file.exists() and file.read_bytes() == text
+            there = file.read_bytes() if file.is_file() else b""
         except OSError as error:
             raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
-        if not is_same:
+        if there != text:
             raise CannotWriteError(
-                f"cannot write {path}: it holds parts of another sweep (see sweep.json in it); "
+                f"cannot write {path}: it holds parts of another sweep{_difference(there, text)}; "
                 "take another folder or empty this one"
             )
 
     def _files(self, number: int) -> tuple[Path, Path]:
-        """Return the file of a part, and the file that counts its errors."""
+        """Return the file of a part, and the file that describes it."""
         extension = FORMATS[self.sweep.fmt.removesuffix("_comma")].extension
         part = self.path / f"part-{number:06}.{extension}"
-        return part, self.path / f"errors-{number:06}.json"
+        return part, self.path / f"_part-{number:06}.json"
 
     def missing(self, blocks: Iterable[NumberedBlock], done: list[Part]) -> Iterator[NumberedBlock]:
         """Yield the blocks whose parts are missing, and add the other parts to `done`."""
         for number, block in blocks:
-            part, errors = self._files(number)
-            counted = _counted(errors)
-            if counted and part.is_file() and part.stat().st_size:
+            part, about = self._files(number)
+            found = _described(about)
+            if found and part.is_file() and part.stat().st_size == found[0]:
                 self.found += 1
-                done.append(Part(number, b"", block.size, *counted))
+                done.append(Part(number, b"", *found[1:]))
             else:
                 yield number, block
 
     def write(self, parts: Iterable[Part]) -> None:
         """Write each part into a file of its own, which appears whole or not at all."""
-        for number, text, _, failed, first, _ in parts:
-            part, errors = self._files(number)
-            if failed:  # before the part, because a part that exists is done
-                with opened(str(errors)) as stream:
-                    stream.write(json.dumps([failed, first]).encode())
-            else:
-                errors.unlink(missing_ok=True)  # that of a damaged part
-            with opened(str(part)) as stream:
-                stream.write(format_of(self.sweep.fmt).part(self.sweep.header, number, text))
+        for number, text, *counts in parts:
+            content = format_of(self.sweep.fmt).part(self.sweep.header, number, text)
+            part, about = self._files(number)
+            about.unlink(missing_ok=True)  # that of a damaged part
+            for path, written in (
+                (part, content),
+                (about, json.dumps([len(content), *counts]).encode()),
+            ):
+                with opened(str(path)) as stream:
+                    stream.write(written)
 
 
 def _create(file: Path, content: bytes) -> None:
@@ -94,17 +102,34 @@ def _create(file: Path, content: bytes) -> None:
     try:
         temporary.write_bytes(content)
         with suppress(FileExistsError):
-            os.link(temporary, file)
+            try:
+                os.link(temporary, file)
+            except FileExistsError:
+                raise
+            except OSError:  # a file system without links
+                with file.open("xb") as stream:
+                    stream.write(content)
     finally:
         temporary.unlink(missing_ok=True)
 
 
-def _counted(errors: Path) -> tuple[int, str] | None:
-    """Return the number of errors of a part and the first one, or None for a damaged file."""
+def _difference(there: bytes, here: bytes) -> str:
+    """Return the first entry in which two descriptions differ, for a message."""
     try:
-        failed, first = json.loads(errors.read_bytes())
-    except FileNotFoundError:
-        return 0, ""
+        old, new = json.loads(there), json.loads(here)
+        name = next(x for x in new if old[x] != new[x])
+    except (ValueError, LookupError, TypeError, RecursionError, StopIteration):
+        return ""
+    value = old[name]
+    text = ",".join(value) if name in {"keys", "header"} else json.dumps(value)
+    return f": {name} differs ({shortened(text)} there)"
+
+
+def _described(about: Path) -> list[Any] | None:
+    """Return the size of the file of a part and its counts, or None for a damaged file."""
+    try:
+        fields = json.loads(about.read_bytes())
+        types = [*map(type, fields)]
     except (OSError, ValueError, TypeError, RecursionError):
         return None
-    return (failed, first) if type(failed) is int and failed > 0 and type(first) is str else None
+    return fields if types == [int, int, int, int, str, int] else None

@@ -8,7 +8,7 @@ single run, wherever they were computed.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import groupby
+from itertools import compress, groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,8 +29,8 @@ from ..top.inputs import (
 from ..top.ranges import Points
 from ..top.units import DEGREES, RADIANS, Units
 from ..top.values import Value
-from .records import BLOCK_ROWS, check_keys, column_keys, empty_columns, records, with_radii
-from .tops import top_arrays
+from .conditions import Condition, read_condition
+from .records import BLOCK_ROWS, check_keys, column_keys, records, with_radii
 
 NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
@@ -44,6 +44,8 @@ class Part(NamedTuple):
     """Its rows, as the format encodes them."""
     size: int
     """The number of tops."""
+    rows: int
+    """The number of rows: of the tops that satisfy the conditions."""
     failed: int
     """The number of tops that have an error."""
     first_error: str
@@ -68,31 +70,31 @@ class Sweep(NamedTuple):
     fmt: str
     is_body: bool
     """Whether a top that no body is has an error: inputs have units, or defaults of a body."""
+    where: Sequence[Condition] = ()
+    """The conditions that the tops of all rows satisfy."""
 
     def part(self, numbered: NumberedBlock) -> Part:
         """Compute one part."""
         number, block = numbered
         given = block.arrays(self.shared)
-        columns = empty_columns(self.keys, given.size)
-        tops = top_arrays(given.inputs, given.size)
-        errors = dict(given.errors)
-        not_bodies = tops.not_bodies()
-        if self.is_body:
-            errors |= not_bodies
-        columns = records(tops, columns, errors)
+        keys = [*self.keys, *(x.key for x in self.where)]
+        columns, not_bodies = records(given, keys, are_bodies=self.is_body)
         found = columns["error"]
         failed = np.flatnonzero(found).tolist()
         if given.lines is not None:
             found[failed] = [f"line {given.lines[row]}: {found[row]}" for row in failed]
-        computed: list[Any] = []  # neighbouring columns of numbers as one array of rows
-        every = (columns[key] for key in self.keys)
+        counts = len(failed), found[failed[0]] if failed else "", not_bodies * (not self.is_body)
+        written: list[Any] = [*given.carried]
+        if self.where:
+            kept = np.logical_and.reduce([x.holds(columns[x.key]) for x in self.where])
+            columns = {key: column[kept] for key, column in columns.items()}
+            written = [[*compress(column, kept)] for column in written]
+        every = (columns[key] for key in self.keys)  # neighbouring columns of numbers as one array
         for are_numbers, run in groupby(every, lambda column: column.dtype == np.float64):
             some = [*run]
-            computed += [np.stack(some, axis=1)] if are_numbers else [x.tolist() for x in some]
-        text = format_of(self.fmt).block([*given.carried, *computed], self.header)
-        first = found[failed[0]] if failed else ""
-        computed_anyway = 0 if self.is_body else len(not_bodies)
-        return Part(number, text, given.size, len(failed), first, computed_anyway)
+            written += [np.stack(some, axis=1)] if are_numbers else [x.tolist() for x in some]
+        text = format_of(self.fmt).block(written, self.header)
+        return Part(number, text, given.size, columns["error"].size, *counts)
 
 
 def plan(
@@ -105,31 +107,35 @@ def plan(
     fmt: str = "csv",
     decimal: str = "",
     radii: bool = False,
+    where: Sequence[str] = (),
 ) -> tuple[Sweep, Iterator[NumberedBlock], int, Given]:
     """Return a sweep, its blocks, size and inputs, for a grid or a `path` to a file of tops.
 
     The last axis varies fastest.  The size is the number of tops, 0 for a file.  The inputs are
-    those that all tops share.  Raises LagtopError.
+    those that all tops share.  `where` are conditions, such as `T_nutation < 0.4`.  Raises
+    LagtopError.
     """
+    conditions = [read_condition(text, units) for text in where]
+    have_units = any(x.has_unit for x in conditions)
     chosen = with_radii(check_keys(keys, units), radii=radii)
     if path is None:
-        found = gather(axes, scene)
+        found = gather(axes, scene, units=have_units)
         points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid, ranges = Product(points), _ranges(points)
         shared = shared_inputs(found, varying=ranges)
         units = units._replace(si=found.si)
-        sweep = Sweep(chosen, ranges, shared, chosen, units, fmt, found.is_body)
+        sweep = Sweep(chosen, ranges, shared, chosen, units, fmt, found.is_body, conditions)
         return sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, found
     if ranges := _ranges({name: x.number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     computed = {*column_keys(), *column_keys(RADIANS), *chosen, "error"}
     source = read_tops(path, computed, decimal)
-    found = source.shared(axes, scene)
+    found = source.shared(axes, scene, units=have_units)
     shared = shared_inputs(found, varying=source.columns)
     with_error = list(dict.fromkeys([*chosen, "error"]))
     header = [*source.carried, *with_error]
     units = units._replace(si=found.si)
-    sweep = Sweep(header, {}, shared, with_error, units, fmt, found.is_body)
+    sweep = Sweep(header, {}, shared, with_error, units, fmt, found.is_body, conditions)
     return sweep, enumerate(source.blocks(BLOCK_ROWS)), 0, found
 
 

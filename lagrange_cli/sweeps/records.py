@@ -8,7 +8,7 @@ An invalid top gets an `error` and no numbers.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.bounded import EPS, Bounded
 from ..errors import LagtopError
+from ..files.tops import Tops
 from ..names import check_names
 from ..solver import keys as motion_record
 from ..solver.facts import FAST, Regime
@@ -73,23 +74,21 @@ def sweep(
     chosen = with_radii(check_keys(keys, Units(radians)), radii=radii)
     flat, results, are_bodies = read_inputs(inputs)
     size = math.prod(results.shape)
-    columns = empty_columns(chosen, size)
+    columns = _empty(chosen, size)
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, min(first + step, size))
         given = {name: x if isinstance(x, str) else x[rows] for name, x in flat.items()}
-        part = {key: x[rows] for key, x in columns.items()}
-        tops_of_part = top_arrays(given, rows.stop - first)
-        errors = tops_of_part.not_bodies() if are_bodies else {}
-        part = records(tops_of_part, part, errors)
+        part, _ = records(Tops(rows.stop - first, given), chosen, are_bodies=are_bodies)
         if part["error"].any():
-            columns.setdefault("error", np.full(size, None))[rows] = part["error"]
+            columns.setdefault("error", np.full(size, None))
+        for key, column in columns.items():
+            column[rows] = part[key]
     results |= {key: x.reshape(results.shape) for key, x in columns.items()}
     return results
 
 
-def empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
-    """Return empty columns for `count` tops."""
+def _empty(keys: Iterable[str], count: int) -> dict[str, ResultColumn]:
     return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 
 
@@ -109,38 +108,42 @@ def with_radii(keys: Sequence[str], *, radii: bool) -> list[str]:
 
 
 def records(
-    tops: TopArrays, columns: Mapping[str, ResultColumn], errors: Mapping[int, str]
-) -> dict[str, ResultColumn]:
-    """Fill the columns of a block of tops, and return them with `error`.
+    block: Tops, keys: Sequence[str], *, are_bodies: bool
+) -> tuple[dict[str, ResultColumn], int]:
+    """Return the columns of a block of tops, with `error`, and the number of tops with C > 2A.
 
-    `errors` are those of rows that stay empty.  The result does not depend on the `numpy.errstate`
-    of the caller.
+    These tops have an error if the tops must be bodies.  The result does not depend on the
+    `numpy.errstate` of the caller.
     """
-    columns = {"error": np.empty(tops.size, dtype=object), **columns}
+    tops = top_arrays(block.inputs, block.size)
+    not_bodies = tops.not_bodies()
+    errors = {**block.errors, **(not_bodies if are_bodies else {})}
+    columns = _empty(dict.fromkeys([*keys, "error"]), tops.size)
     inputs = {x: tops.tilt.in_unit(x) for x in ("theta0_deg", "theta0_rad")}
     inputs |= {f"{x}{RADIUS}": np.zeros(tops.size) for x in tops.forms} | tops.forms | tops.inputs
     for key, column in columns.items():
         column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
     columns["error"][[*errors]] = [*errors.values()]
-    keys = [key for key in columns if key not in {*inputs, "error"} and not key.endswith(RADIUS)]
+    given = {*inputs, "error"}
+    left_keys = [key for key in columns if key not in given and not key.endswith(RADIUS)]
     if "psidot0" in columns and (tops.steady > 0).any():
-        keys.append("psidot0")
+        left_keys.append("psidot0")
     alone = np.ones(tops.size, dtype=np.bool_)
     alone[[*errors]] = False
     wanted: dict[int, list[str]] = {}
     with np.errstate(all="ignore"):  # what an overflow or a 0/0 has touched is not trusted
         for regime, group in tops.groups().items():
             rows = np.flatnonzero(group & alone)
-            left = dict.fromkeys(keys, rows) if rows.size else {}
+            left = dict.fromkeys(left_keys, rows) if rows.size else {}
             for pairs in [True] if regime is None else [False, True]:
                 left = _filled(tops, left, regime, pairs, columns) if left else {}
             for key, rows in left.items():
                 for row in rows.tolist():
                     wanted.setdefault(row, []).append(key)
             alone &= ~group
-    wanted |= dict.fromkeys(np.flatnonzero(alone).tolist(), keys)
+    wanted |= dict.fromkeys(np.flatnonzero(alone).tolist(), left_keys)
     _solve(tops, dict(sorted(wanted.items())), columns)
-    return columns
+    return columns, len(not_bodies)
 
 
 def _solve(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -60,7 +61,7 @@ def test_parts_of_another_sweep_are_refused(tmp_path: Path, lagtop: Lagtop) -> N
     for options in OTHERS:
         assert_refused(lagtop(*GRID, *options.split(), "--parts", tmp_path), tmp_path)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
-    description = tmp_path / "sweep.json"
+    description = tmp_path / "_sweep.json"
     for damage in (lambda: description.write_bytes(b""), description.unlink):
         damage()
         assert_refused(lagtop(*GRID, "--parts", tmp_path), tmp_path)
@@ -75,7 +76,7 @@ def test_of_two_sweeps_that_start_together_one_ends(
 
     monkeypatch.setattr("os.link", late)
     assert_refused(lagtop(*GRID, "--parts", tmp_path), tmp_path)
-    assert [x.name for x in tmp_path.iterdir()] == ["sweep.json"]
+    assert [x.name for x in tmp_path.iterdir()] == ["_sweep.json"]
 
 
 def test_a_damaged_part_is_computed_again(tmp_path: Path, lagtop: Lagtop) -> None:
@@ -83,10 +84,10 @@ def test_a_damaged_part_is_computed_again(tmp_path: Path, lagtop: Lagtop) -> Non
     parts, whole = [tmp_path / f"part-00000{i}.csv" for i in range(3)], joined(tmp_path)
     parts[0].write_bytes(b"")
     for wrong in ('["a","b"]', "[null,null]", '[-5,"x"]', "[" * 100_000):
-        (tmp_path / "errors-000001.json").write_text(wrong)
+        (tmp_path / "_part-000001.json").write_text(wrong)
         again = lagtop(*GRID, "--parts", tmp_path)
         assert (again.exit_code, joined(tmp_path)) == (0, whole)
-        assert not (tmp_path / "errors-000001.json").exists()
+        assert json.loads((tmp_path / "_part-000001.json").read_text())[1:3] == [4, 4]
     parts[2].unlink()
     parts[2].mkdir()
     assert_one_line(lagtop(*GRID, "--parts", tmp_path), 74, f"cannot write {parts[2]}: Is a dir")
@@ -107,7 +108,7 @@ def test_a_sweep_is_resumed_with_its_errors(tmp_path: Path, lagtop: Lagtop) -> N
     whole, first = lagtop(*options), lagtop(*options, "--parts", parts)
     again = lagtop(*options, "--parts", parts)
     (parts / "part-000001.csv").unlink()
-    (parts / "errors-000000.json").write_text("damaged")  # then the part is computed again
+    (parts / "_part-000000.json").write_text("damaged")  # then the part is computed again
     mended = lagtop(*options, "--parts", parts)
     last = "Error: 2 of 9 tops have an error; the first: line 5: r0 must be a finite decimal"
     for result, found in ((whole, 0), (first, 0), (again, 3), (mended, 1)):
@@ -125,9 +126,32 @@ def test_a_part_appears_whole_or_not_at_all(
     def refuse(*_: object) -> None:
         raise OSError(28, why)
 
-    for call, names, file in (("link", [], tmp_path), ("replace", ["sweep.json"], part)):
-        with monkeypatch.context() as patch:
-            patch.setattr(os, call, refuse)
-            result = lagtop(*GRID, "--parts", tmp_path)
-        assert_one_line(result, 74, f"cannot write {file}: {why}")
-        assert [x.name for x in tmp_path.iterdir()] == names
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", refuse)
+        result = lagtop(*GRID, "--parts", tmp_path)
+    assert_one_line(result, 74, f"cannot write {part}: {why}")
+    assert [x.name for x in tmp_path.iterdir()] == ["_sweep.json"]
+
+
+def test_a_folder_without_links_is_a_folder(
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """FAT and some network disks have no hard links."""
+
+    def refuse(*_: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", refuse)
+    for options, code in (([], 0), ([], 0), (["--keys", "K"], 74)):
+        assert lagtop(*GRID, *options, "--parts", tmp_path).exit_code == code
+    assert joined(tmp_path) == lagtop(*GRID).stdout_bytes
+
+
+def test_a_part_that_was_cut_is_computed_again(tmp_path: Path, lagtop: Lagtop) -> None:
+    lagtop(*GRID, "--parts", tmp_path)
+    whole, part = joined(tmp_path), tmp_path / "part-000001.csv"
+    part.write_bytes(part.read_bytes()[:-5])
+    assert "Resumed: 2 parts" in lagtop(*GRID, "--parts", tmp_path).stderr
+    assert joined(tmp_path) == whole
+    other = lagtop(*GRID, "--keys", "K", "--parts", tmp_path)
+    assert "another sweep: header differs (r0,K there)" in other.stderr

@@ -87,6 +87,30 @@ def test_keys_of_a_grid_are_all_that_is_printed(lagtop: Lagtop) -> None:
     assert lagtop("sweep", "--C", "1,8e4").exit_code == 1
 
 
+def test_where_keeps_the_rows_that_satisfy_every_condition(lagtop: Lagtop) -> None:
+    """In every format, and with parts that keep no row; a missing number satisfies nothing."""
+    grid = ["sweep", "--theta0", "0,30", "--r0", "20:60:5", "--keys", "r0,T_nutation,path,error"]
+    where = ["--where", "T_nutation<0.43", "--where", "theta_max <= 65"]
+    every = dicts(lagtop(*grid, "--keys", "r0,T_nutation,path,error,theta_max_deg").stdout)
+    kept = [x for x in every if x["T_nutation"] and float(x["T_nutation"]) < 0.43]
+    kept = [x for x in kept if float(x.pop("theta_max_deg")) <= 65]
+    assert 0 < len(kept) < 5
+    assert dicts(lagtop(*grid, *where).stdout) == kept
+    for fmt in ("json", "ndjson", "csv"):
+        all_rows = lagtop(*grid, "--where", "r0>0", "--format", fmt).stdout
+        assert all_rows == lagtop(*grid, "--format", fmt).stdout
+        none = lagtop(*grid, "--where", "T_nutation > 9", "--format", fmt)
+        assert none.stdout == {"json": "[]\n", "csv": "r0,T_nutation,path,error\n"}.get(fmt, "")
+        assert none.stderr == "Warning: no top satisfies T_nutation > 9\n"
+    words = lagtop(*grid, "--where", "regime=sleeping").stdout
+    assert [x["T_nutation"] for x in dicts(words)] == [""] * 5
+    bad = lagtop("sweep", "-", "--where", "r0<9", "--keys", "r0", input="id,r0\n1,50\n2,x\n3,5\n")
+    assert (bad.exit_code, bad.stdout) == (1, "id,r0,error\n3,5.0,\n")
+    assert "1 of 3 tops have an error; the first: line 3" in bad.stderr
+    assert_one_line(lagtop(*grid, "--where", "T_nutation"), 2, "a condition must be KEY=VALUE")
+    assert_one_line(lagtop(*grid, "--where", "K<5 ms"), 2, "")
+
+
 def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
     grid, absent = ["sweep", "--r0", "0:60:7", "--theta0", "0,30", "--format"], {"nan", "None"}
     exact = sweep(r0=np.repeat(np.arange(0, 61, 10), 2), theta0_deg=np.tile([0, 30], 7))

@@ -39,7 +39,9 @@ class Csv(Format):
         import numpy as np
         import orjson
 
-        rows = numbers.reshape(len(numbers), -1)
+        rows = numbers.reshape((*numbers.shape, 1)[:2])
+        if not rows.size:
+            return b""
         text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
         if b"n" in text:
             text = text.replace(b"null", missing)

@@ -36,7 +36,7 @@ def json_rows(columns: Columns, names: Sequence[str]) -> list[bytes]:
         return str(value) if isinstance(value, str) else float(value)
 
     lists = chain.from_iterable(
-        [x] if isinstance(x, Sequence) else x.reshape(len(x), -1).T.tolist() for x in columns
+        [x] if isinstance(x, Sequence) else x.reshape((*x.shape, 1)[:2]).T.tolist() for x in columns
     )
     rows = (dict(zip(names, row, strict=True)) for row in zip(*lists, strict=True))
     as_written = orjson.OPT_PASSTHROUGH_SUBCLASS

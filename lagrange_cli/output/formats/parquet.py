@@ -45,7 +45,7 @@ class Parquet(Format):
                 texts = [x if x is None or type(x) is str else json_text(x) for x in column]
                 arrays.append(pa.array(texts, pa.string()))
             else:
-                numbers = column.reshape(len(column), -1).T.copy()
+                numbers = column.reshape((*column.shape, 1)[:2]).T.copy()
                 arrays += [pa.array(x, from_pandas=True) for x in numbers]
         return pa.table(arrays, names=list(names))
 
