@@ -19,7 +19,7 @@ from typing import Any
 
 from .. import __version__
 from ..arithmetic.text import shortened
-from ..errors import CannotWriteError, LagtopError
+from ..errors import CannotWriteError, LagtopError, arg
 from ..file_bytes import read_bytes
 from ..output.destination import opened
 from ..output.formats import FORMATS, format_of
@@ -117,12 +117,13 @@ def _difference(there: bytes, here: bytes) -> str:
     """Return the first entry in which two descriptions differ, for a message."""
     try:
         old, new = json.loads(there), json.loads(here)
-        name = next(x for x in new if old[x] != new[x])
+        name = next(x for x in sorted(new, key="header".__eq__) if old[x] != new[x])
     except (ValueError, LookupError, TypeError, RecursionError, StopIteration):
         return ""
     value = old[name]
     text = ",".join(value) if name in {"keys", "header"} else json.dumps(value)
-    return f": {name} differs ({shortened(text)} there)"
+    option = arg({"fmt": "format"}.get(name, name)) if name in {"keys", "where", "fmt"} else name
+    return f": {option} differs ({shortened(text)} there)"
 
 
 def _described(about: Path) -> list[Any] | None:

@@ -154,4 +154,4 @@ def test_a_part_that_was_cut_is_computed_again(tmp_path: Path, lagtop: Lagtop) -
     assert "Resumed: 2 parts" in lagtop(*GRID, "--parts", tmp_path).stderr
     assert joined(tmp_path) == whole
     other = lagtop(*GRID, "--keys", "K", "--parts", tmp_path)
-    assert "another sweep: header differs (r0,K there)" in other.stderr
+    assert "another sweep: --keys differs (r0,K there)" in other.stderr
