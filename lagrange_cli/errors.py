@@ -17,7 +17,7 @@ N is 2 for Ctrl-C and 13 if the reader has gone away.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, Self
 
 MARK = "\ud800"
 """What stands on both sides of an argument in a text: half of a surrogate pair.
@@ -42,7 +42,7 @@ class Message(str):
     marked: str
     """The text with marks around the arguments, to be part of another message."""
 
-    def __new__(cls, text: str) -> Message:
+    def __new__(cls, text: str) -> Self:
         """Take a text with arguments that `arg` has marked."""
         found = super().__new__(cls, text.replace(MARK, ""))
         found.marked = marked(text)

@@ -121,7 +121,7 @@ def _write(found: list[Outcome], source: str, units: str, out: Output) -> None:
 
     rows, whole = [x.record() for x in found], None
     names = list(dict.fromkeys(key for row in rows for key in row))
-    asides = [f"Note: {marked(x)}" for x in found[0].notes]
+    asides = [f"Note: {marked(x)}" for x in found[0].remarks]
     if len(found) > 1:
         decay, asides = decay_of(found), [decay_text(found)]
         whole = {"decay": decay and decay._asdict(), "windows": rows}

@@ -15,11 +15,12 @@ from ..recordings.frames import alignment_of, in_frames, own_frames, turn_of
 from ..recordings.misreadings import misreadings
 from ..recordings.options import Alignment
 from ..top.inputs import BODY, replaced_by
-from .checks import CHANCE, Mistake, MoreNoise, OtherReading
+from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
 from .measured import Measured, frames_of, measured
 from .outcome import GOOD, STEADY, Outcome
+from .reasons import WRONG, Kind, OtherReading
 from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
@@ -51,9 +52,8 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
     if len(recording.angles) == 1:  # of which a known start is a part
         body = dict(known)
-    is_wrong = any(not isinstance(x, MoreNoise) for x in outcome.misfits)
-    is_wrong |= any(isinstance(x, Mistake) for x in outcome.faults)
-    if outcome.origin or not is_wrong:  # a marker's pivot is named, or known inputs contradict
+    kinds = {x.kind for x in outcome.failed}
+    if Kind.PIVOT in kinds or not kinds & WRONG:  # else more rows or other inputs help
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
         few = f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
@@ -77,7 +77,7 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
         at = recording.t_start + float(recording.t[row])
         yield f"the top is held until about t = {at:.4g}: leave out the rows before the release"
     yield from _decays(recording, body, outcome, noise)
-    if outcome.neighbour:
+    if kinds & {Kind.MACHINE, Kind.ROWS}:  # which are named
         return
     start = [x for x in ("theta0", "psidot0") if x in known]
     short = ", and that the recording lasts for a period of the nutation"

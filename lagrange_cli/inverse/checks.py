@@ -16,7 +16,7 @@ import numpy as np
 from scipy.special import fdtrc, gammaincinv, ndtri
 
 from ..arithmetic.types import Array, Mask
-from ..errors import Message
+from .reasons import Kind, Reason
 
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
@@ -32,18 +32,6 @@ _ROWS_PER_LAG, _LAGS, _WEAK = 2.0, 12, 0.1
 a correlation that is none."""
 _COARSE, _WITHIN = 0.6, 0.75
 """An encoder's residuals: largest rms, and largest 95 % quantile, over its step."""
-
-
-class Mistake(Message):
-    """A reason that comes from a mistake in the data, not from too little of it."""
-
-
-class MoreNoise(Message):
-    """A reason that more noise than was given may explain."""
-
-
-class OtherReading(Message):
-    """A remedy: the recording was misread, and a fit of the other reading is good."""
 
 
 @dataclass
@@ -149,8 +137,13 @@ class Residuals:
         ratio = explained / count / noise
         return ratio, float(fdtrc(count, dof, ratio))
 
-    def faults(self, name: str, frequency: float, chance: float) -> Iterator[str]:
-        """Yield why the residuals are not noise.
+    def faults(self, name: str, frequency: float, chance: float) -> Iterator[Reason]:
+        """Yield why the residuals are not noise."""
+        for text in self._faults(name, frequency, chance):
+            yield Reason(Kind.RESIDUALS, text)
+
+    def _faults(self, name: str, frequency: float, chance: float) -> Iterator[str]:
+        """Yield the same in words.
 
         A wrong motion leaves neighbours alike, unless it oscillates from row to row.
         """

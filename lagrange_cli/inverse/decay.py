@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -66,7 +65,7 @@ def fit_windows(
         key = "psidot0" if name == "steady" else name
         raise LagtopError(f"{key} is not the same in all windows: leave it out", key)
     return [
-        replace(best_fit(part, known, chance=CHANCE / count), units=units)
+        best_fit(part, known, chance=CHANCE / count, units=units)
         for part in recording.windows(count)
     ]
 

@@ -27,10 +27,10 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
 
     Raises DataError for a recording that cannot be fitted.
     """
-    outcome = replace(best_fit(recording, known), units=units)
-    if outcome.failures():
-        outcome.hints += islice(hints(recording, known, outcome), 1)
-    return outcome
+    outcome = best_fit(recording, known, units=units)
+    if not outcome.failed:
+        return outcome
+    return replace(outcome, hints=[*islice(hints(recording, known, outcome), 1)])
 
 
 def fit(

@@ -14,11 +14,11 @@ from ..solver.keys import shown_keys
 from ..sweeps.records import sweep
 from ..top.inputs import all_replaced
 from ..top.units import Units
-from .checks import Mistake
 from .known import body_numbers, time_power
 from .measured import Measured
 from .outcome import PERCENT, Number, Outcome
 from .problem import BESIDE_POLE, Minimum, Problem
+from .reasons import Kind, Reason
 
 _MEANINGS = {
     "a": "2mgs/A (4,4)",
@@ -54,11 +54,14 @@ def nutating_outcome(
     *,
     is_spin_known: bool,
     is_even: bool,
+    rival: str = "",
+    **others: Any,
 ) -> Outcome:
     """Return the result of a fit whose unit of time is `scale` units of the recording.
 
-    Without `is_spin_known` nothing follows from r0.  The `noise` of the channels is that of
-    `Outcome`.
+    Without `is_spin_known` nothing follows from r0.  The `noise` of the channels, and all others,
+    are those of `Outcome`, with the `notes` that come after those on the top.  A `rival` is another
+    top, in words.
     """
     problem, names, given = found.problem, found.problem.names, found.problem.stds
     stds = np.linalg.norm(found.spread, axis=1)
@@ -81,7 +84,7 @@ def nutating_outcome(
     unit = found.spread / (stds[:, np.newaxis] + 1e-300)
     body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
     products = [x for x in numbers if set(x) & set("*/") and is_spin_known]
-    notes = [_wish(products)] * bool(products)
+    notes = [*others.pop("assumed", ()), *[_wish(products)] * bool(products)]
     if problem.is_even:
         notes.append("the sign of b is not determined: theta alone does not show the direction")
     values = {x: y[0] for x, y in pairs.items()}
@@ -89,19 +92,19 @@ def nutating_outcome(
     arbitrary |= hidden & {"thetadot0", "psidot0"} - problem.inputs.keys()
     return Outcome(
         recording=recording,
-        known=problem.inputs,
         in_radians=numbers,
         motion=lambda t: problem.angles(found.x[np.newaxis], t / scale)[:, 0],
         parameters=problem.count,
         frequency=1 / scale,
         noise=noise,
-        faults=_faults(found, is_even=is_even),
-        notes=notes,
+        reasons=[*_faults(found, rival, is_even=is_even), *others.pop("reasons", ())],
+        notes=[*notes, *others.pop("notes", ())],
         inputs={x: y * scale ** time_power(x) for x, y in inputs.items()},
         arbitrary=arbitrary,
         correlations={
             f"{x} and {y}": float(unit[i] @ unit[j]) for i, x in body for j, y in body if x < y
         },
+        **others,
     )
 
 
@@ -112,24 +115,29 @@ def _wish(products: Sequence[str]) -> str:
     return f"only {' and '.join(products)} can be determined, unless {some} given"
 
 
-def _faults(found: Minimum, *, is_even: bool) -> list[str]:
+def _faults(found: Minimum, rival: str, *, is_even: bool) -> list[Reason]:
     """Return why the top is undetermined or impossible."""
-    problem, values, faults = found.problem, found.values, []
+    problem, values, faults = found.problem, found.values, list[Reason]()
+    if rival:
+        also = f"another top explains the recording as well: {rival}"
+        faults.append(Reason(Kind.OPEN, also))
     if found.unknown:
         known = [x for x in found.unknown if not x.endswith("_zero")] or found.unknown
-        faults.append(f"the recording does not determine {' and '.join(known)}")
+        missing = f"the recording does not determine {' and '.join(known)}"
+        faults.append(Reason(Kind.OPEN, missing))
     elif found.is_curved:
-        faults.append(
+        hardly = (
             "the recording hardly determines the top: chi^2 is not parabolic within two standard "
             "deviations"
         )
+        faults.append(Reason(Kind.OPEN, hardly))
     if problem.spins and not found.unknown:
         ratio = values["b"] / (values["r0"] or math.inf)
         std = found.std("b") / abs(values["r0"] or math.inf)
         is_free = "phi" in problem.recording.angles and is_even
         if not -3 * std < ratio < 2 + 3 * std and not (is_free and abs(ratio) < 3 * std):
             wrong = f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2"
-            faults.append(Mistake(wrong))
+            faults.append(Reason(Kind.IMPOSSIBLE, wrong))
     return faults
 
 

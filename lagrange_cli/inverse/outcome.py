@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,10 +18,11 @@ from ..output.notebook import HasRecord
 from ..recordings.doubts import pivot_of
 from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
-from .checks import CHANCE, LARGEST, MoreNoise, OtherReading, Residuals, chi2_bounds
+from .checks import CHANCE, LARGEST, Residuals, chi2_bounds
 from .known import Known
 from .measured import Measured
 from .neighbours import Neighbours, neighbours_of
+from .reasons import MISFITS, Kind, OtherReading, Reason
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,6 +31,8 @@ _UNITS = {
     **{"m": "kg", "s": "m", "g": "m/s^2", "A": "kg*m^2", "C": "kg*m^2"},
     **dict.fromkeys(("r0", "thetadot0", "psidot0"), "rad/s"),
 }
+_FILTERED = 1e-4
+"""Least share of the nutation, lost to a filter, that a note reports."""
 PERCENT = "_percent"
 """Ending of the keys of relative errors of elementary formulas."""
 GOOD, STEADY, FAILED = "good", "good, no nutation", "failed"
@@ -83,13 +86,11 @@ class Outcome(HasRecord):
     """The step between values, and the noise of neighbours, by channel in radians."""
     units: Units = DEGREES
     """The units of texts and records."""
-    faults: list[str] = field(default_factory=list)
-    """Why the motion is undetermined or impossible."""
-    contradictions: list[str] = field(default_factory=list)
-    """Known inputs that contradict the recording."""
-    notes: list[str] = field(default_factory=list)
+    reasons: Sequence[Reason] = ()
+    """Why the fit has failed, besides the residuals: the top or a known input."""
+    notes: Sequence[str] = ()
     """What was assumed, and how the recording was interpreted."""
-    hints: list[str] = field(default_factory=list)
+    hints: Sequence[str] = ()
     """What to try if the fit has failed, as other fits confirm."""
     inputs: Mapping[str, float] | None = None
     """Inputs of `Top` with this motion; None for a steady precession."""
@@ -136,50 +137,59 @@ class Outcome(HasRecord):
         return chi2_bounds(self.dof / widest**2, self.chance)
 
     @cached_property
-    def misfits(self) -> list[str]:
-        """Why the motion does not match the recording."""
-        return [*self._misfits()]
+    def failed(self) -> list[Reason]:
+        """Why the fit has failed, in the order of `Kind`, which is empty if it is good.
 
-    def _misfits(self) -> Iterator[str]:
-        """Yield why the motion does not match the recording, the plainest reasons first."""
+        A known input contradicts only a motion that is right.
+        """
+        found = [*self.reasons, *self._of_data(), *self._misfits()]
+        if self.neighbour:
+            other = f"this is not a Lagrange top alone: {self.neighbour}"
+            found.append(Reason(Kind.MACHINE, other))
+        found.sort(key=lambda x: x.kind)
+        return [x for x in found if x.kind < Kind.KNOWN] or found
+
+    def failures(self) -> list[Reason]:
+        """Return the reasons why the fit has failed; a reading that is good needs no machine."""
+        is_misread = any(isinstance(x, OtherReading) for x in self.hints)
+        return [x for x in self.failed if not (is_misread and x.kind is Kind.MACHINE)]
+
+    def _of_data(self) -> Iterator[Reason]:
+        """Yield what is wrong with the rows, whatever the motion."""
+        marker = self.recording.position
+        if marker is not None and (pivot := pivot_of(marker)) is not None:
+            where = f"the pivot is at {pivot}: subtract it" if str(pivot) else "is it at the pivot?"
+            varies = "the distance of the marker from the origin varies with its direction"
+            yield Reason(Kind.PIVOT, f"{varies}: {where}")
+
+    def _misfits(self) -> Iterator[Reason]:
+        """Yield why the motion does not match the recording."""
         scale, unit = self.units.radian, self.units.angle
         for name, rest in self.residuals.items():
             if rest.rms > LARGEST:
-                yield f"no motion of a top matches: {name} is {rest.rms * scale:.3g} {unit} off"
+                off = f"{name} is {rest.rms * scale:.3g} {unit} off"
+                yield Reason(Kind.MOTION, f"no motion of a top matches: {off}")
         for name, rest in self.residuals.items():
             if rest.outliers.any():
                 row = np.abs(rest.y).argmax()
-                off, at = abs(rest.y[row]) * scale, self.recording.t_start + rest.t[row]
-                yield f"{name} is {off:.3g} {unit} off at t = {at:.6g}, far more than elsewhere"
+                off = f"{name} is {abs(rest.y[row]) * scale:.3g} {unit} off"
+                at = self.recording.t_start + rest.t[row]
+                yield Reason(Kind.OUTLIER, f"{off} at t = {at:.6g}, far more than elsewhere")
         for name, rest in self.residuals.items():
             yield from rest.faults(name, self.frequency, self.chance / len(self.residuals))
         chi2, high = self.chi2_dof, self.chi2_bounds[1]
         if chi2 is not None and chi2 > high:
             sigma = self.recording.sigma
             times, name = max((rest.rms / sigma[x], x) for x, rest in self.residuals.items())
-            yield MoreNoise(
-                f"chi2/dof = {chi2:.3g} is above {high:.3g}: a different motion, or more noise: "
-                f"the rms of {name} is {times:.3g} sigma"
-            )
-
-    def failures(self) -> list[str]:
-        """Return the reasons why the fit has failed, if there are any.
-
-        A marker with another origin comes first, then a motion that is impossible or not
-        determined, then another machine, a motion that does not match, and a known input that
-        contradicts a right one.
-        """
-        other = f"this is not a Lagrange top alone: {self.neighbour}"
-        is_misread = any(isinstance(x, OtherReading) for x in self.hints)
-        is_named = bool(self.neighbour) and not is_misread
-        found = [*self.origin, *self.faults, *[other] * is_named, *self.misfits]
-        return found or self.contradictions
+            above = f"chi2/dof = {chi2:.3g} is above {high:.3g}"
+            more = f"a different motion, or more noise: the rms of {name} is {times:.3g} sigma"
+            yield Reason(Kind.SIGMA, f"{above}: {more}")
 
     @cached_property
     def neighbours(self) -> Neighbours | None:
         """What else the recording could be; None if this cannot be said."""
         is_far = any(x.rms > LARGEST or x.outliers.any() for x in self.residuals.values())
-        if is_far or self.origin or self.inputs is None:
+        if is_far or self.inputs is None:
             return None
         has = self.inputs, 1 / self.frequency
         return neighbours_of(self.recording, self.residuals, self.motion, *has)
@@ -202,20 +212,29 @@ class Outcome(HasRecord):
         found = self.neighbours.errors(has_moment="A" in all_replaced(self.known))
         return {x: y for x, y in found.items() if x in self.numbers}
 
-    @cached_property
-    def origin(self) -> list[str]:
-        """Where the pivot is if the origin of a marker is elsewhere, as a failure; else empty."""
-        marker = self.recording.position
-        if marker is None or (pivot := pivot_of(marker)) is None:
-            return []
-        where = f"the pivot is at {pivot}: subtract it" if str(pivot) else "is it at the pivot?"
-        varies = "the distance of the marker from the origin varies with its direction"
-        return [f"{varies}: {where}"]
-
     @property
     def remarks(self) -> list[str]:
         """The notes, unless the motion that they describe does not match."""
-        return [] if self.misfits else self.notes
+        if any(x.kind in MISFITS for x in self.failed):
+            return []
+        return [*self.notes, *self._on_noise()]
+
+    def _on_noise(self) -> Iterator[str]:
+        """Yield notes on the size of the noise, and on its correlation."""
+        low, chi2 = self.chi2_bounds[0], self.chi2_dof
+        if chi2 is not None and chi2 < low:
+            yield f"chi2/dof = {chi2:.3g} is below {low:.3g}: the noise is below sigma"
+        widest = max(rest.widening(self.chance) for rest in self.residuals.values())
+        if widest > 1 and not self.failed:
+            note = (
+                "the residuals correlate from row to row (smoothed data, or an encoder): standard "
+                f"deviations are multiplied by {widest:.2g}"
+            )
+            lost = max(rest.lost(self.frequency) for rest in self.residuals.values())
+            if lost > _FILTERED:
+                smaller = f"the nutation is {100 * lost:.2g} % too small"
+                note += f"; if a filter smoothed the data, {smaller}"
+            yield note
 
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""
@@ -271,7 +290,7 @@ class Outcome(HasRecord):
         lines = [
             f"# Found by `lagtop fit` from {source}: the start is its first row, at "
             f"t = {self.recording.t_start!r}.",
-            *(f"# {note}" for note in self.notes),
+            *(f"# {note}" for note in self.remarks),
             *(f"# {key} = {x}" for key, x in self.numbers.items()),
             *(f"# correlation of {pair}: {r:.3f}" for pair, r in self.correlations.items()),
         ]

@@ -66,9 +66,9 @@ def fit_report(
         for key, x in numbers.items()
         if not key.endswith(PERCENT)
     ]
-    first, *others = outcomes[0].failures() or [""]
-    reasons = [joined([first, *outcomes[0].hints]), *others] if first else []
-    conclusions = [*_conclusions(outcomes[0]), *_failed(reasons[omits_first:])]
+    failed: list[str] = [*outcomes[0].failures()]
+    failed[:1] = [joined([*failed[:1], *outcomes[0].hints])] if failed else []
+    conclusions = [*_conclusions(outcomes[0]), *_failed(failed[omits_first:])]
     return Report(conditions, fields, rows, conclusions)
 
 

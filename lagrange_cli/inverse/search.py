@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from operator import itemgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from ..arithmetic import rotations
 from ..arithmetic.types import Array
 from ..errors import DataError, Message, arg
 from ..top.inputs import all_replaced
+from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, Residuals
 from .known import (
     Known,
@@ -34,8 +35,9 @@ from .known import (
 from .measured import LEAST_ROWS, Measured
 from .motions import STATE
 from .nutation import nutating_outcome
-from .outcome import FAILED, Outcome
+from .outcome import Outcome
 from .problem import STEPS, Minimum, Problem, mean_squares
+from .reasons import Kind, Reason
 from .signals import (
     Signal,
     binned,
@@ -72,8 +74,6 @@ _FASTER = 3.0
 _LEAST_SIGMA = 1e-12
 _NEAREST = 3.0
 """Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
-_FILTERED = 1e-4
-"""Least share of the nutation, lost to a filter, that a note reports."""
 _Noise = Mapping[str, tuple[float, float]]
 
 
@@ -112,8 +112,9 @@ def best_fit(
     known: Known,
     *,
     chance: float = CHANCE,
+    units: Units = DEGREES,
 ) -> Outcome:
-    """Return the fit of one recording.
+    """Return the fit of one recording, with numbers in some `units`.
 
     If spin and precession are recorded, psi may count in the other direction.  `chance` is the
     probability that noise fails a test.  Raises DataError for a recording that cannot be fitted.
@@ -128,32 +129,16 @@ def best_fit(
     frequency, visible = oscillation_in(signals)
     lasts = frequency * recording.t[-1] >= 1
     noise = _noise(recording, signals)
-    steady = steady_outcome(recording, known, signals, noise, frequency)
-    steady.chance, outcome = chance, steady
-    if visible and lasts and steady.failures():
-        both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
-        for form, of_form in _forms(recording, signals, noise):
-            found = _nutation(form, known, frequency, of_form, both=both)
-            if found is None:
-                continue
-            found.chance = chance
-            outcome = found
-            if not (found.faults or found.misfits):
-                break
-    low, chi2 = outcome.chi2_bounds[0], outcome.chi2_dof
-    if chi2 is not None and chi2 < low:
-        shown = f"chi2/dof = {chi2:.3g} is below {low:.3g}"
-        outcome.notes.append(f"{shown}: the noise is below sigma")
-    widest = max(rest.widening(chance) for rest in outcome.residuals.values())
-    if widest > 1 and outcome.verdict != FAILED:
-        note = (
-            "the residuals correlate from row to row (smoothed data, or an encoder): standard "
-            f"deviations are multiplied by {widest:.2g}"
-        )
-        lost = max(rest.lost(frequency) for rest in outcome.residuals.values())
-        if lost > _FILTERED:
-            note += f"; if a filter smoothed the data, the nutation is {100 * lost:.2g} % too small"
-        outcome.notes.append(note)
+    asked: dict[str, Any] = {"chance": chance, "units": units}
+    outcome = steady_outcome(recording, known, signals, noise, frequency, **asked)
+    if not (visible and lasts and outcome.failed):
+        return outcome
+    both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
+    for form, of_form in _forms(recording, signals, noise):
+        found = _nutation(form, known, frequency, of_form, asked, both=both)
+        outcome = found or outcome
+        if found and not any(x.kind < Kind.KNOWN for x in found.failed):
+            break
     return outcome
 
 
@@ -200,10 +185,14 @@ def _nutation(
     known: Known,
     frequency: float,
     noise: _Noise,
+    asked: Mapping[str, Any],
     *,
     both: bool,
 ) -> Outcome | None:
-    """Return the best fit of a nutation, with `both` directions of psi; None without a start."""
+    """Return the best fit of a nutation, with `both` directions of psi; None without a start.
+
+    What is `asked` goes into the outcome.
+    """
     scale = 1 / frequency
     given, known = known, scaled_known(known, scale)
     floors = np.array([noise[x][0] / math.sqrt(12) + _LEAST_SIGMA for x in recording.channels])
@@ -240,34 +229,39 @@ def _nutation(
     is_sure = abs(found.values["b"]) > _SURE * found.std("b")
     turns = abs(found.values["r0"]) / turn if turn and found.problem.spins else 0.0
     seen = "phi" in recording.angles and "r0" not in all_replaced(found.problem.known)
-    result = nutating_outcome(
+    ratio, error = (
+        x / (found.values["r0"] or math.inf) for x in (found.values["b"], found.std("b"))
+    )
+    if recording.angles.keys() == {"theta", "phi"} and abs(ratio - 1) < 3 * error:
+        notes.append(
+            "C agrees with A, as it would if phi were the precession: if it is, name its column psi"
+        )
+    faster = abs(image.values["r0"]) / turn if image and turn else 0.0
+    return nutating_outcome(
         found,
         replace(way.recording, t=recording.t),
         scale,
         noise,
         is_spin_known=not seen or (is_sure and turns < 0.5),
         is_even=bool(turn),
+        rival=_shown(rival, scale) if rival else "",
+        known=given,
+        reasons=[Reason(Kind.KNOWN, x) for x in texts],
+        assumed=_assumed(found, faster, turns if seen else 0.0, turn / scale),
+        notes=notes,
+        distances=distances,
+        is_spin_slow=not seen or turns < 1 / (1 + _FASTER),
+        **asked,
     )
-    result.known, result.contradictions, result.distances = given, texts, distances
-    result.notes += notes
-    ratio, error = (
-        x / (found.values["r0"] or math.inf) for x in (found.values["b"], found.std("b"))
+
+
+def _shown(rival: Minimum, scale: float) -> str:
+    """Return the numbers of another top in the units of the recording."""
+    return ", ".join(
+        f"{x} = {rival.values[x] * scale ** time_power(x):.6g}"
+        for x in ("a", "b", "r0")
+        if x in rival.problem.names
     )
-    if recording.angles.keys() == {"theta", "phi"} and abs(ratio - 1) < 3 * error:
-        result.notes.append(
-            "C agrees with A, as it would if phi were the precession: if it is, name its column psi"
-        )
-    if rival:
-        shown = ", ".join(
-            f"{x} = {rival.values[x] * scale ** time_power(x):.6g}"
-            for x in ("a", "b", "r0")
-            if x in rival.problem.names
-        )
-        result.faults.insert(0, f"another top explains the recording as well: {shown}")
-    result.is_spin_slow = not seen or turns < 1 / (1 + _FASTER)
-    faster = abs(image.values["r0"]) / turn if image and turn else 0.0
-    result.notes[:0] = _assumed(found, faster, turns if seen else 0.0, turn / scale)
-    return result
 
 
 def _assumed(found: Minimum, faster: float, turns: float, turn: float) -> list[str]:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,10 +18,11 @@ from ..arithmetic.types import Array
 from ..errors import Message, arg
 from ..top.inputs import TILT, all_replaced
 from ..top.units import bare_name
-from .checks import CHANCE, Mistake, Residuals
+from .checks import CHANCE, Residuals
 from .known import WEIGHT, Known, compared, in_all_forms
 from .measured import Measured
 from .outcome import Number, Outcome
+from .reasons import Kind, Reason
 from .signals import Signal
 
 _MOST_TILT, _LEAST_ROWS = 0.04, 30
@@ -83,10 +85,12 @@ def steady_outcome(
     signals: Mapping[str, Signal],
     noise: Mapping[str, _Pair],
     frequency: float,
+    **others: Any,
 ) -> Outcome:
     """Return the result of a fit of a constant tilt and constant rates.
 
-    The `noise` of the channels is that of `Outcome`, `frequency` that of a nutation to look for.
+    The `noise` of the channels and all others are those of `Outcome`, `frequency` is that of a
+    nutation to look for.
     """
     alias = {"theta": "theta", "psi": "across", "phi": "along"}
     sigma = recording.sigma
@@ -116,11 +120,14 @@ def steady_outcome(
     if tilt and ("phi" in means or is_sure):
         given = {**known, **{x: y[:2] for x, y in means.items()}, "theta": tilt[:2]}
         derived = _derived(given, whole, notes, is_sure=is_sure)
-    contradictions, distances = list[str](), dict[str, float]()
+    reasons, distances = list[Reason](), dict[str, float]()
     for key, pair in derived.items():
         if key == "C" and key in known:
             distances[key], agrees, text = compared(key, known[key], pair, known)
-            (notes if agrees else contradictions).append(text)
+            if agrees:
+                notes.append(text)
+            else:
+                reasons.append(Reason(Kind.KNOWN, text))
         elif key not in known:
             meaning = _MEANINGS.get(key, "from the mean rates")
             numbers[key] = Number(*pair, meaning, pair[1])
@@ -137,13 +144,13 @@ def steady_outcome(
         parameters=2 * len(means) - ("theta" in means),
         frequency=1 / float(recording.t[-1]),
         noise=noise,
-        contradictions=contradictions,
         notes=notes,
         distances=distances,
+        **others,
     )
     r0 = derived.get("r0", _NONE[:2])[0]
-    result.faults += _faults(recording, turn, r0, result, frequency)
-    return result
+    reasons += _faults(recording, turn, r0, result, frequency)
+    return replace(result, reasons=reasons)
 
 
 def _direction(
@@ -247,29 +254,31 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
 
 def _faults(
     recording: Measured, turn: _Mean, r0: float, result: Outcome, frequency: float
-) -> list[str]:
+) -> list[Reason]:
     """Return why the motion is not a steady precession, besides the residuals."""
-    found = list[str]()
+    found = list[Reason]()
     for rest in result.residuals.values():
         if not rest.is_coarse and rest.structure(frequency)[1] < CHANCE / 10:
             wrong = "the motion is not a steady precession: the angles oscillate"
-            found.append(Mistake(wrong))
+            found.append(Reason(Kind.IMPOSSIBLE, wrong))
             break
     if "psi" not in recording.angles:
-        found.append("no nutation is visible, and without psi no precession rate")
+        without = "no nutation is visible, and without psi no precession rate"
+        found.append(Reason(Kind.OPEN, without))
     elif not abs(turn.value) > _SURE * turn.std:
-        found.append("no nutation is visible, and the precession rate is not determined")
+        slow = "no nutation is visible, and the precession rate is not determined"
+        found.append(Reason(Kind.OPEN, slow))
     elif turn.value * r0 < 0 and (
         recording.kind == "attitude" or "r0" in all_replaced(result.known)
     ):
         wrong = "C/A < 0 is impossible: spin and precession have opposite signs"
-        found.append(Mistake(wrong))
+        found.append(Reason(Kind.IMPOSSIBLE, wrong))
     scatter = float(np.nanstd(recording.angles.get("theta", np.zeros(1))))
     if scatter > _MOST_TILT and not recording.sigma:
         off = math.degrees(scatter)
         noise = f"give {arg('sigma')} if this is noise"
-        found.append(Message(f"the tilt varies by {off:.2g} degrees: {noise}"))
+        found.append(Reason(Kind.OPEN, f"the tilt varies by {off:.2g} degrees: {noise}"))
     elif recording.t.size < _LEAST_ROWS and not recording.sigma:
         few = f"{recording.t.size} rows are too few to tell nutation from noise"
-        found.append(Message(f"{few}: give {arg('sigma')}"))
+        found.append(Reason(Kind.OPEN, f"{few}: give {arg('sigma')}"))
     return found

@@ -542,7 +542,7 @@ def test_sigma_is_tested_on_both_sides() -> None:
     small, large = (fitted(t, seen, sigma=x * 0.3 * DEGREE) for x in (0.5, 2))
     assert re.match("chi2/dof = .*: the rms of (theta|psi) is (1.9|2)", small.failures()[0])
     assert large.verdict == "good"
-    assert "the noise is below sigma" in large.notes[-1]
+    assert "the noise is below sigma" in large.remarks[-1]
 
 
 @pytest.mark.parametrize(("way", "rows"), [(1, 200), (-1, 200), (1, 100)])
@@ -831,7 +831,7 @@ def test_a_filter_is_said_to_make_the_nutation_smaller() -> None:
     t, seen = recorded("theta", "psi", rows=242, noise=0.5, seed=8)
     smooth = {x: np.convolve(np.unwrap(y), np.ones(3) / 3, "valid") for x, y in seen.items()}
     outcome = fitted(t[1:-1], smooth)
-    (note,) = [x for x in outcome.notes if "if a filter smoothed the data, the nutation is" in x]
+    (note,) = [x for x in outcome.remarks if "if a filter smoothed the data, the nutation is" in x]
     share = float(note.rpartition("nutation is ")[2].partition("%")[0]) / 100
     step = 2 * math.pi * float(t[1]) / outcome.numbers["T_nutation"].value
     assert share == pytest.approx(step**2 / 3, rel=0.5)

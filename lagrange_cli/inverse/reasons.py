@@ -1,0 +1,55 @@
+"""Why a fit has failed: reasons of one type, in the order of the report."""
+
+from __future__ import annotations
+
+from enum import IntEnum, auto
+from typing import Self
+
+from ..errors import Message
+
+
+class Kind(IntEnum):
+    """What is wrong, the plainest first."""
+
+    PIVOT = auto()
+    """The origin of a marker is not the pivot."""
+    ROWS = auto()
+    """Rows are repeated."""
+    OPEN = auto()
+    """The recording determines no top, or several."""
+    IMPOSSIBLE = auto()
+    """The numbers are those of no rigid body, or of no steady precession."""
+    MACHINE = auto()
+    """Another machine, or a fault of camera, clock or angles, explains the residuals."""
+    MOTION = auto()
+    """No motion of a top is near the recording."""
+    OUTLIER = auto()
+    """A few rows are far off."""
+    RESIDUALS = auto()
+    """The residuals are not noise."""
+    SIGMA = auto()
+    """The residuals are larger than the noise that was given."""
+    KNOWN = auto()
+    """A known input contradicts the recording."""
+
+
+WRONG = {Kind.ROWS, Kind.IMPOSSIBLE, Kind.MACHINE, Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS}
+"""Kinds that a mistake in the recording may cause."""
+MISFITS = {Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS, Kind.SIGMA}
+"""Kinds of a motion that does not match the recording."""
+
+
+class Reason(Message):
+    """A reason why a fit has failed."""
+
+    kind: Kind
+
+    def __new__(cls, kind: Kind, text: str) -> Self:
+        """Take a text with arguments that `arg` has marked."""
+        found = super().__new__(cls, text)
+        found.kind = kind
+        return found
+
+
+class OtherReading(Message):
+    """A remedy: the recording was misread, and a fit of the other reading is good."""
