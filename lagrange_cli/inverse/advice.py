@@ -18,9 +18,10 @@ from ..top.inputs import BODY, replaced_by
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
-from .measured import Measured, frames_of, measured
+from .measured import LEAST_ROWS, Measured, frames_of, measured
 from .outcome import GOOD, STEADY, Outcome
 from .reasons import WRONG, Kind, OtherReading
+from .rows import likely_gap, with_gap
 from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
@@ -32,6 +33,12 @@ _OTHER_AXIS, _CALMER, _OUTLYING, _NOISY = 0.35, 0.1, 30.0, 2.0
 differences of its logarithm are those per angle in another frame, in a part or in windows, and
 without outliers over their share of the rows.  Other meanings of the angles are tried if the
 residuals are larger than the differences between neighbours by the last factor."""
+_AS_NOISY = 0.1
+"""Logarithm of the usual residual, per channel, that another reading may have more."""
+_SURE_GAP = 12.0
+"""Fall of -2 log(likelihood) by lost rows, besides the cost of the search."""
+_LEAVES = 6.0
+"""Standard deviations beyond which a row leaves the motion of the first half."""
 _HELD, _RELEASED, _STILL = 12, 6.0, 3.5
 """Least number of rows before a release, the standard deviations that show it, and the standard
 deviation of the rows before it, over the noise of neighbours, above which these rows move too."""
@@ -53,43 +60,85 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     if len(recording.angles) == 1:  # of which a known start is a part
         body = dict(known)
     kinds = {x.kind for x in outcome.failed}
-    if Kind.PIVOT in kinds or not kinds & WRONG:  # else more rows or other inputs help
+    if kinds & {Kind.PIVOT, Kind.ROWS} or not kinds & WRONG:  # which say what to do
         return
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
         few = f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
         yield OtherReading(few)
     even = evenly_timed(recording)
-    if even is not None and _is_good(even, known, also=STEADY):
+    if even is not None and _is_good(even, known, outcome, also=STEADY):
         even_rows = f"the rows are {even.frame:.6g} apart"
         yield OtherReading(f"t is rounded: write it with more digits ({even_rows})")
     is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
-    yield from _readings(recording, known, body, is_far=is_far)
+    yield from _readings(recording, known, body, outcome, is_far=is_far)
     noise = _calmness(recording)
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if 0 < len(wrong) <= _FEW * recording.t.size:
         rest = recording.rows(~np.isin(recording.t, [*wrong]))
         least = _OUTLYING * len(wrong) / recording.t.size
-        if noise - _calmness(rest) > least and _is_good(rest, body):
+        if noise - _calmness(rest) > least and _is_good(rest, body, outcome):
             shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
-            yield f"leave out the rows at t = {shortened(shown)}"
+            yield OtherReading(f"leave out the rows at t = {shortened(shown)}")
     free = recording.part(slice(row := release(recording), None))
-    if row and noise - _calmness(free) > _CALMER and _is_good(free, body):
+    if row and noise - _calmness(free) > _CALMER and _is_good(free, body, outcome):
         at = recording.t_start + float(recording.t[row])
-        yield f"the top is held until about t = {at:.4g}: leave out the rows before the release"
+        yield OtherReading(
+            f"the top is held until about t = {at:.4g}: leave out the rows before the release"
+        )
     yield from _decays(recording, body, outcome, noise)
-    if kinds & {Kind.MACHINE, Kind.ROWS}:  # which are named
+    yield from gap(recording, body, outcome)
+    if Kind.MACHINE in kinds:
         return
     start = [x for x in ("theta0", "psidot0") if x in known]
     short = ", and that the recording lasts for a period of the nutation"
-    yield f"check {', '.join([*start, 'columns'])}, units and axes{short * (not outcome.inputs)}"
+    begins = _beginning(recording, body, outcome)
+    yield (
+        f"no known misreading explains it{begins}: check {', '.join([*start, 'columns'])}, units "
+        f"and axes{short * (not outcome.inputs)}"
+    )
 
 
-def _is_good(recording: Measured, known: Known, also: str = GOOD) -> bool:
-    """Return whether a fit is good and needs no faster spin or reversed angle."""
+def gap(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
+    """Yield how many rows are lost, and where, if a fit with this gap is good and better."""
+    if (found := likely_gap(recording)) is None:
+        return
+    row, count = found
+    other = _tried(with_gap(recording, row, count), known)
+    if other is None or other.verdict != GOOD:
+        return
+    gain = float(outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
+    if gain > _SURE_GAP:
+        at = recording.t_start + float(recording.t[row])
+        rows = "1 row is" if count == 1 else f"{count} rows are"
+        yield OtherReading(f"{rows} lost before t = {at:.6g}: write the times of the frames")
+
+
+def _beginning(recording: Measured, known: Known, outcome: Outcome) -> str:
+    """Return where the recording leaves the motion of its first half, in words, or empty."""
+    half = recording.part(slice(0, recording.t.size // 2))
+    found = _tried(half, known) if half.t.size >= 2 * LEAST_ROWS else None
+    if found is None or found.verdict != GOOD or outcome.inputs is None:
+        return ""
+    rests = recording.residuals(*found.motion(recording.t))
+    sizes = np.array([[x.rms] for x in found.residuals.values()])
+    away = np.nanmax(np.abs(rests) / sizes, axis=0) > _LEAVES
+    kept = np.convolve(away, np.ones(3), "valid") == 3
+    if not kept.any():
+        return ""
+    at = recording.t_start + float(recording.t[np.argmax(kept)])
+    return f"; the residuals begin at t = {at:.4g}"
+
+
+def _is_good(recording: Measured, known: Known, outcome: Outcome, also: str = GOOD) -> bool:
+    """Return whether a fit is good, and needs no faster spin or reversed angle.
+
+    It must leave smaller residuals in most rows than the fit of the recording as it was read.
+    """
     found = _tried(recording, known)
     if found is None or found.verdict not in {GOOD, also}:
         return False
-    return not found.recording.is_mirrored and found.is_spin_slow
+    is_better = found.noisiness < outcome.noisiness + _AS_NOISY * len(found.residuals)
+    return is_better and not found.recording.is_mirrored and found.is_spin_slow
 
 
 def _tried(recording: Measured, known: Known, chance: float = CHANCE) -> Outcome | None:
@@ -115,7 +164,9 @@ def evenly_timed(recording: Measured) -> Measured | None:
     return None
 
 
-def _readings(recording: Measured, known: Known, body: Known, *, is_far: bool) -> Iterator[str]:
+def _readings(
+    recording: Measured, known: Known, body: Known, outcome: Outcome, *, is_far: bool
+) -> Iterator[str]:
     """Yield the misreadings without which the fit is good.
 
     A reading is worth a fit if its nutation leaves no more noise beside harmonics.
@@ -129,20 +180,20 @@ def _readings(recording: Measured, known: Known, body: Known, *, is_far: bool) -
                 other = measured(row.undo(recording.source))
         if other is None or not (is_angles or _calmness(other.thinned(_ROWS)) < calm):
             continue
-        if _is_good(other, known if is_angles else body):
+        if _is_good(other, known if is_angles else body, outcome):
             yield OtherReading(f"{row.name}: {row.remedy}")
     if not is_angles and recording.source.align.frame == Alignment().frame:
-        yield from _frames(recording, body)
+        yield from _frames(recording, body, outcome)
 
 
-def _frames(recording: Measured, known: Known) -> Iterator[str]:
+def _frames(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     """Yield the frames in which a top explains the motion, or the opposite ones."""
     source = recording.source
     up, body = own_frames(source.observed()) or (np.eye(3), np.eye(3))
     for space in (up, up * [1, -1, -1]):
         align = alignment_of((space, body), left=False)
         other = source.read_as(align=align) if align else in_frames(source, space, body)
-        if align == Alignment() or not _is_good(measured(other), known):
+        if align == Alignment() or not _is_good(measured(other), known, outcome):
             continue
         if align is None:
             yield OtherReading(f"space is turned by {turn_of(space)}, the body by {turn_of(body)}")

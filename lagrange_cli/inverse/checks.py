@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import fdtrc, gammaincinv, ndtri
@@ -20,10 +21,18 @@ from .reasons import Kind, Reason
 
 CHANCE = 0.0027
 """Probability that noise fails a test, as for three standard deviations."""
-LARGEST = 0.3
+LARGEST = 0.2
 """Largest rms residual of a channel in radians."""
-_ABOVE, _ROUNDING = 6.0, 1e-10
-"""Largest rms residual over the noise of neighbours, and rms of rounding errors in radians."""
+_OF_RANGE = 1 / 3
+"""Largest rms residual over the range of the data."""
+_ABOVE = 3.0
+"""Largest rms residual over the noise of neighbours."""
+_SMOOTHED = 2.0
+"""How many times larger it may be if a filter explains how residuals correlate."""
+_ROUNDING = 1e-10
+"""Rms of rounding errors in radians."""
+_LATER = 0.15
+"""Tolerance of the correlation with the second next row, of smoothed noise."""
 _OUTLIER = 15.0
 """Least residual of an outlier, over the standard deviation of the
 others, which the median estimates."""
@@ -32,6 +41,17 @@ _ROWS_PER_LAG, _LAGS, _WEAK = 2.0, 12, 0.1
 a correlation that is none."""
 _COARSE, _WITHIN = 0.6, 0.75
 """An encoder's residuals: largest rms, and largest 95 % quantile, over its step."""
+
+
+class Noise(NamedTuple):
+    """What the data of a channel show of their noise, in radians."""
+
+    step: float = 0.0
+    """The least step between values."""
+    neighbours: float = math.inf
+    """The noise, from differences of neighbours."""
+    range: float = math.inf
+    """The range of the motion and the noise, of 95 % of the rows."""
 
 
 @dataclass
@@ -44,6 +64,13 @@ class Residuals:
     """The least step between values of the channel."""
     neighbours: float = math.inf
     """The noise of the data, from differences of neighbours."""
+    range: float = math.inf
+    """The range of 95 % of the data, without a mean rate."""
+
+    @property
+    def is_large(self) -> bool:
+        """Whether the residuals are so large that the motion describes nothing."""
+        return self.rms > min(LARGEST, max(self.range * _OF_RANGE, 2 * self.step, _ROUNDING))
 
     @cached_property
     def rms(self) -> float:
@@ -89,6 +116,17 @@ class Residuals:
         large = rest >= np.maximum(2.5 * np.sqrt((1 + 2 * nearer) / self.y.size), _WEAK)
         found = (n for n in range(1, rest.size + 1) if not large[n - 1 : 2 * n - 1].any())
         return next(found, self.y.size)
+
+    @property
+    def is_smoothed(self) -> bool:
+        """Whether a filter explains how neighbours correlate.
+
+        The correlation with the second next row is r^2 after a filter that forgets, and 2 r - 1
+        after a mean of rows.  White noise and a slow oscillation together have almost r.
+        """
+        r, later = self.correlations[1:3]
+        noise = 2.5 / math.sqrt(self.y.size)
+        return bool(later < max(r * r, 2 * r - 1) + max(_LATER, noise))
 
     def widening(self, chance: float = CHANCE) -> float:
         """Return the factor of standard deviations for correlated noise, at least 1.
@@ -153,12 +191,14 @@ class Residuals:
         bound = _bound(self.y.size, chance)
         alike = f"{shown}: neighbours correlate by {correlation:.2f}"
         rows_per_period = self.y.size / max(frequency * float(self.t[-1]), 1.0)
-        if self.rms > _ABOVE * max(self.neighbours, self.step / math.sqrt(12), _ROUNDING):
+        is_far = correlation > bound and self.reach > min(rows_per_period / _ROWS_PER_LAG, _LAGS)
+        above = _ABOVE * (_SMOOTHED if correlation > bound and self.is_smoothed else 1.0)
+        if self.rms > above * max(self.neighbours, self.step / math.sqrt(12), _ROUNDING):
             times = self.rms / max(self.neighbours, _ROUNDING)
             yield f"{shown}: they are {times:.3g} times the differences between neighbours"
         elif correlation < -2 * bound:
             yield alike
-        elif correlation > bound and self.reach > min(rows_per_period / _ROWS_PER_LAG, _LAGS):
+        elif is_far or (correlation > 2 * bound and not self.is_smoothed):
             yield f"{alike}, noise by at most {bound:.2f}"
         elif self.structure(frequency, chance)[1] < chance:
             yield f"{shown}: they drift or oscillate"

@@ -15,10 +15,11 @@ from ..recordings.recording import Given, recording_of
 from ..top.given import gather
 from ..top.units import DEGREES, Units
 from ..top.values import parse_value, value_of
-from .advice import hints
+from .advice import gap, hints
 from .known import Known, known_inputs
 from .measured import Measured, measured
 from .outcome import Outcome
+from .reasons import Kind, Reason
 from .search import best_fit
 
 
@@ -29,7 +30,9 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
     """
     outcome = best_fit(recording, known, units=units)
     if not outcome.failed:
-        return outcome
+        is_late = outcome.neighbours is not None and outcome.neighbours.is_late
+        lost = [Reason(Kind.ROWS, x) for x in gap(recording, known, outcome)] if is_late else []
+        return replace(outcome, reasons=lost) if lost else outcome
     return replace(outcome, hints=[*islice(hints(recording, known, outcome), 1)])
 
 

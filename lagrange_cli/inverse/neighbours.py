@@ -33,6 +33,10 @@ _MOVED = 1.0
 """Standard deviations by which a neighbour that is shown moves a number of the fit at least."""
 _ALIKE = 6.0
 """Difference of chi^2 below which two neighbours explain a recording equally well."""
+_CLOCK = "the clock"
+"""The name of a step of the clock."""
+_MAYBE = 2.5
+"""Standard deviations of a step of the clock from which a fit with lost rows is worth its time."""
 _SEARCHED = 10.0
 """Cost of the search for the row of a step, in chi^2."""
 _UNSEEN = 2.0
@@ -224,8 +228,13 @@ class Neighbours:
         """The neighbours that the recording shows, the best first."""
         least = math.sqrt(_SURE_OF_STEP**2 + 2 * math.log(self.recording.t.size))
         found = [(x.gain, x) for x in self.findings if x.is_shown]
-        found += [(x.gain - _SEARCHED, x) for x in self._steps() if x.is_shown and x.sigmas > least]
+        found += [(x.gain - _SEARCHED, x) for x in self.steps if x.is_shown and x.sigmas > least]
         return [x for _, x in sorted(found, key=lambda pair: -pair[0])]
+
+    @property
+    def is_late(self) -> bool:
+        """Whether rows may be lost somewhere, which a fit with a gap decides."""
+        return any(x.sigmas > _MAYBE and x.effect > _MOVED and x.name == _CLOCK for x in self.steps)
 
     @property
     def name(self) -> str:
@@ -308,27 +317,33 @@ class Neighbours:
         rows = zip(NUMBERS, moved, strict=False)
         return found | {x: y / (sizes.get(x, 1.0) or math.inf) for x, y in rows}
 
+    @cached_property
+    def steps(self) -> list[Finding]:
+        """A step of each angle and of the clock, at the row where it explains most."""
+        return [*self._steps()]
+
     def _steps(self) -> Iterator[Finding]:
-        """Yield a step of each angle and of the clock, at the row where it explains most."""
+        """Yield the steps; that of the clock is possible if it is a whole number of rows."""
         one, frame, motion = self.recording, self.recording.frame / self.period, self.motion
         rows = np.broadcast_to(np.arange(one.t.size), one.present.shape)[one.present]
         order = np.argsort(-rows, kind="stable")
         last = np.flatnonzero(np.diff(rows[order], append=-1))  # of the numbers of a row
         tries = {x: self.column(motion.only(**{x: 1.0})) for x in one.angles}
-        for name, column in [*tries.items(), ("", self.column(motion.rates) * frame)]:
+        for name, column in [*tries.items(), (_CLOCK, self.column(motion.rates) * frame)]:
             parts = np.stack([column * self.rest, column**2, *(column * self.basis.T)])
             work, size, *taken = np.cumsum(parts[:, order], axis=1)[:, last]
             left = size - np.sum(np.square(taken), axis=0)
             gains = np.where(left > 0.02 * size.max() / one.t.size, work**2, 0.0) / (left + 1e-300)
             row = int(rows[order][last[np.argmax(gains[3:-3]) + 3]])
-            found = self._finding(Neighbour("", "", []), (column * (rows >= row))[:, np.newaxis])
+            found = self._finding(Neighbour(name, "", []), (column * (rows >= row))[:, np.newaxis])
             x, std, at = found.size, found.std, f"at t = {one.t_start + float(one.t[row]):.6g}"
-            if name:
+            if name != _CLOCK:
                 shown = uncertain_text(math.degrees(x), math.degrees(std))
                 yield found._replace(text=f"a jump of {name} by {shown} degrees {at}")
-            elif abs(x) > 0.5 and abs(x - round(x)) < max(3 * std, 0.1):
-                what = f"{'doubled' if x < 0 else 'lost'} rows"
-                yield found._replace(text=f"{uncertain_text(abs(x), std)} {what} {at}")
+                continue
+            is_whole = abs(x) > 0.5 and abs(x - round(x)) < max(3 * std, 0.1)
+            what = f"{uncertain_text(abs(x), std)} {'doubled' if x < 0 else 'lost'} rows"
+            yield found._replace(text=f"{what} {at}", is_possible=is_whole)
 
 
 def neighbours_of(

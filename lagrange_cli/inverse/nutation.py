@@ -14,6 +14,7 @@ from ..solver.keys import shown_keys
 from ..sweeps.records import sweep
 from ..top.inputs import all_replaced
 from ..top.units import Units
+from .checks import Noise
 from .known import body_numbers, time_power
 from .measured import Measured
 from .outcome import PERCENT, Number, Outcome
@@ -50,7 +51,7 @@ def nutating_outcome(
     found: Minimum,
     recording: Measured,
     scale: float,
-    noise: Mapping[str, tuple[float, float]],
+    noise: Mapping[str, Noise],
     *,
     is_spin_known: bool,
     is_even: bool,

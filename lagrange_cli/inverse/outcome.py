@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,11 +19,12 @@ from ..output.notebook import HasRecord
 from ..recordings.doubts import pivot_of
 from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
-from .checks import CHANCE, LARGEST, Residuals, chi2_bounds
+from .checks import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
 from .known import Known
 from .measured import Measured
 from .neighbours import Neighbours, neighbours_of
 from .reasons import MISFITS, Kind, OtherReading, Reason
+from .rows import repeated
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -82,8 +84,8 @@ class Outcome(HasRecord):
     """The number of parameters that the recording determines."""
     frequency: float
     """The frequency of the nutation, at which residuals are searched for structure."""
-    noise: Mapping[str, tuple[float, float]]
-    """The step between values, and the noise of neighbours, by channel in radians."""
+    noise: Mapping[str, Noise]
+    """What the data show of their noise, by channel."""
     units: Units = DEGREES
     """The units of texts and records."""
     reasons: Sequence[Reason] = ()
@@ -113,9 +115,14 @@ class Outcome(HasRecord):
     def residuals(self) -> dict[str, Residuals]:
         """The residuals by channel, in radians."""
         one = self.recording
-        rows = one.residuals(*self.motion(one.t))
-        found = zip(one.channels, rows, one.present, strict=True)
-        return {x: Residuals(one.t[is_in], y[is_in], *self.noise[x]) for x, y, is_in in found}
+        motion = self.motion(one.t)
+        found = {}
+        for x, y, is_in in zip(one.channels, one.residuals(*motion), one.present, strict=True):
+            noise = self.noise[x]
+            if x == "theta" and self.inputs is not None:
+                noise = noise._replace(range=min(noise.range, float(np.ptp(motion[0]))))
+            found[x] = Residuals(one.t[is_in], y[is_in], *noise)
+        return found
 
     @property
     def dof(self) -> int:
@@ -152,10 +159,13 @@ class Outcome(HasRecord):
     def failures(self) -> list[Reason]:
         """Return the reasons why the fit has failed; a reading that is good needs no machine."""
         is_misread = any(isinstance(x, OtherReading) for x in self.hints)
-        return [x for x in self.failed if not (is_misread and x.kind is Kind.MACHINE)]
+        kept = [x for x in self.failed if not (is_misread and x.kind is Kind.MACHINE)]
+        return kept or self.failed
 
     def _of_data(self) -> Iterator[Reason]:
         """Yield what is wrong with the rows, whatever the motion."""
+        if text := repeated(self.recording):
+            yield Reason(Kind.ROWS, text)
         marker = self.recording.position
         if marker is not None and (pivot := pivot_of(marker)) is not None:
             where = f"the pivot is at {pivot}: subtract it" if str(pivot) else "is it at the pivot?"
@@ -166,9 +176,11 @@ class Outcome(HasRecord):
         """Yield why the motion does not match the recording."""
         scale, unit = self.units.radian, self.units.angle
         for name, rest in self.residuals.items():
-            if rest.rms > LARGEST:
+            if rest.is_large:
                 off = f"{name} is {rest.rms * scale:.3g} {unit} off"
-                yield Reason(Kind.MOTION, f"no motion of a top matches: {off}")
+                of = f", a third of its range or more, {rest.range * scale:.3g} {unit}"
+                text = f"no motion of a top matches: {off}{of * (rest.rms <= LARGEST)}"
+                yield Reason(Kind.MOTION, text)
         for name, rest in self.residuals.items():
             if rest.outliers.any():
                 row = np.abs(rest.y).argmax()
@@ -188,7 +200,7 @@ class Outcome(HasRecord):
     @cached_property
     def neighbours(self) -> Neighbours | None:
         """What else the recording could be; None if this cannot be said."""
-        is_far = any(x.rms > LARGEST or x.outliers.any() for x in self.residuals.values())
+        is_far = any(x.is_large or x.outliers.any() for x in self.residuals.values())
         if is_far or self.inputs is None:
             return None
         has = self.inputs, 1 / self.frequency
@@ -236,6 +248,16 @@ class Outcome(HasRecord):
                 note += f"; if a filter smoothed the data, {smaller}"
             yield note
 
+    @property
+    def noisiness(self) -> float:
+        """The sum of the logarithms of usual residuals, which a few rows do not change."""
+        return sum(math.log(np.median(np.abs(x.y)) + 1e-12) for x in self.residuals.values())
+
+    def deviance(self, other: Outcome) -> float:
+        """Return how much larger -2 log(likelihood) is than that of another fit of these rows."""
+        pairs = [(x, other.residuals[y]) for y, x in self.residuals.items() if y in other.residuals]
+        return sum(x.y.size * 2 * math.log((x.rms + 1e-12) / (y.rms + 1e-12)) for x, y in pairs)
+
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""
         return self.recording.named(joined([self.failures()[0], *self.hints]))
@@ -243,7 +265,7 @@ class Outcome(HasRecord):
     @property
     def verdict(self) -> str:
         """`good`, `good, no nutation` or `failed`."""
-        return FAILED if self.failures() else STEADY if self.inputs is None else GOOD
+        return FAILED if self.failed else STEADY if self.inputs is None else GOOD
 
     @property
     def numbers(self) -> dict[str, Number]:

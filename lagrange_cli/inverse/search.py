@@ -21,7 +21,7 @@ from ..arithmetic.types import Array
 from ..errors import DataError, Message, arg
 from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
-from .checks import CHANCE, LARGEST, Residuals
+from .checks import CHANCE, LARGEST, Noise, Residuals
 from .known import (
     Known,
     compared,
@@ -74,7 +74,7 @@ _FASTER = 3.0
 _LEAST_SIGMA = 1e-12
 _NEAREST = 3.0
 """Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
-_Noise = Mapping[str, tuple[float, float]]
+_Noise = Mapping[str, Noise]
 
 
 class Data(NamedTuple):
@@ -142,20 +142,25 @@ def best_fit(
     return outcome
 
 
-def _noise(recording: Measured, signals: Mapping[str, Signal]) -> _Noise:
-    """Return the step between values, and the noise of neighbours, of each channel."""
+def _noise(recording: Measured, signals: Mapping[str, Signal]) -> dict[str, Noise]:
+    """Return what the data show of the noise of each channel."""
+    ranges = {x: float(np.subtract(*np.quantile(y.y, (0.975, 0.025)))) for x, y in signals.items()}
+    if "theta" in recording.angles:
+        tilt = recording.angles["theta"][np.isfinite(recording.angles["theta"])]
+        ranges["theta"] = float(np.subtract(*np.quantile(tilt, (0.975, 0.025))))
     if recording.kind != "angles":
         tilt, psi = (recording.angles[x][recording.present[0]] for x in ("theta", "psi"))
         axis = rotations.axis_of(rotations.of_angles(tilt, np.zeros_like(tilt), psi))
-        both = dict.fromkeys(("theta", "across"), (0.0, max(map(neighbour_noise, axis.T))))
-        return {x: both.get(x, (0.0, math.inf)) for x in recording.channels}
+        noise = max(map(neighbour_noise, axis.T))
+        both = {"theta": Noise(0.0, noise, ranges["theta"]), "across": Noise(0.0, noise)}
+        return {x: both.get(x, Noise()) for x in recording.channels}
     found = {}
     for name in recording.channels:
         values = recording.angles[name][np.isfinite(recording.angles[name])]
         smooth = values if name == "theta" else signals[name].y
-        found[name] = step_between(values), neighbour_noise(smooth)
-    coarsest = max(step for step, _ in found.values())
-    return {x: (step or coarsest, noise) for x, (step, noise) in found.items()}
+        found[name] = Noise(step_between(values), neighbour_noise(smooth), ranges[name])
+    coarsest = max(x.step for x in found.values())
+    return {x: y._replace(step=y.step or coarsest) for x, y in found.items()}
 
 
 def _forms(

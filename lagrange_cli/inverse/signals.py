@@ -31,6 +31,8 @@ _TIED = 0.3
 """Loss of the log of the noise, per angle, up to which a higher frequency is preferred."""
 NEAR_POLE = 0.1
 """Distance from a pole, in radians, below which the axis may pass over it or begin on it."""
+_WITHOUT_LARGEST = 0.623
+"""Mean square of normal numbers without the largest tenth."""
 _JUMP = 0.5
 """Change of an angle within a bin, in radians, beyond which the mean of the bin is not used."""
 
@@ -217,12 +219,14 @@ def noise_of(
 def neighbour_noise(y: Array) -> float:
     """Return the noise of smooth data from differences of neighbours, of the best order.
 
-    Von Neumann's estimate takes first differences; higher orders suppress the motion.
+    Von Neumann's estimate takes first differences; higher orders suppress the motion.  The largest
+    tenth does not count, as outliers make it.
     """
     found = [math.inf]
     for order in range(1, min(7, y.size // 4)):
-        size = float(np.mean(np.diff(y, order) ** 2)) / math.comb(2 * order, order)
-        found.append(math.sqrt(size))
+        squares = np.sort(np.diff(y, order) ** 2)
+        usual = float(np.mean(squares[: -(squares.size // 10) or None])) / _WITHOUT_LARGEST
+        found.append(math.sqrt(usual / math.comb(2 * order, order)))
     return min(found)
 
 

@@ -18,7 +18,7 @@ from ..arithmetic.types import Array
 from ..errors import Message, arg
 from ..top.inputs import TILT, all_replaced
 from ..top.units import bare_name
-from .checks import CHANCE, Residuals
+from .checks import CHANCE, Noise, Residuals
 from .known import WEIGHT, Known, compared, in_all_forms
 from .measured import Measured
 from .outcome import Number, Outcome
@@ -83,7 +83,7 @@ def steady_outcome(
     recording: Measured,
     known: Known,
     signals: Mapping[str, Signal],
-    noise: Mapping[str, _Pair],
+    noise: Mapping[str, Noise],
     frequency: float,
     **others: Any,
 ) -> Outcome:
@@ -95,7 +95,7 @@ def steady_outcome(
     alias = {"theta": "theta", "psi": "across", "phi": "along"}
     sigma = recording.sigma
     means = {
-        x: _mean(y, x, recording, noise.get(x, (0.0, 0.0))[0], sigma.get(x) or sigma.get(alias[x]))
+        x: _mean(y, x, recording, noise.get(x, Noise()).step, sigma.get(x) or sigma.get(alias[x]))
         for x, y in signals.items()
     }
     tilt = means.get("theta") or (_Mean(*known["theta0"], 0.0) if "theta0" in known else None)

@@ -231,7 +231,11 @@ def other(seed: int, name: str = "") -> Drawn:
     names = CHANNELS[int(rng.integers(len(CHANNELS)))]
     while machine.needs not in {*names, ""}:
         names = CHANNELS[int(rng.integers(len(CHANNELS)))]
-    kind = "angles" if name in {"zero", "jump"} else str(rng.choice(["angles", "axis", "attitude"]))
+    kind = (
+        "angles"
+        if name in {"zero", "jump", "scale"}
+        else str(rng.choice(["angles", "axis", "attitude"]))
+    )
     while True:
         top = any_top(rng, "white", noise, easy=True)
         period, half_range = period_of(top)

@@ -95,7 +95,7 @@ MACHINES = {
     "clock": Machine(None, "", "clock"),
     "filter": Machine(None, "", "filter|smooth"),
     "jump": Machine(None, "", "jump"),
-    "repeated": Machine(None, "", "repeat|equal|doubled"),
+    "repeated": Machine(None, "", "repeat|doubled"),
     "doubled": Machine(None, "", "repeat|equal|doubled"),
     "lost": Machine(None, "", "lost"),
     "runs": Machine(None, "", "again|jump|lost|runs"),
