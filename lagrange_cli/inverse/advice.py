@@ -42,7 +42,7 @@ _LEAVES = 6.0
 _HELD, _RELEASED, _STILL = 12, 6.0, 3.5
 """Least number of rows before a release, the standard deviations that show it, and the standard
 deviation of the rows before it, over the noise of neighbours, above which these rows move too."""
-_WINDOWS = (5, 10, 32)
+_WINDOWS = (5, 10, 20, 32, 64)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
 _FEW, _LEAST_TIMES = 0.03, 0.25

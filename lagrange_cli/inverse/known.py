@@ -43,6 +43,7 @@ distance of these spins in standard deviations."""
 _UNITS = (6.0, 2 * math.pi, 30 / math.pi, 180 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7)
 _ROUGHLY = 0.02
 """Factors between units, in either direction, and how close a contradiction is to them."""
+_OPPOSITE = "of the opposite sign"
 _CLOCK = "the unit of t"
 _POWERS = {"a": -2, "b": -1, "T_nutation": 1, "T_precession": 1, "precession_rate": -1}
 _POWERS |= {"mean_spin_rate": -1, "mean_precession_rate": -1}
@@ -143,9 +144,9 @@ def estimates(
         found |= {x: whole[x] for x in known if replaced_by(x) == "A"}
         moment = implied if moment is None else moment
     if "C" in known and moment is not None and (spins or "r0" in all_replaced(known)):
-        r0 = v["r0"]
-        if "r0" in known:
-            r0 = np.full_like(r0, known["r0"][0])
+        r0 = v["r0"]  # with the uncertainty of a known one, if the spin is not recorded
+        if "r0" in known and spins:
+            r0 = _nearest(r0, known["r0"][0], turn)
         elif spins:
             wanted = float((v["b"] * moment)[0]) / known["C"][0]
             r0 = _nearest(r0, wanted, turn) if abs(wanted) <= _MOST_TURNS * turn else r0
@@ -154,11 +155,17 @@ def estimates(
 
 
 def compared(
-    name: str, given: tuple[float, float], found: tuple[float, float], known: Known
+    name: str,
+    given: tuple[float, float],
+    found: tuple[float, float],
+    known: Known,
+    slowest: float | None = None,
 ) -> tuple[float, bool, str]:
     """Return the distance of a known input from its value by the recording, in sigmas.
 
-    A text says whether both agree, as the second number does, and else what to omit or check.
+    A text says whether both agree, as the second number does, and else what to omit or check.  If
+    whole turns of the spin per row are invisible, `slowest` is the value for the slowest spin, of
+    which the input may be a multiple by a unit.
     """
     size, unit = (180 / math.pi, " deg") if name == "theta0" else (1.0, "")
     far = abs(given[0] - found[0]) / max(math.hypot(given[1], found[1]), 1e-9 * abs(found[0]))
@@ -178,18 +185,31 @@ def compared(
             text += ": it is about the centre of mass, so give "
             return far, False, Message(f"{text}{arg('A_cm')} instead")
     ratio = given[0] / found[0] if found[0] else math.inf
-    for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
-        if abs(ratio / factor - 1) < _ROUGHLY:
-            more = f"{_plain(factor)} times as large"
-            times = more if factor > 1 else f"1/{_plain(1 / factor)} of it"
-            text += f", about {times}: check the units, or omit {arg(name)}"
-            return far, False, Message(text)
+    for value in dict.fromkeys((slowest or found[0], found[0])):
+        if value and (times := _times(given[0] / value)):
+            if value != found[0]:
+                text = f"known {name} = {shown} contradicts the recording, which gives "
+                text += f"{value * size:.6g}{unit} for the slowest spin"
+            check = "the sign" if times == _OPPOSITE else "the units"
+            return far, False, Message(f"{text}, {times}: check {check}, or omit {arg(name)}")
     others = [x for x in known if replaced_by(x) in {*WEIGHT, "A", "r0"} and x != name]
     others += [_CLOCK] * (WEIGHT <= known.keys() and not 1 / 3 < abs(ratio) < 3)
     checks = {"A": ", ".join(others), "C": ", ".join(others), "r0": _CLOCK}
     what = checks.get(replaced_by(name))
     check = f", or check {what}" if what else ""
     return far, False, Message(f"{text}: omit {arg(name)}{check}")
+
+
+def _times(ratio: float) -> str:
+    """Return in words which sign and unit make a ratio, or empty."""
+    sign = f" and {_OPPOSITE}" if ratio < 0 else ""
+    if abs(ratio + 1) < _ROUGHLY:
+        return _OPPOSITE
+    for factor in (x for unit in _UNITS for x in (unit, 1 / unit)):
+        if abs(abs(ratio) / factor - 1) < _ROUGHLY:
+            more = f"about {_plain(factor)} times as large"
+            return (more if factor > 1 else f"about 1/{_plain(1 / factor)} of it") + sign
+    return ""
 
 
 def _plain(x: float) -> str:

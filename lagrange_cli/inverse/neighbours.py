@@ -83,7 +83,8 @@ def machines(x: Variations) -> Iterator[Neighbour]:
     ring = push(theta=-turns * turns * s * c, psi=-x.slope(turns * c * c))
     yield Neighbour("a ring that does not spin", "with {} % of A", [ring], True)
     drag = push(phi=-x.b + 0 * s, psi=-x.b * c) / x.length
-    yield Neighbour("a decay of the spin", over, [drag], True)
+    mean = f"{over} (b is its mean)" if math.isnan(x.ratio) else over
+    yield Neighbour("a decay of the spin", mean, [drag], True)
     damped = push(psi=-turns) / x.length
     yield Neighbour("a vertical bearing that damps", over, [damped], True)
     damped = push(theta=-nods) / x.length
@@ -183,13 +184,15 @@ class Neighbours:
         variations: Variations,
         rest: Array,
         period: float,
+        *,
+        smoothing: float,
     ) -> None:
         """Project the residuals off the changes by the parameters.
 
         `rest` are the residuals in radians, shape (channels, times).
         """
         self.recording, self.residuals, self.motion = recording, residuals, variations
-        self.period, one = period, recording
+        self.period, self.smoothing, one = period, smoothing, recording
         pairs = residuals.items()
         sizes = [one.sigma.get(x) or max(y.rms, y.step / math.sqrt(12)) for x, y in pairs]
         self.sizes = np.array(sizes)[:, np.newaxis] + 1e-300
@@ -297,6 +300,7 @@ class Neighbours:
         small = SMALL**2 if one.is_square else SMALL
         shown = uncertain_text(*(100 * x for x in pair)) if is_possible else ""
         unseen = min(small, abs(size) + _UNSEEN * std)
+        unseen = max(unseen, self.smoothing * one.is_square)
         return Finding(
             f"{one.name} {one.amount.format(shown)}",
             one.name,
@@ -352,10 +356,13 @@ def neighbours_of(
     motion: Callable[[Array], Array],
     inputs: Mapping[str, float],
     period: float,
+    *,
+    smoothing: float = 0.0,
 ) -> Neighbours | None:
     """Return the neighbours of a fitted motion with some inputs of `Top`.
 
-    The result is None if there are none: of one angle, or of a motion that passes a pole.
+    `smoothing` is the square of the width of a filter, over the period, if one made the noise
+    smooth.  The result is None if there are none: of one angle, or of a motion that passes a pole.
     """
     one, has = recording, inputs
     if len(one.channels) < 2:
@@ -370,4 +377,4 @@ def neighbours_of(
     found = Variations(np.array([a, b, *start]), ratio, np.linspace(0, length, count))
     is_away = np.isfinite(found.slopes).all() and found.sine.min() > _POLE
     rest = one.residuals(*motion(one.t))
-    return Neighbours(one, residuals, found, rest, period) if is_away else None
+    return Neighbours(one, residuals, found, rest, period, smoothing=smoothing) if is_away else None

@@ -52,6 +52,14 @@ class Number(NamedTuple):
     def __str__(self) -> str:
         return uncertain_text(self.value, self.std)
 
+    def widened(self, error: float) -> Number:
+        """Return the number with a further error."""
+        if not error:
+            return self
+        return self._replace(
+            std=math.hypot(self.std, error), own_std=math.hypot(self.own_std, error)
+        )
+
     def scaled(self, size: float) -> Number:
         """Return the number in a smaller unit."""
         return Number(self.value * size, self.std * size, self.meaning, self.own_std * size)
@@ -203,8 +211,9 @@ class Outcome(HasRecord):
         is_far = any(x.is_large or x.outliers.any() for x in self.residuals.values())
         if is_far or self.inputs is None:
             return None
-        has = self.inputs, 1 / self.frequency
-        return neighbours_of(self.recording, self.residuals, self.motion, *has)
+        smoothing = self.lost / (2 * math.pi**2)
+        has = self.motion, self.inputs, 1 / self.frequency
+        return neighbours_of(self.recording, self.residuals, *has, smoothing=smoothing)
 
     @property
     def neighbour(self) -> str:
@@ -214,6 +223,8 @@ class Outcome(HasRecord):
     @property
     def untested(self) -> str:
         """What the recording cannot show, or empty."""
+        if self.inputs is None:
+            return "without a nutation, no machine beside a Lagrange top can be seen"
         return self.neighbours.line if self.neighbours else ""
 
     @property
@@ -242,10 +253,9 @@ class Outcome(HasRecord):
                 "the residuals correlate from row to row (smoothed data, or an encoder): standard "
                 f"deviations are multiplied by {widest:.2g}"
             )
-            lost = max(rest.lost(self.frequency) for rest in self.residuals.values())
-            if lost > _FILTERED:
-                smaller = f"the nutation is {100 * lost:.2g} % too small"
-                note += f"; if a filter smoothed the data, {smaller}"
+            if self.lost > _FILTERED:
+                smaller = f"the nutation is {100 * self.lost:.2g} % too small"
+                note += f"; if a filter smoothed the data, {smaller}, and late by its width"
             yield note
 
     @property
@@ -270,11 +280,34 @@ class Outcome(HasRecord):
     @property
     def numbers(self) -> dict[str, Number]:
         """The numbers by key, in the unit of angles in use."""
-        size = self.units.radian
+        size, late = self.units.radian, self._by_delay()
+        found = {x: y.widened(late.get(x, 0.0)) for x, y in self.in_radians.items()}
         return {
             self.units.key(key): x.scaled(size) if key.endswith("_rad") else x
-            for key, x in self.in_radians.items()
+            for key, x in found.items()
         }
+
+    @cached_property
+    def lost(self) -> float:
+        """The share of the nutation that a filter takes away if it smoothed the data."""
+        if self.inputs is None or not any(x.widening(self.chance) > 1 for x in self._rests):
+            return 0.0
+        return max(x.lost(self.frequency) for x in self._rests)
+
+    @property
+    def _rests(self) -> Collection[Residuals]:
+        return self.residuals.values()
+
+    def _by_delay(self) -> dict[str, float]:
+        """Return what a filter that is late by its width changes in the first row."""
+        if self.lost < _FILTERED:
+            return {}
+        late = math.sqrt(2 * self.lost) / (2 * math.pi * self.frequency)
+        before, now, after = self.motion(np.array([-late, 0.0, late])).T
+        moved, turned = np.abs(after - before) / 2, np.abs(after - 2 * now + before) / late
+        keys = ("theta0_rad", "phi_zero_rad", "psi_zero_rad")
+        rates = {"thetadot0": float(turned[0]), "psidot0": float(turned[2])}
+        return dict(zip(keys, moved.tolist(), strict=True)) | rates
 
     @property
     def title(self) -> str:

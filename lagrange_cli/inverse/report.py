@@ -49,9 +49,8 @@ def fit_report(
             cells |= {"t": f"{x.recording.middle:.6g}", "verdict": x.verdict}
             rows.append(SimpleNamespace(**cells))
         reasons = [x.failure() for x in outcomes if x.failures()]
-        return Report(
-            conditions, fields, rows, [decay_text(outcomes), *_failed(reasons[omits_first:])]
-        )
+        words = [decay_text(outcomes), *_model(outcomes[0]), *_failed(reasons[omits_first:])]
+        return Report(conditions, fields, rows, words)
     fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
     numbers = outcomes[0].numbers
     errors = {x: y * abs(numbers[x].value) for x, y in outcomes[0].model_errors.items()}
@@ -90,5 +89,11 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     if pairs := ", ".join(f"{x} {y:.2f}" for x, y in outcome.correlations.items()):
         yield f"Correlation: {pairs}."
     yield from (Message(f"Note: {marked(text)}.") for text in outcome.remarks)
-    if outcome.untested and not outcome.failures():
-        yield f"Model errors: {outcome.untested}, nor smaller effects of others."
+    yield from _model(outcome)
+
+
+def _model(outcome: Outcome) -> Iterator[str]:
+    """Yield a sentence on what the recording cannot show, if its fit is good."""
+    if outcome.untested and not outcome.failed:
+        part = f" of {outcome.recording.name}" if outcome.recording.name else ""
+        yield f"Model errors{part}: {outcome.untested}."

@@ -10,6 +10,8 @@ from ..arithmetic.types import Array, Mask
 from .measured import Measured
 from .signals import oscillation_in, signals_in
 
+_COARSE = 0.05
+"""Share of rows in which one angle alone repeats, from which its steps are coarse."""
 _MOST_LOST = 3
 """Rows that are lost at once at most."""
 _PLACES = 24
@@ -19,22 +21,25 @@ _ROWS = 400
 _NEAR = 21
 """Frequencies that are tried with a loss."""
 _ORDER = 2
-"""Harmonics that are tried with a loss."""
+"""Harmonics that are tried with a loss; twice as many decide between near rows."""
 
 
 def repeated(recording: Measured) -> str:
-    """Return which rows equal the row before in all cells, if chance does not explain them.
+    """Return which rows equal the row before in all cells, unless the steps of angles are coarse.
 
-    The chance is that of angles whose steps are coarse.
+    Then one angle is often equal where the others differ.
     """
     same = np.stack([np.diff(x) == 0 for x in recording.angles.values()])
     whole: Mask = same.all(axis=0) & (np.diff(recording.t) > 0)
     if len(same) < 2 or not whole.any() or whole.all():  # or nothing moves
         return ""
-    alone = (same & ~whole).mean(axis=1) + 1 / whole.size
-    chance = whole.size * float(np.prod(np.minimum(alone, 1)))
+    alone = [
+        (x & ~np.delete(same, i, 0).all(axis=0)).sum()
+        / max((~np.delete(same, i, 0).all(0)).sum(), 1)
+        for i, x in enumerate(same)
+    ]
     count = int(whole.sum())
-    if count <= chance + 3 * np.sqrt(chance) + 0.5:
+    if max(alone) > _COARSE:
         return ""
     at = recording.t_start + float(recording.t[1:][whole][0])
     if count == 1:
@@ -61,18 +66,18 @@ def likely_gap(recording: Measured) -> tuple[int, int] | None:
     edge, frame = max(size // 12, 4), recording.frame
     step = max((size - 2 * edge) // _PLACES, 1)
 
-    def noise(row: int, count: int) -> float:
-        near = frequency * (1 + np.linspace(-2, 2, _NEAR) * count / size)
-        found: Array = np.zeros(_NEAR)
+    def noise(row: int, count: int, order: int = _ORDER) -> float:
+        near = frequency * (1 + np.linspace(-2, 2, order * _NEAR) * _MOST_LOST / size)
+        found: Array = np.zeros(near.size)
         for x in signals.values():
             gap = count * frame * (x.t >= recording.t[row])
             other = x._replace(t=x.t + gap, y=x.y - x.rate * gap)
-            found = found + np.log(other.harmonics(near, _ORDER)[1])
+            found = found + np.log(other.harmonics(near, order)[1])
         return float(found.min())
 
     rows = range(edge, size - edge, step)
     tried = {(x, n): noise(x, n) for x in rows for n in range(1, _MOST_LOST + 1)}
-    row, count = min(tried, key=lambda x: tried[x])
-    for x in range(max(row - step + 1, edge), min(row + step, size - edge)):
-        tried[x, count] = noise(x, count)
-    return min(tried, key=lambda x: tried[x])
+    row, _ = min(tried, key=lambda x: tried[x])
+    near = range(max(row - step + 1, edge), min(row + step, size - edge))
+    exact = {(x, n): noise(x, n, 2 * _ORDER) for x in near for n in range(1, _MOST_LOST + 1)}
+    return min(exact, key=lambda x: exact[x])

@@ -397,15 +397,18 @@ def _against_known(
     problem = found.problem
     if problem.free:
         seen = {x: y for x, y in known.items() if x not in STATE or x not in problem.known}
-        spins = "r0" in problem.names
+        spins = "phi" in problem.recording.angles
         numbers = found.numbers(lambda x: estimates(seen, problem.values(x), turn, spins=spins))
+        at = problem.values(found.x[np.newaxis])
+        slowest = {x: float(y[0]) for x, y in estimates(seen, at, 0.0, spins=spins).items()}
     else:
-        numbers = {x: (found.values[x], 0.0, 0.0) for x in problem.stds}
+        numbers, slowest = {x: (found.values[x], 0.0, 0.0) for x in problem.stds}, {}
     notes, texts, distances = [], [], {}
     for name, (value, std, _) in numbers.items():
         size = scale ** time_power(name)
         given, own = ((x * size, y * size) for x, y in (known[name], (value, std)))
-        far, agrees, text = compared(name, given, own, known)
+        other = slowest[name] * size if name in slowest else None
+        far, agrees, text = compared(name, given, own, known, other)
         if problem.free:
             distances[name] = far
         if not agrees:

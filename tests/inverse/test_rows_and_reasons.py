@@ -1,0 +1,107 @@
+"""Rows that a recorder repeated or lost, what residuals may be, and the order of reasons."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lagtop import fit
+
+from lagrange_cli.arithmetic.types import Array
+from lagrange_cli.inverse.checks import CHANCE, Residuals
+from lagrange_cli.inverse.measured import Measured, measured
+from lagrange_cli.inverse.outcome import Outcome
+from lagrange_cli.inverse.reasons import Kind
+from lagrange_cli.inverse.rows import likely_gap, repeated, with_gap
+from lagrange_cli.recordings.recording import recording_of
+
+sys.path.append(str(Path(__file__).parents[1] / "tools"))
+
+from machines import filtered, gimballed
+
+START = np.array([1.1, 0.3, 0.9])
+
+
+def seen(count: int = 120, seed: int = 4) -> tuple[Array, dict[str, Array]]:
+    """Return times and noisy angles of a top, by an integrator."""
+    t = np.arange(count) / 60
+    rng = np.random.default_rng(seed)
+    found = gimballed(80.0, 12.0, 20.0, START, t)
+    return t, {x: y + rng.normal(scale=4e-3, size=count) for x, y in found.items() if x != "phi"}
+
+
+def recording(t: Array, angles: dict[str, Array]) -> Measured:
+    return measured(recording_of(t, angles))
+
+
+def fitted(t: Array, angles: dict[str, Array]) -> Outcome:
+    return fit(t, theta=angles["theta"], psi=angles["psi"])
+
+
+def test_a_row_that_repeats_another_is_named() -> None:
+    t, angles = seen()
+    assert repeated(recording(t, angles)) == ""
+    rows = np.sort(np.append(np.arange(119), 40))
+    doubled = {x: y[rows] for x, y in angles.items()}
+    outcome = fitted(t, doubled)
+    assert outcome.failure() == f"the row at t = {t[41]:.6g} repeats the row before it"
+    assert outcome.failed[0].kind is Kind.ROWS
+
+
+def test_equal_rows_of_a_coarse_encoder_are_none() -> None:
+    t, angles = seen(600)
+    coarse = {x: np.round(y / 0.2) * 0.2 for x, y in angles.items()}
+    assert (np.diff(coarse["theta"]) == 0).any()
+    assert repeated(recording(t, coarse)) == ""
+
+
+@pytest.mark.parametrize("lost", [1, 3])
+def test_lost_rows_are_found(lost: int) -> None:
+    """If the rows of a recording are numbered although some are lost."""
+    t, angles = seen()
+    kept = np.r_[0:60, 60 + lost : 120]
+    short = {x: y[kept] for x, y in angles.items()}
+    one = recording(t[: kept.size], short)
+    row, count = likely_gap(one) or (0, 0)
+    assert (abs(row - 60) < 3, count) == (True, lost)
+    assert with_gap(one, 60, lost).t == pytest.approx(t[kept])
+    failure = fitted(t[: kept.size], short).failure()
+    assert f"{lost} row{'s are' if lost > 1 else ' is'} lost before t = " in failure
+
+
+def test_a_filter_explains_smooth_noise_but_no_slow_oscillation() -> None:
+    rng, t = np.random.default_rng(7), np.arange(600.0)
+    noise = rng.normal(size=600)
+    for way in ("mean", "lag", "cubic"):
+        assert Residuals(t, filtered(noise, 5, way)).is_smoothed, way
+    slow = Residuals(t, noise + np.sin(t / 9))
+    assert not slow.is_smoothed
+    assert any(slow.faults("x", 1 / 40, CHANCE))
+
+
+def test_a_late_filter_is_in_the_uncertainty_of_the_first_row() -> None:
+    t, angles = seen(240, seed=9)
+    late = {x: filtered(y, 6, "lag") for x, y in angles.items()}
+    outcome = fitted(t, late)
+    if outcome.verdict == "good":
+        off = np.degrees(START[0]) - outcome.numbers["theta0_deg"].value
+        assert abs(off) < 5 * outcome.numbers["theta0_deg"].std
+    assert outcome.lost > 0
+
+
+def test_residuals_as_large_as_the_motion_are_no_fit() -> None:
+    t = np.arange(60.0)
+    rest = np.random.default_rng(2).normal(scale=0.05, size=60)
+    assert Residuals(t, rest, range=0.1).is_large
+    assert not Residuals(t, rest, range=0.4).is_large
+
+
+def test_reasons_are_in_the_order_of_their_kinds() -> None:
+    t, angles = seen()
+    angles["theta"][30] += 1.0
+    outcome = fitted(t, angles | {"psi": angles["psi"] + 0.5 * (t > 1)})
+    kinds = [x.kind for x in outcome.failed]
+    assert kinds == sorted(kinds)
+    assert len(kinds) > 1
