@@ -260,8 +260,16 @@ class Outcome(HasRecord):
 
     @property
     def noisiness(self) -> float:
-        """The sum of the logarithms of usual residuals, which a few rows do not change."""
-        return sum(math.log(np.median(np.abs(x.y)) + 1e-12) for x in self.residuals.values())
+        """The sum of the logarithms of usual residuals over the range of the data.
+
+        A few rows do not change it, nor does another unit.
+        """
+        found = 0.0
+        for name, rest in self.residuals.items():
+            size = self.noise[name].range
+            usual = float(np.median(np.abs(rest.y))) + 1e-12
+            found += math.log(usual / (size if math.isfinite(size) else 1.0) + 1e-12)
+        return found
 
     def deviance(self, other: Outcome) -> float:
         """Return how much larger -2 log(likelihood) is than that of another fit of these rows."""

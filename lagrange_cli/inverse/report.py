@@ -49,7 +49,7 @@ def fit_report(
             cells |= {"t": f"{x.recording.middle:.6g}", "verdict": x.verdict}
             rows.append(SimpleNamespace(**cells))
         reasons = [x.failure() for x in outcomes if x.failures()]
-        words = [decay_text(outcomes), *_model(outcomes[0]), *_failed(reasons[omits_first:])]
+        words = [*_model(outcomes[0]), decay_text(outcomes), *_failed(reasons[omits_first:])]
         return Report(conditions, fields, rows, words)
     fields = [Field(x, x, is_text=True) for x in ("key", "value", "meaning")]
     numbers = outcomes[0].numbers
