@@ -124,6 +124,15 @@ class _Search:
         worst = np.fmax.reduce(self.errors(cause, most), axis=None)
         return float(worst) if np.isfinite(worst) else math.inf
 
+    def clock_of(self, cause: Cause) -> float:
+        """Return the true unit of time over that of the recording."""
+        return float(np.ptp(self.some(cause.misreading).t) / (np.ptp(self.run.t) or 1.0))
+
+    def may_be_misread(self, cause: Cause) -> bool:
+        """Return whether the axis of the given top moves like the one that is seen."""
+        trusted = self.seen if self.seen and self.seen.is_trusted else None
+        return is_near(self.top, self.clock_of(cause), trusted, _CLOSE)
+
     def spoils(self, cause: Cause) -> bool:
         """Return whether the attitude, or the rates, are clearly worse without a cause."""
         after, before = (np.fmax.reduce(self.errors(x, _FEW), axis=1) for x in (cause, _NONE))
@@ -172,9 +181,8 @@ class _Search:
             of_time = x.misreading and x.misreading.kind == "clock"
             tops = self.tops
             if of_time and self.seen:
-                clock = abs(float(np.ptp(self.run.t) / np.ptp(self.some(x.misreading).t)))
-                left = self.run.align.left
-                tops = other_tops(self.top, left=left, clock=1 / clock, seen=self.seen)
+                clock = self.clock_of(x)
+                tops = other_tops(self.top, left=self.run.align.left, clock=clock, seen=self.seen)
             yield from (x.with_other(y) for y in tops)
 
     def by_channel(self) -> list[Cause]:
@@ -212,7 +220,7 @@ class _Search:
         tops = [*self.tops, *self.estimated]
         if self.seen and self.seen.is_trusted:
             tops = [x for x in tops if self.is_close(x)]
-        others = [x for x in self.mistakes if not x.exact]
+        others = [x for x in self.mistakes if not x.exact and self.may_be_misread(x)]
         causes = [*self.aligned([_NONE], in_other=False), *others, *tops]
         found = [x for x in causes if self.error(x, _FEW) <= self.enough and not self.spoils(x)]
         found = [x._replace(error=self.error(x, _SOME)) for x in found]

@@ -21,6 +21,8 @@ from .numbers import Estimate, a_and_b
 
 _GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
 _STEPS = {"twice": 2.0, "half": 0.5}
+_ALIASED = 1.5
+"""Turn of the nutation from row to row, in radians, with which the rows show a slower one."""
 Changes = dict[str, Any]
 """The inputs of another top, and turns of its motion (`space`, `body`, `spin`)."""
 
@@ -123,7 +125,7 @@ def reversed_tops(tops: list[Cause]) -> list[Cause]:
 
 def is_near(top: Top, clock: float, seen: Estimate | None, share: float = 0.1) -> bool:
     """Return whether the axis of a top might move like that of a trajectory."""
-    if seen is None:
+    if seen is None or abs(a_and_b(top)[1]) * clock * seen.step > _ALIASED:
         return True
     (a, b), axis = a_and_b(top), seen.axis
     a, b = a * clock**2, b * clock

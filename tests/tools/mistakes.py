@@ -84,7 +84,7 @@ def mistakes_of(scene: Scene) -> dict[str, Mistake]:
         "moon": Mistake("Moon", weight(MOON), (MOON, 1, 1)),
         "no gravity": Mistake("g is 0", weight(0), (0, 1, 1)),
         "gravity up": Mistake("upwards", weight(-1), (1, 1, 1)),
-        "g 10": Mistake("1.9 %", weight(10 / 9.81), (10 / 9.81, 1, 1)),
+        "g 10": Mistake("g is 10", weight(10 / 9.81), (10 / 9.81, 1, 1)),
         "m + 7 %": Mistake("m, g or s is 7.0 %", weight(1.07), (1.07, 1, 1)),
         "C = A": Mistake("(as if C = A)", moments(c=A), (1, 1 / c, 1)),
         "gyro / 2": Mistake("halved", moments(c=(A + C) / 2), (1, (1 + c) / 2 / c, 1)),
