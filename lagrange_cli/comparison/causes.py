@@ -28,12 +28,14 @@ _AS_GOOD, _COMPETES, _ROUNDING = 2.0, 3.0, 1e-9
 """Factors between the remaining errors of causes that explain as much, and a least error."""
 _SURE = 1e-3
 """Relative residual of an axis below which it moves like that of a top."""
-_CLOSE = 0.02
-"""Relative difference of a and b between a trajectory and the top that explains most of it."""
+_CLOSE, _ALIKE = 0.02, 0.005
+"""Relative differences of a and b between a trajectory and a top: one that explains most of it, and
+one that makes an estimated top needless."""
 _FEW, _SOME, _LEAST = 12, 300, 3
 """Rows on which causes are tried first and then, and the least number of rows."""
 _MOST_SHIFTS, _MOST_NAMES = 500, 3
 _NONE = Cause("")
+_UNTURNED = 1e-9
 _RATES, _UNITS = {"rates", "angle_rates"}, {"clock", "rates"}
 
 
@@ -86,13 +88,13 @@ class _Search:
         self.early = [*units, *clocks(), *(x for x in self.tops if x.name.startswith("r0 has"))]
         self.late = [*(x for x in self.tops if x not in self.early), *others]
         self.enough = min(EXPLAINS * self.error(_NONE, _SOME), _PART)
-        is_named = self.seen and any(self.is_close(x) for x in self.tops)
+        is_named = self.seen and any(self.is_close(x, _ALIKE) for x in self.tops)
         trusted = self.seen if self.seen and self.seen.is_trusted and not is_named else None
         self.estimated = [*estimated_tops(self.top, trusted)] if trusted else []
 
-    def is_close(self, cause: Cause) -> bool:
+    def is_close(self, cause: Cause, share: float = _CLOSE) -> bool:
         """Return whether the axis of another top moves like the one that is seen."""
-        return cause.exact is not None and is_near(cause.exact.motion.top, 1.0, self.seen, _CLOSE)
+        return cause.exact is not None and is_near(cause.exact.motion.top, 1.0, self.seen, share)
 
     @property
     def mistakes(self) -> list[Cause]:
@@ -223,6 +225,7 @@ class _Search:
         others = [x for x in self.mistakes if not x.exact and self.may_be_misread(x)]
         causes = [*self.aligned([_NONE], in_other=False), *others, *tops]
         found = [x for x in causes if self.error(x, _FEW) <= self.enough and not self.spoils(x)]
+        found = [*{x.name: x for x in reversed(found)}.values()][::-1]  # the first of each name
         found = [x._replace(error=self.error(x, _SOME)) for x in found]
         least = min((x.error for x in found), default=0.0)
         kept = [x for x in found if x.error <= min(self.enough, _COMPETES * least)]
@@ -254,7 +257,9 @@ class _Search:
         space, body = frames_of(seen, self.given.at(seen.t)["quaternion"]) or (None, None)
         if space is None or body is None:
             return []
-        turns = f"space is turned by {turn_of(space)}, and that of the body by {turn_of(body)}"
+        turns = f"space is turned by {turn_of(space)}"
+        if np.max(np.abs(body - np.eye(3))) > _UNTURNED:
+            turns += f", and that of the body by {turn_of(body)}"
         name, undo = f"the frame of {turns}", partial(in_frames, space=space, body=body)
         return [Cause(name, Misreading(name, undo))]
 

@@ -97,7 +97,8 @@ def other_tops(top: Top, *, left: bool, clock: float = 1.0, seen: Estimate | Non
         turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
         with suppress(LagtopError):  # there is no such top
             other = plain.replace(**changed)
-            if is_near(other, clock, seen) and (turns or other.inputs() != numbers):
+            may_be = is_near(other, clock, seen) or _is_aliased(other, clock, seen)
+            if may_be and (turns or other.inputs() != numbers):
                 found.append(Cause(name, exact=ExactMotion(solve(other), **turns)))
     A, C = Fraction(top.A), Fraction(top.C)
     faster = {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")}
@@ -123,9 +124,14 @@ def reversed_tops(tops: list[Cause]) -> list[Cause]:
     return found
 
 
+def _is_aliased(top: Top, clock: float, seen: Estimate | None) -> bool:
+    """Return whether the nutation of a top would be too fast for the rows of a trajectory."""
+    return seen is not None and abs(a_and_b(top)[1]) * clock * seen.step > _ALIASED
+
+
 def is_near(top: Top, clock: float, seen: Estimate | None, share: float = 0.1) -> bool:
     """Return whether the axis of a top might move like that of a trajectory."""
-    if seen is None or abs(a_and_b(top)[1]) * clock * seen.step > _ALIASED:
+    if seen is None:
         return True
     (a, b), axis = a_and_b(top), seen.axis
     a, b = a * clock**2, b * clock
@@ -147,7 +153,7 @@ def estimated_tops(top: Top, seen: Estimate) -> Iterator[Cause]:
         if not ratio or not 0 < ratio < math.inf:
             continue
         percent = 100 * abs(ratio - 1)
-        said = f"{percent:.{1 if percent > 1 else 3}f} % {'more' if ratio > 1 else 'less'}"
+        said = f"{percent:.{1 if percent > 0.99 else 3}f} % {'more' if ratio > 1 else 'less'}"
         said = said if 0.5 < ratio < 2 else f"wrong by a factor of {ratio:.4g}"
         with suppress(LagtopError):
             other = Top(**inputs | {key: inputs[key] * ratio})

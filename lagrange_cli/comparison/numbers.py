@@ -22,6 +22,8 @@ _MOST, _FIRST = 20_000, 8
 """Most rows, and the first rows, from which the rates at the start follow."""
 _OPEN, _SAME, _DECAY = 0.2, 2e-3, 1e-3
 """Relative errors: of an undetermined parameter, of one that agrees, of a spin that is constant."""
+_COARSE = 0.25
+"""Turn of the spin from row to row, in radians, that may be a coarse step."""
 _UNITS = "per unit of time"
 _PARTS = 0.5, 0.25
 """Shares of the rows, from the first one, that are tried if all of them do not suffice."""
@@ -159,7 +161,8 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     off = {x: y for x, y in ratios.items() if y is not None and abs(y - 1) > same}
     known = {x: y for x, y in ratios.items() if y is not None}
     decay = found.decay
-    is_upright, moved = _is_upright(found, same), [*_other_start(top, found, same)]
+    is_upright = _is_upright(found, same)
+    moved = [*_other_start(top, found, same)] if is_upright else []
     if known and (off or decay or moved or not is_upright):
         parts = [f"{x} = {y:.4g} {x}_0" if x in off else f"{x} = {x}_0" for x, y in known.items()]
         yield f"the motion is that of {', '.join(parts)}"
@@ -176,6 +179,8 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     if not is_upright:
         x, y, z = axis.up
         yield f"up is ({x:.4f}, {y:.4f}, {z:.4f}) in the frame of space"
+    if turns > _COARSE:
+        yield f"if each row is a step (r0 dt is {turns:.2g} rad), use smaller steps"
 
 
 def _is_upright(found: Estimate, same: float) -> bool:

@@ -80,11 +80,23 @@ def _causes(x: Comparison, limit: float, *, is_right: bool) -> Iterator[str]:
         yield rows
     elif is_wrong and not is_right:
         yield from _channels(x, limit)
-        if x.numbers is None:
-            hint = ", and compare runs with other step sizes" * (x.verdict == "drifts")
-            yield f"None of the known causes explains the error: check the inputs{hint}."
+        if x.a_ratio is None and x.b_ratio is None:
+            yield _hint(x)
     if x.numbers is not None and is_wrong and not is_right:
         yield f"{x.numbers[0].upper()}{x.numbers[1:]}."
+
+
+def _hint(x: Comparison) -> str:
+    """Return what to check if no top explains the motion."""
+    said = "None of the known causes explains the error: check the inputs"
+    if x.verdict == "drifts":
+        said += ", and compare runs with other step sizes"
+    known = {"align": x.axis_error_max, "quaternion_order": x.attitude_error_max}
+    known["rates_frame"] = x.rates_error_max
+    names = [arg(name) for name, y in known.items() if y is not None]
+    if names and x.verdict != "drifts":
+        said += f", and the conventions of the attitude and the rates ({joined(names)})"
+    return f"{said}."
 
 
 def _channels(x: Comparison, limit: float) -> Iterator[str]:
