@@ -135,6 +135,11 @@ def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
         assert lagtop("sweep", text, "--format", "parquet", *options).exit_code == 1
     for file in (whole, parts / "part-000000.parquet"):
         assert parquet.read_table(file).to_pylist() == json.loads(rows)
+    large = tmp_path / "large.parquet"
+    assert lagtop("sweep", "--r0", "1:9:110000", "--keys", "r0", "-o", large).exit_code == 0
+    about = parquet.ParquetFile(large).metadata
+    groups = [about.row_group(i).num_rows for i in range(about.num_row_groups)]
+    assert (sum(groups), groups[0] >= 100_000, len(groups)) == (110_000, True, 2)
     empty = tmp_path / "empty.parquet"
     lagtop("sweep", "-", "--format", "parquet", "-o", empty, input="r0\n")
     assert parquet.read_table(empty).num_rows == 0

@@ -17,6 +17,9 @@ from .base import Columns, Format
 
 _OTHERS = f"leave out {arg('digits')} and {arg('certify')}, or use csv or json"
 
+_GROUP_ROWS = 100_000
+"""The least number of rows of a row group: readers are slow with small ones."""
+
 
 class Parquet(Format):
     """A table of pyarrow for each block."""
@@ -52,7 +55,7 @@ class Parquet(Format):
     def write(
         self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Any], width: int | None
     ) -> None:
-        """Write tables as one file, a row group for each."""
+        """Write tables as one file, in row groups of at least 100,000 rows but the last."""
         if width is not None:
             raise LagtopError("format parquet is not for a terminal: use -o FILE.parquet", "format")
         if find_spec("pyarrow") is None:
@@ -64,8 +67,14 @@ class Parquet(Format):
         first = next(tables, pa.table({name: pa.nulls(0) for name in names}))
         # closed in any case, because a writer that is collected later writes to a closed file
         with parquet.ParquetWriter(stream, first.schema) as writer:
+            group: list[Any] = []
             for table in chain([first], tables):
-                writer.write_table(table)
+                group.append(table)
+                if sum(x.num_rows for x in group) >= _GROUP_ROWS:
+                    writer.write_table(pa.concat_tables(group))
+                    group = []
+            if group:
+                writer.write_table(pa.concat_tables(group))
 
     def part(self, names: Sequence[str], number: int, block: Any) -> bytes:
         """Return a file that is complete by itself."""
