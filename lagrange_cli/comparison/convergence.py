@@ -76,18 +76,18 @@ def convergence(results: Sequence[HasErrors], limit: float) -> Convergence | Non
         how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g} to {fine:g}"
         why = "the order of the step sizes is wrong, the method varies, or the top is another one"
         return Convergence(errors, f"The error rises {how}: {why}.", converges=False)
+    last = sorted((x.step or 0.0, y[-1]) for x, (_, y) in zip(results, curves, strict=True))
+    ends = np.array(last)[:, 1]
+    plateau, tends = _plateau(step, ends if ends.max() < _PHASES else error)
+    if plateau > max(limit, _PLATEAU * error[0]) and ends[-1] > _RISES * plateau:
+        said = f"The error falls to {plateau:.1e} as the step falls to 0 (order {tends:.2f})"
+        said += ": this is the motion of another top, or the engine has another equation."
+        return Convergence(errors, said, tends, converges=False)
     if error[0] >= ROUNDING and error[1] < error[0] * (step[1] / step[0]) ** LEAST_ORDER:
         is_fine = max(errors) <= limit
         why = ["this is the motion of another top", "the numbers may have been rounded"][is_fine]
         said = f"The error does not fall with the step: {why}."
         return Convergence(errors, said, converges=min(errors) <= limit)
-    last = sorted((x.step or 0.0, y[-1]) for x, (_, y) in zip(results, curves, strict=True))
-    ends = np.array(last)[:, 1]
-    plateau, tends = _plateau(step, ends if ends.max() < _PHASES else error)
-    if plateau > max(limit, _PLATEAU * error[0]):
-        said = f"The error falls to {plateau:.1e} as the step falls to 0 (order {tends:.2f})"
-        said += ": this is the motion of another top, or the engine has another equation."
-        return Convergence(errors, said, tends, converges=False)
     usable = (error >= ROUNDING) & (error < LOST_PHASE)
     if len({*step[usable]}) < 2:
         usable = (error > 0) & (error < LOST_PHASE) & (np.arange(len(step)) >= error.argmin())

@@ -322,3 +322,13 @@ def test_starts_on_the_vertical() -> None:
 def test_bad_arguments(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(LagtopError, match=message):
         compare(TOP, **({"t": T} | arguments))
+
+
+def test_a_plateau_of_the_error_is_another_top() -> None:
+    """Errors e0 + c h^2 fall with the step, but not to 0."""
+    steps = (4e-3, 0.5), (2e-3, 0.275), (1e-3, 0.21875)
+    found = convergence([Comparison(step=h, t=T, error=x * T / T[-1]) for h, x in steps], 1e-3)
+    assert found
+    assert not found.converges
+    assert found.order == pytest.approx(2, abs=0.06)
+    assert "falls to 2.0e-01 as the step falls to 0" in found.sentence
