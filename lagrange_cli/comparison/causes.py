@@ -12,7 +12,7 @@ from ..arithmetic import rotations
 from ..arithmetic.types import Array
 from ..errors import arg
 from ..recordings.frames import alignment_of, frames_of, in_frames, turn_of
-from ..recordings.misreadings import Misreading
+from ..recordings.misreadings import BACKWARDS, Misreading
 from ..recordings.options import Alignment
 from ..recordings.recording import Recording
 from .differences import ExactMotion, errors, sizes, start_of
@@ -223,6 +223,7 @@ class _Search:
         if self.seen and self.seen.is_trusted:
             tops = [x for x in tops if self.is_close(x)]
         others = [x for x in self.mistakes if not x.exact and self.may_be_misread(x)]
+        others = [x for x in others if x.name != BACKWARDS]  # exact, or else it is a mirror image
         causes = [*self.aligned([_NONE], in_other=False), *others, *tops]
         found = [x for x in causes if self.error(x, _FEW) <= self.enough and not self.spoils(x)]
         found = [*{x.name: x for x in reversed(found)}.values()][::-1]  # the first of each name

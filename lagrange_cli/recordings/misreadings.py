@@ -22,6 +22,7 @@ _RATES, _ANGLES = {"rates", "angle_rates"}, {*ANGLES, "euler"}
 _TAKEN = "the angles are in {} and were taken as {}"
 _NAME = "give their columns names such as theta_{}"
 _HORIZONTAL = "theta is measured from the horizontal"
+BACKWARDS = "time runs backwards"
 Undo = Callable[[Recording], Recording]
 """Returns a recording as it was meant."""
 
@@ -40,9 +41,7 @@ class Misreading(NamedTuple):
 
 def misreadings(recording: Recording) -> list[Misreading]:
     """Return what may have been misread in a recording, the simplest first."""
-    backwards = Misreading(
-        "time runs backwards", partial(Recording.timed, factor=-1.0), kind="sense"
-    )
+    backwards = Misreading(BACKWARDS, partial(Recording.timed, factor=-1.0), kind="sense")
     found = [*_of_clock(recording), *_of_conventions(recording), *_of_numbers(recording)]
     is_falling = recording.t[0] > recording.t[-1]
     return [backwards._replace(kind="clock"), *found] if is_falling else [*found, backwards]
