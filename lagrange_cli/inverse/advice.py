@@ -71,16 +71,16 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
         yield OtherReading(f"t is rounded: write it with more digits ({even_rows})")
     is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
     yield from _readings(recording, known, body, outcome, is_far=is_far)
-    noise = _calmness(recording)
+    noise, is_left = _calmness(recording), kinds != {Kind.MACHINE}  # rows may be left out
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
-    if 0 < len(wrong) <= _FEW * recording.t.size:
+    if is_left and 0 < len(wrong) <= _FEW * recording.t.size:
         rest = recording.rows(~np.isin(recording.t, [*wrong]))
         least = _OUTLYING * len(wrong) / recording.t.size
         if noise - _calmness(rest) > least and _is_good(rest, body, outcome):
             shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
             yield OtherReading(f"leave out the rows at t = {shortened(shown)}")
     free = recording.part(slice(row := release(recording), None))
-    if row and noise - _calmness(free) > _CALMER and _is_good(free, body, outcome):
+    if is_left and row and noise - _calmness(free) > _CALMER and _is_good(free, body, outcome):
         at = recording.t_start + float(recording.t[row])
         yield OtherReading(
             f"the top is held until about t = {at:.4g}: leave out the rows before the release"
@@ -236,6 +236,8 @@ def release(recording: Measured) -> int:
 
 def _decays(recording: Measured, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
     """Yield the number of windows that are all good and show a decay, or a decay within windows."""
+    if len(recording.angles) == 1:  # whose known start is that of the first window alone
+        return
     counts, lost = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size], ""
     for count in counts:
         try:

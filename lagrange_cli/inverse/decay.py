@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arithmetic.text import uncertain_text
 from ..errors import LagtopError
-from ..top.inputs import BODY, TILT, replaced_by
+from ..top.inputs import BODY, replaced_by
 from ..top.units import DEGREES, Units
 from .checks import CHANCE
 from .known import Known
@@ -61,18 +61,16 @@ def fit_windows(
 
     Raises LagtopError for a bad number of windows, or for a known input of one instant.
     """
-    has_tilt = recording.angles.keys() != {"psi"}
-    for name in [x for x in known if replaced_by(x) not in BODY and (has_tilt or x != TILT)]:
+    for name in [x for x in known if replaced_by(x) not in BODY]:
         key = "psidot0" if name == "steady" else name
-        raise LagtopError(f"{key} is not the same in all windows: leave it out", key)
-    outcomes = list[Outcome]()
-    for part in recording.windows(count):
-        if outcomes and TILT in known:  # where the last window ends
-            last = outcomes[-1]
-            tilt = last.motion(np.array([part.t_start - last.recording.t_start]))[0]
-            known = {**known, TILT: (float(tilt[0]), 0.0)}
-        outcomes.append(best_fit(part, known, chance=CHANCE / count, units=units))
-    return outcomes
+        remedy = "leave it out"
+        if len(recording.angles) == 1:
+            remedy = f"windows need more than {next(iter(recording.angles))}"
+        raise LagtopError(f"{key} is not the same in all windows: {remedy}", key)
+    return [
+        best_fit(part, known, chance=CHANCE / count, units=units)
+        for part in recording.windows(count)
+    ]
 
 
 def decay_of(outcomes: Sequence[Outcome]) -> Decay | None:

@@ -7,14 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lagtop import fit
+from lagtop import LagtopError, fit
 
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inverse.checks import CHANCE, Residuals
+from lagrange_cli.inverse.decay import fit_windows
 from lagrange_cli.inverse.measured import Measured, measured
 from lagrange_cli.inverse.outcome import Outcome
 from lagrange_cli.inverse.reasons import Kind
 from lagrange_cli.inverse.rows import likely_gap, repeated, with_gap
+from lagrange_cli.names import ANGLES
 from lagrange_cli.recordings.recording import recording_of
 
 sys.path.append(str(Path(__file__).parents[1] / "tools"))
@@ -105,3 +107,42 @@ def test_reasons_are_in_the_order_of_their_kinds() -> None:
     kinds = [x.kind for x in outcome.failed]
     assert kinds == sorted(kinds)
     assert len(kinds) > 1
+
+
+def test_one_angle_has_no_windows_and_is_not_told_to_use_them() -> None:
+    """Its known start is that of the first window alone."""
+    t = np.arange(400) / 100
+    psi = gimballed(80.0, 12.0, 20.0, START, t, drag=0.2)["psi"]
+    psi = psi + np.random.default_rng(3).normal(scale=5e-3, size=400)
+    known = {"theta0": START[0]}
+    outcome = fit(t, psi=psi, known=known)
+    assert outcome.verdict == "failed"
+    assert "window" not in outcome.failure()
+    with pytest.raises(LagtopError, match="in all windows: windows need more than psi"):
+        fit_windows(measured(recording_of(t, {"psi": psi})), 3, {"theta0": (START[0], 0.0)})
+
+
+def test_a_known_spin_has_its_uncertainty_in_the_moment() -> None:
+    """The spin is not recorded: r0 = 26(2) leaves C uncertain by 8 %, and gets no line itself."""
+    t, angles = seen(240)
+    known = {"m": 1.0, "g": 10.0, "s": 4.0, "r0": "21.5(2.0)", "C": 0.6}
+    outcome = fit(t, theta=angles["theta"], psi=angles["psi"], known=known)
+    assert outcome.verdict == "good", outcome.failures()
+    (note,) = [x for x in outcome.notes if x.startswith("known ")]
+    assert note.startswith("known C = 0.6 agrees")
+    assert "C" in outcome.distances
+    assert "r0" not in outcome.distances
+
+
+@pytest.mark.parametrize(
+    ("r0", "words"), [(-20.0, "of the opposite sign"), (20 * 30 / np.pi, "9.55 times as large")]
+)
+def test_the_sign_and_the_unit_of_a_known_spin_are_named(r0: float, words: str) -> None:
+    """Also if a faster spin that looks alike in the rows is nearer."""
+    t = np.arange(120) / 60
+    rng = np.random.default_rng(4)
+    found = gimballed(80.0, 12.0, 20.0, START, t)
+    theta, phi, psi = (found[x] + rng.normal(scale=4e-3, size=120) for x in ANGLES)
+    failure = fit(t, theta=theta, phi=phi, psi=psi, known={"r0": r0}).failure()
+    assert failure.startswith(f"known r0 = {r0:.6g} contradicts the recording")
+    assert words in failure
