@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from functools import partial
-from itertools import chain, groupby
+from itertools import groupby
 from textwrap import fill
 from typing import Any, NamedTuple
 
@@ -83,12 +83,15 @@ def rows_grid(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
     return Grid(headings, rows, range(len(headings)), may_stand=True)
 
 
+def lists_of(columns: Sequence[Any]) -> Iterator[Sequence[Any]]:
+    """Yield a list for each column of arrays of one or several columns, and of lists."""
+    for x in columns:
+        yield from [x] if isinstance(x, Sequence) else x.reshape((*x.shape, 1)[:2]).T.tolist()
+
+
 def texts_of(columns: Sequence[Any]) -> list[tuple[str, ...]]:
-    """Return rows of texts: of arrays of one or several columns, and of lists of any values."""
-    lists = chain.from_iterable(
-        [x] if isinstance(x, Sequence) else x.reshape((*x.shape, 1)[:2]).T.tolist() for x in columns
-    )
-    return [*zip(*([*map(shown_text, x)] for x in lists), strict=True)]
+    """Return rows of texts, of the columns that `lists_of` takes."""
+    return [*zip(*([*map(shown_text, x)] for x in lists_of(columns)), strict=True)]
 
 
 def record_page(record: Mapping[str, Any], declared: Callable[[], Keys], width: int | None) -> Page:

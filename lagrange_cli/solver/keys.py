@@ -306,8 +306,6 @@ NUMBER_KEYS = list(NUMBERS)[:_FIRST_FURTHER]
 """The numbers of a record, in order; `regime` precedes them, `path` and `remark` follow."""
 FURTHER_KEYS = list(NUMBERS)[_FIRST_FURTHER:]
 """The further numbers, in order."""
-TEXTBOOK_KEYS = [x for x in FURTHER_KEYS if NUMBERS[x].group.startswith("Steady")]
-"""The keys of the elementary theory: they depend only on the body, the spin and the tilt."""
 TEXT_KEYS = ("regime", "path", "remark")
 """The keys of a record whose values are words."""
 INPUT_KEYS = {

@@ -67,7 +67,7 @@ class Parts:
 
     def _files(self, number: int) -> tuple[Path, Path]:
         """Return the file of a part, and the file that describes it."""
-        extension = FORMATS[self.sweep.fmt.removesuffix("_comma")].extension
+        extension = FORMATS[self.sweep.fmt.partition(".")[0]].extension
         part = self.path / f"part-{number:06}.{extension}"
         return part, self.path / f"_part-{number:06}.json"
 

@@ -108,6 +108,13 @@ def test_at_the_end_of_a_range_one_direction_counts() -> None:
         assert (found.std, found.fair) == (stds[name], True)
 
 
+def test_a_root_that_is_0_on_one_side_is_not_fair() -> None:
+    """2 sqrt(A m g s max(cos theta0, 0))/C at 90 degrees: half the difference grows as a root."""
+    found = Spread(solve(Top(theta0_deg=90)), {"theta0_deg": 0.1}).number("r0_steady_min")
+    assert found is not None
+    assert not found.fair
+
+
 def test_derivatives_are_by_the_inputs_that_were_given() -> None:
     top = Top(m=2, A_cm=3, C=1, s=0.5, g=1, phidot0=4, psidot0=1.5, theta0_deg=50)
     inputs = "m A_cm C s g phidot0 theta0_deg thetadot0 psidot0"

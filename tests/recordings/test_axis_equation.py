@@ -9,7 +9,7 @@ from lagtop import Top
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.recordings.axis_equation import from_spline, from_windows
+from lagrange_cli.recordings.axis_equation import from_spline
 
 T = np.linspace(0, 2, 400)
 TOP = Top(m=1, A=0.02, C=0.006, s=0.08, g=9.81, r0=40, theta0_deg=55, thetadot0=0.7)
@@ -32,15 +32,6 @@ def test_a_b_and_up_in_any_frame() -> None:
         assert (found.a, found.b) == pytest.approx(A_B, rel=1e-4)
         assert found.up == pytest.approx(space.apply([0, 0, 1]), abs=1e-4)
     assert from_spline(T[:31], axis[:31]) is None
-
-
-def test_noise() -> None:
-    noisy = axis_of(TOP) + np.random.default_rng(1).normal(scale=1e-3, size=(T.size, 3))
-    for vertical in (True, False):
-        found = from_windows(T, noisy, 0.3, vertical=vertical)
-        assert found
-        assert (found.a, found.b) == pytest.approx(A_B, rel=2e-3)
-    assert from_windows(T, noisy, 3) is None
 
 
 def test_decay() -> None:

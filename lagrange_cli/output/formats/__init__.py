@@ -31,15 +31,16 @@ FORMATS = {
     "parquet": Row("parquet", "the rows as doubles and texts; needs pyarrow"),
     "markdown": Row("md", "texts and tables, for a report or an issue"),
 }
-WITH_COMMAS = {"csv": "csv_comma"}
+WITH_COMMAS = {"csv": "csv.WITH_COMMAS"}
 """The forms of formats with decimal commas, which --decimal chooses."""
 PICTURES, FILMS = ("png", "svg", "pdf"), ("gif", "mp4")
 """The extensions of pictures and films, which the plotting package writes."""
 
 
 def format_of(name: str) -> Format:
-    """Return the format with a name."""
-    found: Format = import_module(f".{name}", __package__).FORMAT
+    """Return the format with a name, or a form such as `csv.WITH_COMMAS`."""
+    module, _, form = name.partition(".")
+    found: Format = getattr(import_module(f".{module}", __package__), form or "FORMAT")
     return found
 
 

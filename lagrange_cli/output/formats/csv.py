@@ -1,4 +1,4 @@
-"""CSV: the rows, with a header."""
+"""CSV: the rows, with a header; also with decimal commas, as some spreadsheets read it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from types import NoneType
 from typing import TYPE_CHECKING, Any
 
+from ...arithmetic.text import NumberText
 from ..text import csv_text
 from .base import Columns, Format
 
@@ -62,4 +63,22 @@ class Csv(Format):
         return [cells[x] for x in column]
 
 
+class CsvWithCommas(Csv):
+    """Decimal commas, and semicolons between cells; a text with a semicolon or comma is quoted."""
+
+    separator = b";"
+
+    def cell(self, value: Any) -> bytes:
+        """Return the cell of a value."""
+        text = super().cell(value)
+        if isinstance(value, float | NumberText):
+            return text.replace(b".", b",")
+        return b'"%b"' % text if b";" in text and not text.startswith(b'"') else text
+
+    def lines(self, numbers: Array, missing: bytes = b"") -> bytes:
+        """Return an array of numbers, a line per row and a `missing` cell for NaN."""
+        return super().lines(numbers, missing).translate(bytes.maketrans(b",.", b";,"))
+
+
 FORMAT = Csv()
+WITH_COMMAS = CsvWithCommas()

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain
 from typing import Any
 
 from ...arithmetic.text import NumberText
-from ..document import Document
+from ..document import Document, lists_of
 from ..text import json_value
 from .base import Columns, Format
 
@@ -35,10 +34,7 @@ def json_rows(columns: Columns, names: Sequence[str]) -> list[bytes]:
             return orjson.Fragment(str(value) or "null")
         return str(value) if isinstance(value, str) else float(value)
 
-    lists = chain.from_iterable(
-        [x] if isinstance(x, Sequence) else x.reshape((*x.shape, 1)[:2]).T.tolist() for x in columns
-    )
-    rows = (dict(zip(names, row, strict=True)) for row in zip(*lists, strict=True))
+    rows = (dict(zip(names, row, strict=True)) for row in zip(*lists_of(columns), strict=True))
     as_written = orjson.OPT_PASSTHROUGH_SUBCLASS
     return [orjson.dumps(row, default=fragment, option=as_written) for row in rows]
 
