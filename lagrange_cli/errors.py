@@ -100,6 +100,11 @@ class LagtopError(ValueError):
         return found
 
 
+def install(extra: str) -> str:
+    """Return the command that installs an extra of lagtop, for the text of a message."""
+    return f"pip install '.[{extra}]' in the folder of lagtop"
+
+
 def check_type(name: str, value: object, *kinds: type) -> None:
     """Raise TypeError for an argument of any other type."""
     if not isinstance(value, kinds):

@@ -55,11 +55,11 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
         hint = f"got {quoted(wrong[0])}{suggestion(wrong[0], known)}"
         got = hint if names else "got an empty list"
         if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
-            raise LagtopError(f"{key} must be among {listed}, {got}", key)
+            raise LagtopError(f"{key} must be one of {listed}, {got}", key)
         first = known.index("regime") if "regime" in known else 0  # the results of a record
         some = f"{', '.join(known[first:][:_FIRST])} and {len(known) - _FIRST} more"
         more = ", see lagtop explain" if "T_nutation" in known else ""  # a list of keys
-        raise LagtopError(f"{key} must be among {len(known)} names, {got}: {some}{more}", key)
+        raise LagtopError(f"{key} must be one of {len(known)} names, {got}: {some}{more}", key)
     if (twice := repeated(names)) is not None:
         raise LagtopError(f"{key} must not repeat a name, got {twice!r} twice", key)
     return names

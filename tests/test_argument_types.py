@@ -92,10 +92,10 @@ def test_names_that_are_fine() -> None:
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        (["gamma"], "keys must be among alpha, beta, T_nutation, got 'gamma'"),
+        (["gamma"], "keys must be one of alpha, beta, T_nutation, got 'gamma'"),
         (["T_nutatoin"], "got 'T_nutatoin' (did you mean 'T_nutation'?)"),
         (["alpha", "alpha"], "keys must not repeat a name, got 'alpha' twice"),
-        ([], "keys must be among alpha, beta, T_nutation, got an empty list"),
+        ([], "keys must be one of alpha, beta, T_nutation, got an empty list"),
         ("alpha", "keys must be a list of names, got 'alpha'"),
     ],
 )
@@ -112,7 +112,7 @@ def test_a_long_list_comes_after_the_name_that_was_meant_and_is_cut() -> None:
     with pytest.raises(LagtopError) as refused:
         check_names("keys", ["nam7"], known)
     assert str(refused.value) == (
-        "keys must be among 66 names, got 'nam7' (did you mean 'name7'?): name0, name1, name2, "
+        "keys must be one of 66 names, got 'nam7' (did you mean 'name7'?): name0, name1, name2, "
         "name3, name4, name5, name6, name7, name8, name9, name10, name11 and 54 more"
     )
 

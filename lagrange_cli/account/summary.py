@@ -12,8 +12,11 @@ _ENDS = "between {least} and {most} {angle}"
 
 PHRASES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "sentence": [
-        ({"regime": "sleeping"}, "The axis stays upright, which is {stability}, and {rotates}."),
-        ({"regime": "hanging"}, "The axis hangs straight down and {rotates}."),
+        (
+            {"regime": "sleeping"},
+            "The axis stays upright, and this is {stability}. The top {rotates}.",
+        ),
+        ({"regime": "hanging"}, "The axis hangs straight down. The top {rotates}."),
         (
             {"regime": "separatrix"},
             "The axis rises to the vertical in infinite time; its tilt is at most {high} {angle}.",
@@ -24,7 +27,7 @@ PHRASES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({}, f"The axis nutates {_ENDS} {{period}} and {{moves}} on average{{path}}."),
     ],
     "stability": [({"stable": True}, "stable"), ({}, "unstable")],
-    "rotates": [({"spins": True}, "the top spins at {spin}{rate}"), ({}, "the top does not spin")],
+    "rotates": [({"spins": True}, "spins at {spin}{rate}"), ({}, "does not spin")],
     "moves": [({"precesses": True}, "precesses at {turns}{rate}"), ({}, "does not precess")],
     "period": [({}, "every {nutation}{time}")],
     "path": [

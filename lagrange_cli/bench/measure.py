@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, install
 from ..output.report import Field, Report, fields_of, short
 from ..plot.style import LIGHT, plain
 from ..solver.solve import Motion
@@ -124,7 +124,8 @@ def measure(
     except SlowError:
         return row._replace(remark=f"too slow: more than {limit:g} s")
     except ImportError as failure:
-        return row._replace(remark=f"not installed: pip install {failure.name}")
+        remedy = install("bench") if failure.name == "heyoka" else f"pip install {failure.name}"
+        return row._replace(remark=f"not installed: {remedy}")
     except (LagtopError, ArithmeticError, ValueError) as failure:
         return row._replace(remark=f"failed: {failure}")
     at_checked = found if method.has_fixed_steps else found[checked]

@@ -123,7 +123,7 @@ class Reference:
 def exact_motion(motion: Motion) -> Reference:
     """Return the reference of a motion; raise LagtopError if it cannot check the motion."""
     if motion.regime not in (Regime.REGULAR, Regime.NO_SPIN):
-        raise LagtopError(f"the scene must nutate, got {motion.regime.value}")
+        raise LagtopError(f"the top must nutate, but its regime is {motion.regime.value!r}")
     try:
         return Reference(motion.top)
     except ZeroDivisionError:

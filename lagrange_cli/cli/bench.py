@@ -18,7 +18,8 @@ def _parse_spans(text: str) -> list[float]:
     """Return increasing spans in nutation periods."""
     spans = opt.parse_numbers(text)
     if not all(0 < span <= MOST_PERIODS for span in spans) or spans != sorted(set(spans)):
-        raise LagtopError(f"must increase from above 0 to {MOST_PERIODS:g} periods, got {text}")
+        wanted = f"must be increasing numbers above 0, at most {MOST_PERIODS:g}"
+        raise LagtopError(f"{wanted}, got {text}")
     return spans
 
 

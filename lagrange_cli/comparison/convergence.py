@@ -74,7 +74,8 @@ def convergence(results: Sequence[HasErrors], limit: float) -> Convergence | Non
         i = int(np.argmax(rises))
         (fine, coarse), (after, before) = step[i : i + 2], error[i : i + 2]
         how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g} to {fine:g}"
-        why = "the order of the step sizes is wrong, the method varies, or the top is another one"
+        why = "the order of the step sizes is wrong, the method varies, "
+        why += "or the trajectory is of a different top"
         return Convergence(errors, f"The error rises {how}: {why}.", converges=False)
     last = sorted((x.step or 0.0, y[-1]) for x, (_, y) in zip(results, curves, strict=True))
     ends = np.array(last)[:, 1]

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
-from ..errors import DataError, UnavailableError
+from ..errors import DataError, UnavailableError, install
 from ..file_bytes import LARGEST_FILE
 from .text_tables import NumericColumns, Table
 
@@ -81,7 +81,7 @@ def _parquet(content: bytes, name: str) -> Table:
     try:
         from pyarrow import BufferReader, parquet, types
     except ImportError:
-        raise UnavailableError(f"{name}: Parquet needs pyarrow: pip install pyarrow") from None
+        raise UnavailableError(f"{name}: Parquet needs pyarrow: {install('parquet')}") from None
     with _decoding(name, "Parquet"):
         file = parquet.ParquetFile(BufferReader(content))
         schema, is_number = file.schema_arrow, (types.is_floating, types.is_integer)

@@ -172,9 +172,9 @@ def _meaning(name: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]]
     if name in problem.stds:
         return "known, improved by the fit"
     if off := pairs.get(f"{name}{PERCENT}"):
-        word, sigmas = ("small", "large")[off[0] > 0], off[0] / (off[1] or math.inf)
-        sure = f"{sigmas:+.{int(abs(sigmas) < 10)}f} sigma"
-        return f"of a fast top: {abs(off[0]):.2g} % too {word}, {sure}"
+        side, sigmas = ("below", "above")[off[0] > 0], abs(off[0]) / (off[1] or math.inf)
+        sure = f"{sigmas:.{int(sigmas < 10)}f} sigma"
+        return f"fast-top formula: {abs(off[0]):.2g} % {side} the fit ({sure})"
     declared = shown_keys(Units(radians=True), requested=True)
     if name in declared and name not in _MEANINGS:
         return declared[name].meaning

@@ -81,8 +81,8 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     yield f"Verdict: {outcome.verdict}."
     if outcome.chi2_dof is not None:
         low, high = outcome.chi2_bounds
-        bounds = f"noise {low:.3f} to {high:.3f}; {outcome.dof} dof"
-        yield f"chi2/dof = {outcome.chi2_dof:.3f}, {bounds}."
+        bounds = f"({low:.3f} to {high:.3f} expected), {outcome.dof} degrees of freedom"
+        yield f"chi2/dof = {outcome.chi2_dof:.3f} {bounds}."
     scale, unit = outcome.units.radian, outcome.units.angle
     rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
     yield f"RMS residual ({unit}): {rest}."

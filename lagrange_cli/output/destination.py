@@ -1,4 +1,4 @@
-"""Destination of output: a file that is replaced once all is written, or standard output.
+"""Destination of output: standard output, or a file that is replaced only when it is complete.
 
 `Output` is a destination with a format; it writes documents and rows.
 """

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..errors import LagtopError, UnavailableError
+from ..errors import LagtopError, UnavailableError, install
 from ..output.formats import listed
 from ..output.terminal import one_line
 
@@ -77,7 +77,7 @@ def require_matplotlib() -> None:
         import matplotlib  # noqa: F401
     except (ImportError, ValueError, MemoryError) as error:  # such as a wrong MPLBACKEND
         if isinstance(error, ModuleNotFoundError) and error.name == "matplotlib":
-            raise UnavailableError("pictures need matplotlib: pip install matplotlib") from None
+            raise UnavailableError(f"pictures need matplotlib: {install('plot')}") from None
         why = str(error) or "out of memory"
         raise UnavailableError(f"cannot import matplotlib: {why}") from None
 

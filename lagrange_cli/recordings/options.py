@@ -47,7 +47,7 @@ class Alignment(NamedTuple):
         found: dict[str, Any] = {}
         for word in filter(None, words.split(",")) if isinstance(words, str) else words:
             if not re.fullmatch("(axis|up)=-?[xyz]|left|conjugate|start|time", str(word).strip()):
-                wanted = f"align must be among {', '.join(WORDS)}"
+                wanted = f"align must be one of {', '.join(WORDS)}"
                 raise LagtopError(f"{wanted}, got {quoted(word)}", "align")
             key, _, axis = str(word).strip().partition("=")
             found[key] = axis or True

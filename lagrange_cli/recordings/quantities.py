@@ -197,12 +197,12 @@ def found_in(names: Sequence[str], *, needs_time: bool = True) -> dict[str, Foun
     """
     found = quantities_in(names)
     if (needs_time and "t" not in found) or len({*found} - {"t"}) < 1:
-        wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
+        wanted = f"the time ({QUANTITIES['t'].shown}) and one of {', '.join([*QUANTITIES][1:])}"
         shown = shortened(", ".join(map(repr, names)), 120) or "none"
         remedy = f"name them, {NAMING}"
         if found and "t" not in found:
             remedy = f"the time is missing, give {arg('dt')} or {arg('fps')} for even rows"
-        raise LagtopError(f"columns must be among {wanted}, got {shown}: {remedy}")
+        raise LagtopError(f"columns must name {wanted}, got {shown}: {remedy}")
     plain = [word for word, _ in _plain_names(names)]
     for key, quantity in found.items():
         angle = {x[0] for x, _ in QUANTITIES[key].spellings} if key in ANGLES else set()
@@ -260,7 +260,7 @@ def expanded(names: Sequence[str]) -> list[str]:
     found = quantities_in(single)
     used = {single[i] for x in found.values() for i in x.columns}
     if unknown := [name for name in single if name not in {*used, SKIPPED}]:
-        wanted = f"columns must be among {', '.join(QUANTITIES)}, all parts of one of them (such as"
+        wanted = f"columns must be one of {', '.join(QUANTITIES)}, all parts of one (such as"
         got = f"{quoted(unknown[0])}{suggestion(unknown[0], QUANTITIES)}"
         raise LagtopError(f"{wanted} qw,qx,qy,qz) or {SKIPPED}, got {got}", "columns")
     for key, x in found.items():

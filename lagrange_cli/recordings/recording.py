@@ -113,7 +113,9 @@ class Recording(NamedTuple):
         kept = np.flatnonzero(~((self.t < first) | (self.t > last)))
         if not kept.size:
             span = f"t goes from {self.t.min():g} to {self.t.max():g}"
-            raise LagtopError(f"no row has a time from {first:g} to {last:g}: {span}", "t_min")
+            raise LagtopError(
+                f"no row is between {arg('t_min')} and {arg('t_max')}: {span}", "t_min"
+            )
         if kept.size == len(self.t):
             return self
         given = rows_of(self.given, kept)

@@ -132,8 +132,8 @@ def search_of(
         goals = [x for x in found if x.key in WORDS][:1]
     if len(goals) != len(spans):
         raise LagtopError(
-            f"find needs as many conditions KEY=NUMBER as unknown inputs, got {len(goals)} for "
-            f"{len(spans)}: {', '.join(spans)}"
+            "find needs one condition KEY=NUMBER for each unknown input, got "
+            f"{len(goals)} for {', '.join(spans)}"
         )
     known = {name: x for name, x in given.values.items() if name not in spans}
     fixed = shared_inputs(given._replace(values=known), varying=spans)

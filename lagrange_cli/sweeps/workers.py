@@ -17,12 +17,12 @@ from threading import Thread, local
 from typing import Any, TypeVar
 
 from .. import __version__
-from ..errors import LagtopError, UnavailableError
+from ..errors import LagtopError, UnavailableError, install
 from ..output.terminal import waiting
 
 _AHEAD = 4
 """Items for each process that are handed out before the next result is taken."""
-_PATIENCE = 20.0
+_PATIENCE = 21.0
 """Seconds to wait for an answer of a cluster."""
 _SIGNALS_TAKE = 0.2
 """Seconds by which a signal may reach another process before it reaches this one."""
@@ -156,7 +156,7 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
         import dask
         import distributed
     except ImportError:
-        why = "dask needs distributed: pip install distributed"
+        why = f"dask needs distributed: {install('cluster')}"
         raise UnavailableError(why, "dask") from None
     for name in ("distributed", "distributed.client", "asyncio", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # lagtop reports errors in one line

@@ -114,8 +114,8 @@ def _split_uncertainty(text: str) -> tuple[str, Fraction | None]:
     if found is None:
         forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
         hint = " (write a decimal point, not a comma)" if "," in text else ""
-        wrong = f"must be a number, or an uncertain one as {forms}, got {quoted(text)}{hint}"
-        raise LagtopError(wrong)
+        wanted = f"must be a number, or an uncertain number such as {forms}"
+        raise LagtopError(f"{wanted}, got {quoted(text)}{hint}")
     parts = {"exponent": "", **found.groupdict(default="")}
     number, last = parts["number"], parts.get("last")
     if last is not None:  # in units of the last digit

@@ -55,12 +55,12 @@ def test_spans_use_the_tightest_setting() -> None:
 @pytest.mark.parametrize(
     ("args", "said"),
     [
-        (["bench", "sleeping-top"], "must nutate, got sleeping"),
-        (["bench", "--methods", "euler"], "--methods must be among lagtop"),
-        (["bench", "--spans", "0,1"], "--spans must increase from above 0"),
-        (["bench", "--spans", "1,0"], "--spans must increase from above 0"),
+        (["bench", "sleeping-top"], "the top must nutate, but its regime is 'sleeping'"),
+        (["bench", "--methods", "euler"], "--methods must be one of lagtop"),
+        (["bench", "--spans", "0,1"], "--spans must be increasing numbers above 0"),
+        (["bench", "--spans", "1,0"], "--spans must be increasing numbers above 0"),
         (["bench", "nothing"], "nothing"),
-        (["stability", "--kinds", "hard"], "--kinds must be among fast-spin"),
+        (["stability", "--kinds", "hard"], "--kinds must be one of fast-spin"),
         (["stability", "--samples", "0"], "--samples must be in [1, 1000]"),
     ],
 )

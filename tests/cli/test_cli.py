@@ -269,7 +269,7 @@ BAD_TIMES = {
     "--t-max 1e300": "--t-max must be finite and within 2^50 periods = 4.83e+14, got 1e+300",
     "--t-min -1e30": "--t-min must be finite and within 2^50 periods = 4.83e+14, got -1e+30",
     "--format table --n 20000": "--format must be csv or json for more than 10000 rows",
-    "--columns t,x": "Error: --columns must be among 39 names, got 'x' (did you mean 'axis_x'",
+    "--columns t,x": "Error: --columns must be one of 39 names, got 'x' (did you mean 'axis_x'",
     "--digits 5 --format parquet": "--format parquet holds doubles: leave out --digits and",
     "--decimal x": "'x' is not one of 'point', 'comma'",
 }
@@ -281,7 +281,7 @@ OTHERS = {
     "solve --get period": "(did you mean 'T_nutation', 'T_spin' or 'T_precession'?)",
     "solve --get precession": f"(did you mean {_RATES}?)",
     "solve --get theta_max": "(did you mean 'theta_max_deg'?)",
-    "sweep --keys x": f"--keys must be among {len(all_keys()) + 1} names, got 'x': regime, a",
+    "sweep --keys x": f"--keys must be one of {len(all_keys()) + 1} names, got 'x': regime, a",
     "solve --digits 9 --format parquet": "--format parquet holds doubles: leave out --digits and",
     "compare x.csv --plot x.bmp": "the name of a picture must end in .png, .svg or .pdf",
 }
@@ -324,7 +324,7 @@ def test_a_body_that_cannot_be_built_is_computed(line: str, bound: str, lagtop: 
 def test_one_window_of_a_fit_is_a_record_in_json(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    outcome: Any = SimpleNamespace(record=lambda: {"a": 1.5}, notes=[])
+    outcome: Any = SimpleNamespace(record=lambda: {"a": 1.5}, remarks=[])
     empty = Report({}, [], [], [])
     monkeypatch.setattr("lagrange_cli.inverse.report.fit_report", lambda *_, **__: empty)
     write_fits([outcome], "", "", Output(str(path := tmp_path / "fit"), "json"))

@@ -68,16 +68,18 @@ def test_a_crash_asks_for_a_report(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("package", "line"),
+    ("package", "extra", "line"),
     [
-        ("matplotlib", "plot cubic -o -"),
-        ("matplotlib", "bench --n 3 --methods lagtop --plot a.svg"),
-        ("pyarrow", "sweep --r0 1,2 -o a.parquet"),
-        ("pyarrow", "compare a.parquet"),
-        ("distributed", "sweep --r0 1,2 --dask tcp://127.0.0.1:9"),
+        ("matplotlib", "plot", "plot cubic -o -"),
+        ("matplotlib", "plot", "bench --n 3 --methods lagtop --plot a.svg"),
+        ("pyarrow", "parquet", "sweep --r0 1,2 -o a.parquet"),
+        ("pyarrow", "parquet", "compare a.parquet"),
+        ("distributed", "cluster", "sweep --r0 1,2 --dask tcp://127.0.0.1:9"),
     ],
 )
-def test_a_package_that_is_not_installed(package: str, line: str, tmp_path: Path) -> None:
+def test_a_package_that_is_not_installed(
+    package: str, extra: str, line: str, tmp_path: Path
+) -> None:
     (tmp_path / "a.parquet").write_bytes(b"PAR1")
     start = "from lagrange_cli.__main__ import main; main()"
     code = f"import sys; sys.modules[{package!r}] = None; {start}"
@@ -85,7 +87,7 @@ def test_a_package_that_is_not_installed(package: str, line: str, tmp_path: Path
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
     assert (done.returncode, done.stdout) == (69, "")
     assert done.stderr.count("\n") == 1
-    assert done.stderr.endswith(f": pip install {package}\n")
+    assert done.stderr.endswith(f": pip install '.[{extra}]' in the folder of lagtop\n")
 
 
 @pytest.mark.parametrize("count", [1, pytest.param(None, marks=pytest.mark.slow)])

@@ -116,7 +116,7 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--m", "1(2"], "--m must be a number, or an uncertain one as 1587(2)"),
+        (["--m", "1(2"], "--m must be a number, or an uncertain number such as 1587(2)"),
         (["--m", "9(2)", "--digits", "30"], "use --digits or uncertain inputs, not both"),
         (["--m", "9(2)", "--derivation"], "use --derivation or uncertain inputs, not both"),
         (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
@@ -131,7 +131,7 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
         ),
         (
             ["--r0", "50(1)", "--budget", "period"],
-            f"--budget must be among {len(NUMBERS)} names, got 'period' (",
+            f"--budget must be one of {len(NUMBERS)} names, got 'period' (",
         ),
     ],
 )

@@ -308,7 +308,7 @@ def test_starts_on_the_vertical() -> None:
         ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
         ({"euler": PHI, "euler_sequence": "xxy"}, "euler_sequence must be "),
         ({"rates": RATES, "rates_frame": "world"}, "rates_frame must be "),
-        ({"quaternion": Q, "align": ["up=w"]}, "align must be among axis=y"),
+        ({"quaternion": Q, "align": ["up=w"]}, "align must be one of axis=y"),
         ({"theta": THETA, "align": ["left"]}, "align left need the axis or the whole attitude"),
         ({"axis": Q[:, 1:], "align": "axis=y"}, "conjugate the attitude: omit them"),
         ({"rates": RATES, "align": ["up=y", "start"]}, "align up and align left need the axis"),

@@ -17,7 +17,7 @@ JACOBI = [
     ("--nome 1", "--nome must be below 1 in size, got 1.0"),
     ("--k 0.5 --u 1 --functions pi", "the functions omega and pi need --param: 0.7, 0.7i or"),
     ("--k 0.5 --u 1 --param 2", "--param needs --functions omega or pi"),
-    ("--k 0.5 --u 1 --functions sn,ss", "--functions must be among am, sn, cn"),
+    ("--k 0.5 --u 1 --functions sn,ss", "--functions must be one of am, sn, cn"),
     ("--k 1 --u 1 --functions theta", "k must be below 1 for theta functions"),
     # complex numbers, and moduli of any kind
     ("--k 1+2i --n 0.3", "--n needs a real k^2: Pi is not computed for a complex one"),
@@ -37,7 +37,7 @@ JACOBI = [
     ("--k 1.5 --functions pi --param 1", "--functions needs --u or --phi"),
     # F and E
     ("--k 0.8 --phi 1 --u 3", "use --phi or --u, not both"),
-    ("--k 0.8 --phi 1 --functions sn", "--functions must be among F, E, Pi, zeta, got 'sn'"),
+    ("--k 0.8 --phi 1 --functions sn", "--functions must be one of F, E, Pi, zeta, got 'sn'"),
     ("--k 0.8 --phi 1 --functions Pi", "--n and --functions Pi belong together"),
     ("--k 0.8 --phi 1e30", "--phi must be within 2^50 periods = 2.03e+17 of 0, got 1e+30"),
     ("--k 0.8 --phi K", "--phi must be an angle, without K"),

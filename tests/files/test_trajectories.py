@@ -135,7 +135,7 @@ def twice() -> bytes:
         (b"t,theta\n0,1\n-1,2\n-1,3\n0,3\n", "line 5: t must not turn back, got 0 after -1:"),
         (b"t,qw,qx,qy,qz,p,q,r\n0,,,,,1,2,3\n", "quaternion is empty (qw, qx, qy, qz): remove"),
         (b"0 1\n", "has no header: name its 2 columns, for example columns=t,quaternion ('t ["),
-        (b"a,b\n0,1\n", "columns must be among the time (t, time, timestamp) and"),
+        (b"a,b\n0,1\n", "columns must name the time (t, time, timestamp) and"),
         (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column 2: theta must be a finite"),
         (
             b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n',

@@ -36,7 +36,7 @@ KINDS = (*ORDINARY, "near a pole", "near steady")
 HARD = ("near separatrix", "tiny tilt", "tiny tilt with rates", "next to a cusp")
 PERIODS = 0.1, 0.5, 1.3, 4.6, 9.95, 19.7
 LIMIT = 1e-7
-"""Greatest error of the attitude (rad), unless the page calls itself a sketch."""
+"""Greatest error of the attitude (rad), unless the page marks itself as a sketch."""
 
 
 def random_motions(kinds: Sequence[str], count: int, seed: int) -> list[Motion]:
@@ -282,7 +282,7 @@ def test_a_session_in_the_browser(browser: Browser) -> None:
     assert browser.ask("return [at('field-r0').value, at('time').value]") == ["60", "1000"]
     assert browser.ask("return at('now').textContent") == shown
     browser.ask("set('scenes', 'sleeping-top')")
-    assert "upright, which is stable" in browser.ask("return at('words').textContent")
+    assert "upright, and this is stable" in browser.ask("return at('words').textContent")
     assert "kg" not in browser.ask("return at('inputs').textContent + at('record').textContent")
     browser.ask("set('field-r0', '56'); set('field-theta0_deg', '1e-4'); set('field-psidot0', '1')")
     assert browser.ask("return at('sketch').hidden") is False

@@ -416,7 +416,7 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
     assert len(other.axes) == 2  # with its colour bar
     with pytest.raises(LagtopError, match="ax must be 3 axes, got 1"):
         draw(solve(Top()), "angles", figure.subplots())
-    with pytest.raises(LagtopError, match="kind must be among sphere"):
+    with pytest.raises(LagtopError, match="kind must be one of sphere"):
         draw(solve(Top()), "spheer")
     with pytest.raises(LagtopError, match="need the kind map"):
         draw(solve(Top()), "phase", key="a")
@@ -450,7 +450,7 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
         (["map", "-o", "x.png", "--x", "r0"], "--x must be INPUT=[log:]start:stop:count, got 'r0'"),
         (["map", "-o", "x.png", "--x", "m=1:2:3 kg", "--r0", "50"], "--r0 must have a unit"),
         (["map", "-o", "x.png", "--x", "m=1:2:3 s"], "--x must have a unit such as kg or g"),
-        (["map", "-o", "x.png", "--x", "q0=1:2:3"], "--x must be among"),
+        (["map", "-o", "x.png", "--x", "q0=1:2:3"], "--x must be one of"),
         (["map", "-o", "x.png", "--x", "theta0=1:9:3"], "two inputs"),
         (["map", "-o", "x.png", "--g", "0", "--key", "u3"], "undefined"),
         (["sphere", "-o", "x.png", "--camera", "1,2,3"], "--camera must be"),

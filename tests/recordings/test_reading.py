@@ -246,7 +246,7 @@ def test_both_functions_take_the_same_options() -> None:
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"dt": -1}, "dt must be > 0, got -1"),
         ({"dt": 1, "fps": 2}, "fps is 1/dt: give one of them"),
-        ({"t_min": 9}, "no row has a time from 9 to inf: t goes from 0 to 2"),
+        ({"t_min": 9}, "no row is between t_min and t_max: t goes from 0 to 2"),
         ({"t_min": 2, "t_max": 1}, "t_min must be < t_max, got 2 and 1"),
         ({}, "t must be given, or dt or fps"),
     ]

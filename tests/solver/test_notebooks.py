@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from scenes import EVERY_KIND
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.errors import UnavailableError
+from lagrange_cli.errors import UnavailableError, install
 from lagrange_cli.output.document import shown_text
 
 SEPARATRIX = EVERY_KIND["separatrix in a plane"]
@@ -66,7 +66,7 @@ def test_without_matplotlib_a_plot_names_the_remedy(monkeypatch: pytest.MonkeyPa
     for plot in (MOTION.plot, comparison.plot):
         with pytest.raises(UnavailableError) as refused:
             plot()
-        assert str(refused.value) == "pictures need matplotlib: pip install matplotlib"
+        assert str(refused.value) == "pictures need matplotlib: " + install("plot")
 
 
 def test_a_misspelt_key_gets_a_suggestion() -> None:

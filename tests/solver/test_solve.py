@@ -25,11 +25,11 @@ SENTENCES = {
     "7.991 rad per time unit on average; its path has cusps.",
     "--rad --theta0 1": "The axis nutates between 1.000 and 1.663 rad every 0.2963 time units and "
     "precesses at 6.925 rad per time unit on average; its path has cusps.",
-    "--theta0 0": "The axis stays upright, which is unstable, and the top spins at 50.00 rad per "
+    "--theta0 0": "The axis stays upright, and this is unstable. The top spins at 50.00 rad per "
     "time unit.",
-    "--theta0 0 --r0 80": "The axis stays upright, which is stable, and the top spins at 80.00 rad "
+    "--theta0 0 --r0 80": "The axis stays upright, and this is stable. The top spins at 80.00 rad "
     "per time unit.",
-    "--theta0 180 --r0 0": "The axis hangs straight down and the top does not spin.",
+    "--theta0 180 --r0 0": "The axis hangs straight down. The top does not spin.",
     "--r0 0": "The axis swings between 30.00 and 180.0 deg in a vertical plane every 0.4383 time "
     "units.",
     "--r0 0 --thetadot0 50": "The axis turns over in a vertical plane every 0.1195 time units.",

@@ -224,7 +224,7 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         ),
         (["T_nutation=0.4"], {"r0": "1:2", "scan": 2}, "scan must be 3 or more values"),
         (["T_nutation=0.4"], {"r0": "1:2", "scan": 20_000_000}, "at most 1e7 tops"),
-        ([], {"r0": "1:2"}, "find needs as many conditions KEY=NUMBER as unknown inputs, got 0"),
+        ([], {"r0": "1:2"}, "find needs one condition KEY=NUMBER for each unknown input, got 0"),
         (["T_nutation~3"], {"r0": "1:2"}, "a condition must be KEY=VALUE"),
         (["T_nutation=1", "T_nutation=2"], {"r0": "1:2", "m": "1:2"}, "each key once"),
         (["T_nutation=0.4", "path=straight"], {"r0": "1:2"}, "path= must be one of cusped"),

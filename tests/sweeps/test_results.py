@@ -73,7 +73,7 @@ UNREAL += [["50"], [True], [[1], [2, 3]]]
         ({"r0": ufloat(50, 2)}, "r0 is uncertain: a sweep does not propagate uncertainties"),
         *(({"r0": x}, "r0 must be real numbers, got") for x in UNREAL),
         ({"r0": np.ma.array([1.0, 2.0], mask=[False, True])}, "r0 must not be masked"),
-        *(({"keys": x}, "keys must be among") for x in (["x"], [["K"]], np.array([["K", "E"]]))),
+        *(({"keys": x}, "keys must be one of") for x in (["x"], [["K"]], np.array([["K", "E"]]))),
         ({"r0": xarray.DataArray(SPINS, dims="run")}, r"r0 has named dimensions: pass r0.to_numpy"),
     ],
 )

@@ -244,7 +244,7 @@ def main() -> int:
     options = parser.parse_args()
     kinds = [kind.strip() for kind in options.kinds.split(",")] if options.kinds else list(KINDS)
     if unknown := set(kinds) - set(KINDS):
-        parser.error(f"kinds must be among {', '.join(KINDS)}, got {min(unknown)!r}")
+        parser.error(f"kinds must be one of {', '.join(KINDS)}, got {min(unknown)!r}")
     tallies, begun = {kind: Tally() for kind in kinds}, time.monotonic()
     share = -(-options.scenes // len(kinds))
     tasks = [

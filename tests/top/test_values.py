@@ -80,7 +80,10 @@ def test_uncertain_numbers_are_exact(text: str, number: str, std: str) -> None:
 @pytest.mark.parametrize(
     ("text", "wrong"),
     [
-        *((x, "must be a number, or an uncertain one as 1587(2)") for x in ("1(2", "1+/-", "5%")),
+        *(
+            (x, "must be a number, or an uncertain number such as 1587(2)")
+            for x in ("1(2", "1+/-", "5%")
+        ),
         ("1+/--2", "must have an uncertainty >= 0"),
         ("3,5 g", "got '3,5 g' (write a decimal point, not a comma)"),
         ("steady", "must be a number unless one top is solved"),

@@ -10,7 +10,7 @@ from types import NoneType
 from typing import Any, BinaryIO
 
 from ...arithmetic.text import NumberText
-from ...errors import LagtopError, UnavailableError, arg
+from ...errors import LagtopError, UnavailableError, arg, install
 from ..document import Document
 from ..text import json_text
 from .base import Columns, Format
@@ -59,7 +59,8 @@ class Parquet(Format):
         if width is not None:
             raise LagtopError("format parquet is not for a terminal: use -o FILE.parquet", "format")
         if find_spec("pyarrow") is None:
-            raise UnavailableError("format parquet needs pyarrow: pip install pyarrow", "format")
+            why = f"format parquet needs pyarrow: {install('parquet')}"
+            raise UnavailableError(why, "format")
         import pyarrow as pa
         from pyarrow import parquet
 

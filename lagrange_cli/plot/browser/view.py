@@ -33,9 +33,8 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> WebPage:
     """Return the interactive page for the browser: the top in space, its curves and its numbers.
 
     `unit` names mass, len and time in the units of the inputs.  The page computes in doubles, to
-    1e-7 rad over 20 nutations.  It calls itself a sketch, with the reason, if doubles do not decide
-    its words or lose its numbers.  Raises LagtopError for inputs
-    outside 1e-30 to 1e30.
+    1e-7 rad over 20 nutations.  It marks itself as a sketch, with the reason, if doubles do not
+    decide its words or lose its numbers.  Raises LagtopError for inputs outside 1e-30 to 1e30.
 
     >>> view(solve(Top()))[:15]
     '<!DOCTYPE html>'
