@@ -45,12 +45,6 @@ def constant_keys(group: str, table: str) -> dict[str, Key]:
     return keys
 
 
-def _parse_parameter(text: str) -> tuple[ExactComplex, bool]:
-    """Return a complex number, and whether it is imaginary."""
-    value = parse_sum(text)
-    return value, not any(value[::2]) and not {*"iIj"}.isdisjoint(text)
-
-
 ARGUMENTS = opt.Parsed("X", parse_arguments)
 MODULUS = opt.Parsed("X", parse_small)
 RANGE = opt.Parsed("X", parse_values)
@@ -88,7 +82,7 @@ def write_functions(rows: Rows, count: int, out: Output) -> None:
 )
 @opt.option(
     "--param",
-    type=opt.Parsed("V", _parse_parameter),
+    type=opt.Parsed("V", parse_sum),
     help="Parameter v of omega and pi, such as 0.2+0.7i.",
 )
 @opt.option("--phi", type=ARGUMENTS, help="Amplitudes of F, E and zeta: 30,90,-210 or 30+20i.")
@@ -99,7 +93,7 @@ def write_functions(rows: Rows, count: int, out: Output) -> None:
 def jacobi_command(
     u: Arguments | None,
     functions: list[str] | None,
-    param: tuple[ExactComplex, bool] | None,
+    param: ExactComplex | None,
     phi: Arguments | None,
     n: Fraction | None,
     rad: bool,
@@ -159,9 +153,8 @@ def jacobi_command(
         write_functions(rows, phi.real.count, out)
     elif u is not None:
         asked = _families(functions, given)
-        parameter, imaginary = _parameter(param, asked)
-        v = parameter.nearest() if digits is None else parameter
-        request = FunctionRequest(u, given, asked, v, imaginary, units)
+        v = _parameter(param, asked)
+        request = FunctionRequest(u, given, asked, v if digits else v.nearest(), units)
         write_functions(function_rows(request, digits), u.real.count, out)
     elif functions is not None:
         raise LagtopError("--functions needs --u or --phi")
@@ -180,17 +173,14 @@ def _families(functions: list[str] | None, given: GivenModulus) -> tuple[str, ..
     return tuple(name for name in FAMILIES if name in named)
 
 
-def _parameter(
-    param: tuple[ExactComplex, bool] | None, families: tuple[str, ...]
-) -> tuple[ExactComplex, bool]:
-    """Return the value of --param, 0 if it is not needed, and whether it is imaginary."""
-    if not {"omega", "pi"} & set(families):
-        if param is not None:
-            raise LagtopError("--param needs --functions omega or pi")
-        return ExactComplex(Fraction(0)), False
-    if param is None:
+def _parameter(param: ExactComplex | None, families: tuple[str, ...]) -> ExactComplex:
+    """Return the value of --param, 0 if it is not needed."""
+    is_needed = not {"omega", "pi"}.isdisjoint(families)
+    if param is not None and not is_needed:
+        raise LagtopError("--param needs --functions omega or pi")
+    if param is None and is_needed:
         raise LagtopError("the functions omega and pi need --param: 0.7, 0.7i or 0.2+0.7i")
-    return param
+    return param or ExactComplex(Fraction(0))
 
 
 def _parse_distance(text: str) -> ExactComplex:

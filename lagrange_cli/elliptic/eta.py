@@ -20,6 +20,7 @@ from flint import arb
 
 from ..arithmetic.enclosures import at_precision, exact
 from ..errors import LagtopError, arg
+from ..top.inputs import declared
 from ..top.ranges import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..top.units import DEGREES, Units
 from .arguments import Arguments, ExactComplex
@@ -227,24 +228,19 @@ def eta_record(quadrature: Quadrature, digits: int | None = None) -> dict[str, A
     """
     quadrature.check()
     lower, upper, outer, g, height = quadrature
-    part = "_imag" if height else ""
-    roots: dict[str, Cell] = dict.fromkeys(("p", "q", "q_imag", "outer_root"))
+    roots: dict[str, Cell] = {"delta": upper, "delta_star": lower, "g": g}
+    roots |= {"layout": quadrature.layout, "kind": quadrature.kind}
     if len(outer) > 1:
-        first, second = outer
-        roots |= {"p": (first + second) / 2, f"q{part}": height or abs(first - second) / 2}
+        roots |= {"p": (outer[0] + outer[1]) / 2, "q": height or abs(outer[0] - outer[1]) / 2}
     elif outer:
         roots["outer_root"] = outer[0]
 
     def compute(_: int) -> Cells:
         c = eta_constants(quadrature)
-        moduli = dict.fromkeys(("k", "k_imag", "k1", "k1_imag"))
-        return {
-            **{"delta": upper, "delta_star": lower, **roots},
-            **{"g": g, "layout": quadrature.layout, "kind": quadrature.kind},
-            **{"m_prime": c.m1, "m_double_prime": c.m2},
-            **{**moduli, f"k{part}": c.k, f"k1{part}": c.k1, "k1_prime": c.k1_prime},
-            **{"K1": c.period * c.sigma1 / 4, "sigma1": c.sigma1, "s": c.s, "d": c.d},
-            **{"gamma": c.gamma, "period": c.period, "tau3": -c.period / 4},
-        }
+        found = roots | c._asdict() | {"m_prime": c.m1, "m_double_prime": c.m2}
+        found |= {"K1": c.period * c.sigma1 / 4, "tau3": -c.period / 4}
+        if height:
+            found |= {f"{key}_imag": found.pop(key) for key in ("q", "k", "k1")}
+        return {key: found.get(key) for key, *cells in declared(CONSTANTS) if cells}
 
     return numbers(compute, quadrature.inputs, digits)

@@ -52,8 +52,6 @@ class FunctionRequest(NamedTuple):
     """Some of FAMILIES."""
     parameter: ExactComplex = ExactComplex(Fraction(0))
     """The parameter of omega and pi."""
-    imaginary: bool = False
-    """Whether the parameter of real functions is imaginary (0i counts as imaginary)."""
     units: Units = DEGREES
 
     @property
@@ -64,9 +62,14 @@ class FunctionRequest(NamedTuple):
         return all(x is None for x in (*u[1::2], *complex_units.get(kind, ())))
 
     @property
+    def has_imaginary_part(self) -> bool:
+        """Whether the parameter is not real."""
+        return any(self.parameter[1::2])
+
+    @property
     def is_real(self) -> bool:
         """Whether each number has one column; the names of imaginary numbers end in `_imag`."""
-        is_mixed = any(self.parameter[::2]) and any(self.parameter[1::2])
+        is_mixed = any(self.parameter[::2]) and self.has_imaginary_part
         return self.modulus.kind is Kind.UNIT and self.has_real_u and not is_mixed
 
     def check(self, *, doubles: bool) -> None:
@@ -198,7 +201,7 @@ def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Values:
 
 def _third(request: FunctionRequest, values: Mapping[str, tuple[acb | None, acb | None]]) -> Values:
     """Return Omega and Pi, or their imaginary parts."""
-    found, part = Values(), "_imag" if request.imaginary and request.is_real else ""
+    found, part = Values(), "_imag" if request.has_imaginary_part and request.is_real else ""
     for i, family in enumerate(("omega", "pi")):
         for ij in THIRD if family in request.families else ():
             z = values[ij][i]

@@ -266,9 +266,7 @@ def constants_record(
         if given.name == "m":
             real, imag = given.value[:2]
             return ({"m_re": real, "m_im": imag} if imag else {"m": real}) | row
-        key = f"modular_angle_{units.angle}" if given.name == "modular_angle" else given.name
-        exact_value = given.value.real if key == "nome" else abs(given.value.real)
-        return row | ({key: exact_value} if key in row else {})
+        return row
 
     return numbers(compute, [*given.value, n or Fraction(0)], digits)
 

@@ -6,6 +6,7 @@ quadratures.  With the slow tests, more than 5,000 values are compared.
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable
 from decimal import Decimal
@@ -196,14 +197,15 @@ def test_omega_and_pi_at_sums(k: str, lagtop: Lagtop) -> None:
 
 
 def test_omega_on_a_line_of_zeros(lagtop: Lagtop) -> None:
-    """If u - v is on the line Im z = K', omega01 is the mean of the two sides."""
+    """Omega01 jumps by i pi where Im(u - v) passes K', and is the mean of both sides there."""
     found = []
-    for height in ("0.999999999iK'", "iK'", "1.000000001iK'"):
+    for height in (f"0.{'9' * 9}iK'", f"0.{'9' * 45}iK'", "iK'", f"1.{'0' * 44}1iK'"):
         args = ("--k=0.8", f"--u=-0.3K+0.2i+{height}", "--functions=omega", "--param=0.1+0.2i")
         cells = rows(lagtop, *args)
         found.append(complex(*(float(cells[f"omega01_{part}"][0]) for part in ("re", "im"))))
-    assert found[1] == pytest.approx((found[0] + found[2]) / 2, abs=1e-7)
-    assert abs(found[0] - found[2]) > 1
+    assert found[0] == pytest.approx(found[1], abs=1e-7)
+    assert found[2] == pytest.approx((found[1] + found[3]) / 2, abs=1e-12)
+    assert found[1] == pytest.approx(found[3] - 1j * math.pi, abs=1e-12)
 
 
 @MANY
@@ -236,18 +238,19 @@ def test_inverse_functions(kind: str, count: int, lagtop: Lagtop) -> None:
 
 
 @MANY
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "m"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_integrals_and_constants(kind: str, count: int, lagtop: Lagtop) -> None:
-    """F, E and zeta of an amplitude; K, K', E, E' and the nome."""
+    """F, E and zeta of an amplitude, below 1 in m; K, K', E, E' and the nome."""
     rng = random.Random(f"F {kind} {count}")
     for _ in range(count):
         option, text, reference = modulus(rng, kind)
         m, phi = reference.m, decimal(rng, 400)
-        radians = ar.mpf(phi) * ar.pi / 180
-        F, E = ar.ellipf(radians, m), ar.ellipe(radians, m)
-        exact = {"F": F, "E": E, "zeta": E - F * ar.ellipe(m) / ar.ellipk(m)}
-        args = (f"{option}={text}", f"--phi={phi}", "--functions", "F,E,zeta")
-        assert check(rows(lagtop, *args), exact, (text, phi)) >= 3
+        if not reference.is_large:
+            radians = ar.mpf(phi) * ar.pi / 180
+            F, E = ar.ellipf(radians, m), ar.ellipe(radians, m)
+            exact = {"F": F, "E": E, "zeta": E - F * ar.ellipe(m) / ar.ellipk(m)}
+            args = (f"{option}={text}", f"--phi={phi}", "--functions", "F,E,zeta")
+            assert check(rows(lagtop, *args), exact, (text, phi)) >= 3
         if abs(ar.ellipk(m) / reference.K - 1) > 1e-20:  # the nome has another K
             assert "|2 tau" in lagtop("jacobi", f"{option}={text}").stderr
             continue
