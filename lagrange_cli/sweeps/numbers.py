@@ -9,7 +9,6 @@ in pairs of doubles computes the others.  Equation numbers are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import count
 from operator import itemgetter
 from typing import Any, NamedTuple
 
@@ -389,9 +388,9 @@ def mean_parts(gaps: Gaps, k_prime: Bounded, x: Bounded, y: Bounded) -> list[Bou
     return found
 
 
-def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any], int]:
+def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any], Any]:
     """Return the means over a period of (x cn^2 + y sn^2)/(d1 cn^2 + d2 sn^2) for each (d1, d2) of
-    `ends`, and the number of steps.
+    `ends`, and the number of steps of each top, on which its neighbours have no influence.
 
     It is Bulirsch's cel(k', p, x, y)/K (DLMF 19.2.11), p = k'^2 d2/d1, over d1.  Each step is
     Bartky's transformation (Bulirsch 1969), which keeps it and squares the distance of m from g.
@@ -401,16 +400,20 @@ def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any]
     for d1, d2 in ends:
         p = root_of(mc * d2 / d1)
         states.append((x / d1, y * mc / d1 / p, p))
-    for steps in count(1):  # noqa: B007
+    values, going, steps = [v for v, _, _ in states], np.ones(high(k_prime).shape, dtype=np.bool_), 0
+    while going.any():
         product = m * g
         for i, (v, w, p) in enumerate(states):
             q = product / p
             states[i] = (v + w / p) * 0.5, (w + v * q) * 0.5, (p + q) * 0.5
-        is_last = not np.any(size_of(m - g) > close_to * high(m))
-        m, g = (m + g) * 0.5, root_of(product)
-        if is_last:
-            break
-    return [(v * m + w) / (m + p) for v, w, p in states], steps
+        still = going & (size_of(m - g) > close_to * high(m))
+        m, g, steps = (m + g) * 0.5, root_of(product), steps + going
+        if (still != going).any():
+            pick = DoubleDouble.choose if isinstance(m, DoubleDouble) else np.where
+            last = [(v * m + w) / (m + p) for v, w, p in states]
+            values = [pick(going, new, old) for new, old in zip(last, values, strict=True)]
+        going = still
+    return values, steps
 
 
 def high(x: Any) -> Any:
@@ -429,11 +432,13 @@ def largest_root(c2: Bounded, c1: Bounded, c0: Bounded, start: Array) -> Bounded
     If f' changes by at most 1 % within 2 |f/f'|, the root is within 1.01 |f/f'|.
     """
     x, b2, b1, b0 = start, c2.doubles, c1.doubles, c0.doubles
+    going = np.ones(x.shape, dtype=np.bool_)  # until the step of a top itself is small
     for _ in range(_NEWTON_STEPS):
         slope = (3 * x + 2 * b2) * x + b1
         step = (((x + b2) * x + b1) * x + b0) / slope
-        x = np.where(slope > 0, x - step, x)
-        if not (abs(step) > 1e-9 * x).any():
+        x = np.where(going & (slope > 0), x - step, x)
+        going &= abs(step) > 1e-9 * x
+        if not going.any():
             break
     pairs = isinstance(c2.value, DoubleDouble)
     root: Any = DoubleDouble(x) if pairs else x

@@ -176,6 +176,21 @@ def test_starts_next_to_the_pole(monkeypatch: pytest.MonkeyPatch) -> None:
     assert_trusted([{name: float(x[i]) for name, x in given.items()} for i in range(25)], 25)
 
 
+def test_neighbours_in_a_block_change_no_bit() -> None:
+    """Some tops need more steps of the iterations than others."""
+    rng = random.Random("neighbours")
+    scenes = [in_doubles(KINDS[kind](rng)) for kind in KINDS for _ in range(3)]
+    scenes += [in_doubles(KINDS[kind](rng)) | {"thetadot0": 0, "psidot0": 0} for kind in KINDS]
+    scenes = [{"thetadot0": 0, "psidot0": 0} | x for x in scenes if "theta0_deg" in x]
+    keys = [*TEXT_KEYS, *KEYS, "error"]
+    columns: Scene = {name: [scene[name] for scene in scenes] for name in scenes[0]}
+    block = sweep(**columns, keys=keys, radii=True)
+    for i, scene in enumerate(scenes):
+        alone = sweep(**scene, keys=keys, radii=True)
+        for key, column in block.items():
+            np.testing.assert_array_equal(column[i], alone[key], err_msg=f"{key} of {scene}")
+
+
 def test_no_ordinary_top_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(records, "solve", None)
     rng = np.random.default_rng(2)
