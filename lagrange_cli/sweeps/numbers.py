@@ -400,14 +400,16 @@ def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any]
     for d1, d2 in ends:
         p = root_of(mc * d2 / d1)
         states.append((x / d1, y * mc / d1 / p, p))
-    values, going, steps = [v for v, _, _ in states], np.ones(high(k_prime).shape, dtype=np.bool_), 0
+    values, going = [v for v, _, _ in states], np.ones(high(k_prime).shape, dtype=np.bool_)
+    steps = np.zeros(going.shape)
     while going.any():
         product = m * g
         for i, (v, w, p) in enumerate(states):
             q = product / p
             states[i] = (v + w / p) * 0.5, (w + v * q) * 0.5, (p + q) * 0.5
         still = going & (size_of(m - g) > close_to * high(m))
-        m, g, steps = (m + g) * 0.5, root_of(product), steps + going
+        m, g = (m + g) * 0.5, root_of(product)
+        steps += going
         if (still != going).any():
             pick = DoubleDouble.choose if isinstance(m, DoubleDouble) else np.where
             last = [(v * m + w) / (m + p) for v, w, p in states]
