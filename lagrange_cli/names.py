@@ -70,6 +70,12 @@ def repeated(names: Iterable[str]) -> str | None:
     return next((name for name, count in Counter(names).items() if count > 1), None)
 
 
+def listed(names: Iterable[str], before: str = "") -> str:
+    """Return names as a list in a sentence, each with a text `before` it."""
+    *others, last = (f"{before}{name}" for name in names)
+    return f"{', '.join(others)} or {last}" if others else last
+
+
 def suggestion(name: object, known: Iterable[str]) -> str:
     """Return ` (did you mean 'x'?)` with the known names closest to a wrong one, or an empty text.
 
@@ -83,10 +89,7 @@ def suggestion(name: object, known: Iterable[str]) -> str:
     words = [x for x in known if _words(wrong) <= _words(x)]
     longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
     nearest = same[:1] or words[:3] or longer[:1] or get_close_matches(wrong, known, 1)
-    if not nearest:
-        return ""
-    *others, last = map(repr, nearest)
-    return f" (did you mean {', '.join(others)}{' or ' if others else ''}{last}?)"
+    return f" (did you mean {listed(map(repr, nearest))}?)" if nearest else ""
 
 
 def _words(name: str) -> set[str]:

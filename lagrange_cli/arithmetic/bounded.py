@@ -77,7 +77,7 @@ class Bounded:
         product = self.value * (other.value if isinstance(other, Bounded) else other)
         if not isinstance(other, Bounded):
             return _rounded(product, abs(other) * self.error)
-        error = _scaled(other.size, self.error)
+        error = 0.0 if _is_exact(self) else other.size * self.error
         if not _is_exact(other):
             error = error + (self.size + self.error) * other.error
         return _rounded(product, error)
@@ -114,10 +114,6 @@ def _parts(x: Operand) -> tuple[Any, Any]:
 def _is_exact(x: Bounded) -> bool:
     """Return whether no number has an error, without a look at arrays."""
     return isinstance(x.error, float) and x.error == 0
-
-
-def _scaled(size: Any, error: Any) -> Any:
-    return 0.0 if isinstance(error, float) and error == 0 else size * error
 
 
 def _rounded(value: Any, error: Any) -> Bounded:

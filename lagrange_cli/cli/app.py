@@ -14,7 +14,7 @@ import click
 
 from .. import __version__
 from ..errors import CannotWriteError, LagtopError, Message, UnavailableError
-from ..names import suggestion
+from ..names import listed, suggestion
 from ..output.terminal import one_line
 from ..top.inputs import DECLARED
 
@@ -180,7 +180,7 @@ def _option_meant(error: click.NoSuchOption) -> str:
     named = [f"--{key.replace('_', '-')}" for key, x in DECLARED.items() if word in x.name.split()]
     named += {"get": ["--keys"], "keys": ["--get"]}.get(word, [])
     if found := [x for x in named if x in known]:
-        return f" (did you mean {' or '.join(map(repr, found))}?)"
+        return f" (did you mean {listed(map(repr, found))}?)"
     begun = [x for x in known if x[2].lower() == name[:1].lower()]  # --rad is not --format
     alike = [x for x in begun if (len(x[2:]) == 1) == (len(name) == 1)]  # nor --sigma --s
     return suggestion(f"--{name}", alike)

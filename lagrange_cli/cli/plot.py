@@ -8,9 +8,9 @@ from os.path import exists, splitext
 from typing import Any
 
 from ..errors import LagtopError, arg
-from ..names import suggestion
+from ..names import listed, suggestion
 from ..output.destination import opened
-from ..output.formats import FILMS, PICTURES, listed
+from ..output.formats import FILMS, PICTURES
 from ..output.terminal import is_screen, with_progress
 from ..plot import CAPTION, KINDS, SHEET
 from ..plot.style import (

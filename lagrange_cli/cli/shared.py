@@ -13,9 +13,9 @@ import click
 
 from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..errors import LagtopError, SomeFailedError, arg, marked
-from ..names import split_names
+from ..names import listed, split_names
 from ..output.destination import MOST_ROWS, MOST_UPRIGHT, Output, opened
-from ..output.formats import FORMATS, PICTURES, WITH_COMMAS, listed
+from ..output.formats import FORMATS, PICTURES, WITH_COMMAS
 from ..output.terminal import is_screen
 from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
 from ..top.units import Units, is_unit
@@ -415,6 +415,14 @@ def with_mark(out: Output, mark: str, *, reads: bool = False) -> Output:
     if name not in WITH_COMMAS and not reads:
         raise LagtopError(f"--decimal comma is for CSV, got --format {name}: leave it out")
     return out._replace(fmt=WITH_COMMAS.get(name, out.fmt))
+
+
+def with_units(names: Sequence[str], units: Mapping[str, str], out: Output) -> Sequence[str]:
+    """Return headings with the units of their names, in a table for people."""
+    from ..output.report import with_unit
+
+    people = out.format.is_for_people
+    return [with_unit(name, units.get(name)) for name in names] if people else names
 
 
 def write_report(

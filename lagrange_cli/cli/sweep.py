@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..file_bytes import shown_path
-from ..output.formats import FORMATS, format_of, listed
+from ..names import listed
+from ..output.formats import FORMATS, format_of
 from ..output.terminal import with_progress
 from ..top.scenes import is_scene_file
 from ..top.units import Units
@@ -162,14 +163,11 @@ def sweep_command(
 
 
 def _headings(names: Sequence[str], units: Units, out: Output) -> Sequence[str]:
-    """Return the headings of keys: with units in a table for people, if inputs have units."""
-    if not (units.si and out.format.is_for_people):
-        return names
-    from ..output.report import with_unit
+    """Return the headings of keys, with units if inputs have units."""
     from ..solver.keys import shown_keys
 
-    keys = shown_keys(units, requested=True)
-    return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
+    keys = shown_keys(units, requested=True) if units.si else {}
+    return opt.with_units(names, {name: key.unit for name, key in keys.items()}, out)
 
 
 @opt.command(

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ..errors import DataError, LagtopError, OutOfRangeError
 from ..output.terminal import with_progress
-from ..top.units import Units
 from . import shared as opt
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ def table_command(
     """
     from ..file_bytes import shown_path
     from ..recordings.times import read_times
-    from ..solver.columns import DEFAULT_COLUMNS
+    from ..solver.columns import DEFAULT_COLUMNS, chosen_columns
     from ..solver.tables import ProvedTable, grid, rows
     from .uncertainty import column_stds, warn_if_unfair
 
@@ -86,9 +85,10 @@ def table_command(
         else:
             stds = column_stds(found, motion, names)
             header, parts = rows(motion, at, names, stds=stds, **how)
-        people = out.format.is_for_people
-        headings = _with_units(header, names, how["units"]) if people else ()
-        out.rows(header, with_progress(parts, "rows", at.count or None, len), headings)
+        chosen = zip(header, chosen_columns(names).values(), strict=False)
+        named = {x: how["units"].named(column.unit) for x, column in chosen}
+        shown = opt.with_units(header, named, out)
+        out.rows(header, with_progress(parts, "rows", at.count or None, len), shown)
         warn_if_unfair(stds)
     except LagtopError as error:
         late = ": use --digits" if isinstance(error, OutOfRangeError) and error.key else ""
@@ -97,14 +97,3 @@ def table_command(
         if late:
             raise OutOfRangeError(f"{error.marked}{late}", error.key) from None
         raise
-
-
-def _with_units(header: Sequence[str], names: Sequence[str], units: Units) -> list[str]:
-    """Return the headings of a table for people, with units that are not part of the names."""
-    from ..output.report import with_unit
-    from ..solver.columns import chosen_columns
-
-    chosen = chosen_columns(names).values()
-    shown = ["" if column.unit == "angle" else units.named(column.unit) for column in chosen]
-    texts = [with_unit(x, unit) for x, unit in zip(header, shown, strict=False)]
-    return [*texts, *header[len(texts) :]]

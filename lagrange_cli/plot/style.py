@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import LagtopError, UnavailableError, install
-from ..output.formats import listed
+from ..names import listed
 from ..output.terminal import one_line
 
 if TYPE_CHECKING:

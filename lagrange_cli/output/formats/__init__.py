@@ -7,7 +7,6 @@ the help, the pages and the refusal of other names take it.  Its module has a `F
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -42,9 +41,3 @@ def format_of(name: str) -> Format:
     module, _, form = name.partition(".")
     found: Format = getattr(import_module(f".{module}", __package__), form or "FORMAT")
     return found
-
-
-def listed(names: Iterable[str], before: str = "") -> str:
-    """Return names as a list in a sentence, each with a text `before` it."""
-    *others, last = (f"{before}{name}" for name in names)
-    return f"{', '.join(others)} or {last}" if others else last
