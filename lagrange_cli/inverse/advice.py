@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from time import process_time
 
 import numpy as np
 
@@ -26,32 +27,48 @@ from .search import best_fit
 from .signals import noise_of, oscillation_in, signals_in
 
 _MEANINGS = {"up": "of the data points up", "axis": "is the figure axis"}
-_ROWS, _AS_CALM = 250, 0.01
-"""Rows at which axes are compared, and the noise above that of the recording that is no more."""
-_OTHER_AXIS, _CALMER, _OUTLYING, _NOISY = 0.35, 0.1, 30.0, 2.0
-"""When a trial fit is worth its time.  Harmonics of the nutation must leave less noise; the least
-differences of its logarithm are those per angle in another frame, in a part or in windows, and
-without outliers over their share of the rows.  Other meanings of the angles are tried if the
-residuals are larger than the differences between neighbours by the last factor."""
+_ROWS = 250
+"""Rows at which frames are compared before a fit."""
+_AS_CALM = 0.01
+"""Logarithm of the noise beside harmonics that another frame may have more."""
+_CALMER = 0.1
+"""Logarithm of the noise by which a part or windows must be calmer."""
+_OUTLYING = 30.0
+"""The same without outliers, over their share of the rows."""
+_NOISY = 2.0
+"""Residuals over the differences of neighbours from which other meanings of angles are tried."""
 _AS_NOISY = 0.1
 """Logarithm of the usual residual, per channel, that another reading may have more."""
 _SURE_GAP = 12.0
 """Fall of -2 log(likelihood) by lost rows, besides the cost of the search."""
 _LEAVES = 6.0
 """Standard deviations beyond which a row leaves the motion of the first half."""
-_HELD, _RELEASED, _STILL = 12, 6.0, 3.5
-"""Least number of rows before a release, the standard deviations that show it, and the standard
-deviation of the rows before it, over the noise of neighbours, above which these rows move too."""
-_WINDOWS = (5, 10, 20, 32, 64)
+_HELD = 12
+"""Least number of rows before a release."""
+_RELEASED = 6.0
+"""Standard deviations that show a release."""
+_STILL = 3.5
+"""Scatter of the rows before a release, over the noise of neighbours, above which they move."""
+_BUDGET = 3.0
+"""Seconds of the processor after which no further remedy is tried."""
+_WINDOWS = (5, 10, 32, 64)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
-_FEW, _LEAST_TIMES = 0.03, 0.25
-"""Largest share of rows that are outliers, and least share of times that differ."""
-_WHOLE, _ROUNDED = 1e-4, 0.6
-"""If t is rounded: the deviation of times from whole units, and that of even times, in units."""
-_LOST, _STEADILY, _CLOSER = 4.0, 0.3, 0.3
-"""If windows are not good: standard deviations of a loss of spin, the least share of it in either
-half, and the residual of the spin over that of the whole recording."""
+"""Least number of rows in such a window."""
+_FEW = 0.03
+"""Largest share of rows that are outliers."""
+_LEAST_TIMES = 0.25
+"""Least share of times that differ."""
+_WHOLE = 1e-4
+"""Deviation of rounded times from whole units, in units."""
+_ROUNDED = 0.6
+"""Deviation of rounded times from even ones, in units."""
+_LOST = 4.0
+"""Standard deviations of a loss of spin if windows are not good."""
+_STEADILY = 0.3
+"""Least share of that loss in either half."""
+_CLOSER = 0.3
+"""Residual of the spin in a window over that of the whole recording."""
 
 
 def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
@@ -62,6 +79,7 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     kinds = {x.kind for x in outcome.failed}
     if kinds & {Kind.PIVOT, Kind.ROWS} or not kinds & WRONG:  # which say what to do
         return
+    begun = process_time()
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
         few = f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
         yield OtherReading(few)
@@ -85,13 +103,16 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
         yield OtherReading(
             f"the top is held until about t = {at:.4g}: leave out the rows before the release"
         )
-    yield from _decays(recording, body, outcome, noise)
-    yield from gap(recording, body, outcome)
+    if process_time() - begun < _BUDGET:
+        yield from _decays(recording, body, outcome, noise)
+    if process_time() - begun < _BUDGET:
+        yield from gap(recording, body, outcome)
     if Kind.MACHINE in kinds:
         return
     start = [x for x in ("theta0", "psidot0") if x in known]
     short = ", and that the recording lasts for a period of the nutation"
-    begins = _beginning(recording, body, outcome)
+    is_early = process_time() - begun < _BUDGET
+    begins = _beginning(recording, body, outcome) if is_early else ""
     yield (
         f"no known misreading explains it{begins}: check {', '.join([*start, 'columns'])}, units "
         f"and axes{short * (not outcome.inputs)}"
@@ -239,7 +260,10 @@ def _decays(recording: Measured, known: Known, outcome: Outcome, noise: float) -
     if len(recording.angles) == 1:  # whose known start is that of the first window alone
         return
     counts, lost = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size], ""
+    begun = process_time()
     for count in counts:
+        if process_time() - begun > _BUDGET:
+            break
         try:
             parts, fits = recording.windows(count), list[Outcome]()
         except LagtopError:  # of rows that are not even

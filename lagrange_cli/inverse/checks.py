@@ -36,11 +36,16 @@ _LATER = 0.15
 _OUTLIER = 15.0
 """Least residual of an outlier, over the standard deviation of the
 others, which the median estimates."""
-_ROWS_PER_LAG, _LAGS, _WEAK = 2.0, 12, 0.1
-"""Least number of rows per period over the reach of a correlation, the longest reach of noise, and
-a correlation that is none."""
-_COARSE, _WITHIN = 0.6, 0.75
-"""An encoder's residuals: largest rms, and largest 95 % quantile, over its step."""
+_ROWS_PER_LAG = 2.0
+"""Least number of rows per period over the reach of a correlation."""
+_LAGS = 12
+"""Longest reach of noise that correlates, in rows."""
+_WEAK = 0.1
+"""A correlation that is none."""
+_COARSE = 0.6
+"""Largest rms of the residuals of an encoder, over its step."""
+_WITHIN = 0.75
+"""Largest 95 % quantile of the residuals of an encoder, over its step."""
 
 
 class Noise(NamedTuple):

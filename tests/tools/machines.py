@@ -98,7 +98,7 @@ MACHINES = {
     "repeated": Machine(None, "", "repeat|doubled"),
     "doubled": Machine(None, "", "repeat|equal|doubled"),
     "lost": Machine(None, "", "lost"),
-    "runs": Machine(None, "", "again|jump|lost|runs"),
+    "runs": Machine(None, "", "again|jump|lost|begin"),
 }
 
 
