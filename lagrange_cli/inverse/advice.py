@@ -103,7 +103,8 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
         yield OtherReading(
             f"the top is held until about t = {at:.4g}: leave out the rows before the release"
         )
-    if process_time() - begun < _BUDGET:
+    is_alone = len(recording.angles) == 1  # its known start is that of the first window
+    if not is_alone and process_time() - begun < _BUDGET:
         yield from _decays(recording, body, outcome, noise)
     if process_time() - begun < _BUDGET:
         yield from gap(recording, body, outcome)
@@ -257,8 +258,6 @@ def release(recording: Measured) -> int:
 
 def _decays(recording: Measured, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
     """Yield the number of windows that are all good and show a decay, or a decay within windows."""
-    if len(recording.angles) == 1:  # whose known start is that of the first window alone
-        return
     counts, lost = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size], ""
     begun = process_time()
     for count in counts:
