@@ -255,6 +255,8 @@ class Rounded(NamedTuple):
             away = max(_distance(x, self.value) for x in ends_of(arb(exact.mid(), radius)))
         else:
             away = _distance(exact, self.value)
+        if away and isinstance(self.value, float):  # else a double may read as 0
+            away = max(away, Decimal("5e-324"))
         return text_of(_TWO_DIGITS.multiply(away, _A_HAIR_MORE), 2)
 
 

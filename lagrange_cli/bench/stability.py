@@ -1,13 +1,15 @@
 """Errors of methods in stiff and extreme scenes, beside the error that input rounding causes.
 
-A new kind of scene is one entry in HARD_KINDS.  The README describes the kinds.
+A new kind of scene is one entry in HARD_KINDS, made from `hard_scenes`.  The README describes the
+kinds.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import chain, islice, product, repeat
 from random import Random
 from typing import TYPE_CHECKING
@@ -19,6 +21,7 @@ from ..plot.style import LIGHT
 from ..solver.facts import Regime
 from ..solver.solve import Motion, solve
 from ..top.top import Top
+from . import hard_scenes as hard
 from .measure import ERROR, Row, looks, measure, panels_of, report_of, task_of
 from .methods import METHODS
 from .reference import Reference, rotation_angle
@@ -38,88 +41,30 @@ AT_ROUNDING, LOST = 100, 1e-3
 VERDICTS = "rounding level", "inaccurate", "lost", "too slow", "failed", "not installed"
 """The verdicts from good to bad."""
 
-Scene = dict[str, float]
-UNIT: Scene = {"m": 1, "s": 1, "g": 1, "A": 1, "C": 0.5, "theta0_deg": 50}
-
-
-def body(rng: Random) -> Scene:
-    """Return a body with m = s = g = 1, from a needle to a disc."""
-    A = rng.uniform(0.5, 2)
-    return UNIT | {"A": A, "C": A * rng.uniform(0.05, 2)}
-
-
-def moving(rng: Random) -> Scene:
-    """Return an ordinary top with moderate rates."""
-    rates = {name: rng.uniform(-3, 3) for name in ("r0", "thetadot0", "psidot0")}
-    return body(rng) | {"theta0_deg": rng.uniform(10, 170)} | rates
-
-
-def rising(rng: Random, miss: float) -> Scene:
-    """Return a rise towards the upright position, too slow by a relative amount."""
-    scene, part = body(rng), rng.uniform(0.1, 0.8)
-    spin = 2 * math.sqrt(scene["A"]) / scene["C"] * math.sqrt(part)
-    u = rng.uniform(2 * part - 1, 0.9)
-    rate = scene["C"] * spin / scene["A"] / (1 + u)  # by which Lz = C r0
-    rise = math.sqrt(max(2 / scene["A"] * (1 - u) - rate * rate * (1 - u * u), 0))
-    start = {"theta0_deg": math.degrees(math.acos(u)), "psidot0": rate}
-    return scene | start | {"r0": spin, "thetadot0": -rise * (1 - miss)}
-
-
-def near_hanging(rng: Random) -> Scene:
-    """Return a small swing about the hanging position."""
-    tilt = 180 - 10 ** rng.uniform(-9, -2)
-    return body(rng) | {"r0": rng.uniform(-5, 5), "theta0_deg": tilt}
-
-
-def near_vertical(rng: Random) -> Scene:
-    """Return a start next to the vertical, or a path that passes next to it."""
-    if rng.random() < 0.5:
-        return moving(rng) | {"theta0_deg": 10 ** rng.uniform(-8, -2)}
-    scene = rising(rng, -rng.uniform(0.1, 1))
-    return scene | {"psidot0": scene["psidot0"] * (1 + 10 ** rng.uniform(-10, -4))}
-
-
-def near_steady(rng: Random) -> Scene:
-    """Return a steady precession with a disturbed rate."""
-    scene = body(rng) | {"theta0_deg": rng.uniform(20, 160)}
-    spin = 2 * math.sqrt(scene["A"]) / scene["C"] * rng.uniform(1.1, 5)
-    b, u = scene["C"] * spin, math.cos(math.radians(scene["theta0_deg"]))
-    steady = 2 / (b + math.sqrt(b * b - 4 * scene["A"] * u))
-    return scene | {"r0": spin, "psidot0": steady * (1 + 10 ** rng.uniform(-12, -3))}
-
-
-def extreme_sizes(rng: Random) -> Scene:
-    """Return an ordinary top in other units of mass, length and time."""
-    mass, length, second = (10 ** rng.uniform(-12, 12) for _ in range(3))
-    scene = moving(rng)
-    found = scene | {"m": mass, "s": length, "g": length / second**2}
-    found |= {name: scene[name] * mass * length**2 for name in ("A", "C")}
-    return found | {name: scene[name] / second for name in ("r0", "thetadot0", "psidot0")}
-
-
-FIXED: list[tuple[str, Scene]] = [
+UNIT = {"m": 1, "s": 1, "g": 1, "A": 1, "C": 0.5, "theta0_deg": 50}
+FIXED: list[tuple[str, hard.Scene]] = [
     ("fast-spin", {"r0": 1e4, "theta0_deg": 30, "psidot0": 1}),
     ("slow-spin", {"r0": 1e-3, "theta0_deg": 120}),
-    ("near-separatrix", rising(Random(1), 1e-6)),
+    ("near-separatrix", hard.near_separatrix(Random(1), hard.moving, (-6, -6))),
     ("near-vertical", {"r0": 2, "theta0_deg": 1e-6, "psidot0": 1}),
-    ("near-vertical", rising(Random(2), -0.5)),
+    ("near-vertical", hard.near_a_pole(Random(2), hard.moving, (-8, -8))),
     ("tiny-tilt-with-rates", {"r0": 3, "theta0_deg": 1e-30, "thetadot0": 1}),
     ("near-steady", {"r0": 6, "theta0_deg": 60, "psidot0": 0.382}),
     ("near-hanging", {"r0": 2, "theta0_deg": 179.999}),
     ("extreme-sizes", {"m": 1e12, "s": 1e-12, "g": 1e6, "A": 1e-12, "C": 1e-12, "r0": 1e9}),
 ]
 """The fixed scenes of each kind, for the body UNIT."""
-HARD_KINDS: dict[str, Callable[[Random], Scene]] = {
-    "fast-spin": lambda rng: moving(rng) | {"r0": 10 ** rng.uniform(3, 6)},
-    "slow-spin": lambda rng: (
-        body(rng) | {"r0": 10 ** rng.uniform(-9, -2), "theta0_deg": rng.uniform(20, 170)}
+HARD_KINDS: dict[str, hard.Kind] = {
+    "fast-spin": partial(hard.stiff, top=hard.moving, powers=(3, 6), among="r0"),
+    "slow-spin": partial(hard.slow, top=hard.released, powers=(-9, -2), among="r0"),
+    "near-separatrix": partial(hard.near_separatrix, top=hard.moving, powers=(-9, -3)),
+    "near-vertical": lambda rng: rng.choice([hard.near_a_pole, hard.tiny_tilt_with_rates])(
+        rng, hard.moving, (-8, -4)
     ),
-    "near-separatrix": lambda rng: rising(rng, 10 ** rng.uniform(-9, -3)),
-    "near-vertical": near_vertical,
-    "tiny-tilt-with-rates": lambda rng: moving(rng) | {"theta0_deg": 10 ** rng.uniform(-60, -9)},
-    "near-steady": near_steady,
-    "near-hanging": near_hanging,
-    "extreme-sizes": extreme_sizes,
+    "tiny-tilt-with-rates": partial(hard.tiny_tilt_with_rates, top=hard.moving, powers=(-60, -9)),
+    "near-steady": partial(hard.near_steady, top=hard.moving, powers=(-12, -3)),
+    "near-hanging": partial(hard.near_hanging, top=hard.released, powers=(-9, -2)),
+    "extreme-sizes": partial(hard.units, top=hard.moving, powers=(-12, 12), wild=False),
 }
 """The function that returns a random scene of each kind."""
 SHOWN = "scene method setting periods error_rad input_rounding verdict inputs remark"
@@ -148,7 +93,8 @@ def stability(
 def motions(kind: str, samples: int, seed: int) -> list[Motion]:
     """Return the fixed motions of a kind, and random ones that nutate under a torque."""
     fixed, rng = [UNIT | scene for name, scene in FIXED if name == kind], Random(f"{seed} {kind}")
-    tops = (Top(**x) for x in chain(fixed, (HARD_KINDS[kind](rng) for _ in repeat(None))))
+    scenes = chain(fixed, (hard.in_doubles(HARD_KINDS[kind](rng)) for _ in repeat(None)))
+    tops = (Top(**x) for x in scenes)
     nutating = (x for x in map(solve, tops) if x.regime in (Regime.REGULAR, Regime.NO_SPIN))
     return list(islice(nutating, len(fixed) + samples))
 

@@ -12,10 +12,10 @@ import mpmath
 import numpy as np
 import pytest
 from engines import Body
-from hard_scenes import HARD_KINDS, nutating
 from lagtop import LagtopError, Top, solve
 from scipy.integrate import solve_ivp
 
+from lagrange_cli.bench.hard_scenes import NUTATING_KINDS, nutating
 from lagrange_cli.bench.measure import measure, task_of
 from lagrange_cli.bench.methods import METHODS, Sampled, SlowError, fixed_steps
 from lagrange_cli.bench.reference import Reference, rotation_angle
@@ -112,7 +112,7 @@ def test_scipy_runs_as_in_a_plain_call(name: str) -> None:
 # The reference in 50 digits, and the definition of error
 
 
-@pytest.mark.parametrize("kind", [*HARD_KINDS, "generic by phidot0"])
+@pytest.mark.parametrize("kind", [*NUTATING_KINDS, "generic by phidot0"])
 def test_attitudes_agree_with_the_reference(kind: str) -> None:
     """Legendre's third integral from the lowest point, and theta functions from the highest."""
     kind, _, spin = kind.partition(" by ")

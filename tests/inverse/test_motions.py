@@ -9,10 +9,10 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from hard_scenes import nutating
 from lagtop import Top, solve
 from scenes import UNIT
 
+from lagrange_cli.bench.hard_scenes import nutating
 from lagrange_cli.inverse.motions import angles, gaps_of, states_of
 
 KINDS_OF_GAPS = (

@@ -18,15 +18,15 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
-from hard_scenes import COSINES, HARD_KINDS, in_doubles
-from hard_scenes import KINDS as KINDS_OF_TOPS
 from lagtop import LagtopError, Motion, Top, read_scene, solve, view
 from scenes import EVERY_KIND, UNIT
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.account.summary import PHRASES, summary
+from lagrange_cli.bench import hard_scenes
 from lagrange_cli.plot.browser.view import page_scene
 from lagrange_cli.plot.style import DARK, LIGHT
+from lagrange_cli.solver.keys import NUMBERS
 from lagrange_cli.top.scenes import scene_names
 from lagrange_cli.top.units import in_si
 
@@ -45,7 +45,7 @@ def random_motions(kinds: Sequence[str], count: int, seed: int) -> list[Motion]:
     for kind in kinds:
         rng, many = Random(f"{seed} {kind}"), len(found) + count
         while len(found) < many:
-            scene = in_doubles(HARD_KINDS[kind](rng))
+            scene = hard_scenes.in_doubles(hard_scenes.KINDS[kind](rng))
             usual = all(1e-6 <= abs(x) <= 1e6 for x in scene.values() if x)
             tilt = scene.get("theta0_deg", 1.0)
             if not usual and not (kind.startswith("tiny") and tilt):
@@ -130,7 +130,7 @@ def assert_that_of_solve(motion: Motion, page: dict[str, Any]) -> None:
     for key, number in page["record"].items():
         exact = getattr(motion, key)
         assert (number is None) == (exact is None), (key, motion.top)
-        size = 1e-12 if key in COSINES else 0.0
+        size = 1e-12 if NUMBERS[key].relative_to else 0.0
         assert number is None or number == pytest.approx(exact, rel=1e-6, abs=size), (key, motion)
 
 
@@ -167,11 +167,11 @@ def test_the_page_decides_its_words_as_solve_does(name: str) -> None:
 def test_the_sentence_and_the_numbers_are_those_of_solve(count: int) -> None:
     motions = [solve(read_scene(x)) for x in scene_names()]
     motions += [solve(Top(**x)) for x in EVERY_KIND.values()]
-    for kind, scene_of_kind in KINDS_OF_TOPS.items():
+    for kind, scene_of_kind in hard_scenes.KINDS.items():
         rng = Random(f"page {kind}")
         for _ in range(count):
             with suppress(LagtopError):  # precession on the vertical, or a size beyond the page
-                motion = solve(Top(**in_doubles(scene_of_kind(rng))))
+                motion = solve(Top(**hard_scenes.in_doubles(scene_of_kind(rng))))
                 page_scene(motion)
                 motions.append(motion)
     clear = 0

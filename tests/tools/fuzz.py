@@ -34,10 +34,10 @@ import mpmath
 
 sys.path.append(str(Path(__file__).parents[1]))  # references of the tests
 
-from hard_scenes import KINDS, Scene, as_decimals, size_in_sweeps
 from lagtop import LagtopError, Motion, Top, solve, sweep
 from record_reference import reference_columns, reference_record
 
+from lagrange_cli.bench.hard_scenes import CORNERS, KINDS, Scene
 from lagrange_cli.bench.reference import rotation_angle
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.solver.keys import NUMBER_KEYS, NUMBERS
@@ -48,6 +48,7 @@ CHUNK, MOST_SHOWN = 20, 40
 NOISE_OF_PERIODS = mpmath.mpf(10) ** 500
 """Period of the reference beyond which it is that of a rate of 0 with rounding errors."""
 Numbers = Mapping[str, Any]
+ALL_KINDS = KINDS | CORNERS
 
 
 class Tally:
@@ -71,6 +72,23 @@ class Tally:
         self.violations += other.violations
         for name, error in other.worst.items():
             self.worst[name] = max(self.worst.get(name, 0.0), error)
+
+
+def as_decimals(rng: random.Random, scene: Scene) -> Scene:
+    """Return a scene whose inputs, but for integers, have 20 to 60 digits more at random."""
+
+    def longer(x: float | Fraction) -> float | Fraction:
+        if isinstance(x, Fraction) or x == int(x) or not 1e-290 < abs(x) < 1e90:
+            return x
+        more = "".join(rng.choice("0123456789") for _ in range(rng.randrange(3, 43)))
+        mantissa, _, exponent = repr(float(x)).partition("e")
+        exact = Fraction(f"{mantissa}{more}e{exponent or 0}")
+        return exact if abs(exact) <= 180 or exact != x else x
+
+    longer_scene = {name: longer(x) for name, x in scene.items()}
+    if scene["C"] == 2 * scene["A"]:  # no rigid body has more
+        longer_scene["C"] = 2 * longer_scene["A"]
+    return longer_scene
 
 
 def varied(rng: random.Random, scene: Scene, long: bool) -> tuple[Scene, int]:
@@ -176,6 +194,19 @@ def times_of(rng: random.Random, period: float, count: int) -> list[float]:
     return found
 
 
+def size_in_sweeps(key: str, record: Numbers, r0: Any) -> Any:
+    """Return the size to which a sweep's error of a key is compared, given the exact record.
+
+    It is 1 for a cosine and the larger part of a difference for a rate at T/2.
+    """
+    if NUMBERS[key].relative_to:
+        return 1
+    if not key.endswith("rate_half"):
+        return abs(record[key])
+    turn, apart = record["precession_rate_half"], record["spin_rate_half"] - r0
+    return max(abs(r0), abs(turn + apart) / 2, abs(turn - apart) / 2)
+
+
 def check_sweep(tally: Tally, tilt: str, checks: list[tuple[Scene, Numbers]]) -> None:
     """Check every number of a sweep of scenes, all with tilts in degrees or all in radians."""
     names = (*"m A C s g r0 thetadot0 psidot0".split(), tilt)
@@ -210,7 +241,7 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
     checks: list[tuple[Scene, Numbers]] = []
     for i in range(first, first + count):
         rng = random.Random(f"{seed} {kind} {i}")
-        scene, digits = varied(rng, KINDS[kind](rng), options.long)
+        scene, digits = varied(rng, ALL_KINDS[kind](rng), options.long)
         tally.counts["scenes"] += 1
         try:
             motion = solve(Top(**scene))
@@ -236,15 +267,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=1000, help="how many, over all kinds")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--kinds", help="only these, comma-separated: " + ", ".join(KINDS))
+    parser.add_argument("--kinds", help="only these, comma-separated: " + ", ".join(ALL_KINDS))
     parser.add_argument("--long", action="store_true", help="inputs of 30 to 400 digits")
     parser.add_argument("--sweep", action="store_true", help="check `sweep` too")
     parser.add_argument("--times", type=int, default=0, help="check attitudes at N times")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     options = parser.parse_args()
-    kinds = [kind.strip() for kind in options.kinds.split(",")] if options.kinds else list(KINDS)
-    if unknown := set(kinds) - set(KINDS):
-        parser.error(f"kinds must be one of {', '.join(KINDS)}, got {min(unknown)!r}")
+    kinds = list(map(str.strip, options.kinds.split(","))) if options.kinds else list(ALL_KINDS)
+    if unknown := set(kinds) - set(ALL_KINDS):
+        parser.error(f"kinds must be one of {', '.join(ALL_KINDS)}, got {min(unknown)!r}")
     tallies, begun = {kind: Tally() for kind in kinds}, time.monotonic()
     share = -(-options.scenes // len(kinds))
     tasks = [
