@@ -51,7 +51,7 @@ def read_condition(text: str, units: Units) -> Condition:
     name, relation, word = match.groups()
     key, known = units.key(f"{name}_deg"), all_keys(units)
     if key not in known:
-        (key,) = check_names("a condition", [name], known)
+        (key,) = check_names("the key of a condition", [name], known)
     if key in WORDS:
         word = Regime.STEADY.value if (key, word) == ("regime", "steady") else word
         if relation != "=" or word not in WORDS[key]:

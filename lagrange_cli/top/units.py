@@ -174,9 +174,9 @@ def _meant(name: str, text: str) -> str:
     """Return a hint with the unit that was meant, such as kg*m^2 for kgm^2, or with all units."""
     for i in range(1, len(name)):
         if {name[:i], name[i:]} <= UNITS.keys():
-            return f" (write {text.replace(name, f'{name[:i]}*{name[i:]}')})"
+            return f": write {text.replace(name, f'{name[:i]}*{name[i:]}')}"
     usual = {unit.lower(): unit for unit in UNITS}.get(name.lower())
-    hint = f" (did you mean {usual!r}?)" if usual else suggestion(name, UNITS)
+    hint = f": did you mean {usual!r}?" if usual else suggestion(name, UNITS)
     return hint or f"; known: {', '.join(UNITS)}, their products and powers"
 
 

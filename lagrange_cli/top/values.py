@@ -93,7 +93,7 @@ def parse_value(
     try:
         plain, std = _split_uncertainty(number)
         if std is not None and not uncertain:
-            raise LagtopError(f"must have no uncertainty in this command, {got}: leave it out")
+            raise LagtopError(f"must have no uncertainty in this command, {got}: leave that out")
         found = parse(plain, read) if parse else read(plain)
     except LagtopError as error:
         whole = error.marked.replace(f"got {quoted(number)}", got)
@@ -208,7 +208,7 @@ def parse_number_or_span(text: str, read: Read = parse_number) -> Fraction | Spa
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
     span = _ends(text, ends, read)
     if not span.first < span.last:
-        raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
+        raise LagtopError(f"must be a range from a smaller to a larger value, got {quoted(text)}")
     return span
 
 

@@ -245,7 +245,7 @@ def test_both_functions_take_the_same_options() -> None:
         )
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"dt": -1}, "dt must be > 0, got -1"),
-        ({"dt": 1, "fps": 2}, "fps is 1/dt: give one of them"),
+        ({"dt": 1, "fps": 2}, "fps and dt exclude each other: give one"),
         ({"t_min": 9}, "no row is between t_min and t_max: t goes from 0 to 2"),
         ({"t_min": 2, "t_max": 1}, "t_min must be < t_max, got 2 and 1"),
         ({}, "t must be given, or dt or fps"),

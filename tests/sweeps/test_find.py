@@ -230,7 +230,7 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         (["T_nutation=0.4", "path=straight"], {"r0": "1:2"}, "path= must be one of cusped"),
         (["T_nutation=nan"], {"r0": "1:2"}, "T_nutation must be a finite"),
         (["T_nut=3"], {"r0": "1:2"}, "did you mean .T_nutation"),
-        (["T_nutation=1"], {"r0": "2:1"}, "r0 must be a range whose first end is the smaller one"),
+        (["T_nutation=1"], {"r0": "2:1"}, "r0 must be a range from a smaller to a larger value"),
         (["T_nutation=1"], {"r0": "log:-1:1"}, "must have two ends of one sign"),
         (["T_nutation=1"], {"A": "1:2", "C": [3]}, "C must be a finite number, got .3."),
         (["T_nutation=1"], {"r0": "1:2", "phidot0": 3}, "phidot0 and r0 are both given"),
@@ -248,7 +248,7 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
         (
             {"T_precession": 2},
             {"r0": (200, 10)},
-            "r0 must be a range whose first end is the smaller one",
+            "r0 must be a range from a smaller to a larger value",
         ),
     ],
 )

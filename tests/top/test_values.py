@@ -187,7 +187,7 @@ def test_bad_ranges(text: str, wrong: str) -> None:
 
 def test_a_span_goes_from_the_smaller_to_the_larger_end() -> None:
     assert str(parse_number_or_span("log:1:2.5")) == "1 to 2.5"
-    with pytest.raises(LagtopError, match="whose first end is the smaller one, got '2:2'"):
+    with pytest.raises(LagtopError, match="from a smaller to a larger value, got '2:2'"):
         parse_number_or_span("2:2")
 
 
