@@ -189,7 +189,6 @@ TABLES: list[tuple[Callable[[], list[str]], str]] = [
     (partial(keys_table, "record", "key"), "lagrange_cli/solver"),
     (partial(keys_table, "column", "column"), "lagrange_cli/solver"),
     (further_keys_table, "lagrange_cli/solver"),
-    (partial(two_columns, "kind", "picture", PICTURES), "lagrange_cli/plot"),
     (
         partial(two_columns, "column", "quantity, and known names", _NAMES),
         "lagrange_cli/comparison",
