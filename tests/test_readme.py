@@ -24,7 +24,6 @@ from lagrange_cli.cli.app import NAMES, main
 from lagrange_cli.comparison.compare import COMPARISON_KEYS, VERDICTS
 from lagrange_cli.output.formats import FORMATS
 from lagrange_cli.plot import KINDS, SHEET
-from lagrange_cli.recordings.options import WORDS
 from lagrange_cli.recordings.quantities import QUANTITIES
 from lagrange_cli.solver.keys import FURTHER_KEYS, NUMBERS
 from lagrange_cli.top.inputs import DECLARED, TILT
@@ -195,7 +194,6 @@ TABLES: list[tuple[Callable[[], list[str]], str]] = [
     ),
     (partial(two_columns, "key", "meaning", COMPARISON_KEYS), "lagrange_cli/comparison"),
     (partial(two_columns, "verdict", "if", VERDICTS), "lagrange_cli/comparison"),
-    (partial(two_columns, "word", "meaning", WORDS), "lagrange_cli/comparison"),
 ]
 """Tables that are made, and the folders of the pages that show them."""
 
