@@ -38,6 +38,8 @@ _LEAST, _MOST = 1e-280, 1e280
 Rows = NDArray[np.intp]
 BLOCK_ROWS = 1 << 12
 """Number of tops computed together, so that their arrays stay in the cache."""
+_MOST_ROWS = 8 * BLOCK_ROWS
+"""Most tops in a block of `sweep`: the few that need pairs of doubles are computed together."""
 _SHARE, _LEAST_ROWS = 80, 512
 """A top takes 800 bytes while it is computed: such a share of the tops times keys of a sweep takes
 1.25 times its result."""
@@ -75,7 +77,7 @@ def sweep(
     flat, results, are_bodies = read_inputs(inputs)
     size = math.prod(results.shape)
     columns = _empty(chosen, size)
-    step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
+    step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), _MOST_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, min(first + step, size))
         given = {name: x if isinstance(x, str) else x[rows] for name, x in flat.items()}
@@ -136,7 +138,7 @@ def records(
             rows = np.flatnonzero(group & alone)
             left = dict.fromkeys(left_keys, rows) if rows.size else {}
             for pairs in [True] if regime is None else [False, True]:
-                left = _filled(tops, left, regime, pairs, columns) if left else {}
+                left = _rest(tops, left, regime, pairs, columns) if left else {}
             for key, rows in left.items():
                 for row in rows.tolist():
                     wanted.setdefault(row, []).append(key)
@@ -169,7 +171,7 @@ def _solve(
                 columns[key][row] = value
 
 
-def _filled(
+def _rest(
     tops: TopArrays,
     left: Mapping[str, Rows],
     regime: Regime | None,
@@ -180,25 +182,39 @@ def _filled(
     first, *others = left.values()
     same = all(mine is first for mine in others)
     rows = first if same else np.unique(np.concatenate([first, *others]))
-    of = ArrayNumbers(tops.part(rows), regime, pairs=pairs)
-    target: Any = slice(None) if rows.size == tops.size else rows  # which is faster
-    rest = {}
-    for key, mine in left.items():
-        if key in motion_record.TEXT_KEYS:
-            value, trusted = text_of(of, key)
-            values = {key: value}
-        else:
-            value, error, trusted = number_of(of, key)
-            values = {key: value, f"{key}{RADIUS}": error}
-        at, found = target, None
-        if not (same and np.all(trusted)):
-            sought = True if same else np.isin(rows, mine)
-            found = np.broadcast_to(sought & trusted, rows.shape)
-            at, rest[key] = rows[found], rows[sought & ~found]
-        for name in values.keys() & columns.keys():
-            value = values[name]
-            columns[name][at] = value if found is None or not np.ndim(value) else value[found]
-    return {key: mine for key, mine in rest.items() if mine.size}
+    rest: dict[str, list[Rows]] = {key: [] for key in left}
+    for start in range(0, rows.size, BLOCK_ROWS):
+        some = rows[start : start + BLOCK_ROWS]
+        of = ArrayNumbers(tops.part(_span(some)), regime, pairs=pairs)
+        for key, mine in left.items():
+            sought = True if same else np.isin(some, mine)
+            rest[key].append(_filled(of, key, some, sought, columns))
+    return {key: np.concatenate(x) for key, x in rest.items() if any(mine.size for mine in x)}
+
+
+def _span(rows: Rows) -> Any:
+    """Return rows as a slice, which is faster, if no row between them is missing."""
+    return slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] < rows.size else rows
+
+
+def _filled(
+    of: ArrayNumbers, key: str, rows: Rows, sought: Any, columns: Mapping[str, ResultColumn]
+) -> Rows:
+    """Fill those rows of a key that are sought and can be trusted, and return the other ones."""
+    if key in motion_record.TEXT_KEYS:
+        value, trusted = text_of(of, key)
+        values = {key: value}
+    else:
+        value, error, trusted = number_of(of, key)
+        values = {key: value, f"{key}{RADIUS}": error}
+    target, found = _span(rows), None
+    if not (sought is True and np.all(trusted)):
+        found = np.broadcast_to(sought & trusted, rows.shape)
+        target = rows[found]
+    for name in values.keys() & columns.keys():
+        value = values[name]
+        columns[name][target] = value if found is None or not np.ndim(value) else value[found]
+    return rows[:0] if found is None else rows[sought & ~found]
 
 
 def number_of(of: ArrayNumbers, key: str) -> tuple[Any, Any, Any]:
