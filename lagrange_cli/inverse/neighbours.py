@@ -77,9 +77,11 @@ def machines(x: Variations) -> Iterator[Neighbour]:
     """Yield other machines than a Lagrange top.  Dry and viscous friction look alike."""
     (nods, _, turns), s, c, push = x.rates, x.sine, x.cosine, x.pushed
     over = "by {} % over the recording"
-    yield Neighbour("a stand that turns along", "with {} % of A", [push(psi=-x.slope(turns))], True)
+    yield Neighbour(
+        "a stand that turns with the top", "with {} % of A", [push(psi=-x.slope(turns))], True
+    )
     yoke = push(theta=-x.slope(nods))
-    yield Neighbour("a yoke that tilts along", "with {} % of A", [yoke], True)
+    yield Neighbour("a yoke that tilts with the axis", "with {} % of A", [yoke], True)
     ring = push(theta=-turns * turns * s * c, psi=-x.slope(turns * c * c))
     yield Neighbour("a ring that does not spin", "with {} % of A", [ring], True)
     drag = push(phi=-x.b + 0 * s, psi=-x.b * c) / x.length
@@ -94,13 +96,13 @@ def machines(x: Variations) -> Iterator[Neighbour]:
     force = x.slope(x.slope(axis, 2), 2) / (2 * math.pi) ** 2
     around = axis[0] * force[1] - axis[1] * force[0]
     soft = push(theta=np.sum(force * down, axis=0), psi=around)
-    yield Neighbour("a pivot that gives", "with (m s^2/A)(m/k)(2 pi/T)^2 = {} %", [soft], True)
+    yield Neighbour("a pivot that yields", "with (m s^2/A)(m/k)(2 pi/T)^2 = {} %", [soft], True)
     if math.isnan(x.ratio):
         return
     sine, cosine, half = np.sin(x.angles[1]), np.cos(x.angles[1]), -x.a / 2
     beside = [push(theta=half * c * sine, phi=half * s * cosine)]
     beside += [push(theta=half * c * cosine, phi=-half * s * sine)]
-    yield Neighbour("a centre of mass beside the axis", "by {} % of s", beside)
+    yield Neighbour("a centre of mass off the axis", "by {} % of s", beside)
     p, q = nods * cosine + turns * s * sine, -nods * sine + turns * s * cosine
     unlike = []
     for y, z in ((p, -q), (q, p)):  # the kinetic energy grows by (p^2 - q^2)/4 and p q/2
@@ -127,12 +129,12 @@ def misread(x: Variations, kind: str, seen: Sequence[str]) -> Iterator[Neighbour
     if {"theta", "psi"} <= {*seen}:
         leaning = [only(theta=along, phi=beside / s, psi=-beside * c / s)]
         leaning += [only(theta=beside, phi=-along / s, psi=along * c / s)]
-        yield Neighbour("a vertical of the data that leans", "by {} % of a radian", leaning)
+        yield Neighbour("a tilted vertical of the data", "by {} % of a radian", leaning)
     if {"theta", "phi", "psi"} <= {*seen}:
         along, beside = np.cos(phi), np.sin(phi)
         askew = [only(theta=along, phi=-c * beside / s, psi=beside / s)]
         askew += [only(theta=-beside, phi=-c * along / s, psi=along / s)]
-        yield Neighbour("a figure axis of the data that is askew", "by {} % of a radian", askew)
+        yield Neighbour("a misaligned figure axis of the data", "by {} % of a radian", askew)
     smooth = x.slope(x.angles, 2) / 2
     if kind != "angles":
         axis, nodes, down = x.frame
@@ -266,7 +268,7 @@ class Neighbours:
     def line(self) -> str:
         """The neighbours that move the numbers most, if the recording does not test them."""
         names = ", ".join(x.name for x in self.untested[:_LINES])
-        return f"1 % of {names} cannot be seen" if names else ""
+        return f"1 % each of {names}, which the recording cannot show" if names else ""
 
     def _widening(self, rest: Array) -> Array:
         """Return the factors of standard deviations for what correlates from row to row."""

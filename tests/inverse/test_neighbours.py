@@ -34,7 +34,7 @@ def stacked(seen: dict[str, Array]) -> Array:
         ("vertical bearing", "vertical", 1),
         ("bearing of the tilt", "nodes", 1),
         ("second torque", "magnet", 1),
-        ("beside the axis", "beside", 1),
+        ("off the axis", "beside", 1),
         ("moments", "moments", 1),
     ],
 )
@@ -74,7 +74,7 @@ def test_an_honest_top_is_good_and_has_model_errors() -> None:
     outcome = fit(t, theta=theta, phi=phi, psi=psi)
     assert (outcome.verdict, outcome.neighbour) == ("good", "")
     record = outcome.record()
-    assert record["untested"].startswith("1 % of ")
+    assert record["untested"].startswith("1 % each of ")
     assert 0.1 < record["a_model_percent"] < 3
     outcome = fit(t, theta=theta, psi=psi, known={"m": 1, "g": 10, "s": 4, "r0": R0})
     assert outcome.model_errors["A"] == outcome.model_errors["a"]
