@@ -77,7 +77,8 @@ def sweep(
     flat, results, are_bodies = read_inputs(inputs)
     size = math.prod(results.shape)
     columns = _empty(chosen, size)
-    step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), _MOST_ROWS)
+    most = min(max(size // 8, BLOCK_ROWS), _MOST_ROWS)  # their columns are computed and copied
+    step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), most)
     for first in range(0, max(size, 1), step):
         rows = slice(first, min(first + step, size))
         given = {name: x if isinstance(x, str) else x[rows] for name, x in flat.items()}
