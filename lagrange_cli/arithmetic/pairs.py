@@ -10,8 +10,6 @@ import numpy as np
 
 from .types import Array, Mask
 
-_ZERO = np.zeros(())
-
 
 class Pair(NamedTuple):
     """A number as the sum of two doubles."""
@@ -67,7 +65,7 @@ class DoubleDouble:
 
     def __init__(self, high: Array, low: Array | None = None) -> None:
         self.high = high
-        self.low = np.broadcast_to(_ZERO, high.shape) if low is None else low
+        self.low = np.broadcast_to(0.0, high.shape) if low is None else low
 
     def scaled(self, power: float) -> DoubleDouble:
         """Return the numbers times a power of two, exactly."""

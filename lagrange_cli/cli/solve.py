@@ -13,7 +13,7 @@ from ..names import Key, check_names
 from ..output.destination import Output
 from ..output.document import lines_document, record_document
 from ..solver.facts import Regime
-from ..solver.keys import CHAIN, all_keys, derivation_keys, key_of, shown_keys
+from ..solver.keys import all_keys, derivation_keys, key_of, shown_keys
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
 from ..top.units import Units
@@ -80,7 +80,8 @@ def solve_command(
         budget = key_of(budget, units)
         uncertainty.write_budget(found, motion, budget, units, out)
         return
-    names = _steps_of_section_8(motion, units) if derivation else get
+    steps = _steps_of_section_8(motion, units) if derivation else {}
+    names = [*steps] or get
     wanted = list(dict.fromkeys(name.removesuffix("_std") for name in names)) if names else None
     record, beyond = record_in_range(motion, keys=wanted, digits=digits, radii=certify, units=units)
     if beyond and wanted:
@@ -99,10 +100,9 @@ def solve_command(
     if get is not None:
         _write_selected(motion, record, shown, get, out)
         return
-    keys = shown_keys(units, requested=names is not None)
-    if derivation:
-        keys = _keys_by_step(keys, units)
-        record = {x: record[x] for x in [*keys, *record]}
+    keys = steps or shown_keys(units)
+    if steps:
+        record = {x: record[x] for x in [*steps, *record]}
     elif units.si:
         more["units"] = {x: key.unit for x, key in keys.items() if x in record and key.unit}
     if "regime" in record and motion.regime is Regime.SLEEPING and not motion.facts.stable:
@@ -156,7 +156,7 @@ def _absence(motion: Motion, record: dict[str, Any], key: str) -> str:
     return motion.absence(number)
 
 
-def _steps_of_section_8(motion: Motion, units: Units) -> list[str]:
+def _steps_of_section_8(motion: Motion, units: Units) -> dict[str, Key]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
     if motion.roots_sum is None:
         top = motion.top
@@ -166,9 +166,3 @@ def _steps_of_section_8(motion: Motion, units: Units) -> list[str]:
             f"psidot0 = {float(top.psidot0)}"
         )
     return derivation_keys(units)
-
-
-def _keys_by_step(keys: dict[str, Key], units: Units) -> dict[str, Key]:
-    """Return the keys of the steps of section 8, in order and grouped by step."""
-    chain = {units.key(x): step for step, names in CHAIN.items() for x in names}
-    return {name: keys[name]._replace(group=step) for name, step in chain.items()}

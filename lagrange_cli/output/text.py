@@ -27,7 +27,7 @@ def json_value(value: Any) -> str:
         is_plain = value.isprintable() and not set(value) & {'"', "\\"}
         return f'"{value}"' if is_plain else json_text(value)  # start-up: nearly all are plain
     if value is None or isinstance(value, float | NumberText):
-        return (value_text(value) if value not in _INFINITE else "") or "null"
+        return (value_text(value) if value not in (math.inf, -math.inf) else "") or "null"
     return json_text(value)
 
 
@@ -40,6 +40,5 @@ def csv_text(value: Any) -> str:
     return csv_text(json_text(value))
 
 
-_INFINITE = (math.inf, -math.inf)
 _QUOTE = '"'
 _SPECIAL = {_QUOTE, ",", "\n", "\r"}

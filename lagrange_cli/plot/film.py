@@ -17,7 +17,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..solver.solve import Motion
 from .pictures import Options, camera_of, draw_globe, last_time, project, sampled, scale
-from .style import styled
+from .style import drawing
 
 PER_SECOND, SECONDS, MOST_SECONDS = 25, 6.0, 120.0
 HEIGHT, RADIUS, SECTORS = 0.62, 0.34, 72
@@ -36,7 +36,7 @@ def film_bytes(motion: Motion, suffix: str, options: Options, seconds: float, dp
         bounds = f"[{2 / PER_SECOND:g}, {MOST_SECONDS:g}]"
         raise LagtopError(f"duration must be in {bounds} seconds, got {seconds:g}", "duration")
     frames = round(PER_SECOND * seconds)
-    with styled(options.look), tempfile.TemporaryDirectory() as folder:
+    with drawing(options.look), tempfile.TemporaryDirectory() as folder:
         figure, show = film_figure(motion, options, frames)
         numbers = options.progress(range(frames), "frames")
         film = animation.FuncAnimation(

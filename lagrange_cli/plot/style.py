@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..errors import LagtopError, UnavailableError, install
+from ..errors import LagtopError, OutOfRangeError, UnavailableError, install
 from ..names import listed
 from ..output.terminal import one_line
 
@@ -124,8 +124,11 @@ def drawing(look: Look) -> Iterator[None]:
         warnings.simplefilter("ignore", UserWarning)
         try:
             yield
-        except LagtopError:
-            raise
+        except LagtopError as error:
+            if not isinstance(error, OutOfRangeError) or error.key == "t":
+                raise
+            wrong = "numbers of this top are too large or too small for a picture"
+            raise OutOfRangeError(f"{wrong}: choose other units") from None
         except (ArithmeticError, LookupError, RuntimeError, ValueError) as error:
             raise LagtopError(f"matplotlib cannot draw this picture: {error}") from error
 

@@ -372,6 +372,8 @@ CHAIN = {
 """Keys by step of section 8, in the order of the paper."""
 
 
-def derivation_keys(units: Units = DEGREES) -> list[str]:
-    """Return the keys of the steps of section 8, in the order of the paper."""
-    return units.keys(name for names in CHAIN.values() for name in names)
+def derivation_keys(units: Units = DEGREES) -> dict[str, Key]:
+    """Return the keys of the steps of section 8, in the order of the paper, grouped by step."""
+    keys = shown_keys(units, requested=True)
+    steps = {units.key(x): step for step, names in CHAIN.items() for x in names}
+    return {name: keys[name]._replace(group=step) for name, step in steps.items()}

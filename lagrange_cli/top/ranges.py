@@ -28,8 +28,6 @@ MAX_PERIODS = 2.0**50
 MAX_TIME = 1e290
 """Largest time: the product of a time and a rate can still be computed exactly."""
 
-_DIGITS_OF_LOG_POINTS = own_context(30, [])
-
 
 class Points:
     """Points on a line; subclasses define their places."""
@@ -117,7 +115,7 @@ class LogPoints(Points):
         import numpy as np
 
         distinct, where = np.unique(index, return_inverse=True)
-        with localcontext(_DIGITS_OF_LOG_POINTS):
+        with localcontext(own_context(30, [])):
             first, last = (x.numerator / Decimal(x.denominator) for x in (self.first, self.last))
             growth = (last / first).ln() / max(self.count - 1, 1)
             values = [float(first * (growth * i).exp()) for i in distinct.tolist()]

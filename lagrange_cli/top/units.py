@@ -96,9 +96,6 @@ _TABLE = """
 0 0 -1 1 | 1 | rpm=1/30
 """
 """The dimensions, the power of pi, and the exact sizes of units."""
-_RATE = (0, 0, -1, 1)
-
-
 UNITS: dict[str, Unit] = {
     name: Unit(Fraction(size), int(pi), tuple(map(int, powers.split())))
     for powers, pi, pairs in (line.split(" | ") for line in _TABLE.strip().split("\n"))
@@ -195,7 +192,8 @@ def conversion(key: str, unit: str, wanted: str | None = None) -> tuple[Fraction
     into = unit_of_text(in_si(wanted))
     try:
         given = unit_of_text(unit)
-        per_time = into.dimensions == _RATE and given.dimensions == (0, 0, -1, 0)  # as 1/s
+        pair = into.dimensions, given.dimensions
+        per_time = pair == ((0, 0, -1, 1), (0, 0, -1, 0))  # as 1/s
         if per_time and given.size < 1:  # as 1/min, which many write for rpm
             raise LagtopError("turns or radians? write rpm or rad/min, turn/h or rad/h")
         if given.dimensions != into.dimensions and not per_time:

@@ -437,6 +437,13 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
     assert tilts.tolist() == pytest.approx([28.64788975654116, 57.29577951308232], rel=1e-15)
 
 
+def test_numbers_beyond_the_doubles_need_other_units(lagtop: Lagtop, tmp_path: Path) -> None:
+    body = "--m 1e100 --g 1e100 --s 1e100 --A 1e-90 --C 1e-90".split()
+    done = lagtop("plot", "cubic", *body, "-o", str(tmp_path / "x.png"))
+    assert done.exit_code == 2
+    assert done.stderr.endswith("too large or too small for a picture: choose other units\n")
+
+
 @pytest.mark.parametrize(
     ("args", "said"),
     [
