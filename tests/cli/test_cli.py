@@ -27,7 +27,7 @@ from lagrange_cli.output.document import record_page
 from lagrange_cli.output.formats import FORMATS
 from lagrange_cli.output.formats.table import FORMAT
 from lagrange_cli.output.report import Report
-from lagrange_cli.solver.columns import COLUMNS
+from lagrange_cli.solver.columns import COLUMNS, SCALARS
 from lagrange_cli.solver.keys import KEYS as SHOWN
 from lagrange_cli.solver.keys import all_keys
 
@@ -256,6 +256,7 @@ BAD = {
     "--digits 2.5": "--digits must be ",
     "a.toml b.toml": "unexpected extra argument (b.toml): see lagtop",
 }
+COLUMN_NAMES = COLUMNS.keys() | SCALARS.keys()
 BAD_TIMES = {
     "--columns psi_deg": "got 'psi_deg' (did you mean 'psi'?)",
     "--n 0": "--n must be in [1, 1000000000], got 0",
@@ -269,7 +270,7 @@ BAD_TIMES = {
     "--t-max 1e300": "--t-max must be finite and within 2^50 periods = 4.83e+14, got 1e+300",
     "--t-min -1e30": "--t-min must be finite and within 2^50 periods = 4.83e+14, got -1e+30",
     "--format table --n 20000": "--format must be csv or json for more than 10000 rows",
-    "--columns t,x": "Error: --columns must be one of 39 names, got 'x' (did you mean 'axis_x'",
+    "--columns t,x": f"Error: --columns must be one of {len(COLUMN_NAMES)} names, got 'x'",
     "--digits 5 --format parquet": "--format parquet holds doubles: leave out --digits and",
     "--decimal x": "'x' is not one of 'point', 'comma'",
 }

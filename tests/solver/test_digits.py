@@ -63,7 +63,8 @@ def test_every_number_is_rounded_correctly_and_its_radius_holds(name: str, digit
     with mpmath.workdps(120):
         for key in NUMBERS:
             true, value = exact_record.get(key), record[key]
-            assert (value is None) == (true is None) == (record[f"{key}_radius"] is None), key
+            known = f"{key} is {value} here, and {true} in record_reference.py: add it there if new"
+            assert (value is None) == (true is None) == (record[f"{key}_radius"] is None), known
             if true is None:
                 continue
             unit = mpmath.mpf(10) ** (Decimal(many[key]).adjusted() + 1 - digits)
