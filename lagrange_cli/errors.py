@@ -1,18 +1,4 @@
-"""The errors of the package, each with the exit code of the command line.
-
-| code | meaning |
-|---|---|
-| 0 | success |
-| 1 | a top or a check failed, a quantity is undefined, or nothing was found |
-| 2 | wrong usage or a bad value |
-| 65 | a file cannot be read or holds bad data |
-| 69 | a package, an engine or a cluster is not available |
-| 70 | an unexpected exception: please report it |
-| 74 | output cannot be written |
-| 128 + N | ended by signal N |
-
-N is 2 for Ctrl-C and 13 if the reader has gone away.
-"""
+"""The errors of the package.  Each has an exit code, which `lagtop --help` explains."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError, joined
 from ..names import Key, check_names
 from ..output.destination import Output
-from ..output.document import lines_document, record_document
+from ..output.document import Document, Lines, record_document
 from ..solver.facts import Regime
 from ..solver.keys import all_keys, derivation_keys, key_of, shown_keys
 from ..solver.record import record_in_range
@@ -143,7 +143,8 @@ def _write_selected(
     if len(reasons) < len(keys):
         record = {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
         texts = record | shown if out.is_named else record
-        out.document(lines_document(record, [value_text(texts[key]) for key in record]))
+        values = Lines([value_text(texts[key]) for key in record])
+        out.document(Document([*record], [record], lambda _: [values], record))
     if reasons:
         raise AbsentError("; ".join(reasons))
 

@@ -73,11 +73,6 @@ def record_document(
     return Document([*record], [whole], page, whole)
 
 
-def lines_document(record: Mapping[str, Any], lines: Sequence[str]) -> Document:
-    """Return a record of which people see only some lines."""
-    return Document([*record], [record], lambda _: [Lines(lines)], record)
-
-
 def rows_grid(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
     """Return rows of numbers and texts as a table."""
     return Grid(headings, rows, range(len(headings)), may_stand=True)

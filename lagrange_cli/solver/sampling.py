@@ -1,8 +1,6 @@
 """Tilt, spin and precession at arrays of times: about one ulp at any time.
 
-The attitude is a pair of complex numbers, the Cayley-Klein parameters:
-
-    X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
+The attitude is the pair of complex numbers X and Y that `attitude` defines.
 
 1. A time is reduced, exactly, to whole half periods of the nutation and a phase (`whole_periods`).
 2. The times nearer to u1 and those nearer to u2 are evaluated apart (`ThetaParts.at`).
