@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,6 +14,8 @@ from ..top.top import Top
 _Z = np.array([0.0, 0.0, 1.0])
 _MOST = 40.0
 """The angle in radians by which the spin turns in the rows that are compared."""
+_MOST_SLOPES = 20_000
+"""Evaluations after which an engine explains nothing: its top moves too fast for the rows."""
 ENGINES = {
     "the inertia does not turn with the body": ("space", "space"),
     "rates of the body are multiplied on the left of the quaternion": ("body", "space"),
@@ -39,7 +42,11 @@ def engine_errors(top: Top, t: Array, seen: Array) -> Iterator[tuple[str, float,
     fixed = rotations.rotated(rotations.conjugate(first), _Z)
 
     def error(weight: str, turn: str) -> float:
+        count = iter(range(_MOST_SLOPES))
+
         def slope(_: float, state: Array) -> Array:
+            if next(count, None) is None:
+                return np.full_like(state, np.nan)  # ends the integration
             q, w = state[:4], state[4:]
             up, axis = rotations.rotated(rotations.conjugate(q), _Z), _Z
             if weight == "space":
@@ -54,8 +61,10 @@ def engine_errors(top: Top, t: Array, seen: Array) -> Iterator[tuple[str, float,
         start = rotations.rotated(first, rates) if weight == "space" else rates
         state = np.concatenate([first, start])
         flow = solve_ivp(slope, (0.0, t[-1]), state, "DOP853", t, rtol=1e-6, atol=1e-8)
+        if not flow.success:
+            return math.inf
         return float(np.nanmax(rotations.angle_between(flow.y[:4].T, seen[: flow.y.shape[1]])))
 
     right = error("body", "body")
-    for name, rules in ENGINES.items():
+    for name, rules in ENGINES.items() if right < math.inf else ():
         yield name, error(*rules), right

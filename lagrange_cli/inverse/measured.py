@@ -169,9 +169,11 @@ class Measured:
         if count < 2:
             raise LagtopError(f"window must be at least 2, got {count}", "window")
         number = np.minimum((self.t / self.t[-1] * count).astype(int), count - 1)
-        rows = [np.flatnonzero(number == i) for i in range(count)]
+        rows = [np.flatnonzero(number == i) for i in range(min(count, self.t.size))]
         seen = [np.isfinite(y) for y in self.angles.values()]
-        if (least := min(int(y[x].sum()) for x in rows for y in seen)) < LEAST_ROWS:
+        least = min(int(y[x].sum()) for x in rows for y in seen)
+        if count > self.t.size or least < LEAST_ROWS:
+            least = 0 if count > self.t.size else least
             wanted = f"{LEAST_ROWS} rows or more in each window"
             raise LagtopError(f"window must leave {wanted}, got {least}: use fewer", "window")
         return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]

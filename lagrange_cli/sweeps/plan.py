@@ -139,9 +139,10 @@ def plan(
     return sweep, enumerate(source.blocks(BLOCK_ROWS)), 0, found
 
 
-def _ranges(axes: Mapping[str, Points]) -> dict[str, str]:
-    """Return the axes that have more than one value, as texts."""
-    return {name: str(axis) for name, axis in axes.items() if axis.count > 1}
+def _ranges(axes: Mapping[str, Points | str]) -> dict[str, str]:
+    """Return the axes that have more than one value, as texts; a word for psidot0 has one."""
+    points = {name: axis for name, axis in axes.items() if isinstance(axis, Points)}
+    return {name: str(axis) for name, axis in points.items() if axis.count > 1}
 
 
 def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, Any]:

@@ -17,6 +17,8 @@ from lagtop import Top, compare
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from lagrange_cli.comparison.engines import engine_errors
+
 _BODIES = {
     "slim": (0.35, 8.5e-4, 4e-4, 0.03, 90, 40, 1, 3),
     "toy": (1.2, 0.018, 0.004, 0.1, 60, 55, -0.5, 1),
@@ -367,6 +369,12 @@ def test_an_engine_that_moves_no_top_is_named() -> None:
     flow = solve_ivp(slope, (0, 1), body.state, "DOP853", T, rtol=1e-9, atol=1e-10)
     found = compare(top, T, quaternion=flow.y[:4].T)
     assert found.cause == "rates of the body are multiplied on the left of the quaternion"
+
+
+def test_engines_are_not_tried_over_thousands_of_swings() -> None:
+    t = np.linspace(0, 1000, 60)
+    swinging = Top(m=1587, A=180, C=9, s=4, g=981, r0=0, theta0_deg=150)
+    assert list(engine_errors(swinging, t, np.tile([1.0, 0, 0, 0], (60, 1)))) == []
 
 
 def test_channels_are_judged_apart() -> None:

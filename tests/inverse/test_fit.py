@@ -695,7 +695,7 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (f"{SAMPLE} --sigma theta=1", 2, "--sigma must be given for all of theta, phi, psi"),
         (f"{SAMPLE} --window 1", 2, "--window must be at least 2, got 1"),
         (
-            f"{SAMPLE} --window 100",
+            f"{SAMPLE} --window 1e9",
             2,
             "--window must leave 12 rows or more in each window, got 0",
         ),
