@@ -17,7 +17,7 @@ from ..recordings.options import Alignment
 from ..recordings.recording import Recording
 from .differences import ExactMotion, errors, sizes, start_of
 from .engines import engine_errors
-from .mistakes import Cause, clocks, estimated_tops, is_near, other_tops, reversed_tops, written
+from .mistakes import Cause, clocks, estimated_tops, is_near, other_tops, written
 from .numbers import Estimate
 
 EXPLAINS = 0.1
@@ -28,9 +28,9 @@ _AS_GOOD, _COMPETES, _ROUNDING = 2.0, 3.0, 1e-9
 """Factors between the remaining errors of causes that explain as much, and a least error."""
 _SURE = 1e-3
 """Relative residual of an axis below which it moves like that of a top."""
-_CLOSE, _ALIKE = 0.02, 0.005
-"""Relative differences of a and b between a trajectory and a top: one that explains most of it, and
-one that makes an estimated top needless."""
+_CLOSE, _ALIKE, _NEAR = 0.02, 0.005, 0.1
+"""Relative differences of a and b between a trajectory and a top: one that explains most of it, one
+that makes an estimated top needless, and one of a pair that is tried."""
 _FEW, _SOME, _LEAST = 12, 300, 3
 """Rows on which causes are tried first and then, and the least number of rows."""
 _MOST_SHIFTS, _MOST_NAMES = 500, 3
@@ -81,25 +81,24 @@ class _Search:
         self.seen = seen if seen and seen.axis.residual < _PART else None
         self.top = exact.motion.top
         self.written = written(run)
-        self.tops = other_tops(self.top, left=run.align.left, seen=self.seen)
         self.kept: dict[int, tuple[Misreading | None, Recording]] = {}
-        units = [x for x in self.written if x.misreading and x.misreading.kind in _UNITS]
-        others = [x for x in self.written if x not in units]
-        self.early = [*units, *clocks(), *(x for x in self.tops if x.name.startswith("r0 has"))]
-        self.late = [*(x for x in self.tops if x not in self.early), *others]
+        self.tops = other_tops(self.top, left=run.align.left)
+        units = [x for x in self.written if x.kind in _UNITS]
+        others = [x for x in self.written if x.kind not in _UNITS]
+        spin = [x for x in self.tops if x.name.startswith("r0 has")]
+        self.early, self.late = [*units, *clocks(), *spin], [*self.tops, *others]
+        self.mistakes = [*self.early, *self.late]
         self.enough = min(EXPLAINS * self.error(_NONE, _SOME), _PART)
-        is_named = self.seen and any(self.is_close(x, _ALIKE) for x in self.tops)
-        trusted = self.seen if self.seen and self.seen.is_trusted and not is_named else None
+        is_named = any(self.agrees(x, _ALIKE) for x in self.tops)
+        trusted = seen if seen and seen.is_trusted and not is_named else None
         self.estimated = [*estimated_tops(self.top, trusted)] if trusted else []
 
-    def is_close(self, cause: Cause, share: float = _CLOSE) -> bool:
-        """Return whether the axis of another top moves like the one that is seen."""
-        return cause.exact is not None and is_near(cause.exact.motion.top, 1.0, self.seen, share)
-
-    @property
-    def mistakes(self) -> list[Cause]:
-        """All causes but alignments, the simplest first."""
-        return [*self.early, *self.late]
+    def agrees(self, cause: Cause, share: float = _CLOSE) -> bool:
+        """Return whether the axis of a cause's top moves like the one that is seen."""
+        if not self.seen or not self.seen.is_trusted:
+            return True
+        clock = float(np.ptp(self.some(cause.misreading).t) / (np.ptp(self.run.t) or 1.0))
+        return is_near((cause.exact or self.given).motion.top, clock, self.seen, share)
 
     def some(self, misreading: Misreading | None) -> Recording:
         """Return some rows of the trajectory as it was meant."""
@@ -125,15 +124,6 @@ class _Search:
         """Return the greatest error without a cause, infinite if no row is finite."""
         worst = np.fmax.reduce(self.errors(cause, most), axis=None)
         return float(worst) if np.isfinite(worst) else math.inf
-
-    def clock_of(self, cause: Cause) -> float:
-        """Return the true unit of time over that of the recording."""
-        return float(np.ptp(self.some(cause.misreading).t) / (np.ptp(self.run.t) or 1.0))
-
-    def may_be_misread(self, cause: Cause) -> bool:
-        """Return whether the axis of the given top moves like the one that is seen."""
-        trusted = self.seen if self.seen and self.seen.is_trusted else None
-        return is_near(self.top, self.clock_of(cause), trusted, _CLOSE)
 
     def spoils(self, cause: Cause) -> bool:
         """Return whether the attitude, or the rates, are clearly worse without a cause."""
@@ -170,37 +160,21 @@ class _Search:
         yield self.shifts(near), self.limit
         yield self.shifts(span), self.limit
         yield self.turned(), two
-        aligned = (self.aligned(self.mistakes, in_other) for in_other in (False, True))
-        yield [y for x in aligned for y in x] + reversed_tops(self.tops), two
-        yield [*self.pairs()], two
-
-    def pairs(self) -> Iterator[Cause]:
-        """Yield a unit or an option that was misread with another one, or with another top."""
-        units = [x for x in self.early if not x.exact]
-        others = [x for x in self.written if x not in units]
-        yield from (x.with_other(y) for x in units for y in others)
-        for x in [*units, *others]:
-            of_time = x.misreading and x.misreading.kind == "clock"
-            tops = self.tops
-            if of_time and self.seen:
-                clock = self.clock_of(x)
-                tops = other_tops(self.top, left=self.run.align.left, clock=clock, seen=self.seen)
-            yield from (x.with_other(y) for y in tops)
+        yield [y for x in (False, True) for y in self.aligned(self.mistakes, x)], two
+        firsts = [x for x in self.mistakes if not x.exact]
+        both = [(x, y) for i, x in enumerate(firsts) for y in [*firsts[i + 1 :], *self.tops]]
+        pairs = (x.with_other(y) for x, y in both if x.kind != y.kind)
+        yield [x for x in pairs if self.agrees(x, _NEAR)], two
 
     def by_channel(self) -> list[Cause]:
-        """Return a cause of the attitude, and one of the rates with that corrected."""
+        """Return a cause of the attitude, with one of the rates."""
         given = {x: y for x, y in self.run.given.items() if x not in _RATES}
         if len(given) == len(self.run.given) or not given.keys() - {"t", "missing"}:
             return []
         bare = _Search(self.given, self.run._replace(given=given), self.limit, self.seen)
-        if bare.error(_NONE, _SOME) <= self.limit:
-            return []
-        of_rates = [x for x in self.written if x.misreading and x.misreading.kind != "clock"]
-        for cause in bare.whole():
-            both = [cause.with_other(x) for x in of_rates]
-            if found := [x for x in both if self.error(x, _SOME) <= self.limit]:
-                return [x._replace(error=self.error(x)) for x in found[:1]]
-        return []
+        of_rates = [x for x in self.written if x.kind != "clock"]
+        wrong = bare.whole() if bare.error(_NONE, _SOME) > self.limit else []
+        return self.best([x.with_other(y) for x in wrong for y in of_rates], self.limit)[:1]
 
     def engines(self) -> list[Cause]:
         """Return the engine that moves no top and explains the first rows."""
@@ -219,20 +193,14 @@ class _Search:
 
     def partial(self) -> list[Cause]:
         """Return the causes that remove nine tenths of the error, but do not contradict a and b."""
-        tops = [*self.tops, *self.estimated]
-        if self.seen and self.seen.is_trusted:
-            tops = [x for x in tops if self.is_close(x)]
-        others = [x for x in self.mistakes if not x.exact and self.may_be_misread(x)]
-        others = [x for x in others if x.name != BACKWARDS]  # exact, or else it is a mirror image
-        causes = [*self.aligned([_NONE], in_other=False), *others, *tops]
-        found = [x for x in causes if self.error(x, _FEW) <= self.enough and not self.spoils(x)]
+        causes = [*self.aligned([_NONE], in_other=False), *self.mistakes, *self.estimated]
+        found = [x for x in causes if x.name != BACKWARDS and self.agrees(x)]
+        found = [x for x in found if self.error(x, _FEW) <= self.enough and not self.spoils(x)]
         found = [*{x.name: x for x in reversed(found)}.values()][::-1]  # the first of each name
-        found = [x._replace(error=self.error(x, _SOME)) for x in found]
-        least = min((x.error for x in found), default=0.0)
-        kept = [x for x in found if x.error <= min(self.enough, _COMPETES * least)]
-        kept = [x._replace(error=self.error(x)) for x in kept]
-        kept = [x for x in kept if x.error <= self.enough]
-        return kept if len(kept) <= _MOST_NAMES else []
+        found = [x._replace(error=self.error(x)) for x in found]
+        most = min(self.enough, _COMPETES * min((x.error for x in found), default=0.0))
+        found = [x for x in found if x.error <= most]
+        return found if len(found) <= _MOST_NAMES else []
 
     def aligned(self, causes: Iterable[Cause], in_other: bool) -> list[Cause]:
         """Return each cause with other zeros of the angles or of the clock, perhaps in other axes.

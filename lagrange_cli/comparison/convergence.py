@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.types import Array
 from ..top.top import Top
 from .numbers import Estimate, sentences
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+    from .compare import Comparison
 
 LOST_PHASE, ROUNDING = 0.3, 1e-8
 """Errors beyond which no order can be measured, and below which an error need not fall."""
@@ -20,23 +23,8 @@ _RISES, _SPREAD, _PLATEAU = 1.2, 1.0, 0.5
 of the least error that remains at step 0 if the error has a plateau."""
 _OTHER, _PHASES = 5e-3, 1.0
 """Relative difference of another top's parameters; largest errors from which e0 follows."""
+_RATIOS = [(name, 1.0, _OTHER) for name in ("a", "b", "r0")]
 _ORDERS = np.arange(0.5, 8.01, 0.05)
-
-
-class HasErrors(Protocol):
-    """A comparison with its errors over time."""
-
-    @property
-    def step(self) -> float | None:
-        """The step of the method."""
-
-    @property
-    def t(self) -> Array:
-        """The times."""
-
-    @property
-    def error(self) -> Array:
-        """The errors at these times."""
 
 
 class Convergence(NamedTuple):
@@ -51,7 +39,7 @@ class Convergence(NamedTuple):
     """Whether the error falls with the step, or no error needs to fall."""
 
 
-def convergence(results: Sequence[HasErrors], limit: float) -> Convergence | None:
+def convergence(results: Sequence[Comparison], limit: float) -> Convergence | None:
     """Return how the errors of trajectories fall with their steps, or None for fewer than two.
 
     The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
@@ -119,41 +107,27 @@ def _plateau(step: Array, error: Array) -> tuple[float, float]:
 def named_at_step_0(
     top: Top, found: Convergence, steps: Sequence[float], estimates: Sequence[Estimate | None]
 ) -> Convergence:
-    """Return a convergence with the motion at step 0, if that is another one than the top's."""
-    seen, known = at_step_0(steps, estimates, found.order or 1.0), [x for x in estimates if x]
-    if seen is None or not is_another(seen, min(known, key=lambda x: x.step)):
+    """Return a convergence with the motion at step 0, if that is another one than the top's.
+
+    The estimates of the two finest steps tend to it with the order of the errors.  It is another
+    motion if it differs by more than its distance from the finest step suggests.
+    """
+    known = {h: x for h, x in zip(steps, estimates, strict=True) if x and x.is_trusted}
+    if len(known) < 2:
         return found
-    said = f"{found.sentence} At step 0, {'; '.join(sentences(top, seen))}."
+    fine, coarse = sorted(known)[:2]
+    last, before = known[fine], known[coarse]
+    share, is_other, at_0 = (
+        1 / ((coarse / fine) ** (found.order or 1.0) - 1),
+        False,
+        dict[str, Any](),
+    )
+    for name, right, least in (*_RATIOS, ("decay", 0.0, _OTHER / last.span)):
+        x, y = getattr(last, name), getattr(before, name)
+        at_0[name] = None if x is None or y is None else x + share * (x - y)
+        if at_0[name] is not None:
+            is_other |= abs(at_0[name] - right) > max(least, 2 * share * abs(x - y))
+    if not is_other:
+        return found
+    said = f"{found.sentence} At step 0, {'; '.join(sentences(top, last._replace(**at_0)))}."
     return found._replace(sentence=said, converges=False)
-
-
-def at_step_0(
-    steps: Sequence[float], estimates: Sequence[Estimate | None], order: float
-) -> Estimate | None:
-    """Return the estimate to which those of the two finest steps tend, None if there are not two.
-
-    The estimates of a method tend to it with the order of its errors.
-    """
-    known = [(h, x) for h, x in zip(steps, estimates, strict=True) if x and x.is_trusted]
-    if len({h for h, _ in known}) < 2:
-        return None
-    (fine, last), (coarse, before) = sorted(known, key=lambda x: x[0])[:2]
-    share = 1 / ((coarse / fine) ** order - 1) if coarse > fine else 0.0
-
-    def limit(x: float | None, y: float | None) -> float | None:
-        return None if x is None or y is None else x + share * (x - y)
-
-    decay = last.decay + share * (last.decay - before.decay)
-    a, b, r0 = limit(last.a, before.a), limit(last.b, before.b), limit(last.r0, before.r0)
-    return last._replace(a=a, b=b, r0=r0, decay=decay)
-
-
-def is_another(found: Estimate, last: Estimate) -> bool:
-    """Return whether the motion at step 0 differs from that of the given top.
-
-    `last` is the estimate of the finest step: the difference must be larger than that from it.
-    """
-    pairs = [(found.a, last.a), (found.b, last.b), (found.r0, last.r0)]
-    off = [abs(x - 1) > max(_OTHER, 2 * abs(x - y)) for x, y in pairs if x and y]
-    least = max(_OTHER / found.span, 2 * abs(found.decay - last.decay))
-    return any(off) or abs(found.decay) > least

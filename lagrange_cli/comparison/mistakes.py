@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from fractions import Fraction
 from functools import partial
@@ -20,9 +20,8 @@ from .differences import ExactMotion
 from .numbers import Estimate, a_and_b
 
 _GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
-_STEPS = {"twice": 2.0, "half": 0.5}
-_ALIASED = 1.5
-"""Turn of the nutation from row to row, in radians, with which the rows show a slower one."""
+_HALF = "the factor 1/2 is missing in the rate of the quaternion"
+"""A row whose angular velocity is half of that of the attitude."""
 Changes = dict[str, Any]
 """The inputs of another top, and turns of its motion (`space`, `body`, `spin`)."""
 
@@ -41,13 +40,13 @@ class Cause(NamedTuple):
     """The greatest error without the cause."""
 
     @property
-    def undo(self) -> Callable[[Recording], Recording] | None:
-        """What corrects the recording, other than an alignment."""
-        return self.misreading and self.misreading.undo
+    def kind(self) -> str:
+        """What it changes, as in `Misreading`; of another top, `top`."""
+        return "top" if self.exact or not self.misreading else self.misreading.kind
 
     def undone(self, run: Recording) -> Recording:
         """Return the recording as it was meant."""
-        run = self.undo(run) if self.undo else run
+        run = self.misreading.undo(run) if self.misreading else run
         return run.read_as(align=self.align) if self.align else run
 
     def with_other(self, other: Cause) -> Cause:
@@ -56,7 +55,7 @@ class Cause(NamedTuple):
         first, second = self.misreading, other.misreading
         if first and second:
             remedy = " and ".join(filter(None, (first.remedy, second.remedy)))
-            undo = partial(_both, first.undo, second.undo)
+            undo = partial(lambda x, y, run: y(x(run)), first.undo, second.undo)
             first = first._replace(undo=undo, remedy=remedy)
         return Cause(
             name,
@@ -67,11 +66,6 @@ class Cause(NamedTuple):
         )
 
 
-def _both(first: Any, second: Any, run: Recording) -> Recording:
-    found: Recording = second(first(run))
-    return found
-
-
 def written(run: Recording) -> list[Cause]:
     """Return the misreadings of a recording, the simplest first."""
     return [Cause(x.name, x) for x in misreadings(run)]
@@ -79,60 +73,34 @@ def written(run: Recording) -> list[Cause]:
 
 def clocks() -> Iterator[Cause]:
     """Yield steps of an engine that are longer or shorter than its times say."""
-    for word, factor in _STEPS.items():
+    for word, factor in (("twice", 2.0), ("half", 0.5)):
         name = f"a step of the engine is {word} as long as the times say"
         undo = partial(Recording.timed, factor=factor)
         yield Cause(name, Misreading(name, undo, kind="clock"))
 
 
-def other_tops(top: Top, *, left: bool, clock: float = 1.0, seen: Estimate | None) -> list[Cause]:
-    """Return the rows of the table whose a and b are near those of a trajectory.
+def other_tops(top: Top, *, left: bool) -> list[Cause]:
+    """Return the rows of the table that are tops other than this one.
 
-    The rows are all of them if there is no estimate.  `clock` is the factor between the units of
-    time; `left` says that the frame of the trajectory is left-handed.
+    `left` says that the frame of the trajectory is left-handed.
     """
     found, numbers = [], top.inputs()
     plain = Top(**numbers)  # A and r0 do not depend on other inputs
     for name, changed in _inputs(top, left).items():
         turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
+        rates = None
+        if name == _HALF:
+            twice = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
+            rates = Misreading(name, twice, kind="rates")
         with suppress(LagtopError):  # there is no such top
             other = plain.replace(**changed)
-            may_be = is_near(other, clock, seen) or _is_aliased(other, clock, seen)
-            if may_be and (turns or other.inputs() != numbers):
-                found.append(Cause(name, exact=ExactMotion(solve(other), **turns)))
-    A, C = Fraction(top.A), Fraction(top.C)
-    faster = {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")}
-    with suppress(LagtopError):
-        twice = plain.replace(A=A / 2, C=(A + C) / 4, **faster)
-        if is_near(twice, clock, seen):
-            name = "the factor 1/2 is missing in the rate of the quaternion"
-            undo = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
-            rates = Misreading(name, undo, kind="rates")
-            found.append(Cause(name, rates, ExactMotion(solve(twice))))
+            if turns or other.inputs() != numbers:
+                found.append(Cause(name, rates, ExactMotion(solve(other), **turns)))
     return found
 
 
-def reversed_tops(tops: list[Cause]) -> list[Cause]:
-    """Return other tops whose spin has the wrong sign, too."""
-    found = []
-    for x in tops:
-        if x.exact and not x.name.startswith("r0 "):
-            space, body, spin = x.exact.turns
-            top = x.exact.motion.top
-            other = ExactMotion(solve(top.replace(r0=-top.r0)), space, body, -spin)
-            found.append(Cause(f"{x.name}; r0 has the wrong sign", x.misreading, other))
-    return found
-
-
-def _is_aliased(top: Top, clock: float, seen: Estimate | None) -> bool:
-    """Return whether the nutation of a top would be too fast for the rows of a trajectory."""
-    return seen is not None and abs(a_and_b(top)[1]) * clock * seen.step > _ALIASED
-
-
-def is_near(top: Top, clock: float, seen: Estimate | None, share: float = 0.1) -> bool:
+def is_near(top: Top, clock: float, seen: Estimate, share: float) -> bool:
     """Return whether the axis of a top might move like that of a trajectory."""
-    if seen is None:
-        return True
     (a, b), axis = a_and_b(top), seen.axis
     a, b = a * clock**2, b * clock
     share += 3 * axis.residual
@@ -226,4 +194,6 @@ def _inputs(top: Top, left: bool) -> dict[str, Changes]:
             "r0": Fraction(top.r0) * ratio,
             "spin": float(Fraction(top.r0) * (1 - ratio)),
         },
+        _HALF: {"A": A / 2, "C": (A + C) / 4}
+        | {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")},
     }

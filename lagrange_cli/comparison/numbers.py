@@ -64,25 +64,17 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
         return None
     if seen.t[0] > seen.t[-1]:
         seen = _rows(seen, slice(None, None, -1))
-    axis = _axis(seen)
-    found = None if axis is None else from_spline(seen.t, axis)
-    for part in _PARTS:  # a strong decay is no line
-        few = slice(int(part * len(seen.t)))
-        if axis is None or found is None or found.residual <= TRUSTED:
+    best: tuple[Observed, Array, AxisMotion] | None = None
+    for view in _views(seen):
+        axis = _axis(view)
+        found = None if axis is None else from_spline(view.t, axis)
+        if axis is not None and found and (best is None or found.residual <= TRUSTED):
+            best = view, axis, found
+        if best and best[2].residual <= TRUSTED:
             break
-        if (early := from_spline(seen.t[few], axis[few])) and early.residual <= TRUSTED:
-            seen, axis, found = _rows(seen, few), axis[few], early
-    frames = None
-    if found and found.residual > TRUSTED and seen.quaternion is not None:
-        frames = own_frames(seen)
-    if frames:  # the figure axis may be another one than the body's z
-        turned = seen.turned(rotations.IDENTITY, rotations.of_matrix(frames[1].reshape(1, 9))[0][0])
-        own = _axis(turned)
-        other = None if own is None else from_spline(turned.t, own)
-        if other and other.residual < TRUSTED:
-            seen, found, axis = turned, other, own
-    if found is None or axis is None:
+    if best is None:
         return None
+    seen, axis, found = best
     a, b = a_and_b(top)
     swing = abs(b) + math.sqrt(a) + 1e-300
     rate, decay = _spin(seen, float(top.r0))
@@ -103,11 +95,23 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
     )
 
 
+def _views(seen: Observed) -> Iterator[Observed]:
+    """Yield a motion, its first parts, and the motion about its own figure axis.
+
+    A strong decay of the spin is a line only at first.
+    """
+    yield seen
+    for part in _PARTS:
+        yield _rows(seen, slice(int(part * len(seen.t))))
+    if seen.quaternion is not None and (frames := own_frames(seen)):
+        turn = rotations.of_matrix(frames[1].reshape(1, 9))[0][0]
+        yield seen.turned(rotations.IDENTITY, turn)
+
+
 def _rows(seen: Observed, rows: slice) -> Observed:
     quaternion = None if seen.quaternion is None else seen.quaternion[rows]
     axis = None if seen.axis is None else seen.axis[rows]
-    angles = {x: y[rows] for x, y in seen.angles.items()}
-    return Observed(seen.t[rows], quaternion, axis, angles)
+    return Observed(seen.t[rows], quaternion, axis, {x: y[rows] for x, y in seen.angles.items()})
 
 
 def _axis(seen: Observed) -> Array | None:
