@@ -182,7 +182,8 @@ def compared(
         raise LagtopError(f"step_sizes must have {wanted}, got {step_sizes}", "step_sizes")
     exact, steps = ExactMotion(motion), step_sizes or repeat(None)
     results = [_measured(exact, *x) for x in zip(runs, steps, strict=False)]
-    found = convergence(results, limit) if step_sizes else None
+    curves = [(x.step or 0.0, x.t, x.error) for x in results]
+    found = convergence(curves, limit) if step_sizes else None
     pairs = [*zip(results, runs, strict=True)]
     estimates = [estimate(motion.top, run) if _is_wrong(x, limit) else None for x, run in pairs]
     if found and step_sizes:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.types import Array
 from ..top.top import Top
 from .numbers import Estimate, sentences
-
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
-    from .compare import Comparison
 
 LOST_PHASE, ROUNDING = 0.3, 1e-8
 """Errors beyond which no order can be measured, and below which an error need not fall."""
@@ -39,24 +36,22 @@ class Convergence(NamedTuple):
     """Whether the error falls with the step, or no error needs to fall."""
 
 
-def convergence(results: Sequence[Comparison], limit: float) -> Convergence | None:
-    """Return how the errors of trajectories fall with their steps, or None for fewer than two.
+def convergence(runs: Sequence[tuple[float, Array, Array]], limit: float) -> Convergence | None:
+    """Return how the errors of runs (step, t, errors) fall with the step, None for fewer than two.
 
     The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
     rad, other than at its start, but over two rows at least.  Rounding errors are left out, because
     they grow with finer steps.  If the orders between neighbours differ by more than 1, there is no
     single order.
     """
-    if len({x.step for x in results}) < 2:
+    if len({h for h, _, _ in runs}) < 2:
         return None
-    curves = [
-        (abs(x.t - x.t[0]), np.fmax.accumulate(np.nan_to_num(x.error, nan=np.inf))) for x in results
-    ]
+    curves = [(abs(t - t[0]), np.fmax.accumulate(np.nan_to_num(x, nan=np.inf))) for _, t, x in runs]
     lost = [int(np.searchsorted(error, LOST_PHASE)) for _, error in curves]
     until = min((t[i - 1] for i, (t, _) in zip(lost, curves, strict=True) if i), default=np.inf)
     until = max(until, *(t[:2].max() for t, _ in curves))
     errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
-    step, error = np.array(sorted((x.step, y) for x, y in zip(results, errors, strict=True))).T
+    step, error = np.array(sorted((x[0], y) for x, y in zip(runs, errors, strict=True))).T
     rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)
     if rises.any():
         i = int(np.argmax(rises))
@@ -65,7 +60,7 @@ def convergence(results: Sequence[Comparison], limit: float) -> Convergence | No
         why = "the order of the step sizes is wrong, the method varies, "
         why += "or the trajectory is of a different top"
         return Convergence(errors, f"The error rises {how}: {why}.", converges=False)
-    last = sorted((x.step or 0.0, y[-1]) for x, (_, y) in zip(results, curves, strict=True))
+    last = sorted((x[0], y[-1]) for x, (_, y) in zip(runs, curves, strict=True))
     ends = np.array(last)[:, 1]
     plateau, tends = _plateau(step, ends if ends.max() < _PHASES else error)
     if plateau > max(limit, _PLATEAU * error[0]) and ends[-1] > _RISES * plateau:

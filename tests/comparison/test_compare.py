@@ -231,7 +231,7 @@ def test_how_errors_depend_on_the_step(
     errors: list[float], order: float | None, words: str
 ) -> None:
     steps = zip([4e-3, 2e-3, 1e-3], errors, strict=True)
-    found = convergence([Comparison(step=h, t=T, error=x * T / T[-1]) for h, x in steps], 0.1)
+    found = convergence([(h, T, x * T / T[-1]) for h, x in steps], 0.1)
     assert found
     assert words in found.sentence
     assert found.converges == (order is not None or "numbers" in words or "single" in words)
@@ -243,7 +243,7 @@ def test_a_step_that_loses_the_phase_at_once() -> None:
     steps = (0.1, 0.9), (0.05, 0.18), (0.025, 0.03)
     times = [np.arange(0, 1, h) for h, _ in steps]
     rows = zip(steps, times, strict=True)
-    found = convergence([Comparison(step=h, t=t, error=x * t / h) for (h, x), t in rows], 1e-3)
+    found = convergence([(h, t, x * t / h) for (h, x), t in rows], 1e-3)
     assert found
     assert found.errors == pytest.approx([0.9, 0.36, 0.12])
     assert found.converges
@@ -327,7 +327,7 @@ def test_bad_arguments(arguments: dict[str, Any], message: str) -> None:
 def test_a_plateau_of_the_error_is_another_top() -> None:
     """Errors e0 + c h^2 fall with the step, but not to 0."""
     steps = (4e-3, 0.5), (2e-3, 0.275), (1e-3, 0.21875)
-    found = convergence([Comparison(step=h, t=T, error=x * T / T[-1]) for h, x in steps], 1e-3)
+    found = convergence([(h, T, x * T / T[-1]) for h, x in steps], 1e-3)
     assert found
     assert not found.converges
     assert found.order == pytest.approx(2, abs=0.06)
