@@ -48,9 +48,9 @@ def fit(
     Pass an attitude, angles, the figure axis or the position of a marker as arrays, and options,
     as to `compare`; rates are not used.  `sigma` is a standard deviation in radians,
     or a mapping by channel; by default it is estimated from the residuals.  `known` are known
-    inputs by key, which are tested against the recording.  Texts such as `"0.070(5)"`, and numbers
-    of uncertainties, are uncertain; units are converted to SI.  Raises LagtopError, DataError for a
-    recording that cannot be fitted.
+    inputs by key, which are tested against the recording.  A text such as `"0.070(5)"`, or a number
+    of the package uncertainties, is uncertain.  Units are converted to SI.  Raises LagtopError,
+    and DataError for a recording that cannot be fitted.
 
     >>> t = np.linspace(0, 2, 200)
     >>> noise = np.random.default_rng(2).normal(scale=1e-3, size=(3, 200))

@@ -44,7 +44,7 @@ m | m | mass | mass | positive | mass | 1587
 A | A | equatorial moment
     | equatorial moment about the pivot | positive | mass len² | 39032
 A_cm | A_cm | moment about the centre of mass
-    | equatorial moment about the centre of mass: A = A_cm + m s^2 | 0 or more | mass len² |
+    | equatorial moment about the centre of mass, for A = A_cm + m s^2 | 0 or more | mass len² |
     | A | A_cm + m*s*s | A - m*s*s
 C | C | polar moment | polar moment of inertia
     | positive; above 2A only if m, A, C, s and g are given without units | mass len² | 17458
@@ -58,7 +58,7 @@ phidot0 | φ'0 | spin rate at the start
     | r0 | phidot0 + psidot0*u0 | r0 - psidot0*u0
 spin_period | T_φ0 | spin period at the start
     | time of one turn of the spin at the start, seen from the gimbal (not by a camera at rest)
-    | not 0, instead of phidot0 = 2 pi/spin_period
+    | not 0; it sets phidot0 = 2 pi/spin_period
     | time |
     | phidot0 | 2*pi/spin_period | 2*pi/phidot0
 theta0 | ϑ0 | tilt at the start
