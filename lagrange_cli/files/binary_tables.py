@@ -27,6 +27,7 @@ class _Rows:
     """The rows of some columns, which are put together when they are read."""
 
     columns: Sequence[Callable[[], Array]]
+    """Functions that return the columns."""
 
     def __iter__(self) -> Iterator[tuple[int, list[Any]]]:
         cells = zip(*(read().tolist() for read in self.columns), strict=True)
@@ -37,12 +38,11 @@ class _Rows:
 class ColumnTable(Table):
     """A table of columns of numbers or texts; masked elements and None are empty cells."""
 
-    columns: Sequence[Callable[[], Array]] = ()
-    """Functions that return the columns."""
+    rows: _Rows
 
     def numbers(self, columns: Sequence[int], names: Sequence[str]) -> NumericColumns:
         """Return columns of numbers, without the rows that have none in these columns."""
-        found = [np.ma.asarray(self.columns[i]()) for i in columns]
+        found = [np.ma.asarray(self.rows.columns[i]()) for i in columns]
         if any(x.dtype == object for x in found):
             return self.of_cells(columns, names)
         values = np.stack([np.ma.filled(x.astype(float), np.nan) for x in found], axis=1)
@@ -50,13 +50,9 @@ class ColumnTable(Table):
         kept = ~empty.all(axis=1)
         return NumericColumns(values[kept], empty[kept], 1 + np.flatnonzero(kept))
 
-    def blocks(self, size: int) -> Iterator[Table]:
-        """Yield the table in blocks of `size` rows, which any process can read."""
-        return Table(self.name, self.headings, self.width, self.rows, place=self.place).blocks(size)
-
     def column(self, index: int) -> Iterator[tuple[int, Any]]:
         """Yield the numbers of the rows and the cells of one column, None for an empty one."""
-        return enumerate(self.columns[index]().tolist(), 1)
+        return enumerate(self.rows.columns[index]().tolist(), 1)
 
 
 def binary_table(content: bytes, name: str) -> Table | None:
@@ -143,5 +139,4 @@ def _matlab(content: bytes, name: str) -> Table:
 
 
 def _table(name: str, headings: list[str] | None, columns: list[Callable[[], Array]]) -> Table:
-    rows = _Rows(columns)
-    return ColumnTable(name, headings, len(columns), rows, place="row", columns=columns)
+    return ColumnTable(name, headings, len(columns), _Rows(columns), place="row")

@@ -39,10 +39,10 @@ def why_radians(bare: Mapping[str, Array], reading: Reading) -> str:
 
     They stay within a turn and jump by it, or Euler angles turn smoothly only in radians.
     """
-    columns = [x for y in bare.values() for x in y.T]
-    if not all(_is_within_turn(x) for x in columns):
+    columns = [x[np.isfinite(x)] for y in bare.values() for x in y.T]
+    if not all(map(_is_within_turn, columns)):
         return ""
-    if any(map(_jumps, columns)):
+    if any((np.abs(np.diff(x)) > _JUMP).any() for x in columns):
         return "they jump by 6.28"
     if "euler" in bare:
         rough = [_roughness(bare["euler"] * size, reading) for size in (1.0, np.pi / 180)]
@@ -53,16 +53,8 @@ def why_radians(bare: Mapping[str, Array], reading: Reading) -> str:
 
 def _is_within_turn(angle: Array) -> bool:
     """Return whether an angle stays in [-pi, pi] or in [0, 2 pi]."""
-    seen = angle[np.isfinite(angle)]
-    if not seen.size:
-        return True
-    turn = 2 * np.pi + _BEYOND
-    return bool(abs(seen).max() < turn / 2 or (seen.min() > -_BEYOND and seen.max() < turn))
-
-
-def _jumps(angle: Array) -> bool:
-    steps = np.abs(np.diff(angle[np.isfinite(angle)]))
-    return bool((steps > _JUMP).any())
+    least, most, turn = angle.min(initial=0), angle.max(initial=0), 2 * np.pi + _BEYOND
+    return bool(max(-least, most) < turn / 2 or (least > -_BEYOND and most < turn))
 
 
 def _roughness(euler: Array, reading: Reading) -> float:

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.types import Array
 from ..errors import arg
 from ..names import ANGLES
 from .options import OPTION_OF
@@ -82,11 +81,12 @@ def _of_conventions(recording: Recording) -> Iterator[Misreading]:
 def _of_numbers(recording: Recording) -> Iterator[Misreading]:
     """Yield other meanings of the numbers."""
     given, theta, scale = recording.given.keys(), {"theta"}, _scale(recording)
+    up = partial(np.subtract, math.pi / 2)
     for keys, change, kind, name, remedy in (
         (_RATES, np.radians, "rates", "the rates are in degrees per unit of time", ""),
         (_ANGLES, np.radians, "scale", _TAKEN.format("degrees", "radians"), _NAME.format("deg")),
         (_ANGLES, np.degrees, scale, _TAKEN.format("radians", "degrees"), _NAME.format("rad")),
-        (theta, _from_horizontal, "attitude", _HORIZONTAL, "name its column elevation"),
+        (theta, up, "attitude", _HORIZONTAL, "name its column elevation"),
         ({"psi"}, np.negative, "sense", "psi is counted backwards", ""),
         ({"phi"}, np.negative, "sense", "phi is counted backwards", ""),
     ):
@@ -109,10 +109,6 @@ def _scale(recording: Recording) -> str:
         np.fmax.reduce(np.abs(np.degrees(x)), axis=None) <= 2 * math.pi for x in angles
     )
     return "attitude" if is_possible else "scale"
-
-
-def _from_horizontal(tilt: Array) -> Array:
-    return math.pi / 2 - tilt
 
 
 def _exchanged(recording: Recording) -> Recording:

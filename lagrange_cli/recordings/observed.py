@@ -66,7 +66,7 @@ def observe(given: Quantities, reading: Reading) -> Observed:
     The first quantity that gives all of the attitude, or most of it, is used.  Raises LagtopError
     for rates of the angles without an attitude.
     """
-    alone = angles_in(given)
+    alone = {x: given[x][:, 0] for x in ANGLES if x in given}
     found: dict[str, Any] = {"t": given["t"][:, 0]}
     if "quaternion" in given:
         parts = [*map(reading.quaternion_order.index, "wxyz")]
@@ -117,11 +117,6 @@ def framed(seen: Observed, align: Alignment) -> Observed:
     mirror = _UNREAL if align.up[-1] == "z" else _UNITY
     seen = seen.turned(*(rotations.product(mirror, x) for x in frames))
     return seen if seen.axis is None else replace(seen, axis=-seen.axis)
-
-
-def angles_in(given: Quantities) -> dict[str, Array]:
-    """Return tilt, spin and precession, as far as each has its own column."""
-    return {x: given[x][:, 0] for x in ANGLES if x in given}
 
 
 def _directed(key: str, values: Array) -> dict[str, Array]:

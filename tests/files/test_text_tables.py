@@ -177,19 +177,14 @@ def test_times_are_exact(tmp_path: Path) -> None:
 
 
 def test_numpy_and_the_careful_reader_read_the_same_numbers(tmp_path: Path) -> None:
-    """A cell in quotes, or an empty one, changes the way but no number; places stay right."""
+    """A cell in quotes changes the way but no number; places stay right."""
     path = tmp_path / "file"
     cells = ["0.1", "-1e-320", "1.7976931348623157e308", "3.", ".5", "+7", "2e22"] * 30
     rows = [f"{i},{x}" for i, x in enumerate(cells)]
-    path.write_text("t,theta\n" + "\n".join(rows))
-    plain = read_recording(str(path), Reading(units=RADIANS)).given["theta"][:, 0].tolist()
-    assert plain == list(map(float, cells))
-    rows[3:5] = ['"3","3."', "4,.5", "4.5,nan"]
-    path.write_text("t,theta\n# note\n" + "\n".join(rows))
-    assert (
-        read_recording(str(path), Reading(units=RADIANS)).given["theta"][:, 0].tolist()[:5]
-        == plain[:5]
-    )
+    for first in ("0", '"0"'):
+        path.write_text("t,theta\n" + "\n".join([f"{first},{cells[0]}", *rows[1:]]))
+        found = read_recording(str(path), Reading(units=RADIANS)).given["theta"][:, 0]
+        assert found.tolist() == list(map(float, cells))
     rows[100] = "100,x"
     path.write_text("t,theta\n# note\n" + "\n".join(rows))
     with pytest.raises(DataError, match="line 103, column 2: theta must be a finite decimal"):
