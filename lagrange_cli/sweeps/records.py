@@ -41,8 +41,8 @@ BLOCK_ROWS = 1 << 12
 _MOST_ROWS = 8 * BLOCK_ROWS
 """Most tops in a block of `sweep`: the few that need pairs of doubles are computed together."""
 _SHARE, _LEAST_ROWS = 110, 2048
-"""A top takes 1,100 bytes while it is computed: such a share of the tops times keys of a sweep takes
-1.25 times its result."""
+"""A top takes 1,100 bytes while it is computed: such a share of the tops times keys of a sweep
+takes 1.25 times its result."""
 
 
 def column_keys(units: Units = DEGREES) -> list[str]:
