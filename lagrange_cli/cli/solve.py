@@ -88,8 +88,6 @@ def solve_command(
         raise beyond[0]
     if beyond:
         complain(f"Warning: {joined(beyond).marked}")
-    if "remark" in record:
-        record["remark"] = units.remark(record["remark"])
     more: dict[str, Any] = {}
     if wanted is None:
         with suppress(TypeError):  # a number beyond the range of doubles is None

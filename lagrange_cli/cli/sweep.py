@@ -226,8 +226,6 @@ def find_command(
     units = given.units(radians=top.radians)
     records = [record_in_range(motion, units=units, keys=chosen)[0] for motion in motions]
     for motion, record in zip(motions, records, strict=True):
-        if "remark" in record:
-            record["remark"] = units.remark(record["remark"])
         if "psidot0" in record:  # the number of a steady rate
             record["psidot0"] = float(motion.top.psidot0)
     columns = {key: [record.get(key) for record in records] for key in chosen}

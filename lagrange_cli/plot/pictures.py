@@ -26,7 +26,7 @@ from ..errors import LagtopError
 from ..names import check_names
 from ..output.terminal import Progress, silent
 from ..solver.facts import Regime
-from ..solver.keys import NUMBERS, all_keys, degree_name, shown_keys
+from ..solver.keys import NUMBERS, all_keys, shown_keys
 from ..solver.solve import Motion
 from ..sweeps.records import sweep
 from ..top.inputs import DECLARED, NINE
@@ -368,7 +368,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     Raises LagtopError for an unknown key, for wrong axes, and if the key has no value anywhere.
     """
     (ax,), look = axes, options.look
-    key = degree_name(options.key or "mean_precession_rate")
+    key = DEGREES.key(options.key or "mean_precession_rate")
     check_names("key", [key], [*WORDS, *NUMBERS])
     grid = grid_of(motion.top, options)
     tilt = options.units.key("theta0_deg")

@@ -267,11 +267,6 @@ def _forms() -> Iterator[tuple[str, Key]]:
 _TABLE = dict(_read(_TEXT)) | dict(_forms())
 
 
-def degree_name(name: str) -> str:
-    """Return the name of a key in degrees: `_rad` becomes `_deg`."""
-    return f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
-
-
 @cache
 def needed(name: str) -> tuple[str, ...]:
     """Return the lines that the evaluated formula of a line names, in order."""

@@ -28,7 +28,6 @@ class Solution:
         self.facts = facts
         self._balls: dict[int, Numbers] = {}
         self._doubles: dict[str, Rounded | None] = {}
-        self._zeros: dict[str, bool] = {}
         self._has: dict[str, bool] = {}
         self._sampler: Sampler | None = None
 
@@ -93,10 +92,7 @@ class Solution:
 
     def is_zero(self, name: str) -> bool:
         """Return whether a number is 0, or agrees with 0 to D digits."""
-        if name not in self._zeros:
-            found = sign_to(lambda digits: self.balls(digits)[name], self.facts.equal)
-            self._zeros[name] = found == 0
-        return self._zeros[name]
+        return not sign_to(lambda digits: self.balls(digits)[name], self.facts.equal)
 
     def absence(self, name: str) -> str:
         """Return why the motion lacks a number: `undefined in ...` or `defined only if ...`.
@@ -167,7 +163,7 @@ def record_in_range(
     words: dict[str, Callable[[], str | None]] = {
         "regime": lambda: motion.regime.value,
         "path": lambda: motion.path,
-        "remark": lambda: remark_of(motion, units),
+        "remark": lambda: units.remark(remark_of(motion, units)),
     }
     wanted = set(record_keys(units) if keys is None else keys)
     record: dict[str, Any] = {}
