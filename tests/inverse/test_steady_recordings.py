@@ -1,0 +1,67 @@
+"""`fit` of recordings without a nutation that can be seen: mean rates of steady precessions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from lagtop import LagtopError, Top, fit, solve
+from noisy_recordings import TOP, fitted, pulls, recorded, recording_from
+
+from lagrange_cli.inverse.search import best_fit
+
+
+@pytest.mark.parametrize(("way", "rows"), [(1, 200), (-1, 200), (1, 100)])
+def test_a_fast_top_has_mean_rates(way: int, rows: int) -> None:
+    """The nutation of 0.02 degrees is invisible; psi may count in either direction.
+
+    A spin of a quarter of a turn per row or more does not show C.
+    """
+    top = TOP.replace(r0=400)
+    t, seen = recorded("theta", "phi", "psi", top=top, rows=rows, seconds=0.5, seed=15)
+    outcome = fit(t, theta=seen["theta"], phi=seen["phi"], psi=way * seen["psi"])
+    assert outcome.verdict == "good, no nutation"
+    assert outcome.inputs is None
+    turn = f"only up to whole turns per row, multiples of {2 * math.pi * (rows - 1) / 0.5:.6g}"
+    assert any(turn in x for x in outcome.notes)
+    exact = solve(top)
+    tilt = (exact.theta_min_deg + exact.theta_max_deg) / 2
+    truth = {"mean_precession_rate": exact.mean_precession_rate, "r0": 400, "mean_tilt_deg": tilt}
+    product = {200: {"C/(m*s*g)": 2.5e-3 / 0.3924}, 100: {"C*r0/(m*s*g)": 1 / 0.3924}}
+    truth |= {"b/a": exact.b / exact.a} | product[rows]
+    off = pulls(outcome, truth)
+    assert off.keys() == truth.keys()
+    assert all(abs(x) < 4 for x in off.values()), off
+    with pytest.raises(LagtopError, match="a steady precession does not determine a top"):
+        outcome.scene("data")
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.2, 0.5])
+def test_the_term_that_elementary_theory_neglects(ratio: float) -> None:
+    """A Omega cos(theta) is in the uncertainty, or exact if A, m, g and s are known."""
+    start = {"m": 1, "s": 0.5, "g": 100, "A": 1, "C": ratio, "r0": 30 / ratio, "theta0_deg": 40}
+    top = Top(**start, psidot0=solve(Top(**start, psidot0="steady")).steady_rate_slow)
+    t, seen = recorded("theta", "phi", "psi", top=top, rows=100, seconds=0.05, noise=0.02, seed=16)
+    found = fitted(t, seen).numbers["b/a"]
+    assert abs(found.value - 30 / 100) < 2 * found.std < 0.4 * found.value
+    known = {"A_cm": 0.75, "m": 1, "g": 100, "s": 0.5}
+    exact = fitted(t, seen, known=known).numbers
+    assert exact["b/a"].std < 0.02 * found.value
+    assert abs(exact["b/a"].value - 30 / 100) < 4 * exact["b/a"].std
+    assert abs(exact["C"].value - ratio) < 4 * exact["C"].std
+
+
+def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
+    rng, t = np.random.default_rng(17), np.linspace(0, 1, 100)
+    psi = 2 * t + rng.normal(scale=0.01, size=100)
+    for theta in (1 + 0.1 * t, 1 + 0.05 * np.sin(3 * t), 1 + rng.normal(scale=0.06, size=100)):
+        noisy = theta + rng.normal(scale=0.01, size=100)
+        outcome = best_fit(recording_from(t, theta=noisy, psi=psi), {})
+        assert outcome.verdict == "failed", outcome.record()
+    theta, psi = 1 + rng.normal(scale=0.01, size=100), rng.uniform(-3, 3, 100)
+    hopeless = best_fit(recording_from(t, theta=theta, psi=psi), {})
+    assert any(x.startswith("no motion of a top matches: psi is ") for x in hopeless.failures())
+    few = fit(t[:20], theta=theta[:20], psi=2 * t[:20] + theta[:20])
+    assert few.failures()[-1].startswith("20 rows are too few to tell nutation from noise")
+    assert few.hints == []  # no column is wrong
