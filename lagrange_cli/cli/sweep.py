@@ -130,6 +130,7 @@ def sweep_command(
     out = opt.with_mark(out, decimal, reads=path is not None)
     how: dict[str, Any] = {"units": Units(top.radians), "decimal": decimal}
     how |= {"keys": keys, "radii": certify, "where": where}
+    how["blocks"] = out.format.blocks_in_part if parts is not None else 1
     sweep, every_block, size, given = plan(path, top.inputs, top.scene, **how)
     opt.warn(given)
     sweep = sweep._replace(fmt=out.fmt)

@@ -54,9 +54,13 @@ class Parts:
         file, text = self.path / "_sweep.json", f"{json.dumps(description, indent=1)}\n".encode()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            if not (file.exists() or any(self.path.glob("part-*"))):
-                _create(file, text)
             there = file.read_bytes() if file.is_file() else b""
+            if not any(self.path.glob("part-*")):
+                if there != text and text.startswith(there) and file.is_file():
+                    file.unlink()  # a run was killed while it wrote
+                if not file.exists():
+                    _create(file, text)
+                there = file.read_bytes() if file.is_file() else b""
         except OSError as error:
             raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
         if there != text:
@@ -75,7 +79,7 @@ class Parts:
         """Yield the blocks whose parts are missing, and add the other parts to `done`."""
         for number, block in blocks:
             part, about = self._files(number)
-            found = _described(about)
+            found = _described(about) if about.is_file() else None
             if found and part.is_file() and part.stat().st_size == found[0]:
                 self.found += 1
                 done.append(Part(number, b"", *found[1:]))
@@ -107,10 +111,20 @@ def _create(file: Path, content: bytes) -> None:
             except FileExistsError:
                 raise
             except OSError:  # a file system without links
-                with file.open("xb") as stream:
-                    stream.write(content)
+                _write_new(file, content)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _write_new(file: Path, content: bytes) -> None:
+    """Create a file that does not exist; it does not stay if it cannot be written as a whole."""
+    with file.open("xb") as stream:
+        try:
+            stream.write(content)
+            stream.flush()
+        except BaseException:
+            file.unlink()
+            raise
 
 
 def _difference(there: bytes, here: bytes) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 from ..errors import LagtopError, SomeFailedError
 from ..files.tops import Product, TopsFile, read_tops
 from ..output.formats import format_of
+from ..solver.keys import shown_keys
 from ..top.given import Given, gather
 from ..top.inputs import (
     EXAMPLE,
@@ -30,7 +31,7 @@ from ..top.ranges import Points
 from ..top.units import DEGREES, RADIANS, Units
 from ..top.values import Value
 from .conditions import Condition, read_condition
-from .records import BLOCK_ROWS, check_keys, column_keys, records, with_radii
+from .records import BLOCK_ROWS, RADIUS, check_keys, column_keys, records, with_radii
 
 NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
@@ -93,8 +94,14 @@ class Sweep(NamedTuple):
         for are_numbers, run in groupby(every, lambda column: column.dtype == np.float64):
             some = [*run]
             written += [np.stack(some, axis=1)] if are_numbers else [x.tolist() for x in some]
-        text = format_of(self.fmt).block(written, self.header)
+        form = format_of(self.fmt)
+        text = form.with_units(form.block(written, self.header), self._units())
         return Part(number, text, given.size, columns["error"].size, *counts)
+
+    def _units(self) -> dict[str, str]:
+        """Return the units of keys and of their bounds."""
+        keys = shown_keys(self.units, requested=True)
+        return {x: keys[y].unit for x in self.keys if (y := x.removesuffix(RADIUS)) in keys}
 
 
 def plan(
@@ -108,12 +115,13 @@ def plan(
     decimal: str = "",
     radii: bool = False,
     where: Sequence[str] = (),
+    blocks: int = 1,
 ) -> tuple[Sweep, Iterator[NumberedBlock], int, Given]:
     """Return a sweep, its blocks, size and inputs, for a grid or a `path` to a file of tops.
 
     The last axis varies fastest.  The size is the number of tops, 0 for a file.  The inputs are
-    those that all tops share.  `where` are conditions, such as `T_nutation < 0.4`.  Raises
-    LagtopError.
+    those that all tops share.  `where` are conditions, such as `T_nutation < 0.4`.  A part
+    has `blocks` times 4096 tops.  Raises LagtopError.
     """
     conditions = [read_condition(text, units) for text in where]
     have_units = any(x.has_unit for x in conditions)
@@ -125,7 +133,7 @@ def plan(
         shared = shared_inputs(found, varying=ranges)
         units = units._replace(si=found.si)
         sweep = Sweep(chosen, ranges, shared, chosen, units, fmt, found.is_body, conditions)
-        return sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, found
+        return sweep, enumerate(grid.blocks(blocks * BLOCK_ROWS)), grid.size, found
     if ranges := _ranges({name: x.number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     computed = {*column_keys(), *column_keys(RADIANS), *chosen, "error"}
@@ -136,7 +144,7 @@ def plan(
     header = [*source.carried, *with_error]
     units = units._replace(si=found.si)
     sweep = Sweep(header, {}, shared, with_error, units, fmt, found.is_body, conditions)
-    return sweep, enumerate(source.blocks(BLOCK_ROWS)), 0, found
+    return sweep, enumerate(source.blocks(blocks * BLOCK_ROWS)), 0, found
 
 
 def _ranges(axes: Mapping[str, Points | str]) -> dict[str, str]:

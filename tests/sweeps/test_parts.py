@@ -6,10 +6,14 @@ import json
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import Result
 from conftest import Lagtop, assert_one_line, joined
+from pyarrow import dataset, parquet
+
+from lagrange_cli.sweeps.parts import _write_new
 
 GRID = ["sweep", "--r0", "1:9:9", "--keys", "r0,K"]
 
@@ -145,6 +149,60 @@ def test_a_folder_without_links_is_a_folder(
     for options, code in (([], 0), ([], 0), (["--keys", "K"], 74)):
         assert lagtop(*GRID, *options, "--parts", tmp_path).exit_code == code
     assert joined(tmp_path) == lagtop(*GRID).stdout_bytes
+
+
+def test_a_folder_of_parquet_is_a_data_set(
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Readers of folders skip the other files; fields have units, and parts one row group."""
+    monkeypatch.setattr("lagrange_cli.sweeps.plan.BLOCK_ROWS", 4096)
+    grid = [
+        "sweep",
+        "--r0",
+        "1:99:140000",
+        "--format",
+        "parquet",
+        "--keys",
+        "r0,K,theta_max_rad,path",
+    ]
+    assert lagtop(*grid, "--rad", "--certify", "--parts", tmp_path).exit_code == 0
+    whole = lagtop(*grid, "--rad", "--certify", "-o", tmp_path / "_whole")
+    assert whole.exit_code == 0
+    table = parquet.read_table(tmp_path / "_whole")
+    assert dataset.dataset(tmp_path).to_table().equals(table, check_metadata=True)
+    units = {x.name: (x.metadata or {}).get(b"unit", b"") for x in table.schema}
+    assert units == {"r0": b"rad/time", "K": b"", "theta_max_rad": b"rad", "path": b""} | {
+        "K_radius": b"",
+        "theta_max_rad_radius": b"rad",
+    }
+    first = parquet.ParquetFile(tmp_path / "part-000000.parquet").metadata
+    assert (first.num_row_groups, first.num_rows) == (1, 131_072)
+    assert len(pytest.importorskip("pandas").read_parquet(tmp_path)) == 140_000
+    some = tmp_path / "part-000001.parquet"
+    rows = lagtop("sweep", some, "--rad", "--keys", "r0,K", "--format", "ndjson").stdout
+    assert [json.loads(x)["K"] for x in rows.splitlines()] == table["K"].to_pylist()[131_072:]
+
+
+def test_odd_files_in_the_folder_stop_no_run(tmp_path: Path, lagtop: Lagtop) -> None:
+    """A FIFO is not read, and what a killed run has half written is written again."""
+    description, whole = tmp_path / "_sweep.json", lagtop(*GRID).stdout_bytes
+    for _ in range(2):
+        assert lagtop(*GRID, "--parts", tmp_path).exit_code == 0
+        assert joined(tmp_path) == whole
+        half = description.read_bytes()[:20]
+        for path in tmp_path.glob("*part*"):
+            path.unlink()
+        description.write_bytes(half)
+        os.mkfifo(tmp_path / "_part-000000.json")
+    description.unlink()
+    (tmp_path / "_part-000000.json").unlink()
+
+    bad: Any = "no bytes"  # the write fails
+    with pytest.raises(TypeError):
+        _write_new(description, bad)
+    assert not [*tmp_path.iterdir()]
+    os.mkfifo(description)
+    assert_refused(lagtop(*GRID, "--parts", tmp_path), tmp_path)
 
 
 def test_a_part_that_was_cut_is_computed_again(tmp_path: Path, lagtop: Lagtop) -> None:

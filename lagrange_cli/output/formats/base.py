@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from io import BytesIO
 from typing import Any, BinaryIO
 
@@ -25,6 +25,8 @@ class Format:
     """Whether it holds texts and tables: headings with units, numbers with uncertainties."""
     only_rows = False
     """Whether it holds only the rows of a document; then each part of a sweep may be a file."""
+    blocks_in_part = 1
+    """The number of blocks of a sweep in each file of its parts."""
     between = after = b""
     """What comes between two blocks, and after the last one."""
 
@@ -37,6 +39,10 @@ class Format:
     def block(self, columns: Columns, names: Sequence[str]) -> Any:
         """Return some rows encoded; NaN, None and an empty number are missing values."""
         raise NotImplementedError
+
+    def with_units(self, block: Any, units: Mapping[str, str]) -> Any:
+        """Return encoded rows with units of their columns, if the format has a place for them."""
+        return block
 
     def header(self, names: Sequence[str]) -> bytes:
         """Return what comes before the first block."""

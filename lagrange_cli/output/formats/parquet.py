@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from io import BytesIO
 from itertools import chain
@@ -25,6 +25,7 @@ class Parquet(Format):
     """A table of pyarrow for each block."""
 
     only_rows = True
+    blocks_in_part = 32
 
     def document(self, document: Document, width: int | None) -> bytes:
         """Return the rows, whose columns of numbers are doubles."""
@@ -51,6 +52,16 @@ class Parquet(Format):
                 numbers = column.reshape((*column.shape, 1)[:2]).T.copy()
                 arrays += [pa.array(x, from_pandas=True) for x in numbers]
         return pa.table(arrays, names=list(names))
+
+    def with_units(self, block: Any, units: Mapping[str, str]) -> Any:
+        """Return a table whose fields have the metadata `unit`."""
+        import pyarrow as pa
+
+        fields = [
+            x.with_metadata({"unit": units[x.name]}) if units.get(x.name) else x
+            for x in block.schema
+        ]
+        return block.cast(pa.schema(fields))
 
     def write(
         self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Any], width: int | None
