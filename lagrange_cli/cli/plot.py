@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from fractions import Fraction
-from os.path import exists, splitext
+from os.path import exists
 from typing import Any
 
 from ..errors import LagtopError, arg
@@ -215,7 +215,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
         raise LagtopError("nothing to do: give -o FILE.html or --open")
     if output == "-" and (opens or is_screen("-")):
         raise LagtopError("a page on standard output needs a pipe: give -o FILE.html")
-    if splitext(output or "")[1].lower() not in {"", ".html", ".htm"}:
+    if opt.extension(output or "") not in {"", "html", "htm"}:
         raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
     from ..plot.browser.view import open_page, view
 
