@@ -152,7 +152,7 @@ def sweep_command(
             headings = _headings(sweep.header, sweep.units, out)
             out.blocks(sweep.header, (part.text for part in shown), headings)
     if folder and folder.found:
-        complain(f"Resumed: {folder.found} parts were already in {parts}")
+        complain(f"Resumed: parts already in {parts}: {folder.found}")
     if count := sum(part.not_bodies for part in done):
         tops = f"{count} of {sum(part.size for part in done)} tops"
         complain(f"Warning: no rigid body has C > 2A, but {tops} have; computed anyway")

@@ -106,7 +106,7 @@ class _File:
             raise DataError.at(self.name, error) from None
         if found.get("t", _NO_TIME).says == "frames" and self.reading.dt is None:
             shown = self.names[found["t"].columns[0]]
-            raise DataError(f"{self.name}: {shown} counts frames: give {arg('fps')}")
+            raise DataError(f"{self.name}: the column {shown} counts frames: give {arg('fps')}")
         return found
 
     def _clock(self) -> dict[int, Any] | None:

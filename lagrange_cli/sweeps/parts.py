@@ -128,7 +128,7 @@ def _write_new(file: Path, content: bytes) -> None:
 
 
 def _difference(there: bytes, here: bytes) -> str:
-    """Return the first entry in which two descriptions differ, for a message."""
+    """Return the first entry of `there` that differs from `here`, for a message."""
     try:
         old, new = json.loads(there), json.loads(here)
         name = next(x for x in sorted(new, key="header".__eq__) if old[x] != new[x])
@@ -137,7 +137,7 @@ def _difference(there: bytes, here: bytes) -> str:
     value = old[name]
     text = ",".join(value) if name in {"keys", "header"} else json.dumps(value)
     option = arg({"fmt": "format"}.get(name, name)) if name in {"keys", "where", "fmt"} else name
-    return f": {option} differs ({shortened(text)} there)"
+    return f", with {option} {shortened(text)}"
 
 
 def _described(about: Path) -> list[Any] | None:

@@ -258,7 +258,7 @@ def test_both_functions_take_the_same_options() -> None:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        ("frame,theta\n1,2\n", "frame counts frames: give fps"),
+        ("frame,theta\n1,2\n", "the column frame counts frames: give fps"),
         ("theta,phi\n1,2\n", "the time is missing, give dt or fps for even rows"),
         ("1 2 3 4 5 6 7 8 9 10 11 12\n", "or columns=pose for a matrix and a translation"),
         ("t,theta\n0.5,1\n", "t must count frames if dt or fps is given, got 0.5"),
