@@ -143,10 +143,10 @@ def check_record(tally: Tally, exact: Numbers, motion: Motion, digits: int) -> N
 
 
 def checked_record(tally: Tally, motion: Motion, digits: int, most: int) -> Numbers:
-    """Check the numbers of a motion, again with 6,000 digits if they differ; return exact ones."""
-    for root_digits in (2_000, 6_000):
+    """Check the numbers of a motion, again with more digits if they differ; return exact ones."""
+    for root_digits, kept in ((2_000, most), (6_000, 450)):
         found, inputs = Tally(), motion.top.as_dict()
-        exact = reference_record(inputs, digits=most, root_digits=root_digits)
+        exact = reference_record(inputs, digits=kept, root_digits=root_digits)
         check_record(found, exact, motion, digits)
         if not found.violations:
             break
