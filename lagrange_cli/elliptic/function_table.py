@@ -26,15 +26,8 @@ THETAS = {"theta1": "11", "theta2": "10", "theta3": "00", "theta4": "01"}
 """The theta functions of z in radians, and the index of Theta(2Kz/pi)."""
 _THIRD_KIND = ("omega", "pi")
 FAMILIES = (
-    "am",
-    *QUOTIENTS,
-    "epsilon",
-    *INVERSES,
-    "theta",
-    "zeta",
-    *THETAS,
-    *NEVILLE,
-    *_THIRD_KIND,
+    *("am", *QUOTIENTS, "epsilon", *INVERSES),
+    *("theta", "zeta", *THETAS, *NEVILLE, *_THIRD_KIND),
 )
 """The functions of u; `am` stands for am, sn, cn and dn."""
 _NEEDS_REAL_SQUARE = {"am", *INVERSES, *_THIRD_KIND}

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
-from ..errors import DataError, LagtopError, arg
+from ..errors import DataError, LagtopError, UnavailableError, arg
 from ..file_bytes import shown_path, utf8_path
 from ..files.tables import table_in
 from ..files.text_tables import EXPONENT
@@ -45,26 +45,26 @@ def read_recording(path: str, reading: Reading) -> Recording:
     Rows that are empty in all columns that are read are left out.  Raises DataError for a bad file,
     or LagtopError for wrong `columns`.
     """
-    file = _File(path, reading)
+    names = None if reading.columns is None else expanded(reading.columns)
     try:
-        return file.recording()
+        return _File(path, reading, names).recording()
     except LagtopError as error:
-        if isinstance(error, DataError) or error.key == "columns":
+        is_of_names = names is not None and error.key == "columns"
+        if is_of_names or isinstance(error, DataError | UnavailableError):
             raise
-        raise DataError.at(file.name, error) from None
+        raise DataError.at(shown_path(path), error) from None
 
 
 class _File:
     """The columns of a file, and the quantities that are found in them."""
 
-    def __init__(self, path: str, reading: Reading) -> None:
-        names = None if reading.columns is None else expanded(reading.columns)
+    def __init__(self, path: str, reading: Reading, names: Sequence[str] | None) -> None:
         self.path, self.name, self.reading = path, shown_path(path), reading
         self.table = table_in(path, known_quantities, reading.decimal, len(names or ()) or None)
         if not self.table.width:
             raise DataError(f"{self.name} must hold a recording, got no cells")
         self.names = self._names(names)
-        self.quantities = self._quantities(is_named=names is not None)
+        self.quantities = self._quantities()
         self.time = self.quantities.get("t", _NO_TIME)
         self.clock = self._clock()
         kept = [x for x in self.quantities.values() if self.clock is None or x is not self.time]
@@ -97,13 +97,8 @@ class _File:
         is_same = headings and len(headings) == len(names)
         return with_units_of(headings, names) if is_same and headings else names
 
-    def _quantities(self, *, is_named: bool) -> dict[str, FoundQuantity]:
-        try:
-            found = found_in(self.names, needs_time=self.reading.dt is None)
-        except LagtopError as error:
-            if is_named and error.key == "columns":
-                raise
-            raise DataError.at(self.name, error) from None
+    def _quantities(self) -> dict[str, FoundQuantity]:
+        found = found_in(self.names, needs_time=self.reading.dt is None)
         if found.get("t", _NO_TIME).says == "frames" and self.reading.dt is None:
             shown = self.names[found["t"].columns[0]]
             raise DataError(f"{self.name}: the column {shown} counts frames: give {arg('fps')}")
