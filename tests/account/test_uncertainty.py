@@ -1,4 +1,4 @@
-"""Uncertain inputs on the command line: `uncertainties` checks notation and rounding."""
+"""Uncertain inputs in records, tables and budgets; `uncertainties` checks notation and rounding."""
 
 from __future__ import annotations
 
