@@ -12,7 +12,7 @@ from ..arithmetic import rotations
 from ..arithmetic.types import Array
 from ..recordings.axis_equation import AxisMotion, from_spline
 from ..recordings.frames import own_frames
-from ..recordings.observed import Observed
+from ..recordings.observed import Observed, rows_of
 from ..recordings.recording import Recording
 from ..top.top import Top
 
@@ -59,13 +59,13 @@ def a_and_b(top: Top) -> tuple[float, float]:
 @np.errstate(all="ignore")  # rows that are not finite
 def estimate(top: Top, run: Recording) -> Estimate | None:
     """Return what a trajectory shows, None if it gives no axis in enough rows."""
+    if run.t[0] > run.t[-1]:
+        run = run._replace(given=rows_of(run.given, slice(None, None, -1)))
     seen = run.observed(slice(_MOST))
     if np.ptp(seen.t) == 0 or not np.isfinite(seen.t).all():
         return None
-    if seen.t[0] > seen.t[-1]:
-        seen = _rows(seen, slice(None, None, -1))
     best: tuple[Observed, Array, AxisMotion] | None = None
-    for view in _views(seen):
+    for view in _views(run, seen):
         axis = _axis(view)
         found = None if axis is None else from_spline(view.t, axis)
         if axis is not None and found and (best is None or found.residual <= TRUSTED):
@@ -95,23 +95,16 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
     )
 
 
-def _views(seen: Observed) -> Iterator[Observed]:
+def _views(run: Recording, seen: Observed) -> Iterator[Observed]:
     """Yield a motion, its first parts, and the motion about its own figure axis.
 
     A strong decay of the spin is a line only at first.
     """
     yield seen
-    for part in _PARTS:
-        yield _rows(seen, slice(int(part * len(seen.t))))
+    yield from (run.observed(slice(int(part * len(seen.t)))) for part in _PARTS)
     if seen.quaternion is not None and (frames := own_frames(seen)):
         turn = rotations.of_matrix(frames[1].reshape(1, 9))[0][0]
         yield seen.turned(rotations.IDENTITY, turn)
-
-
-def _rows(seen: Observed, rows: slice) -> Observed:
-    quaternion = None if seen.quaternion is None else seen.quaternion[rows]
-    axis = None if seen.axis is None else seen.axis[rows]
-    return Observed(seen.t[rows], quaternion, axis, {x: y[rows] for x, y in seen.angles.items()})
 
 
 def _axis(seen: Observed) -> Array | None:
