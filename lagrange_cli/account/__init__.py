@@ -1,1 +1,1 @@
-"""What is said about a motion: its sentence, its formulas with numbers, its uncertainty."""
+"""The summary of a motion, its formulas with numbers, and its uncertainty."""

@@ -60,10 +60,10 @@ def fit_command(
     """Fit a top to a recording, with uncertainties.
 
     A recording is a file as in lagtop compare, or - for standard input.  Each row holds a time
-    with tilt, spin and precession, or with the axis, or with the attitude.  Cells may be missing,
-    and angles may be wrapped.
+    with tilt, spin and precession, or the axis, a marker on it, or the attitude.  Cells may be
+    missing, and angles may be wrapped.
 
-    Known inputs are the inputs given as options.  The fit fails if the recording contradicts them.
+    The inputs that you pass are known: the fit fails if the recording contradicts them.
     If the nutation is below the noise, the mean tilt and the mean rates are fitted.  The exit code
     is 0 if the verdict is good, and 1 if not: the last line on standard error then says why, and
     what to try.  With -o FILE.toml, a good fit is written as a scene.

@@ -1,4 +1,4 @@
-"""What the axis and the spin of a trajectory show of its top, in numbers."""
+"""Numbers of the top that follow from the axis and the spin of a trajectory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measureds: measured angles, an axis or an attitude over time."""
+"""Measured angles, a measured axis or a measured attitude over time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What else a recording could be: other machines, and faults of the camera, the clock and the rows.
+"""Neighbours of a Lagrange top: other machines, and faults of camera, clock and rows.
 
 Each is a template, the change of the motion by a small one.  The templates and the residuals are
 projected off the changes by the parameters of the top.  The rest of a template gives its size; the

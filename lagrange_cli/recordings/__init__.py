@@ -1,1 +1,1 @@
-"""Recordings of a motion: one reading of files and arrays, and what may have been misread."""
+"""Recordings of a motion: one reading of files and arrays, and its possible misreadings."""

@@ -1,4 +1,4 @@
-"""What is doubtful in a recording: angles of an unknown unit, positions, and where the pivot is."""
+"""Doubts about a recording: angles of an unknown unit, positions, and where the pivot is."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ m | m | mass | mass | positive | mass | 1587
 A | A | equatorial moment
     | equatorial moment about the pivot | positive | mass len² | 39032
 A_cm | A_cm | moment about the centre of mass
-    | equatorial moment about the centre of mass, for A = A_cm + m s^2 | 0 or more | mass len² |
+    | equatorial moment about the centre of mass (A = A_cm + m s^2) | 0 or more | mass len² |
     | A | A_cm + m*s*s | A - m*s*s
 C | C | polar moment | polar moment of inertia
     | positive; above 2A only if m, A, C, s and g are given without units | mass len² | 17458
