@@ -63,10 +63,10 @@ def fit_command(
     with tilt, spin and precession, or the axis, a marker on it, or the attitude.  Cells may be
     missing, and angles may be wrapped.
 
-    The inputs that you pass are known: the fit fails if the recording contradicts them.
-    If the nutation is below the noise, the mean tilt and the mean rates are fitted.  The exit code
-    is 0 if the verdict is good, and 1 if not: the last line on standard error then says why, and
-    what to try.  With -o FILE.toml, a good fit is written as a scene.
+    The inputs that you pass are known: the fit fails if the recording contradicts them.  If the
+    nutation is below the noise, the mean tilt and the mean rates are fitted.  The exit code is 0 if
+    the verdict is good, and 1 if not: the last line on standard error then says why, and what to
+    try.  With -o FILE.toml, a good fit is written as a scene.
     """
     from ..file_bytes import shown_path
     from ..inverse.decay import fit_windows
