@@ -79,7 +79,7 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     kinds = {x.kind for x in outcome.failed}
     if kinds & {Kind.PIVOT, Kind.ROWS} or not kinds & WRONG:  # which say what to do
         return
-    begun = process_time()
+    until = process_time() + _BUDGET
     if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
         few = f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
         yield OtherReading(few)
@@ -88,7 +88,7 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
         even_rows = f"the rows are {even.frame:.6g} apart"
         yield OtherReading(f"t is rounded: write it with more digits ({even_rows})")
     is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
-    yield from _readings(recording, known, body, outcome, is_far=is_far)
+    yield from _readings(recording, known, body, outcome, is_far=is_far, until=until)
     noise, is_left = _calmness(recording), kinds != {Kind.MACHINE}  # rows may be left out
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if is_left and 0 < len(wrong) <= _FEW * recording.t.size:
@@ -104,18 +104,19 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
             f"the top is held until about t = {at:.4g}: leave out the rows before the release"
         )
     is_alone = len(recording.angles) == 1  # its known start is that of the first window
-    if not is_alone and process_time() - begun < _BUDGET:
-        yield from _decays(recording, body, outcome, noise)
-    if process_time() - begun < _BUDGET:
+    if not is_alone:
+        yield from _decays(recording, body, outcome, noise, until)
+    if process_time() < until:
         yield from gap(recording, body, outcome)
     if Kind.MACHINE in kinds:
         return
     start = [x for x in ("theta0", "psidot0") if x in known]
     short = ", and that the recording lasts for a period of the nutation"
-    is_early = process_time() - begun < _BUDGET
+    is_early = process_time() < until
     begins = _beginning(recording, body, outcome) if is_early else ""
+    tried = "no known misreading explains it" if is_early else "no misreading that was tried does"
     yield (
-        f"no known misreading explains it{begins}: check {', '.join([*start, 'columns'])}, units "
+        f"{tried}{begins}: check {', '.join([*start, 'columns'])}, units "
         f"and axes{short * (not outcome.inputs)}"
     )
 
@@ -187,9 +188,15 @@ def evenly_timed(recording: Measured) -> Measured | None:
 
 
 def _readings(
-    recording: Measured, known: Known, body: Known, outcome: Outcome, *, is_far: bool
+    recording: Measured,
+    known: Known,
+    body: Known,
+    outcome: Outcome,
+    *,
+    is_far: bool,
+    until: float,
 ) -> Iterator[str]:
-    """Yield the misreadings without which the fit is good.
+    """Yield the misreadings without which the fit is good, tried `until` some processor time.
 
     A reading is worth a fit if its nutation leaves no more noise beside harmonics.
     """
@@ -197,6 +204,8 @@ def _readings(
     is_angles = recording.kind == "angles"
     for row in misreadings(recording.source) if is_far or not is_angles else ():
         other = None
+        if process_time() > until:
+            return
         if row.kind in {"attitude", "frame"}:
             with suppress(DataError):  # such as a tilt beyond 180 degrees
                 other = measured(row.undo(recording.source))
@@ -256,12 +265,13 @@ def release(recording: Measured) -> int:
     return row if _HELD < row < recording.t.size - 2 * _HELD else 0
 
 
-def _decays(recording: Measured, known: Known, outcome: Outcome, noise: float) -> Iterator[str]:
+def _decays(
+    recording: Measured, known: Known, outcome: Outcome, noise: float, until: float
+) -> Iterator[str]:
     """Yield the number of windows that are all good and show a decay, or a decay within windows."""
     counts, lost = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size], ""
-    begun = process_time()
     for count in counts:
-        if process_time() - begun > _BUDGET:
+        if process_time() > until:
             break
         try:
             parts, fits = recording.windows(count), list[Outcome]()

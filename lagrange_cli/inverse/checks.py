@@ -29,7 +29,7 @@ _ABOVE = 3.0
 """Largest rms residual over the noise of neighbours."""
 _SMOOTHED = 2.0
 """How many times larger it may be if a filter explains how residuals correlate."""
-_ROUNDING = 1e-10
+ROUNDING = 1e-10
 """Rms of rounding errors in radians."""
 _LATER = 0.15
 """Tolerance of the correlation with the second next row, of smoothed noise."""
@@ -75,7 +75,7 @@ class Residuals:
     @property
     def is_large(self) -> bool:
         """Whether the residuals are so large that the motion describes nothing."""
-        return self.rms > min(LARGEST, max(self.range * _OF_RANGE, 2 * self.step, _ROUNDING))
+        return self.rms > min(LARGEST, max(self.range * _OF_RANGE, 2 * self.step, ROUNDING))
 
     @cached_property
     def rms(self) -> float:
@@ -92,13 +92,13 @@ class Residuals:
     def outliers(self) -> Mask:
         """Whether a residual is one that no noise has."""
         sizes = np.abs(self.y)
-        usual = max(float(np.median(sizes)) / float(ndtri(0.75)), self.step, _ROUNDING)
+        usual = max(float(np.median(sizes)) / float(ndtri(0.75)), self.step, ROUNDING)
         return np.asarray(sizes > _OUTLIER * usual)
 
     @cached_property
     def correlations(self) -> Array:
         """The correlations of residuals with those some rows later, by the number of rows."""
-        if self.rms < _ROUNDING:
+        if self.rms < ROUNDING:
             return np.asarray(np.arange(self.y.size) == 0, float)
         power = np.abs(np.fft.rfft(self.y, 1 << (2 * self.y.size).bit_length())) ** 2
         found = np.fft.irfft(power)[: self.y.size]
@@ -163,7 +163,7 @@ class Residuals:
         An F test of three harmonics of a frequency, times 1, t and t^2, against the rest, which
         may be correlated from row to row.
         """
-        if self.rms < max(_ROUNDING, self.step / 100):
+        if self.rms < max(ROUNDING, self.step / 100):
             return 1.0, 1.0
         size = -(-self.t.size // 4000)
         t, y = (x[: x.size // size * size].reshape(-1, size).mean(1) for x in (self.t, self.y))
@@ -198,8 +198,8 @@ class Residuals:
         rows_per_period = self.y.size / max(frequency * float(self.t[-1]), 1.0)
         is_far = correlation > bound and self.reach > min(rows_per_period / _ROWS_PER_LAG, _LAGS)
         above = _ABOVE * (_SMOOTHED if correlation > bound and self.is_smoothed else 1.0)
-        if self.rms > above * max(self.neighbours, self.step / math.sqrt(12), _ROUNDING):
-            times = self.rms / max(self.neighbours, _ROUNDING)
+        if self.rms > above * max(self.neighbours, self.step / math.sqrt(12), ROUNDING):
+            times = self.rms / max(self.neighbours, ROUNDING)
             yield f"{shown}: they are {times:.3g} times the differences between neighbours"
         elif correlation < -2 * bound:
             yield alike

@@ -19,7 +19,7 @@ from scipy.special import fdtrc, ndtri
 
 from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array
-from .checks import Residuals
+from .checks import ROUNDING, Residuals
 from .measured import Measured
 from .variations import Variations
 
@@ -197,7 +197,8 @@ class Neighbours:
         self.period, self.smoothing, one = period, smoothing, recording
         pairs = residuals.items()
         sizes = [one.sigma.get(x) or max(y.rms, y.step / math.sqrt(12)) for x, y in pairs]
-        self.sizes = np.array(sizes)[:, np.newaxis] + 1e-300
+        self.sizes = np.maximum(sizes, ROUNDING)[:, np.newaxis]
+        self.least = float(np.mean((ROUNDING / self.sizes) ** 2))
         spins = "phi" in one.angles
         kept = [0, 1, 2, 3, 4, *[5, 6] * spins, *[7] * ("psi" in one.angles)]
         columns = np.stack([self.column(self.motion.by_parameters[i]) for i in kept], axis=1)
@@ -287,7 +288,7 @@ class Neighbours:
         parts = left.T @ self.rest
         rest = self.rest - left @ parts
         wide = self._widening(rest)
-        noise = float(np.sum((wide * rest) ** 2)) / self.free + 1e-12
+        noise = float(np.sum((wide * rest) ** 2)) / self.free + self.least
         gain, sizes = float(parts @ parts) / noise, inverse @ parts
         freedom = max(self.free / float(np.mean(wide**2)) - count, 1.0)
         chance = max(float(fdtrc(count, freedom, gain / count)), 1e-300)

@@ -8,7 +8,7 @@ x = A Omega cos(theta)/(C r0), whose sign is known, and whose size depends on C/
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -16,10 +16,10 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import Message, arg
-from ..top.inputs import TILT, all_replaced
+from ..top.inputs import TILT, all_replaced, replaced_by
 from ..top.units import bare_name
 from .checks import CHANCE, Noise, Residuals
-from .known import WEIGHT, Known, compared, in_all_forms
+from .known import WEIGHT, Known, compared, in_all_forms, whole_turns
 from .measured import Measured
 from .outcome import Number, Outcome
 from .reasons import Kind, Reason
@@ -121,9 +121,16 @@ def steady_outcome(
         given = {**known, **{x: y[:2] for x, y in means.items()}, "theta": tilt[:2]}
         derived = _derived(given, whole, notes, is_sure=is_sure)
     reasons, distances = list[Reason](), dict[str, float]()
-    for key, pair in derived.items():
-        if key == "C" and key in known:
-            distances[key], agrees, text = compared(key, known[key], pair, known)
+    seen, slowest = dict[str, _Pair](), dict[str, _Pair]()
+    if tilt and "phi" in means:
+        at = {TILT: tilt[:2], "psidot0": turn[:2], "phi": spin[:2]}
+        visible = 2 * math.pi / recording.frame if recording.is_even else 0.0
+        seen, slowest = (_spins(known, at, x) for x in (visible, 0.0))
+    for key, pair in (derived | seen).items():
+        if key in seen or (key == "C" and key in known):
+            distances[key], agrees, text = compared(
+                key, known[key], pair, known, slowest.get(key, (None,))[0]
+            )
             if agrees:
                 notes.append(text)
             else:
@@ -148,7 +155,7 @@ def steady_outcome(
         distances=distances,
         **others,
     )
-    r0 = derived.get("r0", _NONE[:2])[0]
+    r0 = 0.0 if reasons else derived.get("r0", _NONE[:2])[0]  # a wrong one has any sign
     reasons += _faults(recording, turn, r0, result, frequency)
     return replace(result, reasons=reasons)
 
@@ -222,8 +229,7 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
         found[f"C{over}" if is_sure else f"C*r0{over}"] = product / (found["r0"] if is_sure else 1)
         return found, ends
 
-    values = {name: x for name, (x, _) in given.items()}
-    found, ends = numbers(values)
+    _, ends = numbers({name: x for name, (x, _) in given.items()})
     bias = 0.0
     if ends and max(ends) > _MOST_BIAS:
         notes.append("b/a is not determined: A Omega cos(theta) may be as large as C r0")
@@ -235,21 +241,49 @@ def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> 
             f"{100 * max(ends):.2g} % of C r0, for C/A from {most:g} to {least:g}: known A, m, g "
             "and s make them exact"
         )
+    pairs = _propagated(lambda v: numbers(v)[0], given)
+    return {
+        key: (x, math.hypot(std, abs(x) * bias * (key != "r0"))) for key, (x, std) in pairs.items()
+    }
+
+
+def _propagated(
+    numbers: Callable[[Mapping[str, float]], Mapping[str, float]], given: Known
+) -> dict[str, _Pair]:
+    """Return numbers of the given values, with standard deviations by linear propagation."""
+    values = {name: x for name, (x, _) in given.items()}
     moved = [
-        [numbers(values | {name: values[name] + sign * std})[0] for sign in (_SMALL, -_SMALL)]
+        [numbers(values | {name: values[name] + sign * std}) for sign in (_SMALL, -_SMALL)]
         for name, (_, std) in given.items()
         if std
     ]
     return {
         key: (
             x,
-            math.hypot(
-                abs(x) * bias * (key != "r0"),
-                *((u.get(key, x) - w.get(key, x)) / 2 / _SMALL for u, w in moved),
-            ),
+            math.hypot(*((u.get(key, x) - w.get(key, x)) / 2 / _SMALL for u, w in moved)),
         )
-        for key, x in found.items()
+        for key, x in numbers(values).items()
     }
+
+
+def _spins(known: Known, means: Known, turn: float) -> dict[str, _Pair]:
+    """Return the known inputs that give the spin, as the means show them.
+
+    `means` has the tilt and the rates of psi and phi.  The visible spin is shifted by whole turns
+    per row, if these are invisible, to be nearest to the known one.
+    """
+    found = dict[str, _Pair]()
+    for name in (x for x in known if replaced_by(x) == "r0"):
+
+        def seen(v: Mapping[str, float], name: str = name) -> dict[str, float]:
+            start = {x: v[x] for x in (TILT, "psidot0")}
+            rate = v["phi"] + v["psidot0"] * math.cos(v[TILT])
+            wanted = in_all_forms(start | {name: known[name][0]})["r0"]
+            rate += whole_turns(rate, wanted, turn)
+            return {name: float(in_all_forms(start | {"r0": rate})[name])}
+
+        found |= _propagated(seen, means)
+    return found
 
 
 def _faults(

@@ -137,7 +137,7 @@ def test_the_sample_gives_the_body() -> None:
         assert np.sqrt(np.mean(curve.residual[seen] ** 2)) == pytest.approx(rms)
     count = sum(x.y.size for x in outcome.residuals.values())
     assert outcome.dof == count - 8  # a, b, r0, three of the start, two zeros
-    assert "11 % too small" in outcome.numbers["precession_rate_elementary"].meaning
+    assert "11 % below the fit" in outcome.numbers["precession_rate_elementary"].meaning
 
 
 def test_the_recordings_are_what_the_script_writes() -> None:

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lagtop import fit
+from lagtop import fit, solve
+from noisy_recordings import TOP, axis_of, fitted
+from scipy.spatial.transform import Rotation
 
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inverse.neighbours import machines
@@ -98,3 +100,17 @@ def test_a_jump_is_named() -> None:
     t, (theta, phi, psi) = noisy()
     outcome = fit(t, theta=theta, phi=phi, psi=np.where(t > 1.2, psi + 0.1, psi))
     assert "a jump of psi by 5." in outcome.failure()
+
+
+@pytest.mark.parametrize(
+    ("kind", "rows", "tilt", "rate"), [("quaternion", 70, 75, 0), ("axis", 500, 55, 2)]
+)
+def test_rounding_errors_show_no_neighbour(kind: str, rows: int, tilt: float, rate: float) -> None:
+    """A motion without noise is not one with a jump of 1e-13 degrees."""
+    t = np.linspace(0, 1.2, rows)
+    theta, phi, psi = solve(TOP.replace(theta0_deg=tilt, psidot0=rate)).angles(t)
+    turns = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=1))
+    seen = {"quaternion": turns.as_quat(scalar_first=True), "axis": axis_of(theta, psi)}
+    outcome = fitted(t, {kind: seen[kind]})
+    assert outcome.verdict == "good", outcome.failures()
+    assert outcome.model_errors

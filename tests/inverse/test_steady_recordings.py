@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,6 +51,30 @@ def test_the_term_that_elementary_theory_neglects(ratio: float) -> None:
     assert exact["b/a"].std < 0.02 * found.value
     assert abs(exact["b/a"].value - 30 / 100) < 4 * exact["b/a"].std
     assert abs(exact["C"].value - ratio) < 4 * exact["C"].std
+
+
+@pytest.mark.parametrize(
+    ("known", "said"),
+    [
+        ({"r0": "401(2)"}, ""),
+        ({"spin_period": 2 * math.pi / 399.9}, ""),
+        ({"spin_period": 2 * math.pi / 372}, "omit spin_period"),
+        ({"r0": 3819.7}, "9.55 times as large: check the units"),
+        ({"r0": -400}, "of the opposite sign: check the sign"),
+    ],
+)
+def test_a_known_spin_is_compared_with_the_visible_one(known: dict[str, Any], said: str) -> None:
+    """Whole turns per row, 2501 rad/s, are invisible."""
+    t, seen = recorded(
+        "theta", "phi", "psi", top=TOP.replace(r0=400), rows=200, seconds=0.5, seed=15
+    )
+    if "spin_period" in known and not said:  # phi' = r0 - psi' cos(theta), which is not far from r0
+        known = {"spin_period": f"{known['spin_period']:.6f}(2)"}
+    outcome = fitted(t, seen, known=known)
+    (name,) = known
+    assert outcome.verdict == ("failed" if said else "good, no nutation")
+    assert (outcome.distances[name] < 3) == (not said)
+    assert said in "; ".join(outcome.failures())
 
 
 def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
