@@ -84,7 +84,7 @@ def read_text(path: str) -> str:
 def decoded(content: bytes, name: str) -> str:
     r"""Return UTF-8 text, or marked UTF-16 text, with `\n` as the only line end.
 
-    Raises DataError for other bytes, with their line.
+    Raises DataError for other bytes and for NUL, with their line.
     """
     if content.startswith(_BINARY):
         wrong = "it is not text but a workbook, an archive or binary data: save it as CSV"
@@ -95,6 +95,9 @@ def decoded(content: bytes, name: str) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         wrong = "the text must be UTF-8 or UTF-16: save the file as UTF-8"
         raise DataError(f"{name}, line {line}: {wrong}") from None
+    if (place := text.find("\0")) >= 0:  # UTF-16 without its mark has one in each letter
+        line = text.count("\n", 0, place) + 1
+        raise DataError(f"{name}, line {line}: the text has a NUL byte: save the file as UTF-8")
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 

@@ -75,7 +75,8 @@ class SceneFile:
             hint = " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
             if bare := re.match(r"\s*(\w+)\s*=\s*([-+\d.(][^#\"']*[^\W\d_][^#\"']*)", line):
                 hint = f' (write {bare[1]} = "{shortened(bare[2].strip())}")'
-            raise SceneError(f"{self.name}: not a TOML file: {error}{hint}{remedy}") from None
+            wrong = str(error).split("; use sys")[0]  # advice for those who write Python
+            raise SceneError(f"{self.name}: not a TOML file: {wrong}{hint}{remedy}") from None
         self.inputs: dict[str, Value] = {}
         for key, value in table.items():
             try:

@@ -55,6 +55,8 @@ def test_errors_name_the_scene_file_or_the_argument(tmp_path: Path) -> None:
         (f"m = 1.{'0' * 5000}", "m must have at most 2000 characters"),
         ("g = 9.81\nm = 1,5\n", "(at line 2, column 6) (write a decimal point, not a comma)\n"),
         ("[" * 9000, "not a TOML file"),
+        (f"r0 = {'1' * 5000}", "value has 5000 digits\n"),
+        ("r0 = 1\nm\x00=\x002", "line 2: the text has a NUL byte: save the file as UTF-8\n"),
         ("r0 = 1\n" + "#" * 20_000, "must have at most 16384 bytes, has more"),
         ("r0 = 1\n\udcff\udcfe\x00", "line 2: the text must be UTF-8 or UTF-16"),
         ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
