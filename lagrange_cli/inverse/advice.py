@@ -55,6 +55,8 @@ _WINDOWS = (5, 10, 32, 64)
 """Numbers of windows to try if the spin may decay."""
 _ROWS_PER_WINDOW = 24
 """Least number of rows in such a window."""
+_FEW_PER_PERIOD = 8.0
+"""Rows per nutation period from which an aliased nutation is unlikely."""
 _FEW = 0.03
 """Largest share of rows that are outliers."""
 _LEAST_TIMES = 0.25
@@ -89,6 +91,8 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
         yield OtherReading(f"t is rounded: write it with more digits ({even_rows})")
     is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
     yield from _readings(recording, known, body, outcome, is_far=is_far, until=until)
+    if process_time() < until and (aliased := _alias(recording, body, outcome)):
+        yield OtherReading(aliased)
     noise, is_left = _calmness(recording), kinds != {Kind.MACHINE}  # rows may be left out
     wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
     if is_left and 0 < len(wrong) <= _FEW * recording.t.size:
@@ -164,10 +168,12 @@ def _is_good(recording: Measured, known: Known, outcome: Outcome, also: str = GO
     return is_better and not found.recording.is_mirrored and found.is_spin_slow
 
 
-def _tried(recording: Measured, known: Known, chance: float = CHANCE) -> Outcome | None:
+def _tried(
+    recording: Measured, known: Known, chance: float = CHANCE, *, is_aliased: bool = False
+) -> Outcome | None:
     """Return a fit, or None if the recording does not determine a top without other inputs."""
     try:
-        return best_fit(recording, known, chance=chance)
+        return best_fit(recording, known, chance=chance, is_aliased=is_aliased)
     except DataError:
         return None
 
@@ -233,8 +239,23 @@ def _frames(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str
         words = [f"the {x} axis {_MEANINGS[key]}" for key, x in named.items() if x != "z"]
         opposite = ", or the marker is opposite to the centre of mass"
         is_opposite = align.up == "-z" and recording.kind == "axis"
-        where = f"{' and '.join(words)}{opposite * is_opposite}"
-        yield OtherReading(f"{where}: use {arg('align', align)}")
+        where = f"{' and '.join(words)}{opposite * is_opposite}: use {arg('align', align)}"
+        aliased = _alias(recording, known, outcome)
+        yield OtherReading(f"{where}{'; or ' * bool(aliased)}{aliased}")
+
+
+def _alias(recording: Measured, known: Known, outcome: Outcome) -> str:
+    """Return in words the faster nutation that explains the recording, or empty.
+
+    If rows are few, it may look like the nutation in an opposite frame.
+    """
+    if not recording.is_even or outcome.frequency * recording.frame < 1 / _FEW_PER_PERIOD:
+        return ""
+    faster = _tried(recording, known, is_aliased=True)
+    if faster is None or faster.verdict != GOOD:
+        return ""
+    rows = 1 / (faster.frequency * recording.frame)
+    return f"the nutation is aliased, with {rows:.3g} rows per period: record more than two"
 
 
 def _calmness(recording: Measured) -> float:

@@ -45,6 +45,8 @@ _LINES = 5
 """Neighbours that a line lists."""
 _LARGEST = 1.0
 """Size from which a change is not a small one, so that its template is wrong."""
+_WIDEST = 1 / (2 * math.pi**2)
+"""The same of the square of a filter's width over the period: no nutation is left."""
 _POINTS = 48
 """Points of the grid in a period of the nutation."""
 _PER_TURN = 10
@@ -298,7 +300,8 @@ class Neighbours:
         stds = math.sqrt(noise) * np.linalg.norm(self.inverse, axis=1) + 1e-300
         root = math.sqrt(abs(size)) + 1e-300
         pair = (root, std / 2 / root) if one.is_square else (size, std)
-        is_possible = math.isfinite(std) and abs(size) < _LARGEST
+        largest = _WIDEST if one.is_square else _LARGEST
+        is_possible = math.isfinite(std) and abs(size) < largest
         is_possible &= size > 0 or not one.is_positive
         small = SMALL**2 if one.is_square else SMALL
         shown = uncertain_text(*(100 * x for x in pair)) if is_possible else ""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from engines import Array
-from lagtop import fit
+from lagtop import fit, solve
 from noisy_recordings import (
     DEGREE,
     LAB,
@@ -210,6 +210,26 @@ def test_recordings_of_no_top_fail(make: Any, reason: str) -> None:
     outcome = fitted(t, seen)
     assert outcome.verdict == "failed"
     assert reason in outcome.record()["remark"]
+
+
+@pytest.mark.parametrize(
+    ("start", "rows", "way", "said"),
+    [
+        ({}, 1.25, 1, "; the nutation is aliased, with 1.25 rows per period: record more"),
+        ({"psidot0": 1.1, "thetadot0": 1.7, "r0": 73}, 1.25, 1, "align=up=-z; or the nutation is"),
+        ({"psidot0": 1.1, "thetadot0": 1.7, "r0": 73}, 20, -1, "align=up=-z"),
+    ],
+)
+def test_an_aliased_nutation_is_named_and_so_is_a_frame_that_looks_like_it(
+    start: dict[str, float], rows: float, way: int, said: str
+) -> None:
+    top = TOP.replace(**start)
+    t = np.arange(64) * solve(top).T_nutation / rows
+    exact = motion_of(top, t)
+    noise = np.random.default_rng(12).normal(scale=0.003, size=(64, 3))
+    failure = fit(t, axis=way * axis_of(exact["theta"], exact["psi"]) + noise).failure()
+    assert said in failure
+    assert ("aliased" in failure) == (rows < 2)
 
 
 def test_an_impossible_body_fails() -> None:
