@@ -48,6 +48,15 @@ def worded(text: str) -> str:
     return Message(text).with_options(options_of(context.command) if context else {})
 
 
+def _lack_of_memory(error: Exception) -> str:
+    """Return a message for an error that a lack of memory or threads causes; raise any other."""
+    if isinstance(error, MemoryError):
+        return "out of memory"
+    if not re.search("failed to map segment|allocate memory|start new thread", str(error)):
+        raise error
+    return f"out of memory or threads: {error}"
+
+
 def complain_of_bug(error: Exception) -> None:
     """Write one line that asks for a report, with the name and the place of an exception."""
     from traceback import extract_tb  # start-up
@@ -119,8 +128,8 @@ class LagtopGroup(click.Group):
             text, code = _usage_message(error), error.exit_code
         except click.Abort:
             _die_by("SIGINT", 130)
-        except MemoryError:
-            text, code = "out of memory", UnavailableError.exit_code
+        except (MemoryError, ImportError, RuntimeError) as error:
+            text, code = _lack_of_memory(error), UnavailableError.exit_code
         except OSError as error:  # of a file that no reader or writer has named
             with suppress(OSError, AttributeError):  # what is left in the buffer is lost anyway
                 os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

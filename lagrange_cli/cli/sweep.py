@@ -10,7 +10,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import quoted
-from ..errors import LagtopError
+from ..errors import LagtopError, UnavailableError
 from ..file_bytes import shown_path
 from ..names import listed
 from ..output.formats import FORMATS, format_of
@@ -23,7 +23,8 @@ from .app import complain
 
 if TYPE_CHECKING:
     from ..output.destination import Output
-    from ..sweeps.plan import NumberedBlock
+    from ..sweeps.parts import Parts
+    from ..sweeps.plan import NumberedBlock, Part
 
 MOST_JOBS = 1024
 
@@ -147,7 +148,7 @@ def sweep_command(
         total = size // every or None
         shown = with_progress(noted(computed, done), "tops", total, lambda part: part.size)
         if folder:
-            folder.write(shown)
+            _write_parts(folder, shown, done)
         else:
             headings = _headings(sweep.header, sweep.units, out)
             out.blocks(sweep.header, (part.text for part in shown), headings)
@@ -161,6 +162,15 @@ def sweep_command(
         complain(f"Warning: {shown_path(path)} holds no tops")
     elif where and shard is None and not any(part.rows for part in done):
         complain(f"Warning: no top satisfies {' and '.join(map(str, sweep.where))}")
+
+
+def _write_parts(folder: Parts, parts: Iterable[Part], done: Sequence[Part]) -> None:
+    """Write parts.  If a process or a cluster is lost, the error counts the parts that are done."""
+    try:
+        folder.write(parts)
+    except UnavailableError as error:
+        remedy = f"{len(done)} parts are done: repeat the command"
+        raise UnavailableError(f"{error}; {remedy}") from None
 
 
 def _headings(names: Sequence[str], units: Units, out: Output) -> Sequence[str]:

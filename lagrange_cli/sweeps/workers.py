@@ -164,7 +164,10 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
     with waiting(f"waiting for the cluster at {address}"):
         with warnings.catch_warnings(record=True, action="always") as found:
             client = _answer(address, lambda: distributed.Client(address, timeout=_PATIENCE / 3))
-        _answer(address, lambda: client.wait_for_workers(1, timeout=_PATIENCE))
+        if not _answer(address, client.nthreads):
+            _answer(
+                address, lambda: client.wait_for_workers(1, timeout=_PATIENCE / 2), "no workers"
+            )
         ask, name = pkgutil.resolve_name, "lagrange_cli:__version__"  # any worker can unpickle it
         versions = _answer(address, lambda: client.run(ask, name, on_error="return"))
         threads = sum(_answer(address, client.nthreads).values())
@@ -183,7 +186,7 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
         yield submit, threads
     finally:
         with suppress(Exception):  # report the error that ended the sweep, not one of closing
-            _answer(address, lambda: client.close(timeout=1), 2.0)
+            _answer(address, lambda: client.close(timeout=1), seconds=2.0)
 
 
 def _result(future: Any, client: Any, address: str) -> Any:
@@ -195,10 +198,13 @@ def _result(future: Any, client: Any, address: str) -> Any:
         _answer(address, lambda: client.run(int))
 
 
-def _answer(address: str, ask: Callable[[], _T], seconds: float | None = None) -> _T:
+def _answer(
+    address: str, ask: Callable[[], _T], lacks: str = "", seconds: float | None = None
+) -> _T:
     """Return an answer of a cluster.
 
-    Raises UnavailableError if there is none in time, and LagtopError for a bad address.
+    Raises UnavailableError if there is none in time, as the cluster does not answer or `lacks`
+    something, and LagtopError for a bad address.
     """
     future = Future[_T]()
 
@@ -215,5 +221,7 @@ def _answer(address: str, ask: Callable[[], _T], seconds: float | None = None) -
         why = f"dask must be the address of a scheduler, got {address!r}: {error}"
         raise LagtopError(why, "dask") from None
     except Exception as error:  # of any kind: it may be no scheduler
+        if lacks:
+            raise UnavailableError(f"the cluster at {address} has {lacks}") from None
         why = str(error) or "its scheduler or a worker was lost or stopped"
         raise UnavailableError(f"the cluster at {address} does not answer: {why}") from None

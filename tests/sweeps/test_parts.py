@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from click.testing import Result
 from conftest import Lagtop, assert_one_line, joined
 from pyarrow import dataset, parquet
 
+from lagrange_cli.errors import UnavailableError
 from lagrange_cli.sweeps.parts import _write_new
 
 GRID = ["sweep", "--r0", "1:9:9", "--keys", "r0,K"]
@@ -203,6 +205,20 @@ def test_odd_files_in_the_folder_stop_no_run(tmp_path: Path, lagtop: Lagtop) -> 
     assert not [*tmp_path.iterdir()]
     os.mkfifo(description)
     assert_refused(lagtop(*GRID, "--parts", tmp_path), tmp_path)
+
+
+def test_a_lost_worker_leaves_parts_that_count(
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lost(work: Any, blocks: Any, *_: Any) -> Any:
+        yield from map(work, islice(blocks, 2))
+        raise UnavailableError("a process was lost")
+
+    said = "a process was lost; 2 parts are done: repeat the command"
+    with monkeypatch.context() as patch:
+        patch.setattr("lagrange_cli.sweeps.workers.in_order", lost)
+        assert_one_line(lagtop(*GRID, "--parts", tmp_path), 69, said)
+    assert "Resumed: 2 parts" in lagtop(*GRID, "--parts", tmp_path).stderr
 
 
 def test_a_part_that_was_cut_is_computed_again(tmp_path: Path, lagtop: Lagtop) -> None:

@@ -186,6 +186,14 @@ def test_a_scheduler_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @pytest.mark.slow
+def test_a_cluster_without_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers, "_PATIENCE", 6.0)
+    why = "the cluster at .* has no workers"
+    with cluster(tmp_path, 0) as (address, _), pytest.raises(UnavailableError, match=why):
+        list(in_order(str, [1], address=address))
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "case",
     [
