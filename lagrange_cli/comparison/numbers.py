@@ -18,12 +18,14 @@ from ..top.top import Top
 
 TRUSTED = 0.01
 """Largest relative residual of the axis with which ratios are printed."""
-_MOST, _FIRST = 20_000, 8
-"""Most rows, and the first rows, from which the rates at the start follow."""
+_MOST, _ENOUGH, _FIRST = 20_000, 5000, 8
+"""Most rows, the fewest to which more rows are reduced, and the first rows, from which the rates at
+the start follow."""
 _OPEN, _SAME, _DECAY = 0.2, 2e-3, 1e-3
 """Relative errors: of an undetermined parameter, of one that agrees, of a spin that is constant."""
-_COARSE = 0.25
-"""Turn of the spin from row to row, in radians, that may be a coarse step."""
+_COARSE, _FINE = 0.25, 0.04
+"""Turns from row to row, in radians: of a step that may be coarse, and of rows that are left out if
+there are too many."""
 _UNITS = "per unit of time"
 _PARTS = 0.5, 0.25
 """Shares of the rows, from the first one, that are tried if all of them do not suffice."""
@@ -59,10 +61,17 @@ def a_and_b(top: Top) -> tuple[float, float]:
 @np.errstate(all="ignore")  # rows that are not finite
 def estimate(top: Top, run: Recording) -> Estimate | None:
     """Return what a trajectory shows, None if it gives no axis in enough rows."""
+    if not 0 < np.ptp(run.t) < math.inf:
+        return None
     if run.t[0] > run.t[-1]:
         run = run._replace(given=rows_of(run.given, slice(None, None, -1)))
+    a, b = a_and_b(top)
+    swing, step = abs(b) + math.sqrt(a) + 1e-300, float(np.median(abs(np.diff(run.t))))
+    turn = (swing + abs(float(top.r0))) * step
+    if len(run.t) > _MOST and turn < _FINE:  # rounding errors of close rows hide the motion
+        run = run.few(max(_ENOUGH, math.ceil(len(run.t) * turn / _FINE)))
     seen = run.observed(slice(_MOST))
-    if np.ptp(seen.t) == 0 or not np.isfinite(seen.t).all():
+    if np.ptp(seen.t) == 0:
         return None
     best: tuple[Observed, Array, AxisMotion] | None = None
     for view in _views(run, seen):
@@ -75,8 +84,6 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
     if best is None:
         return None
     seen, axis, found = best
-    a, b = a_and_b(top)
-    swing = abs(b) + math.sqrt(a) + 1e-300
     rate, decay = _spin(seen, float(top.r0))
     span = float(np.ptp(seen.t))
     if rate is None and abs(found.b_slope) * span / 2 > 2 * found.b_spread:
@@ -90,7 +97,7 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
         rate * earlier / float(top.r0) if rate is not None and top.r0 else None,
         decay,
         _start(seen.t, axis),
-        float(np.median(abs(np.diff(seen.t)))),
+        step,
         span,
     )
 
@@ -147,10 +154,9 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     """Yield what an estimate says of the top, the simplest first."""
     axis, turns = found.axis, abs(float(top.r0)) * found.step
     if not found.is_trusted:
-        yield (
-            f"the axis moves like that of no top (residual {axis.residual:.1%}): use smaller steps"
-            f" (r0 dt is {turns:.2g} rad), or check the equations"
-        )
+        smaller = f"use smaller steps (r0 dt is {turns:.2g} rad), or " * (turns > _FINE / 2)
+        said = f"the axis moves like that of no top (residual {axis.residual:.1%})"
+        yield f"{said}: {smaller}check the equations"
         return
     same = max(_SAME, 3 * axis.residual)
     ratios = {"a": found.a, "b": found.b, "r0": found.r0}

@@ -353,6 +353,24 @@ def test_two_wrong_inputs_are_told_in_numbers() -> None:
         assert "a = 1.93 a_0, b = 0.9 b_0, r0 = r0_0" in (found.numbers or "")
 
 
+def test_rounded_rows_that_are_close_show_the_motion() -> None:
+    """From row to row the axis moves by less than a thousand units of the last digit."""
+    top = TOPS["disc"]
+    body = Body.of(top)._replace(C=0.9 * float(top.C), torque=1.93 * Body.of(top).torque)
+    flow = solve_ivp(
+        lambda _, y: body.slope(y),
+        (0, 0.5),
+        body.state,
+        "DOP853",
+        rtol=1e-9,
+        atol=1e-9,
+        dense_output=True,
+    )
+    t = np.linspace(0, 0.5, 200_001)
+    found = compare(top, t, quaternion=flow.sol(t)[:4].T.round(10))
+    assert (found.a_ratio, found.b_ratio) == pytest.approx((1.93, 0.9), rel=5e-3)
+
+
 def test_an_engine_that_moves_no_top_is_named() -> None:
     """Rates of the body are multiplied on the wrong side."""
     top = TOPS["toy"]
