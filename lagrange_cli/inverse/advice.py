@@ -118,9 +118,9 @@ def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
     short = ", and that the recording lasts for a period of the nutation"
     is_early = process_time() < until
     begins = _beginning(recording, body, outcome) if is_early else ""
-    tried = "no known misreading explains it" if is_early else "no misreading that was tried does"
+    known_ones = "no known misreading" if is_early else "none of the misreadings that were tried"
     yield (
-        f"{tried}{begins}: check {', '.join([*start, 'columns'])}, units "
+        f"{known_ones} explains it{begins}: check {', '.join([*start, 'columns'])}, units "
         f"and axes{short * (not outcome.inputs)}"
     )
 
