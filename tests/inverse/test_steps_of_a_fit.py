@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 from engines import Body, dop853
 from lagtop import Top, fit, solve
+from noisy_recordings import recording_from
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inverse.checks import CHANCE, Residuals
 from lagrange_cli.inverse.decay import decay_of
 from lagrange_cli.inverse.known import compared
-from lagrange_cli.inverse.measured import Measured, measured
 from lagrange_cli.inverse.outcome import Number
 from lagrange_cli.inverse.signals import (
     binned,
@@ -27,14 +26,8 @@ from lagrange_cli.inverse.signals import (
     step_between,
 )
 from lagrange_cli.inverse.starts import starts
-from lagrange_cli.recordings.recording import recording_of
 
 BODY = {"m": 0.5, "A": 4.45e-3, "C": 2.5e-3, "s": 0.08, "g": 9.81}
-
-
-def recording_from(t: Array, **arrays: Array) -> Measured:
-    """Return the measured motion in arrays of radians."""
-    return measured(recording_of(t, arrays))
 
 
 @pytest.mark.parametrize(
