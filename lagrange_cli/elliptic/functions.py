@@ -60,7 +60,7 @@ class Functions:
 
     def __init__(self, modulus: Modulus) -> None:
         k, k_prime, self.kind, self.stretch, rates = modulus
-        self.is_0, self.is_1 = k == 0, k_prime == 0
+        self.is_0, self.is_1 = k.is_zero(), k_prime.is_zero()
         half_turn = self.stretch / arb.pi()
         self.scale: Any = half_turn * (arb(0) if self.is_1 else k_prime.agm(1))
         """Periods 2K of the reduced modulus in a unit of the argument."""

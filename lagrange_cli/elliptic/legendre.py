@@ -69,7 +69,7 @@ class Legendre:
         self, modulus: Modulus, m: Fraction | None = None, n: Fraction | None = None
     ) -> None:
         """Take a modulus in balls, and the parameter m = k^2 if it is real and known exactly."""
-        self.n, self.is_1 = n, modulus.k_prime == 0
+        self.n, self.is_1 = n, modulus.k_prime.is_zero()
         squares = [x.ball**2 for x in (modulus, modulus.complement)]
         is_complex = modulus.kind is Kind.COMPLEX
         self.m: Any
@@ -125,13 +125,13 @@ class Legendre:
         (p0, p1), (q0, q1) = (parts[letter] for letter in pq)
         above, below = square * q0 - p0, p1 - square * q1
         turning = "c" if self.above_1 is None else "d"  # it changes its sign after a quarter
-        if not _sign(below) or (x < 0 and {"s", turning}.isdisjoint(pq)):
+        if not _sign(below) or (_sign(x) < 0 and {"s", turning}.isdisjoint(pq)):
             return None
         t = above / below
         if _sign(t) < 0 or _sign(1 - t) < 0 or _sign(1 - m * t) < 0:
             return None
         u = self._first_quarter(t)
-        if x >= 0:
+        if _sign(x) >= 0:
             return u
         if pq[0] == "s" or (pq[1] == "s" and pq[0] != turning):
             return -u
@@ -196,7 +196,10 @@ def _each(function: Callable[..., acb], *integrals: Integrals) -> Integrals:
 
 def _sign(x: Fraction | arb) -> int:
     """Return the sign of a number."""
-    return sign(x) if isinstance(x, arb) else (x > 0) - (x < 0)
+    if isinstance(x, arb):
+        return sign(x)
+    n = x.numerator
+    return (n > 0) - (n < 0)
 
 
 def _side(q: Fraction | arb, square: Fraction | arb) -> int:

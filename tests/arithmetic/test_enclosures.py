@@ -435,7 +435,7 @@ WITH_BALLS = ["solver/facts", "solver/numbers", "solver/attitude"]
 WITH_BALLS += [f"elliptic/{name}" for name in ("functions", "function_table", "legendre", "eta")]
 ORDER = ast.Lt | ast.LtE | ast.Gt | ast.GtE | ast.Eq | ast.NotEq
 EXACT = re.compile(
-    r"(self\.)?sign\(.*\)|len\(.*\)|float\(.*\)|facts\.inputs\[.*\]|word|name|'.*'|n % 2( == 0)?"
+    r"(self\.|_)?sign\(.*\)|len\(.*\)|float\(.*\)|facts\.inputs\[.*\]|word|name|'.*'|n % 2( == 0)?"
     r"|(.*\.)?(turning|spin|over|minus|plus|pole|fall|falls|inside|past|within)"
     r"|(.*\.)?(real|imag|upper|lower|g|square|n)|q \* square"
 )

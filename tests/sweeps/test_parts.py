@@ -218,7 +218,7 @@ def test_a_lost_worker_leaves_parts_that_count(
     with monkeypatch.context() as patch:
         patch.setattr("lagrange_cli.sweeps.workers.in_order", lost)
         assert_one_line(lagtop(*GRID, "--parts", tmp_path), 69, said)
-    assert "Resumed: 2 parts" in lagtop(*GRID, "--parts", tmp_path).stderr
+    assert f"Resumed: parts already in {tmp_path}: 2" in lagtop(*GRID, "--parts", tmp_path).stderr
 
 
 def test_a_part_that_was_cut_is_computed_again(tmp_path: Path, lagtop: Lagtop) -> None:
