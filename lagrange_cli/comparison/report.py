@@ -86,7 +86,7 @@ def _causes(x: Comparison, limit: float, *, is_right: bool) -> Iterator[str]:
         yield f"{x.numbers[0].upper()}{x.numbers[1:]}."
 
 
-def _hint(x: Comparison) -> str:
+def _hint(x: Comparison) -> Message:
     """Return what to check if no top explains the motion."""
     said = "None of the known causes explains the error: check the inputs"
     if x.verdict == "drifts":
@@ -95,8 +95,10 @@ def _hint(x: Comparison) -> str:
     known["rates_frame"] = x.rates_error_max
     names = [arg(name) for name, y in known.items() if y is not None]
     if names and x.verdict != "drifts":
-        said += f", and the conventions of the attitude and the rates ({joined(names)})"
-    return f"{said}."
+        said += (
+            f", and the conventions of the attitude and the rates ({marked(joined(names, ', '))})"
+        )
+    return Message(f"{said}.")
 
 
 def _channels(x: Comparison, limit: float) -> Iterator[str]:

@@ -131,3 +131,10 @@ def test_bad_requests_get_one_line(
     lagtop: Lagtop, text: str, arguments: str, code: int, message: str
 ) -> None:
     assert_one_line(lagtop("compare", "-", *arguments.split(), input=text), code, message)
+
+
+def test_a_hint_names_the_options_of_the_command_line(lagtop: Lagtop, tmp_path: Path) -> None:
+    path, turn = tmp_path / "other.csv", np.linspace(0, 9, 60)
+    rows = np.stack([turn, np.cos(turn**2), np.sin(turn**2), 0 * turn, 0 * turn], axis=1)
+    np.savetxt(path, rows, delimiter=",", header="t,qw,qx,qy,qz", comments="")
+    assert "(--align, --quaternion-order)" in lagtop("compare", path).stdout.replace("\n", " ")
