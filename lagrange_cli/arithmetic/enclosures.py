@@ -233,6 +233,9 @@ def sign_to(number: Callable[[int], arb], most: int) -> int:
     return decided(attempt, most, what="a sign")
 
 
+_SMALL = Decimal("1e-300")
+
+
 class Rounded(NamedTuple):
     """A number as it is printed, and the ball or the fraction that it is rounded from."""
 
@@ -255,8 +258,8 @@ class Rounded(NamedTuple):
             away = max(_distance(x, self.value) for x in ends_of(arb(exact.mid(), radius)))
         else:
             away = _distance(exact, self.value)
-        if away and isinstance(self.value, float):  # else a double may read as 0
-            away = max(away, Decimal("5e-324"))
+        if 0 < away < _SMALL and isinstance(self.value, float):  # where doubles are far apart
+            away += Decimal("5e-324")
         return text_of(_TWO_DIGITS.multiply(away, _A_HAIR_MORE), 2)
 
 

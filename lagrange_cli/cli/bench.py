@@ -27,7 +27,7 @@ def _parse_spans(text: str) -> list[float]:
     "bench",
     "bench --methods lagtop,DOP853 --n 1000",
     "bench slow-top --methods lagtop,DOP853,Taylor --plot methods.svg",
-    "bench --r0 60 --methods lagtop --plot methods.svg --points mine.csv",
+    "bench --r0 60 --methods lagtop --plot methods.svg",
     "bench --spans 1,100 --methods lagtop,scipy.special --n 100",
 )
 @opt.top("[SCENE]...", is_scene=None)

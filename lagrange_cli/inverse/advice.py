@@ -49,7 +49,7 @@ _RELEASED = 6.0
 """Standard deviations that show a release."""
 _STILL = 3.5
 """Scatter of the rows before a release, over the noise of neighbours, above which they move."""
-_BUDGET = 3.0
+_BUDGET = 8.0
 """Seconds of the processor after which no further remedy is tried."""
 _WINDOWS = (5, 10, 32, 64)
 """Numbers of windows to try if the spin may decay."""

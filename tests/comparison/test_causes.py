@@ -191,8 +191,9 @@ def test_a_planted_mistake_is_named(name: str, mistake: str) -> None:
     given: Given = {"t": T} | READINGS.get(mistake, FORMS["quaternion"])(*states)
     found = compare(TOPS[name], **given)
     assert found.verdict != "fine"
-    assert mistake in UNKNOWN if found.cause is None else mistake in found.cause
-    assert (found.cause_error or 0) < 1e-5
+    is_partial = found.cause is None or (mistake in UNKNOWN and found.explained == "partly")
+    assert mistake in UNKNOWN if is_partial else mistake in str(found.cause)
+    assert is_partial or (found.cause_error or 0) < 1e-5
 
 
 def test_a_conjugate_in_the_other_order_is_named() -> None:

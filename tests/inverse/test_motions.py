@@ -21,7 +21,6 @@ KINDS_OF_GAPS = (
     "near a pole",
     "near separatrix",
     "slow",
-    "any spin",
 )
 EPS = 2.0**-52
 
