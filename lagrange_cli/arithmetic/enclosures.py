@@ -233,7 +233,7 @@ def sign_to(number: Callable[[int], arb], most: int) -> int:
     return decided(attempt, most, what="a sign")
 
 
-_SMALL = Decimal("1e-300")
+_SMALL, _LEAST_DOUBLE = Decimal("1e-300"), Decimal("5e-324")
 
 
 class Rounded(NamedTuple):
@@ -259,7 +259,7 @@ class Rounded(NamedTuple):
         else:
             away = _distance(exact, self.value)
         if 0 < away < _SMALL and isinstance(self.value, float):  # where doubles are far apart
-            away += Decimal("5e-324")
+            away = _TWO_DIGITS.add(away, _LEAST_DOUBLE)
         return text_of(_TWO_DIGITS.multiply(away, _A_HAIR_MORE), 2)
 
 
