@@ -169,11 +169,11 @@ def _is_good(recording: Measured, known: Known, outcome: Outcome, also: str = GO
 
 
 def _tried(
-    recording: Measured, known: Known, chance: float = CHANCE, *, is_aliased: bool = False
+    recording: Measured, known: Known, chance: float = CHANCE, *, frequency: float | None = None
 ) -> Outcome | None:
     """Return a fit, or None if the recording does not determine a top without other inputs."""
     try:
-        return best_fit(recording, known, chance=chance, is_aliased=is_aliased)
+        return best_fit(recording, known, chance=chance, frequency=frequency)
     except DataError:
         return None
 
@@ -251,7 +251,7 @@ def _alias(recording: Measured, known: Known, outcome: Outcome) -> str:
     """
     if not recording.is_even or outcome.frequency * recording.frame < 1 / _FEW_PER_PERIOD:
         return ""
-    faster = _tried(recording, known, is_aliased=True)
+    faster = _tried(recording, known, frequency=1 / recording.frame - outcome.frequency)
     if faster is None or faster.verdict != GOOD:
         return ""
     rows = 1 / (faster.frequency * recording.frame)

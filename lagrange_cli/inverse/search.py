@@ -113,13 +113,14 @@ def best_fit(
     *,
     chance: float = CHANCE,
     units: Units = DEGREES,
-    is_aliased: bool = False,
+    frequency: float | None = None,
 ) -> Outcome:
     """Return the fit of one recording, with numbers in some `units`.
 
     If spin and precession are recorded, psi may count in the other direction.  `chance` is the
-    probability that noise fails a test.  If `is_aliased` is true, the nutation makes more than half
-    a period per row, and looks slower.  Raises DataError for a recording that cannot be fitted.
+    probability that noise fails a test.  The `frequency` of the nutation is by default that of the
+    harmonics of the recording, which are of a slower one if it is aliased, or if rows are lost.
+    Raises DataError for a recording that cannot be fitted.
     """
     for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
         if recording.angles.keys() == {alone} and needed not in known:
@@ -128,9 +129,7 @@ def best_fit(
             shown = f"{alone} alone{f' (from {used})' * bool(used)}"
             raise DataError(f"{shown} does not determine a top: give {arg(needed)}{when}")
     signals = signals_in(recording)
-    frequency, visible = oscillation_in(signals)
-    if is_aliased:
-        frequency = 1 / recording.frame - frequency
+    frequency, visible = (frequency, True) if frequency else oscillation_in(signals)
     lasts = frequency * recording.t[-1] >= 1
     noise = _noise(recording, signals)
     asked: dict[str, Any] = {"chance": chance, "units": units}
