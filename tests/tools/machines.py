@@ -88,7 +88,7 @@ MACHINES = {
     "bearing": Machine(gimballed, "vertical", "vertical bearing"),
     "magnet": Machine(gimballed, "magnet", "second torque"),
     "moments": Machine(unlike, "moments", "moments"),
-    "beside": Machine(unlike, "beside", "beside"),
+    "beside": Machine(unlike, "beside", "off the axis"),
     "camera": Machine(None, "", "camera|scale", "psi"),
     "zero": Machine(None, "", "zero|elevation", "theta"),
     "scale": Machine(None, "", "scale|camera", "psi"),
@@ -104,7 +104,7 @@ MACHINES = {
 
 def disturbed(name: str, size: float, t: Array, seen: Angles, rng: np.random.Generator) -> Angles:
     """Return smooth angles with a fault of the camera or of the reading."""
-    seen = dict(seen)
+    seen = {x: y if x == "theta" else np.unwrap(y) for x, y in seen.items()}
     if name == "camera":
         seen["psi"] = seen["psi"] + size * np.polyfit(t, seen["psi"], 1)[0] * t
     elif name == "zero":
