@@ -12,7 +12,6 @@ import pytest
 from conftest import Lagtop, Solved, assert_one_line, dicts
 
 from lagrange_cli.arithmetic.text import uncertain_text
-from lagrange_cli.solver.keys import NUMBERS
 from lagrange_cli.top.values import parse_value
 
 uncertainties = pytest.importorskip("uncertainties")
@@ -111,36 +110,6 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
     assert found["units"] == {"T_nutation": "s", "m": "kg", "psidot0": "rad/s"}
     plain = solved("--m", "9(1)", "--budget", "a")
     assert "units" not in plain
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--m", "1(2"], "--m must be a number, or an uncertain number such as 1587(2)"),
-        (["--m", "9(2)", "--digits", "30"], "use --digits or uncertain inputs, not both"),
-        (["--m", "9(2)", "--derivation"], "use --derivation or uncertain inputs, not both"),
-        (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
-        (["--get", "T_nutation_std"], "no input is uncertain"),
-        (
-            ["--r0", "50(1)", "--get", "regime_std"],
-            "regime has no uncertainty: leave regime_std out",
-        ),
-        (
-            ["--r0", "50(1)", "--get", "remark_std"],
-            "remark has no uncertainty: leave remark_std out",
-        ),
-        (
-            ["--r0", "50(1)", "--budget", "period"],
-            f"--budget must be one of {len(NUMBERS)} names, got 'period' (",
-        ),
-    ],
-)
-def test_what_does_not_go_together_is_a_line(
-    lagtop: Lagtop, arguments: list[str], words: str
-) -> None:
-    result = lagtop("solve", *arguments)
-    assert_one_line(result, 2, "")
-    assert words in result.stderr
 
 
 def test_a_number_that_motions_beside_lack_is_named(lagtop: Lagtop) -> None:

@@ -52,46 +52,6 @@ def test_spans_use_the_tightest_setting() -> None:
     assert found == [(*x, n) for n in (1, 2) for x in (("lagtop", "quaternion"), ("RK4", 800))]
 
 
-@pytest.mark.parametrize(
-    ("args", "said"),
-    [
-        (["bench", "sleeping-top"], "the top must nutate, but its regime is 'sleeping'"),
-        (["bench", "--methods", "euler"], "--methods must be one of lagtop"),
-        (["bench", "--spans", "0,1"], "--spans must be increasing numbers above 0"),
-        (["bench", "--spans", "1,0"], "--spans must be increasing numbers above 0"),
-        (["bench", "nothing"], "nothing"),
-        (["stability", "--kinds", "hard"], "--kinds must be one of fast-spin"),
-        (["stability", "--samples", "0"], "--samples must be in [1, 1000]"),
-    ],
-)
-def test_bad_requests_end_in_one_line(lagtop: Lagtop, args: list[str], said: str) -> None:
-    done = lagtop(*args)
-    assert done.exit_code in {2, 65}
-    assert done.stdout == ""
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("method,error_rad\na,1\n", "must have the columns method, error_rad, and ns_per_sample"),
-        ("method,error_rad,evaluations\na,-1,2\n", "line 2: error and cost must be positive"),
-        ("method,error_rad,evaluations\na,x,2\n", "line 2: "),
-        ("method,error_rad,evaluations\na,,2\n", "no row with an error and evaluations"),
-    ],
-)
-def test_points_that_cannot_be_read_end_in_one_line(
-    lagtop: Lagtop, tmp_path: Path, text: str, said: str
-) -> None:
-    (tmp_path / "mine.csv").write_text(text)
-    picture = "--plot", str(tmp_path / "x.svg"), "--points", str(tmp_path / "mine.csv")
-    done = lagtop("bench", "--methods", "lagtop", "--n", "5", *picture)
-    assert done.exit_code == 65
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
-
-
 def test_points_of_other_methods_are_drawn_with_inputs(lagtop: Lagtop, tmp_path: Path) -> None:
     (tmp_path / "mine.csv").write_text("method,error_rad,evaluations\nmine,1e-6,300\nmine,0,20\n")
     cost, points = read_points(str(tmp_path / "mine.csv"))

@@ -74,34 +74,25 @@ def test_every_reader_takes_the_same_tables(text: str, first: str, tmp_path: Pat
         assert reader(path, "") == TABLES[text]
 
 
-WRONG = {
-    "FIRST;SECOND\n0,5;30\n1.5;40\n": "got '1.5' (use decimal=point)",
-    "FIRST;SECOND\n1,234;30\n": "line 2: a comma may be a decimal mark or separate thousands",
-    "FIRST\tSECOND\n1.234.567\t30\n": "got '1.234.567'",
-    'FIRST,SECOND\n0.5,"30\n': "a quoted cell must end with its quote, and on its line",
-    'FIRST,"SECOND\n0.5,30\n': "line 1: a quoted cell must end with its quote, and on its line",
-    "FIRST,SECOND\n0.5,30,1\n": "a row must have 2 cells, got 3",
-    "FIRST,SECOND\n0.5,30\nFIRST,SECOND,A,phi\n": "a row must have 2 cells, got 4",
-    '{"FIRST":0.5,"SECOND":1}\n{"FIRST":1.5,\n': "not JSON: ",
-    '{"FIRST":0.5,"SECOND":1}\n[1]\n': "a row must be a JSON object",
-    '{"FIRST":0.5,"SECOND":1,"FIRST":2}': "must name each key once, got 'FIRST' twice",
-    "[" * 9000: "line 1: not JSON: ",
-    "[1, 2]": "row 1: a row must be a JSON object",
-}
+WRONG = [
+    *("FIRST;SECOND\n0,5;30\n1.5;40\n", "FIRST;SECOND\n1,234;30\n"),
+    *("FIRST\tSECOND\n1.234.567\t30\n", 'FIRST,SECOND\n0.5,"30\n', 'FIRST,"SECOND\n0.5,30\n'),
+    *("FIRST,SECOND\n0.5,30,1\n", "FIRST,SECOND\n0.5,30\nFIRST,SECOND,A,phi\n", "[" * 9000),
+    *('{"FIRST":0.5,"SECOND":1}\n{"FIRST":1.5,\n', '{"FIRST":0.5,"SECOND":1}\n[1]\n'),
+    *('{"FIRST":0.5,"SECOND":1,"FIRST":2}', "[1, 2]"),
+]
 
 
 @pytest.mark.parametrize("first", READERS)
 @pytest.mark.parametrize("text", WRONG)
-def test_bad_tables_end_in_one_line(text: str, first: str, tmp_path: Path) -> None:
+def test_every_reader_refuses_the_same_tables(text: str, first: str, tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text(text.replace("FIRST", first).replace("SECOND", SECOND[first]))
     for reader in READERS[first]:
         with pytest.raises(DataError) as error:
             reader(path, "")
-        assert WRONG[text].replace("FIRST", first) in str(error.value)
         assert "\n" not in str(error.value)
-        if reader is not of_tops:
-            assert str(error.value).startswith(f"{path}, ")
+        assert reader is of_tops or str(error.value).startswith(f"{path}, ")
 
 
 @pytest.mark.parametrize("first", READERS)

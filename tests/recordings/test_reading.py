@@ -253,17 +253,3 @@ def test_both_functions_take_the_same_options() -> None:
     for bad, said in wrong:
         with pytest.raises(LagtopError, match=said):
             compare(MOTION, None if not bad else T, theta=ANGLES.theta, **bad)
-
-
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [
-        ("frame,theta\n1,2\n", "the column frame counts frames: give fps"),
-        ("theta,phi\n1,2\n", "the time is missing, give dt or fps for even rows"),
-        ("1 2 3 4 5 6 7 8 9 10 11 12\n", "or columns=pose for a matrix and a translation"),
-        ("t,theta\n0.5,1\n", "t must count frames if dt or fps is given, got 0.5"),
-    ],
-)
-def test_times_that_are_missing(content: str, said: str, tmp_path: Path) -> None:
-    with pytest.raises(DataError, match=said):
-        read(tmp_path, content, fps=50 if "0.5" in content else None)

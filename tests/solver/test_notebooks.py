@@ -69,11 +69,6 @@ def test_without_matplotlib_a_plot_names_the_remedy(monkeypatch: pytest.MonkeyPa
         assert str(refused.value) == "pictures need matplotlib: " + install("plot")
 
 
-def test_a_misspelt_key_gets_a_suggestion() -> None:
-    with pytest.raises(AttributeError, match="did you mean 'T_nutation'"):
-        _ = MOTION.T_nutatoin
-
-
 def test_names_of_a_motion_are_public_and_known() -> None:
     names = dir(MOTION)
     assert {"T_nutation", "rotation", "top", "regime", "record"} <= set(names)

@@ -157,39 +157,6 @@ def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     assert "line 3: m must be a finite decimal number, got '5O'" in rows.stdout
 
 
-@pytest.mark.parametrize(
-    ("header", "options", "message"),
-    [
-        ("m,r0 [rpm]", WORDS, "standard input, heading m: m must have a unit such as kg or g, as"),
-        ("m [g]", ["--r0", "50"], "--r0 must have a unit"),
-        ("m [rpm]", WORDS, "standard input, heading m [rpm]: m must have a unit such as kg or g"),
-        ("m [g],m", WORDS, "standard input must name each column once"),
-        ("theta0", [], "standard input: the column theta0 must be spelt theta0_deg"),
-        ('{"R0": 1}', [], "standard input: the column R0 must be spelt r0"),
-        ("theta0_deg [rad]", [], "standard input: the column theta0_deg must be called theta0 [r"),
-    ],
-)
-def test_wrong_headings(header: str, options: list[str], message: str, lagtop: Lagtop) -> None:
-    options = [word for word in options if word not in {"--m", "350g"}]
-    result = lagtop("sweep", "-", *options, input=f"{header}\n")
-    assert_one_line(result, 65 if message.startswith("standard input") else 2, message)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ("--m 350s", "--m must have a unit such as kg or g, got the unit 's' (it measures some"),
-        ("--m 3fathom", "got the unit 'fathom' (no such unit; known: mg, g, kg, oz, lb, slug, um"),
-        ("--m 9kg^99999999", "--m must have a unit such as kg or g, got the unit 'kg^99999999'"),
-        ("--m 1800gr", "got the unit 'gr' (grain or gram? write g)"),
-    ],
-)
-def test_bad_units(options: str, message: str, lagtop: Lagtop) -> None:
-    result = lagtop("solve", *options.split())
-    assert_one_line(result, 2, "--")
-    assert message in result.stderr
-
-
 def test_times_with_units_ask_for_units_of_all(lagtop: Lagtop) -> None:
     ask = ["table", "--n", "2", "--columns", "t"]
     assert lagtop(*ask, "--t-max", "2min").stdout == "t\n0.0\n120.0\n"

@@ -7,10 +7,8 @@ import random
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pint
 import pytest
 import xarray
 from conftest import Lagtop, assert_one_line
@@ -77,22 +75,8 @@ def test_uncertain_numbers_are_exact(text: str, number: str, std: str) -> None:
         parse_value("m", text)
 
 
-@pytest.mark.parametrize(
-    ("text", "wrong"),
-    [
-        *(
-            (x, "must be a number, or an uncertain number such as 1587(2)")
-            for x in ("1(2", "1+/-", "5%")
-        ),
-        ("1+/--2", "must have an uncertainty >= 0"),
-        ("3,5 g", "got '3,5 g' (write a decimal point, not a comma)"),
-        ("steady", "must be a number unless one top is solved"),
-    ],
-)
-def test_other_texts_are_refused(text: str, wrong: str) -> None:
-    with pytest.raises(LagtopError) as found:
-        parse_value("m", text, uncertain=True)
-    assert wrong in str(found.value)
+def test_a_span_goes_from_the_smaller_to_the_larger_end() -> None:
+    assert str(parse_number_or_span("log:1:2.5")) == "1 to 2.5"
 
 
 def test_numbers_of_other_libraries_are_values() -> None:
@@ -100,20 +84,6 @@ def test_numbers_of_other_libraries_are_values() -> None:
     assert value_of("m", ufloat(50, 0.5)) == Value(50.0, "", Fraction(1, 2))
     labelled = xarray.DataArray([1.0, 2.0], dims="x", attrs={"units": "kg"})
     assert value_of("m", labelled).number is labelled
-
-
-@pytest.mark.parametrize(
-    ("given", "wrong"),
-    [
-        (pint.Quantity([1.0, 2.0], "kg"), "m must be a number without a unit object, such as its"),
-        (ufloat(1, float("inf")), "the uncertainty of m must be a finite number, got inf"),
-    ],
-)
-def test_objects_that_are_no_input_are_refused(given: Any, wrong: str) -> None:
-    with pytest.raises(LagtopError) as found:
-        value_of("m", given)
-    assert str(found.value).startswith(wrong)
-    assert found.value.key == "m"
 
 
 # Ranges
@@ -165,30 +135,6 @@ def test_logarithmic_points_have_equal_ratios() -> None:
             exact = [float(Decimal(repr(first)) * (ratio * i).exp()) for i in range(count)]
         assert points.at(np.arange(count)).tolist() == exact
         assert [float(x) for x in points.decimals()] == exact
-
-
-@pytest.mark.parametrize(
-    ("text", "wrong"),
-    {
-        "0:10:1": "must have a count of 2 or more between different ends, got '0:10:1'",
-        "0:1": "must be a range [log:]start:stop:count, got '0:1'",
-        "0:1:2.5": "must have a whole count of 1 to 1e9 in its range",
-        "0:1:1e10": "must have a whole count of 1 to 1e9 in its range",
-        "0:x:2": "must be a finite decimal number, got 'x'",
-        "log:0:1:3": "must have two ends of one sign, not 0, in a log: range",
-        "60rpm:80rpm:3": "must be a number or a range with its unit once, at the end, as in",
-    }.items(),
-)
-def test_bad_ranges(text: str, wrong: str) -> None:
-    with pytest.raises(LagtopError) as found:
-        parse_values(text)
-    assert str(found.value).startswith(wrong)
-
-
-def test_a_span_goes_from_the_smaller_to_the_larger_end() -> None:
-    assert str(parse_number_or_span("log:1:2.5")) == "1 to 2.5"
-    with pytest.raises(LagtopError, match="from a smaller to a larger value, got '2:2'"):
-        parse_number_or_span("2:2")
 
 
 ZERO = "0e999999999"

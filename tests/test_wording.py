@@ -1,0 +1,93 @@
+"""The wording of messages: each line of `wording.txt` ends as shown there.
+
+`python tests/test_wording.py` rewrites the messages that no longer are as shown.  All other tests
+ask for the type of an error and for its values.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import shlex
+from contextlib import chdir
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import lagtop
+import numpy as np
+import pint
+import pytest
+from click.testing import CliRunner
+from lagtop import LagtopError
+from uncertainties import ufloat
+
+from lagrange_cli.cli.app import main
+from lagrange_cli.names import check_names
+from lagrange_cli.top import values
+
+PATH = Path(__file__).with_name("wording.txt")
+NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
+NAMES |= vars(values) | {"lagtop": lagtop, "np": np, "math": math, "pint": pint, "ufloat": ufloat}
+NAMES |= {"Decimal": Decimal, "Fraction": Fraction, "check_names": check_names}
+
+
+TEXT = PATH.read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"^((?:\$|>>>) .*)\n(.*)", TEXT, re.MULTILINE)
+"""Command lines and calls, and what they end with; `...` stands for any words."""
+
+
+def bytes_of(text: str) -> bytes:
+    """Return the bytes that `printf` writes for a text with backslashes."""
+    return text.encode().decode("unicode_escape").encode("latin-1")
+
+
+FILES = {
+    name: bytes_of(text) for name, text in re.findall(r"^File (\S+): (.*)", TEXT, re.MULTILINE)
+}
+"""Files in the folder in which the commands run."""
+
+
+def said_by(line: str) -> str:
+    """Return the last line of a command, with its exit code if that is not 2, or an exception."""
+    if line.startswith(">>> "):
+        with pytest.raises((LagtopError, TypeError, AttributeError)) as error:
+            eval(line[4:], NAMES)
+        return f"{error.typename}: {error.value}"
+    printed, _, command = line.removeprefix("$ ").rpartition(" | ")
+    given = bytes_of(shlex.split(printed)[1]) if printed else None
+    ended = CliRunner(catch_exceptions=False).invoke(main, shlex.split(command)[1:], input=given)
+    assert (ended.stdout, ended.exit_code == 0) == ("", False), line
+    *_, said = ended.stderr.splitlines()
+    assert said.startswith("Error: ")
+    return said if ended.exit_code == 2 else f"{said} [{ended.exit_code}]"
+
+
+@pytest.mark.filterwarnings("ignore::lagrange_cli.MixedBodyWarning")
+@pytest.mark.parametrize(("line", "said"), EXAMPLES)
+def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, content in FILES.items():
+        (tmp_path / name).write_bytes(content)
+    found = said_by(line)
+    assert found.isprintable()
+    assert found == said or re.fullmatch(".*".join(map(re.escape, said.split("..."))), found)
+    assert {path.name for path in tmp_path.iterdir()} == {*FILES}
+
+
+def rewrite() -> None:
+    """Put the messages that are no longer as shown into the file."""
+    text = TEXT
+    with TemporaryDirectory() as folder, chdir(folder):
+        for line, said in EXAMPLES:
+            try:
+                test_a_message(line, said, Path(folder), pytest.MonkeyPatch())
+            except AssertionError:
+                text = text.replace(f"{line}\n{said}\n", f"{line}\n{said_by(line)}\n", 1)
+    PATH.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    rewrite()
