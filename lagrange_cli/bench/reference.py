@@ -124,7 +124,6 @@ def exact_motion(motion: Motion) -> Reference:
     """Return the reference of a motion; raise LagtopError if it cannot check the motion."""
     if motion.regime not in (Regime.REGULAR, Regime.NO_SPIN):
         raise LagtopError(f"the top must nutate, but its regime is {motion.regime.value!r}")
-    try:
-        return Reference(motion.top)
-    except ZeroDivisionError:
-        raise LagtopError("the axis must not pass exactly through the vertical") from None
+    if not motion.facts.off_poles:
+        raise LagtopError("the axis must not pass exactly through the vertical")
+    return Reference(motion.top)
