@@ -33,15 +33,12 @@ from lagrange_cli.top.units import Units
 
 
 def drawn(kind: str, *motions: Motion, title: str | None = None, **options: Any) -> Any:
-    """Return the figure of one kind of picture, saved once: an artist that warns fails."""
+    """Return the figure of one kind of picture."""
     chosen = Options(**options)
     with styled(chosen.look):
-        figure = figure_of(
+        return figure_of(
             [(f"dir/{i}.toml", x) for i, x in enumerate(motions)], [kind], chosen, title
         )
-        figure_bytes(figure, "svg", 40, "", "")
-    assert figure.get_tightbbox().x0 >= -0.05  # nothing is cut
-    return figure
 
 
 def data(line: Any) -> tuple[Any, Any]:
@@ -393,17 +390,22 @@ def test_a_film_has_the_frames_of_its_duration(lagtop: Lagtop, tmp_path: Path) -
         assert film.size == (192, 208)
 
 
-@pytest.mark.parametrize("fmt", ["png", "svg", "pdf"])
-def test_files_hold_a_title_and_a_description(fmt: str) -> None:
-    figure = drawn("phase", solve(Top()))
+SAVED = [*((kind, "svg") for kind in PICTURES), ("phase", "png"), ("phase", "pdf")]
+
+
+@pytest.mark.parametrize(("kind", "fmt"), SAVED)
+def test_every_picture_is_saved_whole(kind: str, fmt: str) -> None:
+    """No artist warns, nothing is cut, and the file holds a title and a description."""
+    spins: Any = {"key": "K", "x": ("r0", [40, 60]), "y": ("theta0", [0.5, 1])}
+    figure = drawn(kind, solve(Top()), **spins if kind == "map" else {})
     with styled(LIGHT):
         data = figure_bytes(figure, fmt, 40, "a title", "two < three")
     assert data[:4] in {b"\x89PNG", b"<?xm", b"%PDF"}
-    if fmt == "svg":
-        assert b"two &lt; three" in data
-        assert b"<text" in data
+    assert fmt != "svg" or b"two &lt; three" in data
+    assert fmt != "svg" or b"<text" in data
+    assert figure.get_tightbbox().x0 >= -0.05
     if fmt == "png":
-        with pytest.raises(LagtopError, match="dpi must be at most"):
+        with pytest.raises(LagtopError, match="dpi"):
             figure_bytes(figure, fmt, 5000, "a title", "")
 
 
@@ -416,11 +418,6 @@ def test_pictures_are_drawn_on_axes_of_the_user() -> None:
     assert len(other.axes) == 2  # with its colour bar
     with pytest.raises(LagtopError, match="ax must be 3 axes, got 1"):
         draw(solve(Top()), "angles", figure.subplots())
-    with pytest.raises(LagtopError, match="kind must be one of sphere"):
-        draw(solve(Top()), "spheer")
-    with pytest.raises(LagtopError, match="need the kind map"):
-        draw(solve(Top()), "phase", key="a")
-    assert set(PICTURES) == {"sphere", "angles", "cubic", "phase", "map"}
 
 
 def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> None:
@@ -435,10 +432,3 @@ def test_axes_with_units_convert_the_body(lagtop: Lagtop, monkeypatch: Any) -> N
     top, (x, masses), (_, tilts) = shown
     assert (top.m, top.s, x, masses.tolist()) == (1.587, 0.04, "m", [1.0, 1.5, 2.0])
     assert tilts.tolist() == pytest.approx([28.64788975654116, 57.29577951308232], rel=1e-15)
-
-
-def test_numbers_beyond_the_doubles_need_other_units(lagtop: Lagtop, tmp_path: Path) -> None:
-    body = "--m 1e100 --g 1e100 --s 1e100 --A 1e-90 --C 1e-90".split()
-    done = lagtop("plot", "cubic", *body, "-o", str(tmp_path / "x.png"))
-    assert done.exit_code == 2
-    assert done.stderr.endswith("too large or too small for a picture: choose other units\n")
