@@ -9,7 +9,8 @@ from typing import Any
 
 import mpmath
 import pytest
-from conftest import Lagtop, columns_of
+from conftest import Lagtop
+from function_reference import cells_of
 
 from lagrange_cli.elliptic.arguments import ExactComplex, parse_arguments
 
@@ -17,10 +18,8 @@ DIGITS = pytest.mark.parametrize("digits", ["", " --digits 20"])
 
 
 def cells(lagtop: Lagtop, args: str) -> dict[str, list[str]]:
-    """Return the cells of a CSV table by column."""
-    shown = lagtop("jacobi", *args.split(), "--format", "csv")
-    assert shown.exit_code == 0, shown.stderr
-    return columns_of(shown.stdout)
+    """Return the cells of a table by column, in doubles unless the words say digits."""
+    return cells_of(lagtop, *args.split(), digits=None)
 
 
 @DIGITS

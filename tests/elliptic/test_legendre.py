@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-from fractions import Fraction
+from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
@@ -12,36 +12,26 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
-
-from lagrange_cli.elliptic.arguments import Arguments, ExactComplex
-from lagrange_cli.elliptic.legendre import amplitude_rows
-from lagrange_cli.elliptic.modulus import GivenModulus
-from lagrange_cli.top.ranges import ListedPoints
-from lagrange_cli.top.units import Units
+from function_reference import cells_of
 
 
 def rows(
-    name: str, value: float, amplitudes: list[complex], n: float | None = None, *, degrees: bool
+    lagtop: Lagtop, name: str, value: float, amplitudes: list[complex], *more: str
 ) -> list[list[complex]]:
     """Return F, E and, with n, Pi of some amplitudes."""
-    real, imag = (
-        ListedPoints([Fraction(part) for part in parts])
-        for parts in zip(*((z.real, z.imag) for z in amplitudes), strict=True)
-    )
-    is_real = not any(z.imag for z in amplitudes)
-    header, blocks = amplitude_rows(
-        Arguments(real, None if is_real else imag),
-        GivenModulus(name, ExactComplex(Fraction(value))),
-        None if n is None else Fraction(n),
-        units=Units(radians=not degrees),
-    )
-    names = ["F", "E", "Pi"][: 2 if n is None else 3]
-    found = []
-    for row in (row for block in blocks for row in block):
-        cells = dict(zip(header, row, strict=True))
-        parts = [(cells.get(x) or cells[f"{x}_re"], cells.get(f"{x}_im", "0")) for x in names]
-        found.append([complex(float(x), float(y)) for x, y in parts])
-    return found
+    texts = [
+        f"{Decimal(z.real)}{Decimal(z.imag):+f}i" if z.imag else f"{Decimal(z.real):f}"
+        for z in amplitudes
+    ]
+    words = f"--{name}={Decimal(value)}", f"--phi={','.join(texts)}", *more
+    cells = cells_of(lagtop, *words, digits=None)
+    nothing = ["0"] * len(texts)
+    parts = [
+        zip(cells.get(x) or cells[f"{x}_re"], cells.get(f"{x}_im", nothing), strict=True)
+        for x in ("F", "E", "Pi")
+        if {x, f"{x}_re"} & {*cells}
+    ]
+    return [[complex(float(re), float(im)) for re, im in row] for row in zip(*parts, strict=True)]
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(120)
@@ -96,15 +86,15 @@ CASES = [
 
 
 @pytest.mark.parametrize(("m", "phi", "n"), CASES)
-def test_path(m: float, phi: complex, n: float | None) -> None:
+def test_path(m: float, phi: complex, n: float | None, lagtop: Lagtop) -> None:
     """The integrals are those of the path, on every side of branch points and poles."""
-    (found,) = rows("m", m, [phi], n, degrees=False)
+    (found,) = rows(lagtop, "m", m, [phi], "--rad", *([] if n is None else [f"--n={n}"]))
     for value, true in zip(found, by_quadrature(m, phi, n or 0), strict=False):
         assert abs(value - true) <= 1e-5 * (1 + abs(true)), (m, phi, n, found)
 
 
 @pytest.mark.parametrize("count", [9, pytest.param(600, marks=pytest.mark.slow)])
-def test_functions_of_mpmath(count: int) -> None:
+def test_functions_of_mpmath(count: int, lagtop: Lagtop) -> None:
     """mpmath has the same branches for k in [0, 1), for imaginary k, and for k sin(Re phi) < 1."""
     rng = random.Random(61)
     for i in range(count):
@@ -112,7 +102,8 @@ def test_functions_of_mpmath(count: int) -> None:
         reach = 7 if m < 1 else math.asin(m**-0.5)
         phi = complex(rng.uniform(-reach, reach), rng.choice([0, rng.uniform(-3, 3)]))
         n = None if phi.imag else rng.uniform(-9, 1)
-        (found,) = rows("m", m, [phi], n, degrees=False)
+        more = [] if n is None else [f"--n={Decimal(n)}"]
+        (found,) = rows(lagtop, "m", m, [phi], "--rad", *more)
         with mpmath.workdps(40):
             exact = [mpmath.ellipf(phi, m), mpmath.ellipe(phi, m)]
             exact += [] if n is None else [mpmath.ellippi(n, phi, m)]
@@ -122,7 +113,7 @@ def test_functions_of_mpmath(count: int) -> None:
 
 @pytest.mark.parametrize("degrees", [False, True])
 @pytest.mark.parametrize(("name", "value"), [("k", 0.3), ("k_prime", 0.03), ("k_prime", 1e-9)])
-def test_rounding(name: str, value: float, degrees: bool) -> None:
+def test_rounding(name: str, value: float, degrees: bool, lagtop: Lagtop) -> None:
     """Tiny amplitudes, far ones, and those next to quarter turns: each is correctly rounded."""
     rng, quarter = random.Random(f"F {name} {degrees}"), 90.0 if degrees else math.pi / 2
     near = quarter * rng.randrange(-9, 10)
@@ -131,7 +122,7 @@ def test_rounding(name: str, value: float, degrees: bool) -> None:
         *(math.nextafter(near, 1e9), quarter * 10 ** rng.uniform(0, 15.05)),
     ]
     with mpmath.workdps(60):
-        found = rows(name, value, amplitudes, degrees=degrees)
+        found = rows(lagtop, name.replace("_", "-"), value, amplitudes, *["--rad"][degrees:])
         m = mpmath.mpf(value) ** 2 if name == "k" else 1 - mpmath.mpf(value) ** 2
         for phi, values in zip(amplitudes, found, strict=True):
             angle = mpmath.mpf(phi.real) * (mpmath.pi / 180 if degrees else 1)
