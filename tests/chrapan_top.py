@@ -18,15 +18,6 @@ from lagrange_cli.solver.solve import solve
 from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top.units import Units
 
-
-def rows_of(
-    top: Top, times: Sequence[Any], digits: int, *, wrap: bool = False, radians: bool = False
-) -> list[list[Any]]:
-    """Return rows of t and the three angles with `digits` digits."""
-    table = ProvedTable(solve(top), DEFAULT_COLUMNS, digits, wrap=wrap, units=Units(radians))
-    return [[number.value for number in table.row(Fraction(t))] for t in times]
-
-
 DIGITS = 150
 ar = ManyDigits(DIGITS + 10)
 """Slopes over 1e-45 leave 100 of the digits, second slopes 60."""

@@ -7,9 +7,10 @@ The exact values are those of `lagtop` in many digits; a test compares them with
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cache
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +18,7 @@ import mpmath
 from conftest import ROOT
 from lagtop import Motion, read_scene, solve
 from ours import ManyDigits, Ours
-from record_reference import State, reference_record, reference_state
+from record_reference import reference_columns, reference_record
 
 from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top.units import Units
@@ -40,63 +41,28 @@ class Printed(NamedTuple):
     t: str = ""
 
 
-def product(p: Sequence[Many], q: Sequence[Many]) -> tuple[Many, Many, Many, Many]:
-    """Return the product of two quaternions."""
-    (a, b, c, d), (w, x, y, z) = p, q
-    return (
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    )
-
-
-def quaternion(now: State) -> tuple[Many, Many, Many, Many]:
-    """Return the attitude in the frame of Bruels, Cardona and Arnold, 1 at the start.
-
-    Their body axis y is the figure axis, and lies along y of space; so ours, at a tilt of 90
-    degrees, is turned by 180 degrees about z of space and by -90 degrees about x of the body.
-    """
-    sin, cos = mpmath.sin(now.theta / 2), mpmath.cos(now.theta / 2)
-    plus, minus = (now.psi + now.phi) / 2, (now.psi - now.phi) / 2
-    ours = cos * mpmath.cos(plus), sin * mpmath.cos(minus), sin * mpmath.sin(minus)
-    h = mpmath.sqrt(0.5)
-    body = product((h, -h, 0, 0), (0, 0, 0, -1))
-    return product((0, 0, 0, 1), product((*ours, cos * mpmath.sin(plus)), body))
-
-
-def rotation(now: State) -> list[list[Many]]:
-    """Return the rotation matrix, from body to space, in the frame of `quaternion`."""
-    w, x, y, z = quaternion(now)
-    return [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-
-
-def omega_y(now: State) -> Many:
-    """Return the angular velocity about y of space, in the frame of `quaternion`."""
-    ours = now.thetadot * mpmath.sin(now.psi)
-    ours -= now.phidot * mpmath.sin(now.theta) * mpmath.cos(now.psi)
-    return -ours  # space is turned by 180 degrees about z
-
-
-QUANTITIES: dict[str, Callable[[State], Many]] = {
-    "theta": lambda now: now.theta,
-    "phi": lambda now: now.phi,
-    "psi": lambda now: now.psi,
-    "omega_y": omega_y,
-    **{f"q{i}": lambda now, i=i: quaternion(now)[i] for i in range(4)},  # type: ignore[misc]
-    **{f"u{i}": lambda now, i=i: rotation(now)[i][1] - (i == 1) for i in range(3)},  # type: ignore[misc]
-    "Rot x": lambda now: mpmath.atan2(-rotation(now)[1][2], rotation(now)[2][2]),
-    "Rot y": lambda now: mpmath.asin(rotation(now)[0][2]),
-    "Rot z": lambda now: mpmath.atan2(-rotation(now)[0][1], rotation(now)[0][0]),
+Columns = Mapping[str, Many]
+QUANTITIES: dict[str, Callable[[Columns], Many]] = {
+    **{x: itemgetter(x) for x in ("theta", "phi", "psi")},
+    "omega_y": lambda of: -of["omega_space_y"],
+    "q0": lambda of: (of["quaternion_w"] + of["quaternion_x"]) / mpmath.sqrt(2),
+    "q1": lambda of: (of["quaternion_w"] - of["quaternion_x"]) / mpmath.sqrt(2),
+    "q2": lambda of: (of["quaternion_z"] - of["quaternion_y"]) / mpmath.sqrt(2),
+    "q3": lambda of: (of["quaternion_z"] + of["quaternion_y"]) / mpmath.sqrt(2),
+    "u0": lambda of: -of["axis_x"],
+    "u1": lambda of: -of["axis_y"] - 1,
+    "u2": lambda of: of["axis_z"],
+    "Rot x": lambda of: mpmath.atan2(of["matrix_yy"], of["matrix_zy"]),
+    "Rot y": lambda of: mpmath.asin(-of["matrix_xy"]),
+    "Rot z": lambda of: mpmath.atan2(of["matrix_xz"], of["matrix_xx"]),
 }
-"""Functions of the state: our angles, and what others print of the top of Bruels and others.
+"""Our angles, and what others print of the top of Bruels, Cardona and Arnold, by our columns.
 
-u is the displacement of the centre of mass, Rot are Tait-Bryan angles about x, y and z in turn.
+Their body axis y is the figure axis, and lies along y of space; so our body, at a tilt of 90
+degrees, is turned by 180 degrees about z of space and by -90 degrees about x of the body.  u is the
+displacement of the centre of mass, Rot are Tait-Bryan angles about x, y and z in turn.
 """
+COLUMNS = ["theta", "phi", "psi", "quaternion", "axis", "matrix", "omega_space_y"]
 
 
 def _elementary(t: str) -> Printed:
@@ -136,10 +102,11 @@ def exact(x: Printed, *, by_reference: bool = False) -> Many:
             inputs = motion(x.scene).top.as_dict()
             return reference_record(inputs)[key] if by_reference else mpmath.mpf(record[key])
         if by_reference:
-            now = reference_state(motion(x.scene).top.as_dict(), Fraction(x.t))
+            now = reference_columns(motion(x.scene).top.as_dict(), Fraction(x.t))
         else:
-            table = ProvedTable(motion(x.scene), State._fields, DIGITS, units=Units(radians=True))
-            now = State(*(mpmath.mpf(found.value) for found in table.row(Fraction(x.t))))
+            table = ProvedTable(motion(x.scene), COLUMNS, DIGITS, units=Units(radians=True))
+            row = (mpmath.mpf(found.value) for found in table.row(Fraction(x.t)))
+            now = dict(zip(table.chosen, row, strict=True))
         value = QUANTITIES[x.quantity](now)
         if x.quantity.startswith("Rot"):  # angles of a rotation have the whole turns of the print
             value += 2 * mpmath.pi * mpmath.nint((mpmath.mpf(x.text) - value) / 2 / mpmath.pi)

@@ -1,62 +1,14 @@
-"""Scenes that tests share: named ones, and random ones over all the ranges we promise."""
+"""A scene of every kind of motion; `lagrange_cli/bench/hard_scenes.py` has random ones."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
-
-from conftest import ROOT
-from lagtop import Motion
 
 EPS = 2.0**-52
 """Distance from 1 to the next double."""
 
 UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 """A spherical top with a = 2, b = r0 and lambda = r0^2/4."""
-
-SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
-"""Scene files of the project."""
-
-STEADY: list[dict[str, Any]] = [
-    *({"theta0_deg": 90}, {"theta0_deg": 90, "r0": -2}, {"theta0_deg": 150}, {"r0": 3, "g": 0}),
-    *({"theta0_deg": 60, "r0": -3, "g": 4.5}, {"theta0_deg": 0, "r0": -5, "g": 4}),
-    *({"theta0_deg": 120, "r0": 0, "A": 2}, {"theta0_deg": 0}),
-    *({"r0": math.nextafter(3**0.25 * 2**0.5, up)} for up in (0, 9)),
-]
-"""Starts whose steady rates have closed values, coincide or nearly do, or do not exist."""
-
-NAMED: dict[str, dict[str, float]] = {
-    "worked example": {},
-    "other way round": {"r0": -50},
-    "starts below the horizontal": {"theta0_deg": 120, "r0": -20},
-    "falls below the horizontal": {"r0": 10},
-    "disc": {"C": 78064, "r0": 30},
-    "sphere": {"C": 39032, "theta0_deg": 75},
-    "fast": {"r0": 1e4},
-    "slow": {"r0": 1},
-    "nearly hanging": {"theta0_deg": 179.9, "r0": 3},
-    "nearly upright, unstable": {"theta0_deg": 0.01},
-    "nearly upright, stable": {"theta0_deg": 0.01, "r0": 60},
-    **{
-        f"at the sleeping threshold, r0 = {r0}": UNIT | {"r0": r0, "theta0_deg": 1}
-        for r0 in (2, math.nextafter(2, 0), math.nextafter(2, 3))
-    },
-    **{
-        f"tiny tilt of {tilt}": UNIT | {"r0": 3, "theta0_deg": tilt, "psidot0": 1}
-        for tilt in (1e-15, 1e-30, 1e-70)
-    },
-    **{
-        f"leaves the pole at {rate}": UNIT | {"r0": 1, "theta0_deg": 0, "thetadot0": rate}
-        for rate in (1e-18, 1e-120)
-    },
-    **{f"steady rates {x}": UNIT | {"r0": 2, "theta0_deg": 30} | x for x in STEADY},
-}
-
-
-def period(motion: Motion) -> float:
-    """Return the nutation period, or 0 where there is none."""
-    return float(motion.T_nutation or 0)
-
 
 EVERY_KIND: dict[str, dict[str, Any]] = {
     "worked example": {},

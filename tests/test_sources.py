@@ -5,11 +5,10 @@ from __future__ import annotations
 from importlib import import_module
 from pathlib import Path
 
-import mpmath
 import pytest
 from equations import Register
-from published import PRINTED, Printed, error, exact, quaternion
-from record_reference import State
+from published import PRINTED, QUANTITIES, Printed, error, exact, motion
+from record_reference import reference_columns
 
 CHRAPAN = {"1": 8, "2": 11, "3": 8, "4": 34, "5": 3, "6": 6, "7": 5}
 """Number of the last equation of each section, (1,1) to (7,5)."""
@@ -64,9 +63,10 @@ def test_exact_value(x: Printed) -> None:
 
 
 def test_the_frame_of_the_prints_is_still_at_the_start() -> None:
-    half = mpmath.pi / 2
-    parts = map(float, quaternion(State(half, 0, 0, 0, 0, 0)))
-    assert list(parts) == pytest.approx([1, 0, 0, 0], abs=1e-12)
+    start = reference_columns(motion("bruels-cardona-arnold").top.as_dict(), 0)
+    names = ["q0", "q1", "q2", "q3", "u0", "u1", "u2", "Rot x", "Rot y", "Rot z"]
+    parts = [float(QUANTITIES[name](start)) for name in names]
+    assert parts == pytest.approx([1, *[0] * 9], abs=1e-12)
 
 
 def test_what_is_found_of_the_prints() -> None:

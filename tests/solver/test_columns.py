@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from lagtop import Motion, Top, solve
 from record_reference import reference_columns, reference_record
-from scenes import EPS, EVERY_KIND, UNIT, period
+from scenes import EPS, EVERY_KIND, UNIT
 
 from lagrange_cli.arithmetic.enclosures import at_precision, pi_to
 from lagrange_cli.arithmetic.enclosures import exact as ball_of
@@ -66,6 +66,11 @@ def test_proved_rows_are_those_of_the_reference(name: str) -> None:
                 apart, radius = abs(found.value - exact[column]), float(found.radius)
                 assert apart <= radius + 1e-90, (t, column)
                 assert radius <= abs(found.value) * EPS, (t, column)
+
+
+def period(motion: Motion) -> float:
+    """Return the nutation period, or 0 where there is none."""
+    return float(motion.T_nutation or 0)
 
 
 def errors(motion: Motion, times: Iterable[float]) -> Iterator[float]:
