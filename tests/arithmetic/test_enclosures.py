@@ -10,10 +10,8 @@ import re
 import signal
 import sys
 import threading
-import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from decimal import Decimal, localcontext
 from fractions import Fraction
 
@@ -401,34 +399,6 @@ def test_an_exception_of_a_signal_handler_leaves_the_precision_as_it_was() -> No
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
-
-
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:.*fork")
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
-def test_children_forked_while_a_thread_solves() -> None:
-    """50 children have the precision of the host, and solve."""
-    stop, alone = threading.Event(), solve(Top()).T_nutation
-
-    def solve_on() -> None:
-        while not stop.is_set():
-            assert solve(Top()).T_nutation == alone
-
-    with ThreadPoolExecutor(1) as pool, flint.ctx.workprec(77):
-        running = pool.submit(solve_on)
-        try:
-            for _ in range(50):
-                time.sleep(0.003)
-                if not (child := os.fork()):
-                    signal.alarm(20)  # a child that hangs dies
-                    with suppress(Exception):
-                        os._exit((flint.ctx.prec, solve(Top()).T_nutation) != (77, alone))
-                    os._exit(1)
-                assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-        finally:
-            stop.set()
-        running.result()
-        assert flint.ctx.prec == 77
 
 
 WITH_BALLS = ["solver/facts", "solver/numbers", "solver/attitude"]

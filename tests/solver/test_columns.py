@@ -23,8 +23,7 @@ from scenes import EPS, EVERY_KIND, UNIT
 
 from lagrange_cli.arithmetic.enclosures import at_precision, pi_to
 from lagrange_cli.arithmetic.enclosures import exact as ball_of
-from lagrange_cli.solver import sampling
-from lagrange_cli.solver.columns import COLUMNS, SCALARS, Columns
+from lagrange_cli.solver.columns import COLUMNS, SCALARS
 from lagrange_cli.solver.sampling import period_of, whole_periods
 from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top.units import Units
@@ -246,33 +245,6 @@ def test_wrapped_angles_stay_in_their_interval() -> None:
     phi = motion.angles([*around, *(-x for x in around)], wrap=True).phi
     assert ((phi > -math.pi) & (phi <= math.pi)).all()
     assert motion.angles([3.0], wrap=True).phi[0] == 3.0
-
-
-@pytest.mark.parametrize(
-    ("columns", "computed"),
-    [
-        ("t r", ""),
-        ("theta", "re_X XX tilt"),
-        ("u theta psidot phidot axis_z moment Lz", "re_X XX tilt"),
-        ("thetadot energy", "re_X XX scaled_rate"),
-        ("phi psi dphi dpsi", "re_X arg_X"),
-        ("p", "re_X XX scaled_rate arg_X"),
-    ],
-)
-@pytest.mark.parametrize("r0", SERIES)
-def test_columns_that_are_not_requested_are_not_computed(
-    monkeypatch: pytest.MonkeyPatch, r0: float, columns: str, computed: str
-) -> None:
-    made: list[Columns] = []
-
-    def recorded(*items: Any) -> Columns:
-        made.append(Columns(*items))
-        return made[-1]
-
-    monkeypatch.setattr(sampling, "Columns", recorded)
-    solve(Top(r0=r0)).table(T, columns.split())
-    seen = set().union(*made) & set("re_X XX tilt scaled_rate arg_X".split())
-    assert seen == set(computed.split())
 
 
 @pytest.mark.parametrize("count", [0, 1, 16383, 16384, 16385])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from fractions import Fraction
 
 import numpy as np
@@ -13,7 +12,6 @@ from matplotlib.figure import Figure
 from scenes import EVERY_KIND
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.errors import UnavailableError, install
 from lagrange_cli.output.document import shown_text
 
 SEPARATRIX = EVERY_KIND["separatrix in a plane"]
@@ -56,17 +54,6 @@ def test_a_motion_draws_on_axes() -> None:
     assert axes.lines
     with pytest.raises(LagtopError, match="did you mean 'sphere'"):
         MOTION.plot("spheer")
-
-
-def test_without_matplotlib_a_plot_names_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
-        monkeypatch.setitem(sys.modules, name, None)
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    comparison = compare(MOTION, TIMES, theta=MOTION.angles(TIMES).theta)
-    for plot in (MOTION.plot, comparison.plot):
-        with pytest.raises(UnavailableError) as refused:
-            plot()
-        assert str(refused.value) == "pictures need matplotlib: " + install("plot")
 
 
 def test_names_of_a_motion_are_public_and_known() -> None:

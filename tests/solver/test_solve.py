@@ -10,7 +10,7 @@ import math
 import mpmath
 import pytest
 from chrapan_top import ar
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop
 from errata import FIGURES, round_alike, true_values
 from lagtop import LagtopError, Top, solve
 from record_reference import reference_record
@@ -19,16 +19,6 @@ from scenes import UNIT
 from lagrange_cli.solver.keys import FURTHER_KEYS, derivation_keys
 
 # Remarks
-
-
-def test_sleeping_says_whether_it_is_stable() -> None:
-    """lambda = r0^2/4 here."""
-    below = solve(Top(**UNIT, r0=math.nextafter(2, 0), theta0_deg=0))
-    above = solve(Top(**UNIT, r0=2, theta0_deg=0))
-    assert below.remark == "only phi + psi is defined; unstable (lambda = b^2/2a < 1)"
-    assert above.remark == "only phi + psi is defined; stable (lambda = b^2/2a >= 1)"
-    hanging = solve(Top(**UNIT, r0=2, theta0_deg=180))
-    assert hanging.remark == "only phi - psi is defined; stable"
 
 
 @pytest.mark.parametrize(("sign", "tilt"), [(1, 1.0), (-1, 30.0), (1, 179.0)])
@@ -72,12 +62,6 @@ def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
             assert round_alike(ar.mpf(steps[figure.key]), figure.text) == true, figure.name
             right += true == figure.text
     assert (right, len(FIGURES)) == (16, 30)
-
-
-@pytest.mark.parametrize("options", ["--g 0", "--theta0 0", "--thetadot0 1", "--psidot0 2"])
-def test_what_has_no_derivation_says_so(lagtop: Lagtop, options: str) -> None:
-    found = lagtop("solve", "--derivation", *options.split())
-    assert_one_line(found, 1, "--derivation needs a top that nutates after")
 
 
 def test_a_record_has_them_only_when_they_are_asked_for(lagtop: Lagtop) -> None:

@@ -2,19 +2,11 @@
 
 from __future__ import annotations
 
-import sys
-import threading
-import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
 
-import flint
 import numpy as np
-import pytest
-from flint import arb
 from lagtop import Top, solve
 from scenes import EVERY_KIND
 
@@ -47,44 +39,8 @@ def work(top: Top) -> list[Any]:
     return found
 
 
-@contextmanager
-def disturbed() -> Iterator[None]:
-    """Switch threads as often as possible, and change the precision of Arb thousands of times."""
-    stop, interval, precision = threading.Event(), sys.getswitchinterval(), flint.ctx.prec
-
-    def disturb() -> None:
-        while not stop.is_set():
-            with flint.ctx.workprec(60):
-                arb(3).sqrt()
-            flint.ctx.prec = 53
-            time.sleep(1e-4)
-
-    sys.setswitchinterval(1e-6)
-    host = threading.Thread(target=disturb)
-    host.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        host.join()
-        sys.setswitchinterval(interval)
-        flint.ctx.prec = precision
-
-
 def test_results_of_eight_threads_are_those_of_one() -> None:
     tops = [Top(**scene) for scene in TOPS[::2]]
     alone = [*map(work, tops)]
     with ThreadPoolExecutor(8) as pool:
         assert [*pool.map(work, tops)] == alone
-
-
-@pytest.mark.slow
-def test_results_beside_a_host_that_changes_the_precision_are_the_same() -> None:
-    tops = [Top(**scene) for scene in TOPS]
-    alone = [*map(work, tops)]
-    with disturbed(), ThreadPoolExecutor(8) as pool:
-        for _ in range(8):
-            for found, wanted in zip(pool.map(work, tops), alone, strict=True):
-                # what is left of a zero, some 1e-46, decides a last digit of the doubles
-                np.testing.assert_allclose(found[:4], wanted[:4], rtol=0, atol=2e-15)
-                assert found[4:] == wanted[4:]
