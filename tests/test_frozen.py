@@ -2,7 +2,8 @@
 
 `frozen.json` was written once by `tools/freeze.py` of commit 69ed2d7.  A later commit may only
 remove names from it, or replace the branch of a complex function that mpmath shows to be wrong;
-DIGEST changes with it.
+DIGEST changes with it.  The last CORNERS records, tops at the ends of the doubles, have the numbers
+of `record_reference` with 6,000 digits for the roots.
 A key that is null in the lists `keys` and `radian_keys` is not compared.
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -22,7 +24,8 @@ from lagtop import LagtopError, Motion, Top, sensitivities, solve
 from lagrange_cli.top.inputs import replaced_by
 
 PATH = Path(__file__).parent / "frozen.json"
-DIGEST = "d870fa94a0bbf5b29e1031af30b1e63b39125cf08c00452e015cb1b5dcd24f79"
+DIGEST = "66c9e45c46b7f533f85f9c519a89ded57ae53a8de46c232108c64a6d9da066b9"
+CORNERS = 16
 FROZEN: dict[str, Any] = json.loads(PATH.read_bytes())
 KEYS: list[str | None] = FROZEN["keys"]
 
@@ -103,6 +106,26 @@ def options_of(inputs: dict[str, Any]) -> list[str]:
     for key, x in inputs.items():
         options.append(f"--{names.get(key, key)}={x if isinstance(x, str) else Decimal(x)}")
     return options
+
+
+@pytest.mark.slow  # a picture takes seconds
+@pytest.mark.parametrize("entry", FROZEN["records"][-CORNERS:], ids=lambda x: str(x["top"]))
+def test_commands_at_the_ends_of_the_doubles(
+    lagtop: Lagtop, tmp_path: Path, entry: dict[str, Any]
+) -> None:
+    """Commands compute, or refuse the top in one line."""
+    words, path = options_of(entry["top"]), tmp_path / "rows.csv"
+    name = max(entry["top"], key=lambda x: abs(math.log(abs(entry["top"][x]) or 1)))  # the end
+    for command in (
+        ["table", "--n", 4, "-o", path],
+        ["compare", path],
+        ["solve", f"--{name.removesuffix('_deg')}", f"{entry['top'][name]!r}+/-0.1%"],
+        ["plot", "-o", tmp_path / "picture.svg"],
+        ["view", "-o", tmp_path / "page.html"],
+    ):
+        result = lagtop(*command[:1], *words, *command[1:])
+        assert result.exit_code == 0 or command[0] in ("plot", "view"), result.stderr
+        assert result.exit_code == 0 or result.stderr.count("Error: ") == 1, result.stderr
 
 
 def test_tables(lagtop: Lagtop, tmp_path: Path) -> None:

@@ -97,10 +97,19 @@ def columns_at(
         alpha = float(found.pop("energy_constant").mid())  # 0 may be known to no digit
         return {name: near(x) for name, x in found.items()} | {"energy_constant": alpha}
 
+    def first_row(digits: int | None) -> list[float]:
+        table = ProvedTable(motion, columns, digits, units=units, wrap=wrap)
+        return [float(number.value) for number in table.row(Fraction(0))]
+
     @cache
     def start() -> list[float]:
-        table = ProvedTable(motion, columns, units=units, wrap=wrap)
-        return [number.value for number in table.row(Fraction(0))]
+        try:
+            return first_row(None)
+        except OutOfRangeError:
+            found = first_row(_MORE_THAN_A_DOUBLE)  # 0 if below all doubles, as in later rows
+            if np.isinf(found).any():
+                raise
+            return found
 
     constants = decided(doubles, motion.facts.equal)
 
