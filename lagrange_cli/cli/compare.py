@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
-from ..file_bytes import shown_path
-from ..output.terminal import one_line
 from ..top.scenes import is_scene_file
 from . import shared as opt
 from .app import complain
@@ -68,7 +66,7 @@ def compare_command(
     The exit code is 1 unless the verdict on every trajectory is fine.
     """
     from ..comparison.compare import compared
-    from ..comparison.report import comparison_report
+    from ..comparison.report import comparison_report, failure
     from ..recordings.reading import read_recording
 
     if not words:
@@ -94,5 +92,5 @@ def compare_command(
         return draw_errors(report.rows, max_error, found.errors if found else ())
 
     report = opt.write_report(out, find, plot, draw)
-    failed = [one_line(shown_path(x.file)) for x in report.rows if x.verdict != "fine"]
+    failed = [failure(x) for x in report.rows if x.verdict != "fine"]
     opt.fail_for(failed, len(report.rows), "trajectories")

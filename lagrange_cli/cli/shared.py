@@ -466,6 +466,5 @@ def check_plot(path: str | None, output: str) -> None:
 def fail_for(failures: Sequence[str], count: int, what: str) -> None:
     """Raise SomeFailedError if there are failures, with their number and the first one."""
     if failures:
-        raise SomeFailedError(
-            f"{len(failures)} of {count} {what} failed; the first: {marked(failures[0])}"
-        )
+        said = f"{len(failures)} of {count} {what} failed; the first: " * (count > 1)
+        raise SomeFailedError(said + marked(failures[0]))

@@ -17,7 +17,7 @@ from ..output.notebook import HasRecord
 from ..recordings.recording import Given, Recording, recording_of
 from ..solver.solve import Motion, solve
 from ..top.top import Top
-from .causes import likely_causes, remedy_of
+from .causes import likely_causes
 from .convergence import Convergence, convergence, named_at_step_0
 from .differences import CONSERVED, ExactMotion, blocks
 from .mistakes import Cause
@@ -182,51 +182,49 @@ def compared(
         raise LagtopError(f"step_sizes must have {wanted}, got {step_sizes}", "step_sizes")
     exact, steps = ExactMotion(motion), step_sizes or repeat(None)
     results = [_measured(exact, *x) for x in zip(runs, steps, strict=False)]
-    curves = [(x.step or 0.0, x.t, x.error) for x in results]
-    found = convergence(curves, limit) if step_sizes else None
-    pairs = [*zip(results, runs, strict=True)]
-    estimates = [estimate(motion.top, run) if _is_wrong(x, limit) else None for x, run in pairs]
-    if found and step_sizes:
-        found = named_at_step_0(motion.top, found, step_sizes, estimates)
-    is_other = found is not None and not found.converges
-    for i, (x, run) in enumerate(pairs):
-        is_wrong, seen = _is_wrong(x, limit), estimates[i]
+    wrong = [max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit for x in results]
+    seen = [estimate(motion.top, x) if y else None for x, y in zip(runs, wrong, strict=True)]
+    found = None
+    if step_sizes:
+        found = convergence([(x.step or 0.0, x.t, x.error) for x in results], limit)
+        found = found and named_at_step_0(motion.top, found, step_sizes, seen)
+    for i, x in enumerate(results):
         known, causes = dict[str, Any](), list[Cause]()
-        if is_wrong and (is_other or not found):
-            causes = likely_causes(exact, run, limit, seen)
-            known = _explained(exact, run, limit, seen, causes)
-        is_another = is_other or any(y.exact and y.error <= limit for y in causes)
-        slips, is_off = (x.pivot_slip or 0.0) > limit, x.error_start > limit
-        apply = True, is_wrong or slips, is_wrong and is_another, is_off, x.lost_at is not None
-        verdict = [word for word, it in zip(VERDICTS, apply, strict=True) if it][-1]
+        if wrong[i] and not (found and found.converges):
+            causes = likely_causes(exact, runs[i], limit, seen[i])
+            known = _explained(motion.top, seen[i], causes, limit)
         if found:
             known |= {"order": found.order, "order_error": found.errors[i]}
+        is_other = bool(found and not found.converges) or any(y.is_top(limit) for y in causes)
+        applies = [
+            True,
+            wrong[i] or (x.pivot_slip or 0.0) > limit,
+            wrong[i] and is_other,
+            x.error_start > limit,
+            x.lost_at is not None,
+        ]
+        verdict = [word for word, it in zip(VERDICTS, applies, strict=True) if it][-1]
         results[i] = replace(x, verdict=verdict, **known)
     return results, found
 
 
-def _is_wrong(x: Comparison, limit: float) -> bool:
-    return max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
-
-
 def _explained(
-    exact: ExactMotion, run: Recording, limit: float, seen: Estimate | None, causes: list[Cause]
+    top: Top, seen: Estimate | None, causes: list[Cause], limit: float
 ) -> dict[str, Any]:
     """Return the keys of causes, and numbers if no cause brings the error below the limit."""
     known: dict[str, Any] = {}
-    if seen and seen.is_trusted:
-        known = {"a_ratio": seen.a, "b_ratio": seen.b, "r0_ratio": seen.r0}
     is_whole = bool(causes) and causes[0].error <= limit
     if causes:
-        remedies = [remedy_of(y, exact, run, limit) for y in causes]
-        known |= {
-            "cause": "; or ".join(y.name for y in causes),
+        known = {
+            "cause": "; or ".join(x.name for x in causes),
             "explained": "most likely" if is_whole else "partly",
-            "cause_error": max(y.error for y in causes),
-            "remedy": joined(filter(None, remedies), " or ") or None,
+            "cause_error": max(x.error for x in causes),
+            "remedy": joined(filter(None, (x.remedy for x in causes)), " or ") or None,
         }
+    if seen and seen.is_trusted:
+        known |= {"a_ratio": seen.a, "b_ratio": seen.b, "r0_ratio": seen.r0}
     if seen and not is_whole:
-        known["numbers"] = "; ".join(sentences(exact.motion.top, seen)) or None
+        known["numbers"] = "; ".join(sentences(top, seen)) or None
     return known
 
 

@@ -20,7 +20,6 @@ _RISES, _SPREAD, _PLATEAU = 1.2, 1.0, 0.5
 of the least error that remains at step 0 if the error has a plateau."""
 _OTHER, _PHASES = 5e-3, 1.0
 """Relative difference of another top's parameters; largest errors from which e0 follows."""
-_RATIOS = [(name, 1.0, _OTHER) for name in ("a", "b", "r0")]
 _ORDERS = np.arange(0.5, 8.01, 0.05)
 
 
@@ -51,19 +50,18 @@ def convergence(runs: Sequence[tuple[float, Array, Array]], limit: float) -> Con
     until = min((t[i - 1] for i, (t, _) in zip(lost, curves, strict=True) if i), default=np.inf)
     until = max(until, *(t[:2].max() for t, _ in curves))
     errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
-    step, error = np.array(sorted((x[0], y) for x, y in zip(runs, errors, strict=True))).T
+    steps = [h for h, _, _ in runs]
+    ends = [error[-1] for _, error in curves]
+    step, error, end = np.array(sorted(zip(steps, errors, ends, strict=True))).T
     rises = (error[:-1] > _RISES * error[1:]) & (error[:-1] > ROUNDING)
     if rises.any():
         i = int(np.argmax(rises))
-        (fine, coarse), (after, before) = step[i : i + 2], error[i : i + 2]
-        how = f"from {before:.1e} to {after:.1e} as the step falls from {coarse:g} to {fine:g}"
-        why = "the order of the step sizes is wrong, the method varies, "
-        why += "or the trajectory is of a different top"
-        return Convergence(errors, f"The error rises {how}: {why}.", converges=False)
-    last = sorted((x[0], y[-1]) for x, (_, y) in zip(runs, curves, strict=True))
-    ends = np.array(last)[:, 1]
-    plateau, tends = _plateau(step, ends if ends.max() < _PHASES else error)
-    if plateau > max(limit, _PLATEAU * error[0]) and ends[-1] > _RISES * plateau:
+        said = f"The error rises from {error[i + 1]:.1e} to {error[i]:.1e} as the step falls from"
+        said += f" {step[i + 1]:g} to {step[i]:g}: the order of the step sizes is wrong, the method"
+        said += " varies, or the trajectory is of a different top."
+        return Convergence(errors, said, converges=False)
+    plateau, tends = _plateau(step, end if end.max() < _PHASES else error)
+    if plateau > max(limit, _PLATEAU * error[0]) and end[-1] > _RISES * plateau:
         said = f"The error falls to {plateau:.1e} as the step falls to 0 (order {tends:.2f})"
         said += ": this is the motion of another top, or the engine has another equation."
         return Convergence(errors, said, tends, converges=False)
@@ -78,8 +76,8 @@ def convergence(runs: Sequence[tuple[float, Array, Array]], limit: float) -> Con
     x, y = np.log(step[usable]), np.log(error[usable])
     order = float(np.polyfit(x, y, 1)[0]) if len({*x}) > 1 else None
     if order is None or np.ptp(np.diff(y) / np.diff(x)) > _SPREAD or order < LEAST_ORDER:
-        why = "the errors are too small or too large, or the method varies"
-        said = f"The error falls with the step, but shows no single order of convergence: {why}."
+        said = "The error falls with the step, but shows no single order of convergence"
+        said += ": the errors are too small or too large, or the method varies."
         return Convergence(errors, said)
     said = f"The error falls with the step; the order of convergence is {order:.2f}."
     return Convergence(errors, said, order)
@@ -92,7 +90,7 @@ def _plateau(step: Array, error: Array) -> tuple[float, float]:
     best = np.inf, 0.0, 1.0
     for order in _ORDERS:
         matrix = np.stack([1 / error, (step / step[-1]) ** order / error], axis=1)
-        found, *_ = np.linalg.lstsq(matrix, np.ones(len(step)), rcond=None)
+        found = np.linalg.lstsq(matrix, np.ones(len(step)), rcond=None)[0]
         rest = float(np.linalg.norm(matrix @ found - 1))
         if found.min() >= 0 and rest < best[0]:
             best = rest, float(found[0]), float(order)
@@ -111,18 +109,15 @@ def named_at_step_0(
     if len(known) < 2:
         return found
     fine, coarse = sorted(known)[:2]
-    last, before = known[fine], known[coarse]
-    share, is_other, at_0 = (
-        1 / ((coarse / fine) ** (found.order or 1.0) - 1),
-        False,
-        dict[str, Any](),
-    )
-    for name, right, least in (*_RATIOS, ("decay", 0.0, _OTHER / last.span)):
-        x, y = getattr(last, name), getattr(before, name)
-        at_0[name] = None if x is None or y is None else x + share * (x - y)
-        if at_0[name] is not None:
-            is_other |= abs(at_0[name] - right) > max(least, 2 * share * abs(x - y))
+    share = 1 / ((coarse / fine) ** (found.order or 1.0) - 1)
+    last, before = known[fine]._asdict(), known[coarse]._asdict()
+    at_0, is_other = dict[str, Any](), False
+    for name, right in {"a": 1.0, "b": 1.0, "r0": 1.0, "decay": 0.0}.items():
+        if last[name] is not None and before[name] is not None:
+            at_0[name] = last[name] + (moved := share * (last[name] - before[name]))
+            least = _OTHER / (last["span"] if name == "decay" else 1.0)
+            is_other |= abs(at_0[name] - right) > max(least, 2 * abs(moved))
     if not is_other:
         return found
-    said = f"{found.sentence} At step 0, {'; '.join(sentences(top, last._replace(**at_0)))}."
-    return found._replace(sentence=said, converges=False)
+    said = "; ".join(sentences(top, known[fine]._replace(**at_0)))
+    return found._replace(sentence=f"{found.sentence} At step 0, {said}.", converges=False)

@@ -41,24 +41,27 @@ class ExactMotion:
         spin: float = 0.0,
     ) -> None:
         self.motion, self.turns = motion, (space, body, spin)
-        self.is_turned = bool(spin) or not (space[0] == 1 == body[0])
         self._kept: dict[bytes, dict[str, Array]] = {}
 
     def at(self, t: Array) -> dict[str, Array]:
         """Return the angles, and the `quaternion` and `rates` as arrays of shape (n, parts)."""
         if (key := t.tobytes()) in self._kept:
             return self._kept[key]
-        found = np.stack([*self.motion.table(t, ["quaternion", *"pqr"]).values()], axis=1)
-        turn, rates = found[:, :4], found[:, 4:]
-        if self.is_turned:
-            space, body, spin = self.turns
-            body = rotations.product(rotations.about_z(spin * t), body)
-            turn = rotations.product(rotations.product(space, turn), body)
-            rates = rotations.rotated(rotations.conjugate(body), rates) + _Z * spin
+        turn, rates = self.computed(t)
         states = rotations.angles_of(turn) | {"quaternion": turn, "rates": rates}
         if t.size <= _KEPT:
             self._kept[key] = states
         return states
+
+    def computed(self, t: Array) -> tuple[Array, Array]:
+        """Return attitudes from body to space, and rates in the body."""
+        found = np.stack([*self.motion.table(t, ["quaternion", *"pqr"]).values()], axis=1)
+        turn, rates, (space, body, spin) = found[:, :4], found[:, 4:], self.turns
+        if spin or not space[0] == 1 == body[0]:
+            body = rotations.product(rotations.about_z(spin * t), body)
+            turn = rotations.product(rotations.product(space, turn), body)
+            rates = rotations.rotated(rotations.conjugate(body), rates) + _Z * spin
+        return turn, rates
 
 
 def angles_of(seen: Observed) -> dict[str, Array]:

@@ -1,4 +1,4 @@
-"""Engines that move no top, integrated with the given inputs."""
+"""Engines that move no top: their equations are integrated with the given inputs."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ import numpy as np
 
 from ..arithmetic import rotations
 from ..arithmetic.types import Array
-from ..top.top import Top
+from ..solver.solve import Motion
+from .differences import ExactMotion
 
 _Z = np.array([0.0, 0.0, 1.0])
-_MOST = 40.0
-"""The angle in radians by which the spin turns in the rows that are compared."""
 _MOST_SLOPES = 20_000
 """Evaluations after which an engine explains nothing: its top moves too fast for the rows."""
-ENGINES = {
+_ENGINES = {
     "the inertia does not turn with the body": ("space", "space"),
     "rates of the body are multiplied on the left of the quaternion": ("body", "space"),
     "the torque does not turn with the body": ("fixed", "body"),
@@ -24,24 +23,28 @@ ENGINES = {
 """By name: the axes of the torque, and those of the rates that turn the body."""
 
 
-def engine_errors(top: Top, t: Array, seen: Array) -> Iterator[tuple[str, float, float]]:
-    """Yield each engine with its error in radians and that of the right engine, on the first rows.
+def engines(motion: Motion) -> Iterator[tuple[str, ExactMotion]]:
+    """Yield the name of each engine with its motion."""
+    for name, axes in _ENGINES.items():
+        yield name, _Engine(motion, *axes)
 
-    `seen` are attitudes of shape (n, 4) at increasing times.
-    """
-    from scipy.integrate import solve_ivp  # start-up
 
-    few = max(8, int(np.searchsorted(t - t[0], _MOST / max(abs(float(top.r0)), 1e-300))))
-    t, seen = t[:few] - t[0], seen[:few]
-    A, C, torque = float(top.A), float(top.C), float(top.m) * float(top.g) * float(top.s)
-    inputs = top.inputs(radians=True)
-    tilt = float(inputs["theta0_rad"])
-    across = float(top.thetadot0), float(top.psidot0) * np.sin(tilt)
-    first = rotations.of_angles(np.asarray(tilt), np.asarray(0.0), np.asarray(0.0))
-    rates, moments = np.array([*across, float(top.r0)]), np.array([A, A, C])
-    fixed = rotations.rotated(rotations.conjugate(first), _Z)
+class _Engine(ExactMotion):
+    def __init__(self, motion: Motion, weight: str, turn: str) -> None:
+        super().__init__(motion)
+        self.weight, self.turn, top = weight, turn, motion.top
+        self.torque = float(top.m) * float(top.g) * float(top.s)
+        self.moments = np.array([float(top.A), float(top.A), float(top.C)])
+        tilt = np.asarray(float(top.inputs(radians=True)["theta0_rad"]))
+        self.first = rotations.of_angles(tilt, 0 * tilt, 0 * tilt)
+        self.fixed = rotations.rotated(rotations.conjugate(self.first), _Z)
+        rates = np.array([top.thetadot0, float(top.psidot0) * math.sin(tilt), top.r0], float)
+        self.rates = rotations.rotated(self.first, rates) if weight == "space" else rates
 
-    def error(weight: str, turn: str) -> float:
+    def computed(self, t: Array) -> tuple[Array, Array]:
+        """Return attitudes and rates at increasing times; NaN if they take too long."""
+        from scipy.integrate import solve_ivp  # start-up
+
         count = iter(range(_MOST_SLOPES))
 
         def slope(_: float, state: Array) -> Array:
@@ -49,22 +52,14 @@ def engine_errors(top: Top, t: Array, seen: Array) -> Iterator[tuple[str, float,
                 return np.full_like(state, np.nan)  # ends the integration
             q, w = state[:4], state[4:]
             up, axis = rotations.rotated(rotations.conjugate(q), _Z), _Z
-            if weight == "space":
+            if self.weight == "space":
                 up, axis = _Z, rotations.axis_of(q)
-            push = torque * np.cross(fixed if weight == "fixed" else up, axis)
-            pure = np.append(0.0, w)
-            pair = (pure, q) if turn == "space" else (q, pure)
-            return np.concatenate(
-                [rotations.product(*pair) / 2, (push - np.cross(w, moments * w)) / moments]
-            )
+            push = self.torque * np.cross(self.fixed if self.weight == "fixed" else up, axis)
+            pair = (np.append(0.0, w), q) if self.turn == "space" else (q, np.append(0.0, w))
+            faster = (push - np.cross(w, self.moments * w)) / self.moments
+            return np.concatenate([rotations.product(*pair) / 2, faster])
 
-        start = rotations.rotated(first, rates) if weight == "space" else rates
-        state = np.concatenate([first, start])
+        state = np.concatenate([self.first, self.rates])
         flow = solve_ivp(slope, (0.0, t[-1]), state, "DOP853", t, rtol=1e-6, atol=1e-8)
-        if not flow.success:
-            return math.inf
-        return float(np.nanmax(rotations.angle_between(flow.y[:4].T, seen[: flow.y.shape[1]])))
-
-    right = error("body", "body")
-    for name, rules in ENGINES.items() if right < math.inf else ():
-        yield name, error(*rules), right
+        found = flow.y.T if flow.success else np.full((t.size, 7), np.nan)
+        return found[:, :4], found[:, 4:]

@@ -3,80 +3,74 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from contextlib import suppress
 from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
 
 from ..arithmetic import rotations
-from ..errors import LagtopError
-from ..recordings.misreadings import Misreading, misreadings
-from ..recordings.options import Alignment
+from ..errors import LagtopError, joined
+from ..recordings.misreadings import Misreading
 from ..recordings.recording import Recording
 from ..solver.solve import solve
 from ..top.top import Top
 from .differences import ExactMotion
-from .numbers import Estimate, a_and_b
+from .numbers import Estimate
 
-_GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
+OPPOSITE = "r0 has the wrong sign"
+"""The mistake that looks like a mirror image."""
 _HALF = "the factor 1/2 is missing in the rate of the quaternion"
-"""A row whose angular velocity is half of that of the attitude."""
-Changes = dict[str, Any]
-"""The inputs of another top, and turns of its motion (`space`, `body`, `spin`)."""
+"""Rates are then half of those of the attitude."""
+_ALIKE = 5e-3
+"""Greatest relative difference of a and b between a trajectory and a top with estimated inputs."""
+_GRAVITY = "0", "9.8", "9.80665", "9.81", "10", "980", "980.665", "981"
 
 
 class Cause(NamedTuple):
-    """A cause of errors: a misreading, an alignment, another top, or several of them."""
+    """What may be wrong with a trajectory: misreadings, another motion, or both."""
 
-    name: str
-    misreading: Misreading | None = None
+    name: str = ""
+    misreadings: tuple[Misreading, ...] = ()
     exact: ExactMotion | None = None
-    """The motion of another top."""
-    align: Alignment | None = None
-    words: tuple[Alignment, ...] = ()
-    """The alignments that may be typed."""
+    """The motion of another top, or of an engine."""
     error: float = math.inf
-    """The greatest error without the cause."""
-
-    @property
-    def kind(self) -> str:
-        """What it changes, as in `Misreading`; of another top, `top`."""
-        return "top" if self.exact or not self.misreading else self.misreading.kind
+    """The greatest error if the cause is corrected."""
 
     def undone(self, run: Recording) -> Recording:
         """Return the recording as it was meant."""
-        run = self.misreading.undo(run) if self.misreading else run
-        return run.read_as(align=self.align) if self.align else run
+        for x in self.misreadings:
+            run = x.undo(run)
+        return run
+
+    @property
+    def kinds(self) -> set[str]:
+        """What it changes, as in `Misreading`; another motion is a `top`."""
+        return {x.kind for x in self.misreadings} | ({"top"} if self.exact else set())
+
+    @property
+    def remedy(self) -> str:
+        """The arguments that take it into account, marked; or else what to do, in words."""
+        return joined(filter(None, (x.remedy for x in self.misreadings)), " and ").marked
+
+    def is_top(self, limit: float) -> bool:
+        """Return whether it is another top that leaves an error below a limit."""
+        return "engine" not in self.kinds and self.exact is not None and self.error <= limit
 
     def with_other(self, other: Cause) -> Cause:
-        """Return a misreading or an alignment, and a cause of another kind, at once."""
+        """Return two causes of different kinds as one."""
         name = "; ".join(filter(None, (self.name, other.name)))
-        first, second = self.misreading, other.misreading
-        if first and second:
-            remedy = " and ".join(filter(None, (first.remedy, second.remedy)))
-            undo = partial(lambda x, y, run: y(x(run)), first.undo, second.undo)
-            first = first._replace(undo=undo, remedy=remedy)
-        return Cause(
-            name,
-            first or second,
-            self.exact or other.exact,
-            self.align or other.align,
-            self.words or other.words,
-        )
+        return Cause(name, self.misreadings + other.misreadings, self.exact or other.exact)
 
 
-def written(run: Recording) -> list[Cause]:
-    """Return the misreadings of a recording, the simplest first."""
-    return [Cause(x.name, x) for x in misreadings(run)]
+def of_clock(name: str, **change: Any) -> Cause:
+    """Return a clock with another unit or zero: what `Recording.timed` takes."""
+    return Cause(name, (Misreading(name, partial(Recording.timed, **change), kind="clock"),))
 
 
-def clocks() -> Iterator[Cause]:
-    """Yield steps of an engine that are longer or shorter than its times say."""
-    for word, factor in (("twice", 2.0), ("half", 0.5)):
-        name = f"a step of the engine is {word} as long as the times say"
-        undo = partial(Recording.timed, factor=factor)
-        yield Cause(name, Misreading(name, undo, kind="clock"))
+def steps() -> list[Cause]:
+    """Return the steps of an engine that are longer or shorter than its times say."""
+    said = "a step of the engine is {} as long as the times say".format
+    return [of_clock(said(word), factor=x) for word, x in (("twice", 2.0), ("half", 0.5))]
 
 
 def other_tops(top: Top, *, left: bool) -> list[Cause]:
@@ -86,12 +80,10 @@ def other_tops(top: Top, *, left: bool) -> list[Cause]:
     """
     found, numbers = [], top.inputs()
     plain = Top(**numbers)  # A and r0 do not depend on other inputs
-    for name, changed in _inputs(top, left).items():
+    for name, changed in _table(top, left).items():
         turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
-        rates = None
-        if name == _HALF:
-            twice = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
-            rates = Misreading(name, twice, kind="rates")
+        twice = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
+        rates = (Misreading(name, twice, kind="rates"),) if name == _HALF else ()
         with suppress(LagtopError):  # there is no such top
             other = plain.replace(**changed)
             if turns or other.inputs() != numbers:
@@ -99,19 +91,9 @@ def other_tops(top: Top, *, left: bool) -> list[Cause]:
     return found
 
 
-def is_near(top: Top, clock: float, seen: Estimate, share: float) -> bool:
-    """Return whether the axis of a top might move like that of a trajectory."""
-    (a, b), axis = a_and_b(top), seen.axis
-    a, b = a * clock**2, b * clock
-    share += 3 * axis.residual
-    is_near_a = abs(a - axis.a) <= share * max(a, axis.a) + axis.a_spread
-    off = abs(abs(b) - abs(axis.b))
-    return is_near_a and off <= share * max(abs(b), abs(axis.b)) + axis.b_spread
-
-
-def estimated_tops(top: Top, seen: Estimate) -> Iterator[Cause]:
-    """Yield tops with one input changed as the estimate says."""
-    inputs = top.inputs()
+def estimated(top: Top, seen: Estimate) -> list[Cause]:
+    """Return causes with one input of the top changed, so that its axis moves as the estimated."""
+    found, inputs = [], top.inputs()
     for name, key, ratio in (
         ("m, g or s", "g", seen.a),
         ("C", "C", seen.b),
@@ -120,28 +102,34 @@ def estimated_tops(top: Top, seen: Estimate) -> Iterator[Cause]:
     ):
         if not ratio or not 0 < ratio < math.inf:
             continue
-        percent = 100 * abs(ratio - 1)
-        said = f"{percent:.{1 if percent > 0.99 else 3}f} % {'more' if ratio > 1 else 'less'}"
+        said = f"{percent(ratio)} {'more' if ratio > 1 else 'less'}"
         said = said if 0.5 < ratio < 2 else f"wrong by a factor of {ratio:.4g}"
         with suppress(LagtopError):
             other = Top(**inputs | {key: inputs[key] * ratio})
-            yield Cause(f"{name} is {said}", exact=ExactMotion(solve(other)))
+            if seen.is_near(other, share=_ALIKE):
+                found.append(Cause(f"{name} is {said}", exact=ExactMotion(solve(other))))
+    return found
 
 
-def _inputs(top: Top, left: bool) -> dict[str, Changes]:
-    """Return the table: what is wrong, and the inputs as an engine has them."""
+def percent(ratio: float) -> str:
+    """Return how far a ratio is from 1."""
+    off = 100 * abs(ratio - 1)
+    return f"{off:.{1 if off > 0.99 else 3}f} %"
+
+
+def _table(top: Top, left: bool) -> dict[str, dict[str, Any]]:
+    """Return what is wrong, and the inputs as an engine has them, or turns of its motion."""
     A, C, r0, psidot = Fraction(top.A), Fraction(top.C), float(top.r0), float(top.psidot0)
     steiner = Fraction(top.m) * Fraction(top.s) ** 2
     tilt, rate = float(top.inputs(radians=True)["theta0_rad"]), float(top.thetadot0)
-    mirror = " (in a left-handed frame a positive turn is clockwise)" * left
-    folded, ratio = math.remainder(math.degrees(tilt), math.tau), A / C
+    folded = math.remainder(math.degrees(tilt), math.tau)
     half = rotations.about_z(math.pi)
-    both: Changes = {"space": half, "body": half}
-    over: Changes = {"space": rotations.product(rotations.HALF_TURN_X, half), "body": half}
-    over |= {"theta0_rad": math.pi - tilt, "psidot0": -psidot, "thetadot0": -rate}
+    both = {"space": half, "body": half}
+    over = {"space": rotations.product(rotations.HALF_TURN_X, half), "body": half}
+    mirror = " (in a left-handed frame a positive turn is clockwise)" * left
     euler = "the gyroscopic term is left out"
-    return {
-        f"r0 has the wrong sign{mirror}": {"r0": -top.r0},
+    found: dict[str, dict[str, Any]] = {
+        OPPOSITE + mirror: {"r0": -top.r0},
         f"{euler} of Euler's equations (as if C = A)": {"C": top.A},
         f"{euler} about the centre of mass, as engines do (as if C = A - m s^2)": {
             "C": A - steiner
@@ -158,10 +146,7 @@ def _inputs(top: Top, left: bool) -> dict[str, Changes]:
         "r0 in radians was taken as rpm": {"r0": r0 * math.pi / 30},
         "r0 in rpm was taken as radians": {"r0": r0 * 30 / math.pi},
         "r0 was taken as the gimbal's rate phi'": {"r0": r0 + psidot * math.cos(tilt)},
-        "the spin r0 is about the vertical": {
-            "r0": r0 * math.cos(tilt),
-            "psidot0": psidot + r0,
-        },
+        "the spin r0 is about the vertical": {"r0": r0 * math.cos(tilt), "psidot0": psidot + r0},
         "psidot0 has the wrong sign": {"psidot0": -top.psidot0},
         "psidot0 is left out (as if it were 0)": {"psidot0": 0},
         "thetadot0 is left out (as if it were 0)": {"thetadot0": 0},
@@ -169,11 +154,14 @@ def _inputs(top: Top, left: bool) -> dict[str, Changes]:
         "theta0 in radians was taken as degrees": {"theta0_rad": math.radians(tilt)},
         "theta0 is doubled": {"theta0_rad": 2 * tilt},
         "theta0 is halved": {"theta0_rad": tilt / 2},
-        **{
-            f"g is {g} (or m or s is wrong by the same factor)": {"g": Fraction(g)}
-            for g in _GRAVITY
-        },
-        "theta0 has the wrong sign": {"thetadot0": -rate} | both,
+    }
+    if rate:
+        name = "theta0 and its rate are measured from the horizontal"
+        found[name] = {"theta0_rad": math.pi / 2 - tilt}
+    for g in _GRAVITY:
+        found[f"g is {g} (or m or s is wrong by the same factor)"] = {"g": Fraction(g)}
+    return found | {
+        "theta0 has the wrong sign": {"thetadot0": -rate, **both},
         "theta0 in degrees was taken as radians": {
             "theta0_rad": abs(folded),
             "thetadot0": math.copysign(rate, rate * folded),
@@ -183,16 +171,18 @@ def _inputs(top: Top, left: bool) -> dict[str, Changes]:
             "theta0_rad": math.pi / 2 - tilt,
             "thetadot0": -rate,
         },
-        "theta0 and its rate are measured from the horizontal": {
-            "theta0_rad": math.pi / 2 - tilt,
+        "g points upwards": {
+            "theta0_rad": math.pi - tilt,
+            "psidot0": -psidot,
+            "thetadot0": -rate,
+            **over,
         },
-        "g points upwards": over,
         # A top with the same a and b, which need be no body: its spin differs by a constant rate.
         "A and C are exchanged": {
             "A": top.C,
             "C": top.C,
-            "r0": Fraction(top.r0) * ratio,
-            "spin": float(Fraction(top.r0) * (1 - ratio)),
+            "r0": Fraction(top.r0) * A / C,
+            "spin": float(Fraction(top.r0) * (1 - A / C)),
         },
         _HALF: {"A": A / 2, "C": (A + C) / 4}
         | {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")},

@@ -21,14 +21,13 @@ TRUSTED = 0.01
 _MOST, _ENOUGH, _FIRST = 20_000, 5000, 8
 """Most rows, the fewest to which more rows are reduced, and the first rows, from which the rates at
 the start follow."""
+_PARTS = 1.0, 0.5, 0.25
+"""Shares of the rows that are tried, from the first one: a strong decay is linear only at first."""
 _OPEN, _SAME, _DECAY = 0.2, 2e-3, 1e-3
 """Relative errors: of an undetermined parameter, of one that agrees, of a spin that is constant."""
 _COARSE, _FINE = 0.25, 0.04
 """Turns from row to row, in radians: of a step that may be coarse, and of rows that are left out if
 there are too many."""
-_UNITS = "per unit of time"
-_PARTS = 0.5, 0.25
-"""Shares of the rows, from the first one, that are tried if all of them do not suffice."""
 
 
 class Estimate(NamedTuple):
@@ -39,17 +38,25 @@ class Estimate(NamedTuple):
     b: float | None
     r0: float | None
     """The ratio of the rates of spin; None if the attitude is not given, like any unknown one."""
-    decay: float = 0.0
+    decay: float
     """The decay of the spin per unit of time."""
-    start: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    start: Array
     """The tilt, thetadot0 and psidot0 sin(theta0)."""
-    step: float = 0.0
-    span: float = 0.0
+    step: float
+    span: float
 
     @property
     def is_trusted(self) -> bool:
         """Whether the axis moves like that of a top."""
         return self.axis.residual <= TRUSTED
+
+    def is_near(self, top: Top, clock: float = 1.0, share: float = 0.02) -> bool:
+        """Return whether the axis of a top, with another clock, might move like this one."""
+        (a, b), axis = a_and_b(top), self.axis
+        share += 3 * axis.residual
+        off_a, off_b = abs(a * clock**2 - axis.a), abs(abs(b * clock) - abs(axis.b))
+        is_near_a = off_a <= share * max(a * clock**2, axis.a) + axis.a_spread
+        return is_near_a and off_b <= share * max(abs(b * clock), abs(axis.b)) + axis.b_spread
 
 
 def a_and_b(top: Top) -> tuple[float, float]:
@@ -65,36 +72,26 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
         return None
     if run.t[0] > run.t[-1]:
         run = run._replace(given=rows_of(run.given, slice(None, None, -1)))
-    a, b = a_and_b(top)
+    (a, b), r0 = a_and_b(top), float(top.r0)
     swing, step = abs(b) + math.sqrt(a) + 1e-300, float(np.median(abs(np.diff(run.t))))
-    turn = (swing + abs(float(top.r0))) * step
+    turn = (swing + abs(r0)) * step
     if len(run.t) > _MOST and turn < _FINE:  # rounding errors of close rows hide the motion
         run = run.few(max(_ENOUGH, math.ceil(len(run.t) * turn / _FINE)))
-    seen = run.observed(slice(_MOST))
-    if np.ptp(seen.t) == 0:
+    found = [(x, axis, y) for x, axis in _views(run) if (y := from_spline(x.t, axis))]
+    if not found:
         return None
-    best: tuple[Observed, Array, AxisMotion] | None = None
-    for view in _views(run, seen):
-        axis = _axis(view)
-        found = None if axis is None else from_spline(view.t, axis)
-        if axis is not None and found and (best is None or found.residual <= TRUSTED):
-            best = view, axis, found
-        if best and best[2].residual <= TRUSTED:
-            break
-    if best is None:
-        return None
-    seen, axis, found = best
-    rate, decay = _spin(seen, float(top.r0))
+    seen, axis, motion = next((x for x in found if x[2].residual <= TRUSTED), found[0])
     span = float(np.ptp(seen.t))
-    if rate is None and abs(found.b_slope) * span / 2 > 2 * found.b_spread:
-        decay = -found.b_slope / found.b
+    rate, decay = _spin(seen, r0)
+    if rate is None and abs(motion.b_slope) * span / 2 > 2 * motion.b_spread:
+        decay = -motion.b_slope / motion.b
     decay *= decay * span > _DECAY
     earlier = math.exp(decay * span / 2)  # from the middle to the first row
     return Estimate(
-        found,
-        found.a / a if a and found.a_spread < _OPEN * max(found.a, a) else None,
-        found.b * earlier / b if b and found.b_spread < _OPEN * swing else None,
-        rate * earlier / float(top.r0) if rate is not None and top.r0 else None,
+        motion,
+        motion.a / a if a and motion.a_spread < _OPEN * max(motion.a, a) else None,
+        motion.b * earlier / b if b and motion.b_spread < _OPEN * swing else None,
+        rate * earlier / r0 if rate is not None and r0 else None,
         decay,
         _start(seen.t, axis),
         step,
@@ -102,25 +99,21 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
     )
 
 
-def _views(run: Recording, seen: Observed) -> Iterator[Observed]:
-    """Yield a motion, its first parts, and the motion about its own figure axis.
-
-    A strong decay of the spin is a line only at first.
-    """
-    yield seen
-    yield from (run.observed(slice(int(part * len(seen.t)))) for part in _PARTS)
+def _views(run: Recording) -> Iterator[tuple[Observed, Array]]:
+    """Yield a motion, its first parts, and the motion about its own figure axis, with the axis."""
+    seen = run.observed(slice(_MOST))
+    views = [run.observed(slice(int(x * len(seen.t)))) for x in _PARTS]
     if seen.quaternion is not None and (frames := own_frames(seen)):
         turn = rotations.of_matrix(frames[1].reshape(1, 9))[0][0]
-        yield seen.turned(rotations.IDENTITY, turn)
-
-
-def _axis(seen: Observed) -> Array | None:
-    if seen.quaternion is not None:
-        return rotations.axis_of(seen.quaternion)
-    if seen.axis is not None or not {"theta", "psi"} <= seen.angles.keys():
-        return seen.axis
-    tilt, psi = seen.angles["theta"], seen.angles["psi"]
-    return rotations.axis_of(rotations.of_angles(tilt, 0 * tilt, psi))
+        views.append(seen.turned(rotations.IDENTITY, turn))
+    for view in views:
+        if view.quaternion is not None:
+            yield view, rotations.axis_of(view.quaternion)
+        elif view.axis is not None:
+            yield view, view.axis
+        elif {"theta", "psi"} <= view.angles.keys():
+            tilt, psi = view.angles["theta"], view.angles["psi"]
+            yield view, rotations.axis_of(rotations.of_angles(tilt, 0 * tilt, psi))
 
 
 def _spin(seen: Observed, r0: float) -> tuple[float | None, float]:
@@ -140,14 +133,14 @@ def _spin(seen: Observed, r0: float) -> tuple[float | None, float]:
     return float(middle), float(-slope / middle) if middle else 0.0
 
 
-def _start(t: Array, axis: Array) -> tuple[float, float, float]:
+def _start(t: Array, axis: Array) -> Array:
     """Return the tilt, its rate, and the rate around the vertical in the first row."""
-    rows = slice(_FIRST)
-    span = t[rows][-1] - t[0] or 1.0
-    n, rate = axis[0], np.polyfit((t[rows] - t[0]) / span, axis[rows], 5)[-2] / span
+    span, n = t[:_FIRST][-1] - t[0] or 1.0, axis[0]
+    rate = np.polyfit((t[:_FIRST] - t[0]) / span, axis[:_FIRST], 5)[-2] / span
     sine = math.hypot(n[0], n[1])
-    slope = -rate[2] / sine if sine > 1e-9 else float(np.linalg.norm(rate))
-    return math.acos(min(1, max(-1, n[2]))), slope, (n[0] * rate[1] - n[1] * rate[0]) / (sine or 1)
+    slope = -rate[2] / sine if sine > 1e-9 else np.linalg.norm(rate)
+    around = (n[0] * rate[1] - n[1] * rate[0]) / (sine or 1.0)
+    return np.array([math.atan2(sine, n[2]), slope, around])
 
 
 def sentences(top: Top, found: Estimate) -> Iterator[str]:
@@ -159,26 +152,26 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
         yield f"{said}: {smaller}check the equations"
         return
     same = max(_SAME, 3 * axis.residual)
-    ratios = {"a": found.a, "b": found.b, "r0": found.r0}
-    hidden = [x for x in ("a", "b") if ratios[x] is None and a_and_b(top)["ab".index(x)]]
-    off = {x: y for x, y in ratios.items() if y is not None and abs(y - 1) > same}
+    ratios = {x: getattr(found, x) for x in ("a", "b", "r0")}
     known = {x: y for x, y in ratios.items() if y is not None}
-    decay = found.decay
-    is_upright = _is_upright(found, same)
+    off = {x: y for x, y in known.items() if abs(y - 1) > same}
+    lean = math.acos(min(1.0, axis.up[2])) if found.a and axis.a_spread < same * axis.a else 0.0
+    is_upright = not lean > max(0.02, same)
     moved = [*_other_start(top, found, same)] if is_upright else []
-    if known and (off or decay or moved or not is_upright):
+    if known and (off or found.decay or moved or not is_upright):
         parts = [f"{x} = {y:.4g} {x}_0" if x in off else f"{x} = {x}_0" for x, y in known.items()]
         yield f"the motion is that of {', '.join(parts)}"
     elif known:
         most = max(axis.residual, *(abs(y - 1) for y in known.values()))
         yield f"the motion is that of the given top, to {most:.2%}: use smaller steps"
     yield from moved
-    if hidden:
+    given = dict(zip("ab", a_and_b(top), strict=True))
+    if hidden := [x for x, y in given.items() if y and ratios[x] is None]:
         yield f"this motion does not show {' and '.join(hidden)}"
-    if decay:
-        yield f"the spin decays by {decay:.1%} {_UNITS}"
-    elif axis.damping * found.span > 10 * same and not decay:
-        yield f"the rates across the axis decay by {axis.damping:.1%} {_UNITS}"
+    if found.decay:
+        yield f"the spin decays by {found.decay:.1%} per unit of time"
+    elif axis.damping * found.span > 10 * same:
+        yield f"the rates across the axis decay by {axis.damping:.1%} per unit of time"
     if not is_upright:
         x, y, z = axis.up
         yield f"up is ({x:.4f}, {y:.4f}, {z:.4f}) in the frame of space"
@@ -186,23 +179,18 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
         yield f"if each row is a step (r0 dt is {turns:.2g} rad), use smaller steps"
 
 
-def _is_upright(found: Estimate, same: float) -> bool:
-    """Return whether up is z, or is not determined."""
-    is_known = found.a is not None and found.axis.a_spread < same * found.axis.a
-    return not is_known or not math.acos(min(1.0, found.axis.up[2])) > max(0.02, same)
-
-
 def _other_start(top: Top, found: Estimate, same: float) -> Iterator[str]:
     """Yield the initial tilt and rates that differ; engines stagger rates by half a step."""
     tilt = float(top.inputs(radians=True)["theta0_rad"])
-    given = tilt, float(top.thetadot0), float(top.psidot0) * math.sin(tilt)
-    a, b = a_and_b(top)
-    swing = math.sqrt(a) + abs(b) + math.hypot(*given[1:])
-    kick = (max(same, 0.01) + found.step * swing) * swing
+    given = np.array([tilt, float(top.thetadot0), float(top.psidot0) * math.sin(tilt)])
+    (a, b), rate = a_and_b(top), math.hypot(*given[1:])
+    kick = max(same, 0.01) * (math.sqrt(a) + abs(b) + rate)
+    kick += found.step * (a / 2 + abs(b) * rate + rate**2)
     theta, slope, around = found.start
-    if abs(theta - given[0]) > same:
+    is_off = abs(found.start - given) > [same, kick, kick]
+    if is_off[0]:
         yield f"theta0 is {math.degrees(theta):.4g} degrees"
-    if abs(slope - given[1]) > kick:
+    if is_off[1]:
         yield f"thetadot0 is {slope:.3g}"
-    if abs(around - given[2]) > kick and (sine := math.sin(theta)) > same:
-        yield f"psidot0 is {around / sine:.3g}"
+    if is_off[2] and math.sin(theta) > same:
+        yield f"psidot0 is {around / math.sin(theta):.3g}"

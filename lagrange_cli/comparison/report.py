@@ -125,6 +125,13 @@ def _few_rows(x: Comparison, limit: float) -> str:
     return f"The limit is exceeded in only {wrong.size} of {x.rows} rows, at t = {shown}."
 
 
+def failure(x: Comparison) -> str:
+    """Return the verdict on a trajectory with its errors, and what explains them."""
+    words = "most likely" if x.explained == "most likely" else "probable"
+    why = f"{words} cause: {x.cause}" if x.cause else x.numbers
+    return "; ".join(filter(None, (sentence(x), why)))
+
+
 def sentence(x: Comparison) -> str:
     """Return the verdict on a trajectory with its errors."""
     verdict = f"lost at t = {x.lost_at}" if x.verdict == "lost" else x.verdict

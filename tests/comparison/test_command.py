@@ -36,7 +36,10 @@ def test_reports_and_exit_codes(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     other = write(tmp_path / "other.csv", run)
     result = lagtop("compare", right, other, *OPTIONS)
     assert result.exit_code == 1
-    assert result.stderr == f"Error: 1 of 2 trajectories failed; the first: {other}\n"
+    said = f"{other}: off from the start, at most 3.1e+00 rad off, its rates by 1.6e+00 (relative)"
+    said += "; most likely cause: r0 has the wrong sign"
+    assert result.stderr == f"Error: 1 of 2 trajectories failed; the first: {said}\n"
+    assert lagtop("compare", other, *OPTIONS).stderr == f"Error: {said}\n"
     assert "right.csv: fine, at most" in result.stdout
     assert "The norm of its quaternion or matrix differs from 1 by up to 1.0e-05." in result.stdout
     assert "Most likely cause: r0 has the wrong sign. With" in result.stdout
