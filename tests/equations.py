@@ -6,6 +6,7 @@ import math
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, ClassVar, NamedTuple
 
@@ -28,6 +29,12 @@ PLACE = re.compile(
     r"|section \d(\.\d| [a-z]+)?: .|sections \d and \d: ."  # or the section, and a name
 )
 """How the number of an equation begins: with its place."""
+
+
+def page(name: str) -> str:
+    """Return a page of equations without its title and its empty lines."""
+    text = (Path(__file__).parent / "register" / f"{name}.txt").read_text(encoding="utf-8")
+    return re.sub(r"^(## .*)?\n", "", text, flags=re.MULTILINE)
 
 
 class Scope(dict[str, Any]):

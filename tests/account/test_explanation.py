@@ -1,4 +1,4 @@
-"""The formulas that `lagtop explain` shows, evaluated by mpmath with the numbers of the record."""
+"""The sentence before a record, and formulas of `lagtop explain` evaluated with its numbers."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from lagrange_cli.account.explanation import explanations, listed
+from lagrange_cli.account.summary import summary
 from lagrange_cli.solver.columns import COLUMNS, SCALARS, shown_columns
 from lagrange_cli.solver.keys import NUMBERS, TEXT_KEYS, all_keys
 from lagrange_cli.top.units import Units, bare_name
@@ -148,3 +149,12 @@ def test_a_missing_number_has_a_reason() -> None:
     (period,) = explanations(solve(Top(g=0.0, psidot0=3.0)), ["T_nutation"])
     assert period.value == solve(Top(g=0.0, psidot0=3.0)).T_nutation
     assert period.missing == "u3: defined only if there is a torque"
+
+
+def test_numbers_differ_in_as_many_digits_as_that_takes() -> None:
+    for r0 in (1e3, 1e5, 1e7):
+        motion = solve(Top(r0=r0))
+        record = motion.record()
+        low, high = re.findall(r"[\d.]+(?= and| deg)", summary(record, motion.facts))[:2]
+        assert float(low) == 30.0 < float(high)
+        assert float(high) == pytest.approx(record["theta_max_deg"], rel=1e-3)

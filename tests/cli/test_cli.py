@@ -30,6 +30,7 @@ from lagrange_cli.output.report import Report
 from lagrange_cli.solver.columns import COLUMNS
 from lagrange_cli.solver.keys import KEYS as SHOWN
 from lagrange_cli.solver.keys import all_keys
+from lagrange_cli.top.inputs import DECLARED
 
 
 def rows(text: str) -> list[list[float]]:
@@ -114,14 +115,6 @@ SAMPLE_REGIMES = {
 """The regimes of shipped scenes that are not regular."""
 
 
-def test_several_values(lagtop: Lagtop) -> None:
-    record = solve(Top(r0=40)).record()
-    keys = ["path", "T_nutation", "Lz", "theta0_deg"]
-    lines = lagtop("solve", "--r0", "40", "--get", ",".join(keys)).stdout.splitlines()
-    assert lines == [record["path"], str(record["T_nutation"]), str(solve(Top(r0=40)).Lz), "30.0"]
-    assert lagtop("solve", "--r0", "40", "--get", "T_nutation").stdout == f"{lines[1]}\n"
-
-
 # table
 
 
@@ -174,6 +167,7 @@ def test_times_of_many_digits_are_printed_whole(lagtop: Lagtop) -> None:
     ("line", "times"),
     [
         ("--t-max 1", [i / 100 for i in range(101)]),
+        ("--n 3", [0.0, (T := 0.4292501244785477) / 2, T]),
         ("--t-max 1 --dt 0.1", [i / 10 for i in range(11)]),  # 0.1 is not a tenth in binary
         ("--t-max 1 --dt 0.3", [0.0, 0.3, 0.6, 0.9]),
         ("--t-min -2 --t-max 2 --n 5e0", [-2, -1, 0, 1, 2]),
@@ -182,9 +176,10 @@ def test_times_of_many_digits_are_printed_whole(lagtop: Lagtop) -> None:
     ],
 )
 def test_grids_of_times(line: str, times: list[float], lagtop: Lagtop) -> None:
+    """By default it is one period."""
     text = lagtop("table", *line.split()).stdout
     assert text.splitlines()[0] == "t,theta_deg,phi_deg,psi_deg"
-    assert [row[0] for row in rows(text)] == times
+    assert [row[0] for row in rows(text)] == pytest.approx(times, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -197,12 +192,6 @@ def test_parquet_holds_the_rows_of_any_document(line: str, lagtop: Lagtop) -> No
     assert [
         {x: json.loads(y)[x] for x in row} for row, y in zip(found, lines, strict=True)
     ] == found
-
-
-def test_default_is_one_period(lagtop: Lagtop) -> None:
-    times = [row[0] for row in rows(lagtop("table").stdout)]
-    assert len(times) == 101
-    assert times[-1] == pytest.approx(solve(Top()).T_nutation, rel=1e-15)
 
 
 def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Path) -> None:
@@ -231,19 +220,6 @@ def test_the_record_of_a_steady_top_is_a_file_of_tops(fmt: str, lagtop: Lagtop) 
     *_, regime, period, error = result.stdout.splitlines()[1].split(",")
     assert (regime, error) == ("steady precession", "")
     assert float(period) == pytest.approx(0.4637087134781949, rel=2e-15)
-
-
-@pytest.mark.parametrize(
-    ("line", "bound"),
-    [("--C 30000", "C <= 2 (A - m s^2) ="), ("simo-wong-1991", "A > m s^2 = 20, but A is")],
-)
-def test_a_body_that_cannot_be_built_is_computed(line: str, bound: str, lagtop: Lagtop) -> None:
-    result = lagtop("solve", *line.split(), "--get", "regime")
-    assert (result.exit_code, result.stdout) == (0, "regular\n")
-    assert f"Warning: a rigid body needs {bound} " in result.stderr
-    assert (
-        Top(m=0.1, A=0.3, C=0.4, s=1, g=9.81).caveat() is None
-    )  # C <= 2 (A - m s^2) up to rounding
 
 
 def test_one_window_of_a_fit_is_a_record_in_json(
@@ -292,12 +268,11 @@ def test_an_unknown_format_is_refused_with_all_formats(command: str, lagtop: Lag
     assert_one_line(lagtop(command, "--format", "foo"), 2, refused)
 
 
-def test_options_stand_in_the_order_body_start_output(lagtop: Lagtop) -> None:
+def test_options_of_inputs_come_first_in_their_order(lagtop: Lagtop) -> None:
     shown = lagtop("solve", "--help").stdout.partition("Options:")[2]
     options = re.findall(r"^  (?:-\w, )?(--\S+)", shown, re.MULTILINE)
-    inputs = "--m --A --A-cm --C --s --g --r0 --phidot0 --spin-period --theta0 --thetadot0"
-    own = "--get --derivation --digits --certify --budget --samples --output --format --help"
-    assert options == f"{inputs} --psidot0 --rad {own}".split()
+    inputs = [f"--{name.replace('_', '-')}" for name in DECLARED]
+    assert [*options[: len(inputs) + 1], *options[-2:]] == [*inputs, "--rad", "--format", "--help"]
     assert " ".join(shown.split()).count("rad per unit of time") == 4
 
 

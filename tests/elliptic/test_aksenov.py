@@ -10,7 +10,7 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import pytest
-from equations import EquationTests, Register, slightly_wrong
+from equations import EquationTests, Register, page, slightly_wrong
 from errata import misprints
 from ours import ar, fraction, incomplete_f, jacobi, nome, ours, quarter_period
 
@@ -147,65 +147,7 @@ def k2(sign: int) -> Any:
 TWO_REAL = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
 """Roots for which there is no real modulus."""
 
-aksenov.enter("""
-# once
-section 3.1: a linear-fractional substitution | substituted()[::2] = substituted()[1::2]
-section 3.1: property 5
-    | [jacobi(u, 0)[i] for u in ARGUMENTS for i in range(4)] = [x for u in ARGUMENTS for x in (u,
-      sin(u), cos(u), 1)]
-    | [jacobi(u, 1)[i] for u in ARGUMENTS for i in range(1, 4)] = [x for u in ARGUMENTS for x in
-      (tanh(u), sech(u), sech(u))]
-# moduli
-(3.1.1) | jacobi(first_kind(mpf('0.7'), m), k)[1] = mpf('0.7')
-(3.1.2) | quarter_period(k) = K | incomplete_f(mpf('0.7'), k) = ellipf(mpf('0.7'), m)
-    | incomplete_f(mpf('4.4'), k) = ellipf(mpf('4.4'), m)
-section 3.1: property 2 | map(min, *at_quarters(k, 5)) = (-1, -1, sqrt(1 - m))
-    | map(max, *at_quarters(k, 5)) = (1, 1, 1)
-section 3.1: table 2
-    | [x for row in at_quarters(k, 8)[8::2] for x in row] = [0, 1, 1, 1, 0, k1, 0, -1, 1, -1, 0, k1,
-      0, 1, 1]
-(3.1.6) | nome(k) = exp(-pi*ellipk(1 - m)/K)
-# smaller_moduli
-(3.1.8) | quarter_period(k) = series('K', k, terms=600)
-# points
-(3.1.3) | ellipf(am, m) = u
-section 3.1: definitions of sn, cn, dn | sn = sin(am) | cn = cos(am) | dn = sqrt(1 - m*sin(am)**2)
-    | (sn, cn, dn) = theirs(u, m)
-section 3.1: property 1 | jacobi(u + 2*ellipk(m), k) = (am + pi, -sn, -cn, dn)
-    | jacobi(u + 4*ellipk(m), k)[1:] = (sn, cn, dn)
-section 3.1: property 3 | jacobi(-u, k) = (-am, -sn, cn, dn)
-section 3.1: property 4 | sn**2 + cn**2 = 1 | dn**2 + m*sn**2 = 1 | dn**2 - m*cn**2 + m = 1
-(3.1.4) | sn = series('sn', k, u)
-(3.1.5) | cn = series('cn', k, u)
-(3.1.7) | am = series('am', k, u)
-# times
-(3.2.1)
-    | to(asin((eta - MIDDLE)/HALF), lambda x: Q_**2 - (MIDDLE + HALF*sin(x) - P_)**2) = sqrt(G_)*tau
-(3.2.2) | (eta - MIDDLE)/HALF = (C.m1 - C.m2 - (C.m1 + C.m2)*xi)/((C.m1 - C.m2)*xi - C.m1 - C.m2)
-(3.2.4) | to(theta, lambda x: 1 + C.k**2*cos(x)**2) = sqrt(G_*C.m1*C.m2)*tau
-(3.2.6) | eta = fractional(sin(theta))
-(3.2.7) | to(theta, lambda x: 1 - (C.k1*sin(x))**2) = C.sigma1*tau
-    | ellipf(theta, C.k1**2) + K1 = C.sigma1*tau
-(3.2.9) | eta = fractional(sin(jacobi(C.sigma1*tau - K1, C.k1)[0]))
-(3.2.11) | eta = fractional(xi)
-# once
-(3.2.3) | C.m1 = sqrt(Q_**2 - (DELTA - P_)**2) | C.m2 = sqrt(Q_**2 - (DELTA_STAR - P_)**2)
-(3.2.5) | C.k**2 = k2(1)
-(3.2.8) | C.k1**2 = k2(1)/(1 + k2(1)) | C.sigma1 = sqrt(G_*C.m1*C.m2*(1 + k2(1)))
-    | C.k1_prime**2 = 1 - C.k1**2
-(3.2.10) | eta_at(mpf(0)) = DELTA_STAR | eta_at(2*K1/C.sigma1) = DELTA | C.period = 4*K1/C.sigma1
-(3.2.12) | C.s = (C.m2*DELTA - C.m1*DELTA_STAR)/(C.m1 + C.m2) | C.d = (C.m2 - C.m1)/(C.m1 + C.m2)
-    | C.gamma = (C.m1*DELTA_STAR + C.m2*DELTA)/(C.m1 + C.m2)
-# once: as printed
-section 3.1: a linear-fractional substitution | map(im, cross_ratios(TWO_REAL)) = 6*[0]
-(3.1.6) | nome(0.5) = exp(pi*ellipk(0.75)/ellipk(0.25))
-section 3.1: property 4 | jacobi(1, 0.5)[3]**2 + jacobi(1, 0.5)[1]**2/4 = -1
-# once: misread
-(3.2.5) as printed, the plus read as a minus
-    | 4*C.m1*C.m2/(C.m1 - C.m2)**2*C.k**2 = 4*C.m1*C.m2/(C.m1 - C.m2)**2*k2(-1)
-(3.2.10) as printed, the minus read as a plus
-    | eta_at(TAUS[0]) = fractional(ellipfun('sn', C.sigma1*TAUS[0] + K1, m=C.k1**2))
-""")
+aksenov.enter(page("aksenov-3"))
 
 
 class TestAksenov(EquationTests):

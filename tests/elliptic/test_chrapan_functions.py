@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import pytest
-from equations import EquationTests, Register, slightly_wrong
+from equations import EquationTests, Register, page, slightly_wrong
 from errata import misprints
 from ours import (
     ar,
@@ -159,103 +159,7 @@ def integral(m: Any, v: Any) -> Any:
     return ar.quad(integrand, [0, W]) / sn * cn * dn
 
 
-chrapan.enter("""
-# any_modulus
-section 1 a: argument and modulus of Z may be any numbers
-    | [zeta_there(x, ETA, *of) for x in NUMBER] = [zeta(x, ETA, kappa) for x in NUMBER]
-section 2 a: argument, parameter and modulus of Omega may be any numbers
-    | [ratio_there(x, ETA, ANY, *of) for x in THIRD] = [exp(2*omega(x, ETA, ANY, kappa)) for x in
-      THIRD]
-section 3 a: argument, parameter and modulus of Pi may be any numbers
-    | [pi_there(x, ETA, ANY, *of) for x in THIRD] = [exp(2*pi_function(x, ETA, ANY, kappa)) for x in
-      THIRD]
-section 3 e: slope of Pi01 as a rational function of sn, cn, dn
-    | zeta('01', ANY, kappa) + zeta('01', ETA - ANY, kappa)/2 - zeta('01', ETA + ANY, kappa)/2 =
-      rational_slope(kappa, m)
-# once
-(1,1) | zeta_there('01', V, *IMAGINARY) = STRETCH*zeta('00', V*STRETCH, k)
-(1,2) | zeta_there('11', V, *IMAGINARY) = STRETCH*zeta('11', V*STRETCH, k)
-(1,1) and (1,2) of complex arguments
-    | zeta('01', ETA, J*K_BAR) = STRETCH*zeta_there('00', ETA*STRETCH)
-    | zeta('11', ETA, J*K_BAR) = STRETCH*zeta_there('11', ETA*STRETCH)
-section 1 c: real forms of Z(i alpha) | zeta('01', JA, k) = J*(S*D/C - LINE - Z01)
-    | 3*[zeta('00', JA, k)] = [J*(x - LINE) for x in (C/(S*D) - Z11, C/(S*D) - C*D/S - Z01,
-      COMPLEMENT**2*S*C/D - Z01)]
-    | 2*[zeta('11', JA, k)] = [J*(x - LINE) for x in (S*D/C - Z01 - D/(S*C), -C*D/S - Z01)]
-    | zeta('10', JA, k) = -J*(LINE + Z01)
-section 1 d: sum of Z00 and Z11
-    | zeta('00', JA, k) + zeta('11', JA, k) = J*(COMPLEMENT**2*S*C/D - C*D/S - 2*LINE) - 2*J*Z01
-(1,3) | zeta('00', JA, k) - zeta('11', JA, k) = J*C/(S*D)
-(1,4) | zeta('00', JA, k) - zeta('01', JA, k) = -J*k**2*S/(C*D)
-(1,5) | zeta('11', JA, k) - zeta('10', JA, k) = -J*C*D/S
-section 1 e: Z(alpha) = E(alpha, k') - E' alpha/K'
-    | zeta('01', ALPHA, COMPLEMENT) = quad(lambda x: ellipfun('dn', x, m=1 - k**2)**2, [0, ALPHA]) -
-      E_PRIME/K_PRIME*ALPHA
-(1,6)
-    | 2*[incomplete_f(PHI, COMPLEMENT)] = [quad(lambda x: 1/sqrt(1 - (COMPLEMENT*sin(x))**2), [0,
-      PHI]), quad(lambda x: 1/sqrt((1 - x**2)*(1 - (COMPLEMENT*x)**2)), [0, sin(PHI)])]
-(1,7) | jacobi(ALPHA, COMPLEMENT)[0] = asin(S)
-(1,8) | zeta_there('00', JA) + zeta_there('11', JA) = J*COMPLEMENT**2*S*C/D - J*C*D/S - 2*J*curve()
-# moduli
-section 1 e: Legendre's relation
-    | second_kind(x)*quarter_period(y) + second_kind(y)*quarter_period(x) -
-      quarter_period(x)*quarter_period(y) = pi/2 | quarter_period(x) = ellipk(x**2)
-    | second_kind(x) = ellipe(x**2)
-(2,4) | nome(x) = exp(-pi*ellipk(1 - x**2)/ellipk(x**2))
-# once
-(2,1) | ratio_there('01', W, V + J*K_PRIME) = exp(2*omega('11', W, V, k) + J*pi*(W/K + 1))
-(2,2)
-    | [ratio_there('01', W, v, *IMAGINARY) for v in (V, J*V)] = [exp(2*omega('00', W*STRETCH,
-      v*STRETCH, k)) for v in (V, J*V)]
-(2,3)
-    | [ratio_there('11', W, v, *IMAGINARY) for v in (V, J*V)] = [exp(2*omega('11', W*STRETCH,
-      v*STRETCH, k)) for v in (V, J*V)]
-(2,5)
-    | [omega(x, w, JA, k) for w in (V, W) for x in ('00', '11')] = [*arctangents(V),
-      *arctangents(W)]
-(2,6)
-    | exp(2*both(omega, -1, W)) = exp(2*J*atan(S*D/C*ellipfun('cn', W, m=k**2)/(ellipfun('sn', W,
-      m=k**2)*ellipfun('dn', W, m=k**2))))
-(2,7)
-    | slope(lambda w: omega('01', w, JA, k), W) = (zeta_there('01', W - JA) - zeta_there('01', W +
-      JA))/2
-(2,8)
-    | slope(lambda w: omega('00', w, JA, k), W) = (zeta_there('00', W - JA) - zeta_there('00', W +
-      JA))/2
-(2,9)
-    | slope(lambda w: omega('11', w, JA, k), W) = (zeta_there('11', W - JA) - zeta_there('11', W +
-      JA))/2
-section 3 a: Pi01 of Jacobi | exp(2*pi_function('01', W, V, k)) = pi_there('01', W, V)
-(3,1)
-    | [exp(2*pi_function('00', W, v, k)) for v in (V, JA)] = [pi_there('00', W, v) for v in (V, JA)]
-(3,2)
-    | [exp(2*pi_function('11', W, v, k)) for v in (V, JA)] = [pi_there('11', W, v) for v in (V, JA)]
-section 3 d: slopes of Pi
-    | [slope(lambda w: pi_function(x, w, JA, k), W) for x in THIRD] = [zeta_there(x, JA) +
-      (zeta_there(x, W - JA) - zeta_there(x, W + JA))/2 for x in THIRD]
-(3,3) | pi_there('01', W, V + J*K_PRIME) = -exp(2*pi_function('11', W, V, k))
-(3,4) | pi_there('01', W, J*V, *IMAGINARY) = exp(2*pi_function('00', W*STRETCH, J*V*STRETCH, k))
-(3,5) | pi_there('11', W, J*V, *IMAGINARY) = exp(2*pi_function('11', W*STRETCH, J*V*STRETCH, k))
-(3,8) | integral(k**2, V) = pi_function('01', W, V, k)
-# signs
-(2,10)
-    | slope(lambda w: both(omega, sign, w), 0) = -zeta_there('00', JA) - sign*zeta_there('11', JA)
-(2,11)
-    | slope(lambda w: both(omega, sign, w), K) = -zeta_there('01', JA) - sign*zeta_there('10', JA)
-(3,6) | slope(lambda w: both(pi_function, sign, w), 0) = 0
-(3,7) | slope(lambda w: both(pi_function, sign, w), K) = -J*k**2*S/(C*D) - sign*J*C*D/S
-# parameters
-(3,8) for the imaginary modulus of section 4
-    | integral(-K_BAR**2, v) = pi_function('00', W*STRETCH, v*STRETCH, k)
-    | integral(-K_BAR**2, v) = pi_function('01', W, v, J*K_BAR)
-# once: as printed
-(1,1) | zeta_there('01', V, *IMAGINARY) = zeta('00', V*STRETCH, k)
-(1,2) | zeta_there('11', V, *IMAGINARY) = zeta('11', V*STRETCH, k)
-(1,4) | zeta('00', JA, k) - zeta('01', JA, k) = -J*COMPLEMENT**2*S/(C*D)
-(1,8) | zeta_there('00', JA) + zeta_there('11', JA) = J*COMPLEMENT**2*S*C/D - J*C*D/S + 2*J*curve()
-(2,5) | both(omega, 1, W) = misprinted_2_5()
-(3,7) | slope(lambda w: both(pi_function, 1, w), k) = -J*k**2*S/(C*D) - J*C*D/S
-""")
+chrapan.enter(page("chrapan-1-to-3"))
 
 
 class TestChrapan(EquationTests):

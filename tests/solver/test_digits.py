@@ -37,8 +37,10 @@ DERIVED: dict[str, dict[str, Any]] = {
             *(UNIT | {"r0": 0.5, "theta0_deg": 100}, UNIT | {"r0": 5, "theta0_deg": 40, "g": 0}),
         )
     },
-    "steady-fast, phidot0": UNIT
-    | {"C": 0.5, "phidot0": -5, "theta0_deg": 70, "psidot0": "steady-fast"},
+    **{
+        f"{word}, phidot0": UNIT | {"C": 0.5, "phidot0": -5, "theta0_deg": 70, "psidot0": word}
+        for word in WORDS
+    },
     # steady rates that coincide, nearly coincide, and differ in sign only
     "steady rates, tie": UNIT | {"r0": -3, "theta0_deg": 60, "g": 4.5},
     "steady rates, near": UNIT | {"r0": math.nextafter(3**0.25 * 2**0.5, 9), "theta0_deg": 30},

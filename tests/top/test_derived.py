@@ -11,8 +11,8 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from conftest import Lagtop, assert_one_line
-from lagtop import LagtopError, Regime, Top, solve, sweep
+from conftest import Lagtop
+from lagtop import Regime, Top, solve, sweep
 from scenes import UNIT
 
 from lagrange_cli.solver.tables import ProvedTable
@@ -89,39 +89,6 @@ EXACT = [
 @pytest.mark.parametrize(("options", "printed"), EXACT)
 def test_derived_inputs_are_exact(lagtop: Lagtop, options: str, printed: str) -> None:
     assert lagtop("solve", *options.split()).stdout == printed.replace(" 0", "\n0") + "\n"
-
-
-STEADY_BODY = "--m 1 --s .5 --g 9.8 --C .08 --A .29 --theta0 54 --phidot0 30"
-
-
-@pytest.mark.parametrize(
-    ("word", "rate", "r0"),
-    [
-        ("steady", 2.318016982401538, 31.3624961968),
-        ("steady-fast", 17.12543006564509, 40.06607523175),
-    ],
-)
-def test_a_steady_rate_for_a_rate_of_phi(lagtop: Lagtop, word: str, rate: float, r0: float) -> None:
-    """The roots of (A - C) cos(theta) x^2 - C phidot0 x + m g s = 0."""
-    keys = "regime,precession_rate_start,r0,spin_rate_start,mean_spin_rate"
-    ask = ["solve", *STEADY_BODY.split(), "--psidot0", word, "--get", keys]
-    regime, *numbers = lagtop(*ask).stdout.split("\n")[:5]
-    assert regime == "steady precession"
-    assert [float(x) for x in numbers] == pytest.approx([rate, r0, 30, 30], rel=1e-12)
-
-
-def test_one_of_each_pair(tmp_path: Path, lagtop: Lagtop) -> None:
-    whole = ["--m", "1", "--C", "1", "--s", "1", "--g", "1"]
-    both = lagtop("solve", "--A", "1", "--A-cm", "2", *whole)
-    assert_one_line(both, 2, "--A-cm and --A are both given")
-    with pytest.raises(LagtopError, match="A_cm and A are both given"):
-        sweep(A=1, A_cm=1, m=1, C=1, s=1, g=1)
-    path = tmp_path / "scene.toml"
-    path.write_text("phidot0 = 1\nr0 = 2\n")
-    assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: phidot0 and r0 are both given")
-    rows = lagtop("sweep", "-", "--keys", "r0", input="r0,phidot0\n1,2\n")
-    assert rows.exit_code == 1
-    assert "phidot0 and r0 are both given" in rows.stdout
 
 
 def test_options_take_the_place_of_the_other_in_a_scene(tmp_path: Path, lagtop: Lagtop) -> None:

@@ -78,13 +78,3 @@ def test_the_warning_appears_once_per_grid_and_per_file(tmp_path: Path, lagtop: 
     assert lagtop("sweep", path, "--A", "1e-3", "--s", "1").stderr == ""
     objects = '{"r0": 3}\n{"m": 0.35, "C": 4e-4, "g": 9.81}\n'
     assert lagtop("sweep", "-", input=objects).stderr == SAID
-
-
-def test_an_error_that_comes_of_mixing_says_so(lagtop: Lagtop) -> None:
-    result = lagtop("solve", "--A", "8.5e-4", "--m", "0.35")
-    assert result.exit_code == 2
-    assert result.stderr == (
-        "Error: --C must be <= 2 A = 0.0017, got 17458.0 (no rigid body has more) "
-        "(with C of the worked example: give the whole body)\n"
-    )
-    assert "worked example" not in lagtop("solve", "--m", "-1").stderr
