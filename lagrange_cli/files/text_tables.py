@@ -27,6 +27,7 @@ _SAMPLE = 1000
 """Number of rows that decide whether numbers have decimal commas."""
 _TITLES = 50
 """Most rows above the headings, such as the title `mass A` of Tracker or the header of LabVIEW."""
+_COMMENT = re.compile(r"^\s*(?:[#%]+|//)")
 _NO_ROW = re.compile(r"\n[^\S\n]*(?:\n|\Z|[#%─]|//)")
 """A line end and an empty line, a comment, or a line that is drawn."""
 LARGEST_ARRAY = 1 << 26
@@ -266,25 +267,24 @@ def read_table(
             raise DataError(f"{name}, line {number}: a row must have at most {most}")
     if (flat := _flattened(text, sample[: _TITLES + 1])) is not None:
         return read_table(flat, name, known, decimal, width)
-    texts = [line for _, line in sample[: _TITLES + 1]]
-    layout = _layout(texts, known, decimal)
-    headings = layout.headings
+    head = [line for _, line in sample[: _TITLES + 1]]
+    above = text[: max(text.find(f"\n{head[0]}"), 0)] if head else ""
+    comments = [_COMMENT.sub("", x) for x in above[-_AT_ONCE:].rstrip().split("\n")[-_TITLES:]]
+    splits = [_splits(x, decimal) for x in head]
+    headings, first, delimiter = _layout(head, splits, comments, known)
     if width:
-        layout = _layout_of(texts, width, decimal)
-    elif headings is not None and layout.delimiter != " ":
-        number, line = sample[layout.first - 1]
+        first, delimiter = _first_row(splits, width)
+    elif headings is not None and first and delimiter != " ":
+        number, line = sample[first - 1]
         try:
-            split_row(line, layout.delimiter)
+            split_row(line, delimiter)
         except LagtopError as error:
             raise DataError.at(f"{name}, line {number}", error) from None
-    rows = sample[layout.first :]
-    cells = _split(rows[0][1], layout.delimiter) if rows else []
+    rows = sample[first:]
+    cells = _split(rows[0][1], delimiter) if rows else []
     count = len(cells if width else headings or cells)
-    if headings is None:  # perhaps in a comment, as numpy.savetxt writes them
-        above = text[: max(text.find(f"\n{sample[0][1]}"), 0)].rstrip() if sample else ""
-        headings = _heading_in_comments(above[-_AT_ONCE:], count, known, layout.delimiter)
-    first = rows[0][0] if rows else text.count("\n") + 2
-    table = Table(name, headings, count, Lines(text, first), layout.delimiter)
+    lines = Lines(text, rows[0][0] if rows else text.count("\n") + 2)
+    table = Table(name, headings, count, lines, delimiter)
     return replace(table, decimal=decimal or _decimal_mark(table, rows[:_SAMPLE]))
 
 
@@ -310,19 +310,6 @@ def _flattened(text: str, sample: Sequence[tuple[int, str]]) -> str | None:
     return None
 
 
-def _heading_in_comments(
-    above: str, count: int, known: CountKnown, delimiter: str
-) -> list[str] | None:
-    """Return the headings in the last fitting comment of the text above the first row, or None."""
-    for line in reversed(above.split("\n")[-_TITLES:]):
-        bare = re.sub(r"^\s*(?:[#%]+|//)", "", line)
-        for mark in dict.fromkeys([delimiter, *_splits(bare)]):
-            cells = _split(bare, mark)
-            if len(cells) == count and known(cells):
-                return cells
-    return None
-
-
 def _decimal_mark(table: Table, rows: Sequence[tuple[int, str]]) -> str:
     """Return the decimal mark of some rows.
 
@@ -343,62 +330,63 @@ def _decimal_mark(table: Table, rows: Sequence[tuple[int, str]]) -> str:
     return "," if places else "."
 
 
-class _Layout(NamedTuple):
-    """Where the headings and the rows of numbers are, among the first rows of a file."""
+def _layout(
+    head: Sequence[str],
+    splits: Sequence[Mapping[str, Sequence[str]]],
+    comments: Sequence[str],
+    known: CountKnown,
+) -> tuple[Sequence[str] | None, int, str]:
+    """Return the headings, the index of the first row of numbers, and their delimiter.
 
-    headings: list[str] | None
-    first: int
-    """The index of the first row of numbers, which is the one below the headings."""
-    delimiter: str
-    """The delimiter of the rows of numbers."""
-
-
-def _layout(texts: Sequence[str], known: CountKnown, decimal: str) -> _Layout:
-    """Return the layout of a file: its headings are the row with the most known names.
-
-    Titles may hold known names, too, but headings are as many as the cells below, and delimited so.
+    The headings are the row with the most known names; so may be a comment, as numpy.savetxt writes
+    it.  Titles may hold known names, too, but headings are as many as the cells below.
     """
-    splits = [_splits(text, decimal) for text in texts]
-    numeric = [[x for x, cells in row.items() if _are_numbers(cells)] for row in splits]
-    below = next((i for i, marks in enumerate(numeric) if marks), None)
-    found: tuple[Any, _Layout] | None = None
-    for i, text in enumerate(texts[:below]):
-        row = i + 1 if below is None else below
-        data = splits[row] if row < len(splits) else {}
-        marks = [*data] if below is None else numeric[below]
-        for mark, headings in _splits(text).items():
-            count, delimiters = known(headings), sorted(marks, key=mark.__ne__)
+    first, delimiter = _first_row(splits)
+    at_first = splits[first] if first < len(splits) else {}
+    numeric = [x for x, cells in at_first.items() if _are_numbers(cells)]
+    stop = first if numeric else len(head)
+    rows = [(i, x, first if numeric else i) for i, x in enumerate(head[:stop], 1)]
+    best: Any = None
+    for start, text, below in [*rows, *((first, x, first) for x in reversed(comments))]:
+        data = splits[below] if below < len(splits) else {}
+        marks = numeric or [*data]
+        for mark, names in _splits(text).items():
             is_one = mark == " " and all(len(data[x]) == 1 for x in marks)  # with its unit
-            cells = [text.strip()] if is_one else headings
+            cells, delimiters = [text.strip()] if is_one else names, sorted(marks, key=mark.__ne__)
             fits = [x for x in delimiters if len(data[x]) == len(cells)]
-            score = bool(fits), mark in marks, count
-            if count and (found is None or score > found[0]):
-                found = score, _Layout(cells, i + 1, [*fits, *delimiters, mark][0])
-    above = splits[below - 1] if below else {}
-    fit = any(len(cells) == len(data[x]) for x, cells in above.items() if x in marks)
-    if found and (found[0][0] or not fit):
-        return found[1]
-    some = (i for i, row in enumerate(splits) if _has_number(row))
-    first = next(some, min(len(texts), 1)) if below is None else below
-    near = first if first < len(texts) else first - 1
-    delimiter = [*numeric[near], *splits[near]][0] if texts else " "
-    return _Layout(_split(texts[first - 1], delimiter) if first else None, first, delimiter)
+            rank = bool(fits), mark in marks, known(names)
+            if rank[-1] and (best is None or rank > best[0]) and (fits or text in head):
+                best = rank, cells, start, [*fits, *delimiters, mark][0]
+    above = splits[first - 1] if first else {}
+    is_plain = any(len(above.get(x, ())) == len(at_first[x]) for x in numeric)
+    if best and (best[0][0] or not is_plain):
+        _, headings, first, delimiter = best
+        return headings, first, delimiter
+    return _split(head[first - 1], delimiter) if first else None, first, delimiter
 
 
-def _layout_of(texts: Sequence[str], width: int, decimal: str) -> _Layout:
-    """Return the layout of a file with `width` columns, whose names are given.
+def _first_row(
+    splits: Sequence[Mapping[str, Sequence[str]]], width: int | None = None
+) -> tuple[int, str]:
+    """Return the index of the first row of numbers, and its delimiter.
 
-    Numbers begin with the first row that has a number and `width` cells, as the row below has.
+    All of its cells are numbers if there is such a row.  If its `width` is known, it has a number
+    and so many cells, as the row below has.
     """
-    splits = [_splits(text, decimal) for text in texts]
-    ranked = [
-        (len(below.get(mark, ())) == len(cells) == width, len(cells) == width, -i, cells, mark)
-        for i, (row, below) in enumerate(zip(splits, [*splits[1:], *splits[-1:]], strict=True))
-        for mark, cells in row.items()
-        if any(map(_NUMBER.fullmatch, cells))
-    ]
-    best = max(ranked, key=lambda x: (*x[:3], _are_numbers(x[3])), default=None)
-    return _Layout(None, -best[2], best[4]) if best else _Layout(None, len(texts), " ")
+    ranked = []
+    for i, (row, below) in enumerate(zip(splits, [*splits[1:], *splits[-1:]], strict=True)):
+        for mark, cells in row.items():
+            fits, are_numbers = len(cells) == width, _are_numbers(cells)
+            is_usual = width or are_numbers or mark != " " or len(row) == 1
+            if is_usual and any(map(_NUMBER.fullmatch, cells)):
+                fit = fits and len(below.get(mark, ())) == width
+                ranked.append(((fit, fits, are_numbers and not width, -i, are_numbers), i, mark))
+    if ranked:
+        _, i, mark = max(ranked, key=lambda x: x[0])
+        return i, mark
+    if width or not splits:
+        return len(splits), " "
+    return 1, next(iter(splits[min(1, len(splits) - 1)]))
 
 
 def _splits(text: str, decimal: str = "") -> dict[str, list[str]]:
@@ -410,12 +398,6 @@ def _splits(text: str, decimal: str = "") -> dict[str, list[str]]:
 
 def _are_numbers(cells: Sequence[str]) -> bool:
     return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x not in _MISSING)
-
-
-def _has_number(row: Mapping[str, Sequence[str]]) -> bool:
-    """Return whether a cell of a row is a number, by any delimiter but blanks if it has another."""
-    splits = [*row.values()][:-1] or row.values()
-    return any(_NUMBER.fullmatch(x) for cells in splits for x in cells)
 
 
 def _split(text: str, delimiter: str) -> list[str]:
